@@ -1,0 +1,41 @@
+# Compile options of the project's own code, and the functions that make its targets.
+
+# Numbers must not depend on the machine's instruction set: no contraction to FMA, SSE2 arithmetic as x86-64 has it.
+add_library(constrictor_options INTERFACE)
+target_compile_options(constrictor_options INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast>
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CONSTRICTOR_WERROR}>>:-Werror>
+  -ffp-contract=off)
+target_include_directories(constrictor_options INTERFACE ${PROJECT_SOURCE_DIR}/components ${PROJECT_SOURCE_DIR})
+if(CONSTRICTOR_SANITIZE)
+  add_compile_options(-fsanitize=${CONSTRICTOR_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${CONSTRICTOR_SANITIZE})
+endif()
+
+# constrictor_library(NAME SOURCES ... LINK ...): a static library of the project.
+function(constrictor_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC constrictor_options ${ARG_LINK})
+endfunction()
+
+# constrictor_component(NAME SOURCES ... LINK ...): the pure class as library constrictor_NAME, and, from main.cpp, the
+# executable NAME.
+function(constrictor_component name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  constrictor_library(constrictor_${name} SOURCES ${ARG_SOURCES} LINK constrictor_component_api ${ARG_LINK})
+  add_executable(${name} main.cpp)
+  target_link_libraries(${name} PRIVATE constrictor_${name} constrictor_runtime)
+endfunction()
+
+# constrictor_test(NAME SOURCES ... LINK ... LABELS ...): a GoogleTest program, its cases discovered by ctest.
+function(constrictor_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE constrictor_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  include(GoogleTest)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()
