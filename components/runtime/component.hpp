@@ -41,6 +41,7 @@ struct Setup {
   std::filesystem::path config_file;    ///< the component's own YAML; empty: its default
   std::filesystem::path output_dir;     ///< for members that write files (report); may be empty
   std::uint64_t seed = 1;               ///< of the epoch
+  std::uint16_t robot_id = 1;           ///< key of every message of this robot
 
   /// Seed of this component's own generator: a fixed mix of `seed` and `component`.
   [[nodiscard]] std::uint64_t component_seed() const;

@@ -1,0 +1,180 @@
+#include "runtime/barrier/conductor.hpp"
+
+#include <algorithm>
+
+namespace constrictor {
+
+Conductor::Conductor(ConductorOptions options, ConductorSink& sink)
+    : options_(std::move(options)), sink_(sink), seed_(options_.seed) {
+  for (const auto& name : options_.roster) members_[name];
+}
+
+void Conductor::on_greeting(const Greeting& greeting) {
+  const auto found = members_.find(greeting.component);
+  const auto refuse = [&](const std::string& reason) { sink_.refuse(greeting, reason); };
+  if (found == members_.end()) return refuse("no component of this name is in the roster");
+  MemberState& member = found->second;
+  if (member.greeted && greeting.pid == member.greeting.pid && greeting.host == member.greeting.host &&
+      greeting.incarnation == member.greeting.incarnation) {
+    return;  // said again
+  }
+  if (member.greeted && greeting.incarnation <= member.greeting.incarnation) {
+    return refuse("two members of one name: incarnation " + std::to_string(member.greeting.incarnation) + " runs as pid " +
+                  std::to_string(member.greeting.pid) + " on " + member.greeting.host +
+                  "; a replacement needs a higher --incarnation");
+  }
+  if (greeting.component == options_.plant && member.greeted) return refuse("the plant cannot be replaced in a run");
+  const auto differs = [&](const char* what, const std::string& theirs, const std::string& ours) {
+    refuse(std::string(what) + " differs: found " + theirs + ", the run has " + ours);
+  };
+  if (greeting.idl_hash != options_.idl_hash) return differs("IDL hash", greeting.idl_hash, options_.idl_hash);
+  if (greeting.config_hash != options_.config_hash) {
+    return differs("configuration hash", greeting.config_hash, options_.config_hash);
+  }
+  if (greeting.numeric_profile != options_.numeric_profile) {
+    return differs("numeric profile", greeting.numeric_profile, options_.numeric_profile);
+  }
+  member.greeting = greeting;
+  member.greeted = true;
+  member.ready = false;
+  if (epoch_) {
+    send_resume(member);
+  } else if (std::all_of(members_.begin(), members_.end(), [](const auto& entry) { return entry.second.greeted; })) {
+    epoch_ = EpochId{options_.run_id, 1};
+    clear_epoch_state();
+    sink_.start_epoch(*epoch_, seed_);
+    // Members that were already restarted before the first tick wait for a Resumption instead.
+    for (const auto& [name, other] : members_) {
+      if (other.greeting.incarnation > 1) send_resume(other);
+    }
+  }
+}
+
+void Conductor::send_resume(const MemberState& member) {
+  Resumption resumption{member.greeting.component, *epoch_, member.greeting.incarnation, member.last_done, seed_,
+                        member.state, {}};
+  for (const auto& [topic, samples] : member.history) {
+    for (const auto& bytes : samples) resumption.outputs.push_back({topic, bytes});
+  }
+  sink_.resume(resumption);
+}
+
+void Conductor::on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation) {
+  const auto found = members_.find(component);
+  if (found == members_.end() || epoch_ != epoch || found->second.greeting.incarnation != incarnation) return;
+  found->second.ready = true;
+}
+
+std::int64_t Conductor::newest_due(const MemberState& member, std::int64_t tick) const {
+  const std::int64_t latest_start = tick - member.greeting.timing.latency;
+  if (latest_start < 0) return -1;
+  return latest_start - latest_start % member.greeting.timing.period;
+}
+
+void Conductor::on_done(const StepDone& done) {
+  const auto found = members_.find(done.component);
+  if (found == members_.end() || epoch_ != done.epoch) return;
+  MemberState& member = found->second;
+  // An older incarnation is fenced off; a step already known was done again after a restart that lost nothing.
+  if (done.incarnation != member.greeting.incarnation || done.index <= member.last_done || done.index >= next_index_) return;
+  member.last_done = done.index;
+  member.output_hash = done.output_hash;
+  member.state = done.state;
+  member.pending.emplace_back(done.index, done.published);
+  member.pending_incarnations.emplace_back(done.index, done.incarnation);
+  for (const auto& written : done.written) {
+    auto& history = member.history[written.topic];
+    history.push_back(written.bytes);
+    if (history.size() > topics::kInfos[written.topic].depth) history.pop_front();
+  }
+  if (done.end_of_run) {
+    const std::int64_t at = done.index + member.greeting.timing.latency;
+    end_requested_at_ = std::min(end_requested_at_.value_or(at), at);
+  }
+}
+
+bool Conductor::may_tick() const {
+  if (!epoch_ || ended_) return false;
+  return std::all_of(members_.begin(), members_.end(), [this](const auto& entry) {
+    return entry.second.ready && entry.second.last_done >= newest_due(entry.second, next_index_);
+  });
+}
+
+std::vector<Conductor::Owed> Conductor::owed() const {
+  std::vector<Owed> owed;
+  for (const auto& [name, member] : members_) {
+    if (!member.greeted) {
+      owed.push_back({name, "Hello", 0, 1});
+    } else if (epoch_ && !member.ready) {
+      owed.push_back({name, "Ready", 0, 1});
+    } else if (epoch_ && member.last_done < newest_due(member, next_index_)) {
+      owed.push_back({name, "TickDone", member.last_done, newest_due(member, next_index_)});
+    }
+  }
+  return owed;
+}
+
+void Conductor::tick(const std::vector<StepDone::Count>& plant) {
+  for (auto& [name, member] : members_) {
+    while (!member.pending.empty() && member.pending.front().first + member.greeting.timing.latency <= next_index_) {
+      for (const auto& [topic, count] : member.pending.front().second) {
+        if (count > visible_[topic]) incarnations_[topic] = member.pending_incarnations.front().second;
+        visible_[topic] = count;
+      }
+      member.pending.pop_front();
+      member.pending_incarnations.pop_front();
+    }
+  }
+  const std::uint32_t plant_incarnation = incarnation(options_.plant);
+  for (const auto& [topic, count] : plant) {
+    visible_[topic] = count;
+    incarnations_[topic] = plant_incarnation;
+  }
+  msg::Tick tick{};
+  tick.run_id = epoch_->run_id;
+  tick.epoch = epoch_->epoch;
+  tick.index = next_index_;
+  tick.time_ns = next_time_ns();
+  tick.period_ns = options_.period_ns;
+  tick.final_tick = next_is_final();
+  std::copy(visible_.begin(), visible_.end(), tick.visible);
+  std::copy(incarnations_.begin(), incarnations_.end(), tick.incarnations);
+  ended_ = tick.final_tick;
+  ++next_index_;
+  sink_.tick(tick);
+}
+
+void Conductor::clear_epoch_state() {
+  for (auto& [name, member] : members_) {
+    Greeting greeting = member.greeting;
+    member = MemberState{};
+    member.greeting = std::move(greeting);
+    member.greeted = true;
+  }
+  next_index_ = 0;
+  ended_ = false;
+  end_requested_at_.reset();
+  visible_ = {};
+  incarnations_ = {};
+}
+
+void Conductor::reset(std::uint64_t seed) {
+  if (!epoch_) return;
+  ++epoch_->epoch;
+  seed_ = seed;
+  clear_epoch_state();
+  sink_.start_epoch(*epoch_, seed_);
+}
+
+std::map<std::string, std::array<std::uint8_t, 32>> Conductor::output_hashes() const {
+  std::map<std::string, std::array<std::uint8_t, 32>> hashes;
+  for (const auto& [name, member] : members_) hashes[name] = member.output_hash;
+  return hashes;
+}
+
+std::uint32_t Conductor::incarnation(const std::string& component) const {
+  const auto found = members_.find(component);
+  return found == members_.end() ? 0 : found->second.greeting.incarnation;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,46 @@
+// Reads the subset of IDL that Constrictor's messages use.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace constrictor::describe {
+
+struct Field {
+  std::string name;
+  std::string type;              ///< C++ type of one element; a struct's name for nested ones
+  std::uint32_t array_length = 0;  ///< 0: not an array
+  std::uint32_t string_bound = 0;  ///< > 0: a bounded string
+  bool is_sequence = false;      ///< sequence<octet>
+  bool is_struct = false;
+  bool is_key = false;
+  bool has_range = false;
+  std::string min, max;          ///< as written
+  std::string comment;
+};
+
+struct Struct {
+  std::string name;
+  std::string comment;
+  std::string file;
+  std::vector<Field> fields;
+};
+
+struct Constant {
+  std::string name;
+  std::string type;              ///< "int" or "std::uint8_t"
+  std::uint32_t value = 0;
+};
+
+/// Everything the files define, in order.
+struct Model {
+  std::vector<Constant> constants;
+  std::vector<Struct> structs;
+};
+
+/// Adds a file to `model`. Throws std::runtime_error with file and line on anything it does not know.
+void parse_idl(const std::string& path, const std::string& text, Model& model);
+
+}  // namespace constrictor::describe

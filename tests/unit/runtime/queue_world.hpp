@@ -1,0 +1,238 @@
+// A run on queues in which every delivery, step, tick, crash and restart is an explicit action, so that a test can try all
+// orders. One channel for each (writer incarnation, topic, reader): in order within, any order between, as DDS promises.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/barrier/conductor.hpp"
+#include "runtime/barrier/member.hpp"
+
+namespace constrictor::toys {
+
+class QueueWorld : private ConductorSink {
+ public:
+  struct Action {
+    enum Kind { kDeliver, kStep, kTick, kCrash, kReset } kind;
+    std::string what;   ///< channel (kDeliver) or member (kStep, kCrash)
+    int lost = 0;       ///< kCrash: so many of the newest messages of each of its channels never left
+    bool operator<(const Action& other) const {
+      return std::tie(kind, what, lost) < std::tie(other.kind, other.what, other.lost);
+    }
+  };
+
+  QueueWorld(std::vector<ComponentFactory> factories, std::int64_t final_tick) : factories_(std::move(factories)), final_tick_(final_tick) {
+    ConductorOptions options;
+    for (const auto& factory : factories_) options.roster.push_back(factory.name);
+    options.plant = options.roster.front();
+    conductor_ = std::make_unique<Conductor>(options, *this);
+    for (std::size_t i = 0; i < factories_.size(); ++i) start(i, 1);
+  }
+
+  [[nodiscard]] bool finished() const {
+    for (const auto& node : nodes_) {
+      if (!node->member->ended()) return false;
+    }
+    return true;
+  }
+
+  /// Everything that can happen now; crashes only of members in `mortal`, resets only if asked.
+  [[nodiscard]] std::vector<Action> actions(const std::set<std::string>& mortal, bool may_reset) const {
+    std::vector<Action> list;
+    for (const auto& [name, queue] : channels_) {
+      if (!queue.empty()) list.push_back({Action::kDeliver, name, 0});
+    }
+    for (const auto& node : nodes_) {
+      if (can_step(*node->member)) list.push_back({Action::kStep, node->member->name(), 0});
+      if (!mortal.contains(node->member->name()) || node->member->ended()) continue;
+      for (int lost = 0; lost <= 3; ++lost) list.push_back({Action::kCrash, node->member->name(), lost});
+    }
+    if (conductor_->may_tick()) list.push_back({Action::kTick, "", 0});
+    if (may_reset && conductor_->epoch()) list.push_back({Action::kReset, "", 0});
+    return list;
+  }
+
+  void apply(const Action& action) {
+    switch (action.kind) {
+      case Action::kDeliver: {
+        auto& queue = channels_[action.what];
+        const auto deliver = std::move(queue.front());
+        queue.pop_front();
+        deliver();
+        break;
+      }
+      case Action::kStep: find(action.what).member->try_step(); break;
+      case Action::kTick: {
+        Member& plant = *nodes_.front()->member;
+        if (conductor_->next_index() == final_tick_) conductor_->end_run();
+        plant.sample_plant(conductor_->next_index(), conductor_->next_time_ns(), 20'000'000);
+        conductor_->tick(plant.published());
+        break;
+      }
+      case Action::kCrash: crash(action.what, action.lost); break;
+      case Action::kReset: conductor_->reset(5); break;
+    }
+  }
+
+  /// What can be observed of the state: states with equal fingerprints have equal futures.
+  [[nodiscard]] std::string fingerprint() const {
+    std::string text = std::to_string(conductor_->next_index()) + (conductor_->may_tick() ? "m" : "-");
+    for (const auto& node : nodes_) {
+      const Member& member = *node->member;
+      const MissingInput missing = member.missing();
+      text += "|" + member.name() + std::to_string(member.incarnation()) + "," + std::to_string(member.last_done()) + "," +
+              std::to_string(member.newest_tick()) + (member.ended() ? "e" : "") + (member.in_epoch() ? std::to_string(member.epoch().epoch) : "?") +
+              "," + std::to_string(missing.tick) + (missing.topic ? std::string(missing.topic->name) : "-") + std::to_string(missing.have) +
+              node->member->component().save();
+    }
+    for (const auto& [name, queue] : channels_) {
+      if (!queue.empty()) text += "|" + name + ":" + std::to_string(queue.size());
+    }
+    for (const auto& [name, count] : delivered_) text += "," + std::to_string(count);
+    return text;
+  }
+
+  [[nodiscard]] double plant_value() const { return static_cast<const ToyPlant&>(nodes_.front()->member->component()).value(); }
+  [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const { return conductor_->output_hashes(); }
+  [[nodiscard]] std::uint64_t refused() const {
+    std::uint64_t sum = 0;
+    for (const auto& node : nodes_) sum += node->member->counters().refused;
+    return sum;
+  }
+
+ private:
+  struct Node : MemberSink {
+    QueueWorld* world = nullptr;
+    std::size_t index = 0;
+    std::unique_ptr<Member> member;
+    std::map<std::uint8_t, std::deque<Sample>> history;   ///< transient-local, dies with the process
+    void publish(const TopicInfo& topic, const Sample& sample) override {
+      auto& kept = history[topic.id];
+      kept.push_back(sample);
+      if (kept.size() > topic.depth) kept.pop_front();
+      for (const auto& reader : world->nodes_) {
+        if (reader && reader->member && (reader->member->reads() >> topic.id & 1)) world->send(*this, topic.id, *reader, sample);
+      }
+    }
+    void done(const StepDone& step) override {
+      QueueWorld* w = world;
+      w->channels_[key(*this, "done", "conductor")].push_back([w, step] { w->conductor_->on_done(step); });
+    }
+  };
+
+  static std::string key(const Node& from, const std::string& topic, const std::string& to) {
+    return from.member->name() + "." + std::to_string(from.member->incarnation()) + ">" + topic + ">" + to;
+  }
+  static bool can_step(const Member& member) {
+    const MissingInput missing = member.missing();
+    return missing.topic == nullptr && missing.tick >= 0 && member.in_epoch() && !member.ended() && missing.tick <= member.newest_tick();
+  }
+  Node& find(const std::string& name) {
+    for (auto& node : nodes_) {
+      if (node->member->name() == name) return *node;
+    }
+    throw std::logic_error("no " + name);
+  }
+
+  void send(const Node& from, std::uint8_t topic, Node& to, const Sample& sample) {
+    if (to.member->name() == from.member->name()) return to.member->on_sample(topic, sample);
+    const std::string name = key(from, std::string(topics::kInfos[topic].name), to.member->name());
+    Node* reader = &to;
+    channels_[name].push_back([this, name, reader, topic, sample] {
+      ++delivered_[name];
+      reader->member->on_sample(topic, sample);
+    });
+  }
+
+  void start(std::size_t index, std::uint32_t incarnation) {
+    auto node = std::make_unique<Node>();
+    node->world = this;
+    node->index = index;
+    Setup setup;
+    node->member = std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, *node);
+    if (nodes_.size() <= index) nodes_.resize(index + 1);
+    nodes_[index] = std::move(node);
+    Greeting greeting;
+    greeting.component = nodes_[index]->member->name();
+    greeting.incarnation = incarnation;
+    greeting.pid = static_cast<int>(incarnation);
+    greeting.timing = nodes_[index]->member->timing();
+    conductor_->on_greeting(greeting);
+  }
+
+  void crash(const std::string& name, int lost) {
+    Node& dead = find(name);
+    const std::size_t index = dead.index;
+    const std::uint32_t incarnation = dead.member->incarnation() + 1;
+    for (auto& [channel, queue] : channels_) {
+      if (channel.starts_with(name + ".")) {
+        for (int i = 0; i < lost && !queue.empty(); ++i) queue.pop_back();
+      }
+      if (channel.ends_with(">" + name)) queue.clear();
+    }
+    nodes_[index]->member.reset();
+    start(index, incarnation);
+    Node& reborn = *nodes_[index];
+    for (const auto& node : nodes_) {
+      if (node->index == index) continue;
+      for (const auto& [topic, kept] : node->history) {
+        if (!(reborn.member->reads() >> topic & 1)) continue;
+        for (const auto& sample : kept) send(*node, topic, reborn, sample);
+      }
+    }
+    for (const auto& tick : ticks_) send_tick(tick, reborn);
+  }
+
+  void send_tick(const msg::Tick& tick, Node& to) {
+    if (to.index == 0) return to.member->on_tick(tick);
+    Node* reader = &to;
+    const std::string name = "conductor>tick>" + to.member->name();
+    channels_[name].push_back([this, name, reader, tick] {
+      ++delivered_[name];
+      reader->member->on_tick(tick);
+    });
+  }
+  void tick(const msg::Tick& tick) override {
+    ticks_.push_back(tick);
+    for (auto& node : nodes_) send_tick(tick, *node);
+  }
+  void start_epoch(const EpochId& epoch, std::uint64_t seed) override {
+    ticks_.clear();
+    for (auto& node : nodes_) {
+      Node* reader = node.get();
+      const std::size_t index = node->index;
+      channels_["conductor>epoch>" + node->member->name()].push_back([this, reader, index, epoch, seed] {
+        reader->member->on_epoch(epoch, seed);
+        channels_[key(*nodes_[index], "ready", "conductor")].push_back(
+            [this, reader, epoch] { conductor_->on_ready(reader->member->name(), epoch, reader->member->incarnation()); });
+      });
+    }
+  }
+  void resume(const Resumption& resumption) override {
+    Node* reader = &find(resumption.component);
+    channels_["conductor>resume>" + resumption.component].push_back([this, reader, resumption] {
+      reader->member->on_resume(resumption);
+      channels_[key(*reader, "ready", "conductor")].push_back([this, resumption] {
+        conductor_->on_ready(resumption.component, resumption.epoch, resumption.incarnation);
+      });
+    });
+  }
+  void refuse(const Greeting& greeting, const std::string& reason) override {
+    throw std::logic_error(greeting.component + " refused: " + reason);
+  }
+
+  std::vector<ComponentFactory> factories_;
+  std::int64_t final_tick_;
+  std::unique_ptr<Conductor> conductor_;
+  std::vector<std::unique_ptr<Node>> nodes_;
+  std::map<std::string, std::deque<std::function<void()>>> channels_;
+  std::map<std::string, int> delivered_;
+  std::vector<msg::Tick> ticks_;
+};
+
+}  // namespace constrictor::toys

@@ -1,0 +1,144 @@
+// Small components that mix everything they see into everything they write: any lost, doubled, reordered or early input
+// changes all later outputs.
+#pragma once
+
+#include <cereal/types/vector.hpp>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/component.hpp"
+
+namespace constrictor::toys {
+
+/// A value in [0, 1) that depends on every bit of what was mixed before.
+struct Mixer {
+  std::uint64_t value = 0x9e3779b97f4a7c15ULL;
+  void mix(std::uint64_t x) {
+    value = (value ^ x) * 0xbf58476d1ce4e5b9ULL;
+    value ^= value >> 29;
+  }
+  void mix(double x) { mix(static_cast<std::uint64_t>(x * 1e15)); }
+  [[nodiscard]] double unit() const { return static_cast<double>(value >> 12) * 0x1p-52; }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(value);
+  }
+};
+
+/// Writes JointState (every tick) from what JointCommand says.
+class ToyPlant : public Plant {
+ public:
+  ToyPlant(Wiring& wiring, const Setup& setup)
+      : command_(wiring.latest(topics::kJointCommand)), state_out_(wiring.output(topics::kJointState)) {
+    mixer_.mix(setup.seed);
+  }
+  void sample(const Tick& tick) override {
+    msg::JointState state{};
+    state.joint_count = 1;
+    state.position_rad[0] = mixer_.unit();
+    state.velocity_rad_s[0] = tick.time_s();
+    state_out_.write(state);
+  }
+  void step(const Tick&) override {
+    if (command_) {
+      mixer_.mix(command_->position_rad[0]);
+      mixer_.mix(static_cast<std::uint64_t>(command_.age_ticks()));
+    }
+    mixer_.mix(std::uint64_t{1});
+  }
+  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+  [[nodiscard]] double value() const { return mixer_.unit(); }
+
+ private:
+  Latest<msg::JointCommand> command_;
+  Output<msg::JointState> state_out_;
+  Mixer mixer_;
+};
+
+/// Reads JointState, writes TaskEvents (two in each step: Events readers must see both).
+class ToyNavigation : public StatefulComponent<Mixer> {
+ public:
+  ToyNavigation(Wiring& wiring, const Setup& setup, Timing timing)
+      : joints_(wiring.latest(topics::kJointState)), events_(wiring.output(topics::kTaskEvent)), timing_(timing) {
+    state_.mix(setup.component_seed());
+  }
+  [[nodiscard]] Timing timing() const override { return timing_; }
+  void step(const Tick& tick) override {
+    state_.mix(joints_->position_rad[0]);
+    state_.mix(static_cast<std::uint64_t>(tick.elapsed));
+    for (int i = 0; i < 2; ++i) {
+      msg::TaskEvent event{};
+      event.goal_id = state_.value >> 1;
+      events_.write(event);
+      state_.mix(std::uint64_t{7});
+    }
+  }
+
+ private:
+  Latest<msg::JointState> joints_;
+  Output<msg::TaskEvent> events_;
+  Timing timing_;
+};
+
+/// Reads JointState and every TaskEvent, writes JointCommand.
+class ToyControl : public StatefulComponent<Mixer> {
+ public:
+  ToyControl(Wiring& wiring, const Setup& setup)
+      : joints_(wiring.latest(topics::kJointState)), events_(wiring.events(topics::kTaskEvent)),
+        command_(wiring.output(topics::kJointCommand)) {
+    state_.mix(setup.component_seed());
+  }
+  void step(const Tick&) override {
+    state_.mix(joints_->position_rad[0]);
+    for (const auto& event : events_) state_.mix(event.goal_id);
+    msg::JointCommand command{};
+    command.joint_count = 1;
+    command.position_rad[0] = state_.unit();
+    command_.write(command);
+  }
+
+ private:
+  Latest<msg::JointState> joints_;
+  Events<msg::TaskEvent> events_;
+  Output<msg::JointCommand> command_;
+};
+
+/// Reads everything the others write and writes nothing that they read.
+class ToyPlanner : public StatefulComponent<Mixer> {
+ public:
+  ToyPlanner(Wiring& wiring, const Setup& setup)
+      : events_(wiring.events(topics::kTaskEvent)), command_(wiring.latest(topics::kJointCommand)),
+        mission_(wiring.output(topics::kMissionStatus)) {
+    state_.mix(setup.component_seed());
+  }
+  [[nodiscard]] Timing timing() const override { return {1, 1}; }
+  void step(const Tick&) override {
+    for (const auto& event : events_) state_.mix(event.goal_id);
+    if (command_) state_.mix(command_->position_rad[0]);
+    msg::MissionStatus mission{};
+    mission.recoveries = static_cast<std::uint16_t>(state_.value >> 48);
+    mission_.write(mission);
+  }
+
+ private:
+  Events<msg::TaskEvent> events_;
+  Latest<msg::JointCommand> command_;
+  Output<msg::MissionStatus> mission_;
+};
+
+inline ComponentFactory plant() {
+  return {"physics", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlant>(w, s); }};
+}
+inline ComponentFactory navigation(Timing timing = {1, 1}) {
+  return {"navigation",
+          [timing](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyNavigation>(w, s, timing); }};
+}
+inline ComponentFactory control() {
+  return {"control", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyControl>(w, s); }};
+}
+inline ComponentFactory planner() {
+  return {"planner", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlanner>(w, s); }};
+}
+
+}  // namespace constrictor::toys
