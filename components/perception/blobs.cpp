@@ -1,0 +1,243 @@
+#include "perception/blobs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "perception/colour_edge.hpp"
+
+namespace constrictor::perception {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPaths = 9;               // lines of sight along which an edge is looked for
+constexpr double kMaxGapPixels = 3.0;   // holes in a region
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Measures one region. Azimuths and ranges are from the camera until `finish` moves them to the head.
+class Gauge {
+ public:
+  Gauge(const cv::Mat& rgb, const Regions& regions, std::size_t index, const GroundCamera& camera,
+        const PerceptionConfig& config)
+      : rgb_(rgb), regions_(regions), region_(regions.regions[index]), id_(static_cast<std::uint8_t>(index + 1)),
+        camera_(camera), config_(config) {}
+
+  /// The part that stands up; `on_zone`: its lower edge melts into a zone of the same colour.
+  std::optional<msg::Blob> object(bool on_zone) const {
+    msg::Blob blob = box(region_.standing_first, region_.standing_last);
+    double right = 0.0, left = 0.0;
+    if (!object_azimuths(left, right)) return std::nullopt;
+    blob.kind = msg::kBlobObject;
+    double range_m = on_zone ? kNan : lower_edge_range(left, right);
+    if (!std::isfinite(range_m)) range_m = upper_edge_range(left, right);
+    return finish(blob, left, right, range_m);
+  }
+
+  /// The part that lies flat: the whole region, or its columns beside the object.
+  std::optional<msg::Blob> zone() const {
+    double right = 1e9, left = -1e9, lateral_min = 1e9, lateral_max = -1e9;
+    for (int v = region_.v_min; v <= region_.v_max; ++v) {
+      int first = -1, last = -1;
+      for (int u = region_.u_min; u <= region_.u_max; ++u) {
+        if (regions_.ids.at<std::uint8_t>(v, u) != id_ || in_object(u)) continue;
+        if (first < 0) first = u;
+        last = u;
+      }
+      if (first < 0 || v < camera_.horizon_row(0.5 * (first + last))) continue;
+      left = std::max(left, azimuth({first, v + 0.5}));
+      right = std::min(right, azimuth({last + 1.0, v + 0.5}));
+      for (const int u : {first, last + 1}) {
+        if (const auto p = camera_.ground(u, v + 0.5)) {
+          lateral_min = std::min(lateral_min, p->y());
+          lateral_max = std::max(lateral_max, p->y());
+        }
+      }
+    }
+    if (left <= right) return std::nullopt;
+    msg::Blob blob = box(region_.u_min, region_.u_max);
+    blob.kind = blob.cut_top && camera_.horizon_row(0.5 * camera_.width()) < 1.0 ? msg::kBlobUndecided : msg::kBlobZone;
+    auto result = finish(blob, left, right, lower_edge_range(left, right));
+    if (result && !std::isfinite(result->width_m) && lateral_max > lateral_min) {
+      result->width_m = lateral_max - lateral_min;
+    }
+    return result;
+  }
+
+  /// Pixels beside the object's columns, and whether the flat part reaches nearer than the object does.
+  void flat_part(int& pixels, bool& nearer) const {
+    pixels = 0;
+    int lowest = 0, object_lowest = 0;
+    const int middle = (region_.standing_first + region_.standing_last) / 2;
+    for (int v = region_.v_min; v <= region_.v_max; ++v) {
+      for (int u = region_.u_min; u <= region_.u_max; ++u) {
+        if (regions_.ids.at<std::uint8_t>(v, u) != id_) continue;
+        if (!in_object(u)) {
+          ++pixels;
+          lowest = v;
+        } else if (u == middle) {
+          object_lowest = v;
+        }
+      }
+    }
+    nearer = lowest >= object_lowest - 2;
+  }
+
+ private:
+  [[nodiscard]] bool in_object(int u) const {
+    return region_.standing() && u >= region_.standing_first - 2 && u <= region_.standing_last + 2;
+  }
+
+  [[nodiscard]] double azimuth(const Eigen::Vector2d& pixel) const {
+    const Eigen::Vector3d direction = camera_.ray(pixel.x(), pixel.y());
+    return std::atan2(direction.y(), direction.x());
+  }
+
+  [[nodiscard]] msg::Blob box(int u_min, int u_max) const {
+    msg::Blob blob{};
+    blob.colour = region_.colour;
+    blob.u_min = static_cast<std::uint16_t>(u_min);
+    blob.u_max = static_cast<std::uint16_t>(u_max);
+    blob.v_min = static_cast<std::uint16_t>(region_.v_min);
+    blob.v_max = static_cast<std::uint16_t>(region_.v_max);
+    int pixels = 0;
+    for (int v = region_.v_min; v <= region_.v_max; ++v) {
+      for (int u = u_min; u <= u_max; ++u) pixels += regions_.ids.at<std::uint8_t>(v, u) == id_ ? 1 : 0;
+    }
+    blob.area_fraction = static_cast<double>(pixels) / (camera_.width() * camera_.height());
+    blob.cut_left = u_min == 0;
+    blob.cut_right = u_max == camera_.width() - 1;
+    blob.cut_top = region_.v_min == 0;
+    blob.cut_bottom = region_.v_max == camera_.height() - 1;
+    return blob;
+  }
+
+  /// Azimuths of an object's sides, where they pass the horizon: there the tilt of the camera does not slant them.
+  bool object_azimuths(double& left, double& right) const {
+    std::vector<double> lefts, rights;
+    const double middle = 0.5 * (region_.standing_first + region_.standing_last + 1);
+    const int horizon = static_cast<int>(std::floor(camera_.horizon_row(middle)));
+    for (int v = horizon - 3; v <= horizon + 2; ++v) {
+      const int row = std::clamp(v, region_.v_min, region_.v_max);
+      const Eigen::Vector2d start(middle, row + 0.5);
+      const Edge l = find_edge(rgb_, regions_, id_, start, {-1.0, 0.0}, kMaxGapPixels);
+      const Edge r = find_edge(rgb_, regions_, id_, start, {1.0, 0.0}, kMaxGapPixels);
+      if (l.state != EdgeState::kNone) lefts.push_back(azimuth(l.pixel));
+      if (r.state != EdgeState::kNone) rights.push_back(azimuth(r.pixel));
+    }
+    if (lefts.empty() || rights.empty()) return false;
+    left = median(lefts);
+    right = median(rights);
+    return left > right;
+  }
+
+  /// Image of the vertical plane of an azimuth: a point on the horizon and the direction downwards.
+  [[nodiscard]] bool plane(double azimuth_rad, Eigen::Vector2d& horizon, Eigen::Vector2d& down) const {
+    const Eigen::Vector3d along(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
+    const auto far = camera_.pixel(Eigen::Vector3d(camera_.position() + 100.0 * along));
+    const auto low = camera_.pixel(Eigen::Vector3d(camera_.position() + along - Eigen::Vector3d(0.0, 0.0, 0.3)));
+    if (!far || !low || (*low - *far).norm() < 1.0) return false;
+    horizon = *far;
+    down = (*low - *far).normalized();
+    return true;
+  }
+
+  /// [m] horizontal distance of the lower edge from the camera around the middle azimuth; NaN if cut or hidden.
+  [[nodiscard]] double lower_edge_range(double left, double right) const {
+    std::vector<double> ranges;
+    int lost = 0;
+    for (int i = 0; i < kPaths; ++i) {
+      const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
+      Eigen::Vector2d start, down;
+      if (!plane(right + share * (left - right), start, down)) continue;
+      // a plane whose horizon lies above the image is entered at the image's border
+      if (start.y() < 0.0 && down.y() > 1e-3) start += (0.01 - start.y()) / down.y() * down;
+      const Edge edge = find_edge(rgb_, regions_, id_, start, down, region_.standing() ? kMaxGapPixels : 1e9);
+      if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
+      if (edge.state != EdgeState::kSeen) continue;
+      if (const auto p = camera_.ground(edge.pixel.x(), edge.pixel.y(), 50.0)) {
+        ranges.push_back((*p - camera_.position_on_ground()).norm());
+      }
+    }
+    if (ranges.empty() || lost > static_cast<int>(ranges.size())) return kNan;
+    return median(ranges);
+  }
+
+  /// [m] horizontal distance at which the upper edge has the known height of objects; NaN if cut or hidden.
+  [[nodiscard]] double upper_edge_range(double left, double right) const {
+    std::vector<double> ranges;
+    for (int i = 0; i < kPaths; ++i) {
+      const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
+      Eigen::Vector2d start, down;
+      if (!plane(right + share * (left - right), start, down)) continue;
+      const Edge edge = find_edge(rgb_, regions_, id_, start, -down, kMaxGapPixels);
+      if (edge.state != EdgeState::kSeen) continue;
+      const Eigen::Vector3d direction = camera_.ray(edge.pixel.x(), edge.pixel.y());
+      const double rise = direction.z() / direction.head<2>().norm();
+      if (rise > 1e-3) ranges.push_back((config_.object_height_m - camera_.height_m()) / rise);
+    }
+    return ranges.empty() ? kNan : median(ranges);
+  }
+
+  /// Bearing, range and width as a round thing between two tangents has them, moved from the camera to the head.
+  [[nodiscard]] std::optional<msg::Blob> finish(msg::Blob blob, double left, double right, double range_m) const {
+    const double middle = 0.5 * (left + right);
+    blob.bearing_rad = middle;
+    blob.range_m = kNan;
+    blob.width_m = kNan;
+    if (!std::isfinite(range_m)) return blob;
+    if (range_m > config_.blob_max_range_m) return std::nullopt;
+    const double sine = std::sin(std::min(0.5 * (left - right), 1.4));
+    const double radius_m = range_m * sine / (1.0 - sine);
+    const Eigen::Vector2d centre =
+        camera_.position_on_ground() + (range_m + radius_m) * Eigen::Vector2d(std::cos(middle), std::sin(middle));
+    blob.bearing_rad = std::atan2(centre.y(), centre.x());
+    blob.range_m = std::max(centre.norm() - radius_m, 0.0);
+    blob.width_m = 2.0 * radius_m;
+    return blob;
+  }
+
+  const cv::Mat& rgb_;
+  const Regions& regions_;
+  const Region& region_;
+  std::uint8_t id_;
+  const GroundCamera& camera_;
+  const PerceptionConfig& config_;
+};
+
+}  // namespace
+
+std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
+                                  const PerceptionConfig& config, std::uint8_t line_colour) {
+  std::vector<msg::Blob> blobs;
+  for (std::size_t i = 0; i < regions.regions.size(); ++i) {
+    const Region& region = regions.regions[i];
+    if (region.area < config.min_area_pixels || region.line) continue;
+    const Gauge gauge(rgb, regions, i, camera, config);
+    if (region.standing()) {
+      int flat_pixels = 0;
+      bool nearer = false;
+      gauge.flat_part(flat_pixels, nearer);
+      const bool with_zone =
+          region.colour != line_colour && flat_pixels > std::max(2 * config.min_area_pixels, region.area / 8);
+      if (const auto blob = gauge.object(with_zone && nearer)) blobs.push_back(*blob);
+      if (with_zone) {
+        if (const auto blob = gauge.zone()) blobs.push_back(*blob);
+      }
+    } else if (const auto blob = gauge.zone()) {
+      blobs.push_back(*blob);
+    }
+  }
+  std::stable_sort(blobs.begin(), blobs.end(),
+                   [](const msg::Blob& a, const msg::Blob& b) { return a.area_fraction > b.area_fraction; });
+  if (blobs.size() > static_cast<std::size_t>(msg::kMaxBlobs)) blobs.resize(static_cast<std::size_t>(msg::kMaxBlobs));
+  return blobs;
+}
+
+}  // namespace constrictor::perception

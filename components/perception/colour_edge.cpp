@@ -1,0 +1,106 @@
+#include "perception/colour_edge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace constrictor::perception {
+namespace {
+
+constexpr double kStep = 0.5;  // [pixel]
+
+bool inside(const cv::Mat& image, const Eigen::Vector2d& p) {
+  return p.x() >= 0.0 && p.y() >= 0.0 && p.x() < image.cols && p.y() < image.rows;
+}
+
+std::uint8_t id_at(const cv::Mat& ids, const Eigen::Vector2d& p) {
+  return ids.at<std::uint8_t>(static_cast<int>(p.y()), static_cast<int>(p.x()));
+}
+
+double strength(std::uint8_t colour, double r, double g, double b) {
+  switch (colour) {
+    case msg::kColourGreen: return g - 0.5 * (r + b);
+    case msg::kColourRed: return r - 0.5 * (g + b);
+    case msg::kColourBlue: return b - 0.5 * (r + g);
+    case msg::kColourYellow: return 0.5 * (r + g) - b;
+    default: return 0.0;
+  }
+}
+
+}  // namespace
+
+double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vector2d& pixel) {
+  const double x = std::clamp(pixel.x() - 0.5, 0.0, rgb.cols - 1.001);
+  const double y = std::clamp(pixel.y() - 0.5, 0.0, rgb.rows - 1.001);
+  const int u = static_cast<int>(x), v = static_cast<int>(y);
+  const double fx = x - u, fy = y - v;
+  const std::uint8_t* upper = rgb.ptr<std::uint8_t>(v) + 3 * u;
+  const std::uint8_t* lower = rgb.ptr<std::uint8_t>(std::min(v + 1, rgb.rows - 1)) + 3 * u;
+  std::array<double, 3> c{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    c[i] = (1 - fy) * ((1 - fx) * upper[i] + fx * upper[i + 3]) + fy * ((1 - fx) * lower[i] + fx * lower[i + 3]);
+  }
+  return strength(colour, c[0], c[1], c[2]);
+}
+
+Edge find_edge(const cv::Mat& rgb, const Regions& regions, std::uint8_t id, const Eigen::Vector2d& start,
+               const Eigen::Vector2d& direction, double max_gap) {
+  double first = -1.0, last = -1.0;
+  for (double t = 0.0;; t += kStep) {
+    const Eigen::Vector2d p = start + t * direction;
+    if (!inside(rgb, p)) break;
+    if (id_at(regions.ids, p) == id) {
+      if (first < 0.0) first = t;
+      last = t;
+    } else if (t - std::max(last, 0.0) > max_gap) {
+      break;
+    }
+  }
+  Edge edge;
+  if (last < 0.0) return edge;
+
+  const Region& region = regions.regions[static_cast<std::size_t>(id - 1)];
+  const auto value = [&](double t) { return colour_strength(rgb, region.colour, start + t * direction); };
+  edge.pixel = start + last * direction;
+  if (!inside(rgb, edge.pixel + 1.5 * direction)) {
+    edge.state = EdgeState::kCut;
+    return edge;
+  }
+  for (double t = last + 1.0; t <= last + 4.0; t += 1.0) {
+    const Eigen::Vector2d p = start + t * direction;
+    if (!inside(rgb, p)) break;
+    const std::uint8_t other = id_at(regions.ids, p);
+    if (other != 0 && other != id && regions.regions[other - 1u].standing()) {
+      edge.state = EdgeState::kHidden;
+      return edge;
+    }
+  }
+
+  // levels well inside and well outside, then the half-way crossing between them
+  double level_in = -1e9, level_out = 1e9;
+  if (last - first >= 6.0) {
+    level_in = (value(last - 5.0) + value(last - 4.0) + value(last - 3.0)) / 3.0;
+  } else {
+    for (double t = first; t <= last; t += kStep) level_in = std::max(level_in, value(t));
+  }
+  for (double t = last + 2.0; t <= last + 5.0 && inside(rgb, start + t * direction); t += 1.0) {
+    level_out = std::min(level_out, value(t));
+  }
+  edge.state = EdgeState::kSeen;
+  if (level_out > level_in) return edge;
+  level_out = std::max(level_out, 0.0);
+  const double half = 0.5 * (level_in + level_out);
+  double previous = value(std::max(last - 3.0, first));
+  for (double t = std::max(last - 3.0, first) + kStep; t <= last + 4.0; t += kStep) {
+    const double current = value(t);
+    if (current < half) {
+      const double fraction = previous > current ? std::clamp((previous - half) / (previous - current), 0.0, 1.0) : 1.0;
+      edge.pixel = start + (t - kStep + kStep * fraction) * direction;
+      return edge;
+    }
+    previous = current;
+  }
+  return edge;
+}
+
+}  // namespace constrictor::perception

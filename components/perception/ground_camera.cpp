@@ -1,0 +1,53 @@
+#include "perception/ground_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace constrictor::perception {
+
+Eigen::Matrix3d rotation_from(const msg::Quaternion& q) {
+  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (!std::isfinite(norm) || norm < 1e-9) return Eigen::Matrix3d::Identity();
+  const double w = q.w / norm, x = q.x / norm, y = q.y / norm, z = q.z / norm;
+  Eigen::Matrix3d R;
+  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  return R;
+}
+
+GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m)
+    : width_(info.width), height_(info.height), fx_(info.fx), fy_(info.fy), cx_(info.cx), cy_(info.cy) {
+  const Eigen::Matrix3d R_WH = rotation_from(orientation);
+  const double yaw = std::atan2(R_WH(1, 0), R_WH(0, 0));
+  Eigen::Matrix3d R_GW;
+  R_GW << std::cos(yaw), std::sin(yaw), 0, -std::sin(yaw), std::cos(yaw), 0, 0, 0, 1;
+  const Eigen::Matrix3d R_GH = R_GW * R_WH;
+  const auto& p = info.X_HC.position_m;
+  R_GC_ = R_GH * rotation_from(info.X_HC.orientation);
+  p_GC_ = R_GH * Eigen::Vector3d(p.x, p.y, p.z) + Eigen::Vector3d(0, 0, head_height_m);
+  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // a head that lies on its side still sees something
+}
+
+std::optional<Eigen::Vector2d> GroundCamera::ground(double u, double v, double max_range_m) const {
+  const Eigen::Vector3d direction = ray(u, v);
+  if (direction.z() >= -1e-9) return std::nullopt;
+  const Eigen::Vector2d along = direction.head<2>() * (-p_GC_.z() / direction.z());
+  if (along.squaredNorm() > max_range_m * max_range_m) return std::nullopt;
+  return Eigen::Vector2d(p_GC_.head<2>() + along);
+}
+
+std::optional<Eigen::Vector2d> GroundCamera::pixel(const Eigen::Vector3d& p_G) const {
+  const Eigen::Vector3d p_C = R_GC_.transpose() * (p_G - p_GC_);
+  if (p_C.z() < 1e-6) return std::nullopt;
+  return Eigen::Vector2d(cx_ + fx_ * p_C.x() / p_C.z(), cy_ + fy_ * p_C.y() / p_C.z());
+}
+
+double GroundCamera::horizon_row(double u) const {
+  // ray(u, v).z = 0
+  const double slope = R_GC_(2, 1);
+  if (std::abs(slope) < 1e-6) return 1e9;
+  return cy_ - fy_ * (R_GC_(2, 0) * (u - cx_) / fx_ + R_GC_(2, 2)) / slope;
+}
+
+}  // namespace constrictor::perception

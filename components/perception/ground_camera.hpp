@@ -1,0 +1,65 @@
+// Where a pixel looks: the pin-hole camera of the head above the ground plane.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "constrictor/messages.hpp"
+
+namespace constrictor::perception {
+
+/// Rotation matrix of a unit quaternion (normalised here; identity if it is zero or not finite).
+Eigen::Matrix3d rotation_from(const msg::Quaternion& orientation);
+
+/// A pin-hole camera at a known height and attitude above flat ground. Frame G: origin on the ground below the head's
+/// centre, x forward along the head's yaw, y left, z up. Pixel coordinates (u, v) are continuous: the centre of the first
+/// pixel is (0.5, 0.5).
+class GroundCamera {
+ public:
+  /// `orientation` is the head's (ImuState); its yaw is taken out. `head_height_m` is that of the head's centre.
+  GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m);
+
+  /// Direction in G (not normalised) in which a pixel looks.
+  [[nodiscard]] Eigen::Vector3d ray(double u, double v) const {
+    return R_GC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
+  }
+
+  /// Ground point seen at a pixel; none at or above the horizon, or beyond `max_range_m` from the camera.
+  [[nodiscard]] std::optional<Eigen::Vector2d> ground(double u, double v, double max_range_m = 20.0) const;
+
+  /// Pixel of a point of G; none if it lies behind the camera. The pixel may lie outside the image.
+  [[nodiscard]] std::optional<Eigen::Vector2d> pixel(const Eigen::Vector3d& p_G) const;
+  [[nodiscard]] std::optional<Eigen::Vector2d> pixel(const Eigen::Vector2d& ground_point) const {
+    return pixel(Eigen::Vector3d(ground_point.x(), ground_point.y(), 0.0));
+  }
+
+  /// Row of the horizon at column u; +-1e9 if the camera looks straight up or down.
+  [[nodiscard]] double horizon_row(double u) const;
+
+  /// [m] extent on the ground, across the view, of one pixel at a range; and along the view.
+  [[nodiscard]] double pixel_across_m(double range_m) const { return range_m / fx_; }
+  [[nodiscard]] double pixel_along_m(double range_m) const {
+    return (range_m * range_m + height_m() * height_m()) / (fy_ * height_m());
+  }
+
+  [[nodiscard]] const Eigen::Vector3d& position() const { return p_GC_; }
+  [[nodiscard]] Eigen::Vector2d position_on_ground() const { return p_GC_.head<2>(); }
+  [[nodiscard]] double height_m() const { return p_GC_.z(); }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] bool inside(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() < width_ && pixel.y() < height_;
+  }
+
+ private:
+  int width_;
+  int height_;
+  double fx_;
+  double fy_;
+  double cx_;
+  double cy_;
+  Eigen::Matrix3d R_GC_;
+  Eigen::Vector3d p_GC_;
+};
+
+}  // namespace constrictor::perception

@@ -1,0 +1,82 @@
+#include "perception/line_and_blob_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "perception/blobs.hpp"
+#include "perception/line_fit.hpp"
+#include "perception/line_tracer.hpp"
+#include "perception/picture.hpp"
+#include "perception/regions.hpp"
+
+namespace constrictor::perception {
+namespace {
+
+msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, double lookahead_m) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  msg::LinePercept line{};
+  line.colour = colour;
+  line.end_distance_m = kNan;
+  line.lookahead_m = lookahead_m;
+  line.offset_m = line.heading_rad = line.curvature_1_m = line.near_m = line.far_m = kNan;
+  const LineFit fit = fit_line(trace, lookahead_m);
+  if (!fit.valid) return line;
+  line.visible = true;
+  line.lookahead_m = fit.lookahead_m;
+  line.offset_m = fit.offset_m;
+  line.heading_rad = fit.heading_rad;
+  line.curvature_1_m = fit.curvature_1_m;
+  line.end_visible = trace.end_visible;
+  if (trace.end_visible) line.end_distance_m = trace.end.x();
+
+  line.near_m = line.far_m = trace.points.front().p.x();
+  for (const auto& point : trace.points) {
+    line.near_m = std::min(line.near_m, point.p.x());
+    line.far_m = std::max(line.far_m, point.p.x());
+  }
+  const std::size_t count = std::min<std::size_t>(trace.points.size(), static_cast<std::size_t>(msg::kMaxPerceptPoints));
+  line.point_count = static_cast<std::uint16_t>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = count > 1 ? i * (trace.points.size() - 1) / (count - 1) : 0;
+    line.x_m[i] = trace.points[at].p.x();
+    line.y_m[i] = trace.points[at].p.y();
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& info) {
+  if (image.width != info.width || image.height != info.height) return "image size differs from the camera's";
+  if (image.width < 32 || image.height < 24) return "image too small";
+  const std::size_t bytes = std::size_t{3} * image.width * image.height;
+  if (image.data._length != bytes || image.data._buffer == nullptr) return "image data do not have width x height x 3 bytes";
+  const bool finite = std::isfinite(info.fx) && std::isfinite(info.fy) && std::isfinite(info.cx) && std::isfinite(info.cy);
+  if (!finite || info.fx <= 0.0 || info.fy <= 0.0) return "camera model without focal length";
+  return {};
+}
+
+LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : config_(config), classifier_(config) {
+  cv::setNumThreads(1);
+}
+
+Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) const {
+  cv::Mat smooth, labels;
+  // far things on the ground are flat: they bear more smoothing along the rows than across them
+  cv::GaussianBlur(rgb, smooth, {7, 3}, 1.5, 0.7);
+  classifier_.classify(smooth, labels);
+  const Regions regions = find_regions(labels, camera, config_, line_colour);
+  const LineTrace trace = trace_line(labels, regions, camera, config_, line_colour);
+  const std::vector<msg::Blob> blobs = find_blobs(smooth, regions, camera, config_, line_colour);
+
+  Percepts percepts;
+  percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
+  percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
+  std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);
+  percepts.picture = draw_percepts(rgb, labels, camera, percepts.line, percepts.objects);
+  return percepts;
+}
+
+}  // namespace constrictor::perception

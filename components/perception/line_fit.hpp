@@ -1,0 +1,21 @@
+// Offset, heading and curvature of the traced line at a distance ahead.
+#pragma once
+
+#include "perception/line_tracer.hpp"
+
+namespace constrictor::perception {
+
+struct LineFit {
+  bool valid = false;
+  double lookahead_m = 0.0;    ///< the wanted one, or the nearest at which the line was seen
+  double offset_m = 0.0;       ///< lateral position there, positive left
+  double heading_rad = 0.0;    ///< relative to x, positive left
+  double curvature_1_m = 0.0;  ///< positive bends left
+};
+
+/// Robust parabola (iteratively reweighted least squares with Tukey's biweight) through the points around the lookahead, in
+/// a frame along the line there, so that a line that crosses the view is as good as one that leads ahead. Short pieces pull
+/// the curvature to zero (prior of 1.5 /m).
+LineFit fit_line(const LineTrace& trace, double lookahead_m);
+
+}  // namespace constrictor::perception

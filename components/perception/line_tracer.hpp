@@ -1,0 +1,28 @@
+// Follows the line over the ground plane, from cross-section to cross-section.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "perception/regions.hpp"
+
+namespace constrictor::perception {
+
+/// The line as it was traced, from near to far. Points in G.
+struct LineTrace {
+  struct Point {
+    Eigen::Vector2d p;
+    double sd_m;  ///< [m] expected error across the line
+  };
+  std::vector<Point> points;
+  bool end_visible = false;
+  Eigen::Vector2d end = Eigen::Vector2d::Zero();  ///< valid if end_visible
+};
+
+/// Traces the line of `colour` in the label image. At each step it takes the cross-section of the expected width across the
+/// course so far; where a standing thing hides one edge, the other one and the line's width count; where it hides both,
+/// the course is continued. So an object on the line does not bend it. No points: no line.
+LineTrace trace_line(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera,
+                     const PerceptionConfig& config, std::uint8_t colour);
+
+}  // namespace constrictor::perception

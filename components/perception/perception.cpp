@@ -1,0 +1,81 @@
+#include "perception/perception.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "robot/robot_model.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr std::size_t kAttitudes = 32;  // ticks; longer than any camera's delay
+
+perception::PerceptionConfig configuration_of(const Setup& setup) {
+  return perception::load_perception_config(
+      setup.config_file.empty() ? share_path("components/perception/perception.yaml") : setup.config_file);
+}
+
+}  // namespace
+
+Perception::Perception(Wiring& wiring, const Setup& setup)
+    : detector_(configuration_of(setup)),
+      // the robot lies on its modules: the head's centre is one radius above the ground
+      head_height_m_(load_robot(setup.robot_file).module_radius_m),
+      image_(wiring.latest(topics::kCameraImage)),
+      info_(wiring.latest(topics::kCameraInfo)),
+      imu_(wiring.latest(topics::kImuState)),
+      task_(wiring.latest(topics::kTaskStatus)),
+      line_(wiring.output(topics::kLinePercept)),
+      objects_(wiring.output(topics::kObjectPercepts)),
+      processed_(wiring.output(topics::kProcessedImage)) {}
+
+msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
+  const Attitude* nearest = nullptr;
+  for (const Attitude& a : state_.attitudes) {
+    if (nearest == nullptr || std::abs(a.tick - tick) < std::abs(nearest->tick - tick)) nearest = &a;
+  }
+  return nearest ? msg::Quaternion{nearest->w, nearest->x, nearest->y, nearest->z} : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
+}
+
+void Perception::step(const Tick&) {
+  if (imu_ && imu_.fresh()) {
+    const auto& q = imu_->orientation;
+    state_.attitudes.push_back({imu_->header.tick, q.w, q.x, q.y, q.z});
+    if (state_.attitudes.size() > kAttitudes) state_.attitudes.pop_front();
+  }
+  if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
+  if (!image_ || !image_.fresh() || !info_) return;
+  if (!perception::image_error(*image_, *info_).empty()) {
+    ++state_.refused_images;
+    return;
+  }
+  ++state_.images;
+
+  // the matrix only views the message's pixels; the detector does not write to them
+  const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
+  const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_);
+  const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
+  perception::Percepts percepts = detector_.detect(rgb, camera, colour);
+
+  percepts.line.exposure_tick = image_->exposure_tick;
+  percepts.objects.exposure_tick = image_->exposure_tick;
+  line_.write(percepts.line);
+  objects_.write(percepts.objects);
+
+  msg::CameraImage picture{};
+  picture.width = image_->width;
+  picture.height = image_->height;
+  picture.exposure_tick = image_->exposure_tick;
+  picture.data._buffer = percepts.picture.data;
+  picture.data._length = picture.data._maximum = image_->data._length;
+  picture.data._release = false;
+  processed_.write(picture);
+}
+
+ComponentFactory make_perception_factory() {
+  return {"perception",
+          [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); }};
+}
+
+}  // namespace constrictor

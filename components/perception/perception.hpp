@@ -1,0 +1,60 @@
+// The component: images in, percepts and a processed picture out.
+#pragma once
+
+#include <cereal/types/deque.hpp>
+#include <cstdint>
+#include <deque>
+
+#include "perception/line_and_blob_detector.hpp"
+#include "runtime/component.hpp"
+
+namespace constrictor {
+
+/// The head's attitude at a tick.
+struct Attitude {
+  std::int64_t tick = 0;
+  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(tick, w, x, y, z);
+  }
+};
+
+struct PerceptionState {
+  std::deque<Attitude> attitudes;   ///< of the last ticks, oldest first
+  std::uint8_t line_colour = 0;     ///< in use; 0: the configured one
+  std::uint64_t images = 0;         ///< worked on
+  std::uint64_t refused_images = 0; ///< whose size or camera model made no sense
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(attitudes, line_colour, images, refused_images);
+  }
+};
+
+/// Works on each new image with the attitude that the head had when it was exposed. Writes nothing before the first image
+/// and camera model. The colour of the line is the last one that a task named.
+class Perception : public StatefulComponent<PerceptionState> {
+ public:
+  Perception(Wiring& wiring, const Setup& setup);
+  void step(const Tick& tick) override;
+
+  [[nodiscard]] const PerceptionState& state() const { return state_; }
+
+ private:
+  [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
+
+  perception::LineAndBlobDetector detector_;
+  double head_height_m_;
+  Latest<msg::CameraImage> image_;
+  Latest<msg::CameraInfo> info_;
+  Latest<msg::ImuState> imu_;
+  Latest<msg::TaskStatus> task_;
+  Output<msg::LinePercept> line_;
+  Output<msg::ObjectPercepts> objects_;
+  Output<msg::CameraImage> processed_;
+};
+
+/// Declares the component to the runtime.
+ComponentFactory make_perception_factory();
+
+}  // namespace constrictor

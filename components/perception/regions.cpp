@@ -1,0 +1,211 @@
+#include "perception/regions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+
+namespace constrictor::perception {
+namespace {
+
+constexpr int kSpeckPixels = 4;        // fragments below this are dropped before fragments are joined
+constexpr std::size_t kMaxRegions = 250;  // ids are bytes
+constexpr double kHorizonMarginPixels = 1.0;
+
+struct Fragment {
+  Region region;
+  int component = 0;
+};
+
+/// True if two fragments of one colour lie close enough together to be one thing that noise or a thin occlusion cut.
+bool adjoin(const Region& a, const Region& b) {
+  const int larger = std::max({a.u_max - a.u_min, a.v_max - a.v_min, b.u_max - b.u_min, b.v_max - b.v_min});
+  const int reach = 2 + std::min(4, larger / 10);
+  return a.u_min - reach <= b.u_max && b.u_min - reach <= a.u_max && a.v_min - reach <= b.v_max &&
+         b.v_min - reach <= a.v_max;
+}
+
+void merge_into(Region& a, const Region& b) {
+  a.area += b.area;
+  a.u_min = std::min(a.u_min, b.u_min);
+  a.v_min = std::min(a.v_min, b.v_min);
+  a.u_max = std::max(a.u_max, b.u_max);
+  a.v_max = std::max(a.v_max, b.v_max);
+}
+
+/// Adds the regions of one colour to `out`.
+void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Regions& out) {
+  cv::Mat mask, components, stats, centroids;
+  cv::compare(labels, colour, mask, cv::CMP_EQ);
+  // fills the pinholes that noise makes
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  const int count = cv::connectedComponentsWithStats(mask, components, stats, centroids, 8, CV_16U);
+
+  std::vector<Fragment> fragments;
+  for (int i = 1; i < count; ++i) {
+    const int* s = stats.ptr<int>(i);
+    if (s[cv::CC_STAT_AREA] < kSpeckPixels) continue;
+    Region region;
+    region.colour = colour;
+    region.area = s[cv::CC_STAT_AREA];
+    region.u_min = s[cv::CC_STAT_LEFT];
+    region.v_min = s[cv::CC_STAT_TOP];
+    region.u_max = region.u_min + s[cv::CC_STAT_WIDTH] - 1;
+    region.v_max = region.v_min + s[cv::CC_STAT_HEIGHT] - 1;
+    fragments.push_back({region, i});
+  }
+  std::stable_sort(fragments.begin(), fragments.end(),
+                   [](const Fragment& a, const Fragment& b) { return a.region.area > b.region.area; });
+  fragments.resize(std::min<std::size_t>(fragments.size(), 64));
+
+  // each fragment joins the first larger group that it adjoins
+  std::vector<int> group(fragments.size(), -1);
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (group[i] >= 0) continue;
+    group[i] = static_cast<int>(i);
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (std::size_t j = i + 1; j < fragments.size(); ++j) {
+        if (group[j] < 0 && adjoin(fragments[i].region, fragments[j].region)) {
+          merge_into(fragments[i].region, fragments[j].region);
+          group[j] = static_cast<int>(i);
+          grown = true;
+        }
+      }
+    }
+  }
+
+  std::vector<std::uint8_t> id_of_component(static_cast<std::size_t>(count), 0);
+  std::vector<std::uint8_t> id_of_group(fragments.size(), 0);
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const auto g = static_cast<std::size_t>(group[i]);
+    if (g == i && fragments[i].region.area >= min_area && out.regions.size() < kMaxRegions) {
+      out.regions.push_back(fragments[i].region);
+      id_of_group[i] = static_cast<std::uint8_t>(out.regions.size());
+    }
+    id_of_component[static_cast<std::size_t>(fragments[i].component)] = id_of_group[g];
+  }
+  for (int v = 0; v < labels.rows; ++v) {
+    const std::uint16_t* in = components.ptr<std::uint16_t>(v);
+    std::uint8_t* ids = out.ids.ptr<std::uint8_t>(v);
+    for (int u = 0; u < labels.cols; ++u) {
+      if (in[u] != 0 && id_of_component[in[u]] != 0) ids[u] = id_of_component[in[u]];
+    }
+  }
+}
+
+/// A thin region squeezed between larger ones of other colours is their blurred border, not a thing.
+bool is_fringe(const Regions& all, std::size_t index) {
+  const Region& region = all.regions[index];
+  const int length = std::max(region.u_max - region.u_min, region.v_max - region.v_min) + 1;
+  if (region.area > 4 * length) return false;
+  constexpr int kReach = 3;
+  constexpr std::array<std::array<int, 2>, 4> kOffsets{{{kReach, 0}, {-kReach, 0}, {0, kReach}, {0, -kReach}}};
+  int beside = 0;
+  for (int v = region.v_min; v <= region.v_max; ++v) {
+    for (int u = region.u_min; u <= region.u_max; ++u) {
+      if (all.ids.at<std::uint8_t>(v, u) != index + 1) continue;
+      for (const auto& offset : kOffsets) {
+        const int u2 = u + offset[0], v2 = v + offset[1];
+        if (u2 < 0 || v2 < 0 || u2 >= all.ids.cols || v2 >= all.ids.rows) continue;
+        const int other = all.ids.at<std::uint8_t>(v2, u2);
+        if (other == 0 || other == static_cast<int>(index) + 1) continue;
+        const Region& neighbour = all.regions[static_cast<std::size_t>(other - 1)];
+        if (neighbour.colour != region.colour && neighbour.area > 3 * region.area) {
+          ++beside;
+          break;
+        }
+      }
+    }
+  }
+  return beside * 2 > region.area;
+}
+
+void find_standing_columns(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camera, Region& region) {
+  region.standing_first = ids.cols;
+  region.standing_last = -1;
+  for (int u = region.u_min; u <= region.u_max; ++u) {
+    const double limit = camera.horizon_row(u + 0.5) - kHorizonMarginPixels;
+    for (int v = region.v_min; v <= region.v_max && v <= limit; ++v) {
+      if (ids.at<std::uint8_t>(v, u) != id) continue;
+      region.standing_first = std::min(region.standing_first, u);
+      region.standing_last = u;
+      break;
+    }
+  }
+  region.standing_bottom = region.v_min;
+  for (int v = region.v_min; v <= region.v_max; ++v) {
+    int count = 0;
+    for (int u = region.standing_first; u <= region.standing_last; ++u) count += ids.at<std::uint8_t>(v, u) == id ? 1 : 0;
+    if (5 * count >= 3 * (region.standing_last - region.standing_first + 1)) region.standing_bottom = v;
+  }
+}
+
+/// Whether a flat region is so long and thin on the ground that it is a piece of line.
+bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camera, const Region& region,
+                  double line_width_m) {
+  double area_m2 = 0.0, nearest_m = 1e9;
+  std::vector<Eigen::Vector2d> points;
+  for (int v = region.v_min; v <= region.v_max; ++v) {
+    int first = -1, last = -1, count = 0;
+    for (int u = region.u_min; u <= region.u_max; ++u) {
+      if (ids.at<std::uint8_t>(v, u) != id) continue;
+      if (first < 0) first = u;
+      last = u;
+      ++count;
+    }
+    if (count == 0) continue;
+    const auto left = camera.ground(first + 0.5, v + 0.5);
+    const auto right = camera.ground(last + 0.5, v + 0.5);
+    if (!left || !right) continue;
+    const double range_m = (0.5 * (*left + *right) - camera.position_on_ground()).norm();
+    nearest_m = std::min(nearest_m, range_m);
+    area_m2 += count * camera.pixel_across_m(range_m) * camera.pixel_along_m(range_m);
+    points.push_back(*left);
+    points.push_back(*right);
+  }
+  if (points.empty()) return false;
+  // longest extent: from any point to the farthest, and from there to the farthest again
+  const auto farthest_from = [&](const Eigen::Vector2d& p) {
+    return *std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+      return (a - p).squaredNorm() < (b - p).squaredNorm();
+    });
+  };
+  const Eigen::Vector2d end = farthest_from(points.front());
+  const double length_m = std::max((farthest_from(end) - end).norm(), 1e-3);
+  const double thickness_m = area_m2 / length_m;
+  const double aspect = 0.785 * length_m * length_m / std::max(area_m2, 1e-6);  // 1: a disc
+  return thickness_m < 2.0 * line_width_m + 2.5 * camera.pixel_across_m(nearest_m) || aspect > 2.5;
+}
+
+}  // namespace
+
+Regions find_regions(const cv::Mat& labels, const GroundCamera& camera, const PerceptionConfig& config,
+                     std::uint8_t line_colour) {
+  Regions out;
+  out.ids = cv::Mat::zeros(labels.size(), CV_8UC1);
+  std::array<int, 256> histogram{};
+  for (int v = 0; v < labels.rows; ++v) {
+    const std::uint8_t* row = labels.ptr<std::uint8_t>(v);
+    for (int u = 0; u < labels.cols; ++u) ++histogram[row[u]];
+  }
+  for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
+    if (histogram[colour] >= config.min_area_pixels) add_colour(labels, colour, config.min_area_pixels, out);
+  }
+
+  for (std::size_t i = 0; i < out.regions.size(); ++i) {
+    Region& region = out.regions[i];
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    if (is_fringe(out, i)) {
+      region.area = 0;
+      continue;
+    }
+    find_standing_columns(out.ids, id, camera, region);
+    region.line = region.colour == line_colour && !region.standing() &&
+                  is_elongated(out.ids, id, camera, region, config.line_width_m);
+  }
+  return out;
+}
+
+}  // namespace constrictor::perception

@@ -1,0 +1,37 @@
+// Connected regions of one colour in the label image, and whether they stand up from the ground.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "perception/ground_camera.hpp"
+#include "perception/perception_config.hpp"
+
+namespace constrictor::perception {
+
+/// Pixels of one colour that belong together. Bounds are inclusive pixel indices.
+struct Region {
+  std::uint8_t colour = msg::kColourUnknown;
+  int area = 0;  ///< [pixel]
+  int u_min = 0, v_min = 0, u_max = 0, v_max = 0;
+  /// Columns in which it reaches above the horizon: what does so stands up, because the ground nowhere does. The camera
+  /// is lower than the top of every object. first > last: none.
+  int standing_first = 0, standing_last = -1;
+  int standing_bottom = -1;  ///< last row, from the top, that still has most of the standing part's width
+  bool line = false;  ///< elongated on the ground and of the line's colour
+
+  [[nodiscard]] bool standing() const { return standing_last > standing_first; }
+};
+
+struct Regions {
+  std::vector<Region> regions;
+  cv::Mat ids;  ///< CV_8UC1: 1 + index of the pixel's region, 0: none
+};
+
+/// Finds the regions of a label image: joins fragments of one colour, drops specks and the fringes of mixed colour
+/// between two others.
+Regions find_regions(const cv::Mat& labels, const GroundCamera& camera, const PerceptionConfig& config,
+                     std::uint8_t line_colour);
+
+}  // namespace constrictor::perception
