@@ -1,0 +1,75 @@
+#include "sim/render/gl_handles.hpp"
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace constrictor {
+namespace {
+
+/// llvmpipe compiles shaders for the CPU it finds; these make it compile the same everywhere. Set before main, while there is
+/// one thread. What the environment already says stays, but for the cache: Mesa 22.3 reuses machine code that was compiled for
+/// another vector width, which corrupts memory.
+const bool environment_is_set = [] {
+  ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+  ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 0);
+  ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);  // above all no FMA, which changes last bits
+  ::setenv("LP_NUM_THREADS", "0", 0);                  // draws in the caller's thread: same bytes, least CPU time
+  return true;
+}();
+
+GLuint compile(GLenum kind, const char* source) {
+  const GLuint shader = glCreateShader(kind);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  GLint ok = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok != GL_TRUE) {
+    std::array<char, 2048> log{};
+    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    glDeleteShader(shader);
+    throw std::runtime_error(std::string("shader does not compile: ") + log.data());
+  }
+  return shader;
+}
+
+}  // namespace
+
+GlContext::GlContext() {
+  if (!environment_is_set) throw std::runtime_error("renderer used before main");
+  static constexpr std::array<int, 13> kAttributes{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE,
+                                                   OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
+                                                   OSMESA_CONTEXT_MINOR_VERSION, 3, 0, 0, 0};
+  context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
+  if (context_ == nullptr) throw std::runtime_error("OSMesa gives no OpenGL 3.3 core context");
+}
+
+ContextScope::ContextScope(GlContext& context) {
+  if (OSMesaMakeCurrent(context.context_, context.window_.data(), GL_UNSIGNED_BYTE, 4, 4) != GL_TRUE) {
+    throw std::runtime_error("OSMesa cannot make its context current");
+  }
+}
+
+GlProgram build_program(const char* vertex_source, const char* fragment_source) {
+  GlProgram program = GlProgram::create();
+  for (const GLuint shader : {compile(GL_VERTEX_SHADER, vertex_source), compile(GL_FRAGMENT_SHADER, fragment_source)}) {
+    glAttachShader(program.get(), shader);
+    glDeleteShader(shader);  // freed with the program
+  }
+  glLinkProgram(program.get());
+  GLint ok = GL_FALSE;
+  glGetProgramiv(program.get(), GL_LINK_STATUS, &ok);
+  if (ok != GL_TRUE) {
+    std::array<char, 2048> log{};
+    glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("shader program does not link: ") + log.data());
+  }
+  return program;
+}
+
+void check_gl(const char* doing) {
+  const GLenum error = glGetError();
+  if (error != GL_NO_ERROR) throw std::runtime_error(std::string(doing) + ": OpenGL error " + std::to_string(error));
+}
+
+}  // namespace constrictor

@@ -1,0 +1,97 @@
+// Move-only owners of an OSMesa context and of OpenGL names. A name is freed with its context current.
+#pragma once
+
+#define GL_GLEXT_PROTOTYPES  // NOLINT: OSMesa exports the functions, no loader is needed
+#include <GL/osmesa.h>
+#include <GL/glext.h>
+
+#include <array>
+#include <utility>
+
+namespace constrictor {
+
+/// An OSMesa context of OpenGL 3.3 core. It is current in the calling thread only while a ContextScope lives, so a renderer
+/// may be used from any thread, one at a time.
+class GlContext {
+ public:
+  GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+  ~GlContext() { OSMesaDestroyContext(context_); }
+
+ private:
+  friend class ContextScope;
+  OSMesaContext context_ = nullptr;
+  // Drawing goes to framebuffer objects; OSMesa wants a window of its own all the same.
+  std::array<unsigned char, 4 * 4 * 4> window_{};
+};
+
+class ContextScope {
+ public:
+  explicit ContextScope(GlContext& context);
+  ContextScope(const ContextScope&) = delete;
+  ContextScope& operator=(const ContextScope&) = delete;
+  ~ContextScope() { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
+};
+
+/// One OpenGL name. `Traits` has create() and destroy(GLuint).
+template <class Traits>
+class GlName {
+ public:
+  GlName() = default;
+  static GlName create() { return GlName(Traits::create()); }
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  GlName(const GlName&) = delete;
+  GlName& operator=(const GlName&) = delete;
+  ~GlName() {
+    if (name_ != 0) Traits::destroy(name_);
+  }
+  [[nodiscard]] GLuint get() const { return name_; }
+
+ private:
+  explicit GlName(GLuint name) : name_(name) {}
+  GLuint name_ = 0;
+};
+
+struct BufferTraits {
+  static GLuint create() { GLuint n = 0; glGenBuffers(1, &n); return n; }
+  static void destroy(GLuint n) { glDeleteBuffers(1, &n); }
+};
+struct VertexArrayTraits {
+  static GLuint create() { GLuint n = 0; glGenVertexArrays(1, &n); return n; }
+  static void destroy(GLuint n) { glDeleteVertexArrays(1, &n); }
+};
+struct TextureTraits {
+  static GLuint create() { GLuint n = 0; glGenTextures(1, &n); return n; }
+  static void destroy(GLuint n) { glDeleteTextures(1, &n); }
+};
+struct FramebufferTraits {
+  static GLuint create() { GLuint n = 0; glGenFramebuffers(1, &n); return n; }
+  static void destroy(GLuint n) { glDeleteFramebuffers(1, &n); }
+};
+struct RenderbufferTraits {
+  static GLuint create() { GLuint n = 0; glGenRenderbuffers(1, &n); return n; }
+  static void destroy(GLuint n) { glDeleteRenderbuffers(1, &n); }
+};
+struct ProgramTraits {
+  static GLuint create() { return glCreateProgram(); }
+  static void destroy(GLuint n) { glDeleteProgram(n); }
+};
+using GlBuffer = GlName<BufferTraits>;
+using GlVertexArray = GlName<VertexArrayTraits>;
+using GlTexture = GlName<TextureTraits>;
+using GlFramebuffer = GlName<FramebufferTraits>;
+using GlRenderbuffer = GlName<RenderbufferTraits>;
+using GlProgram = GlName<ProgramTraits>;
+
+/// Compiles and links. Throws std::runtime_error with the compiler's message.
+GlProgram build_program(const char* vertex_source, const char* fragment_source);
+
+/// Throws std::runtime_error if OpenGL has an error pending.
+void check_gl(const char* doing);
+
+}  // namespace constrictor

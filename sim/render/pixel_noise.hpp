@@ -1,0 +1,25 @@
+// Sensor noise of a camera: zero-mean Gaussian on every channel of every pixel, a pure function of seed and tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace constrictor {
+
+/// Adds noise from a table of normal deviates at counter-based random indices: no state, so a restarted camera repeats its
+/// frames, and no libm. The deviates are sums of 12 uniform numbers (Irwin-Hall), bounded at 6 standard deviations.
+class PixelNoise {
+ public:
+  /// `standard_deviation` relative to full scale 1; 0 turns the noise off.
+  PixelNoise(double standard_deviation, std::uint64_t seed);
+  void add(std::vector<std::uint8_t>& rgb, std::int64_t tick) const;
+
+ private:
+  static constexpr int kFractionBits = 8;
+  bool on_;
+  std::uint64_t seed_;
+  std::vector<std::int16_t> table_;  // 65536 deviates in 1/256 grey level
+};
+
+}  // namespace constrictor

@@ -1,0 +1,373 @@
+#include "sim/render/renderer.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "sim/render/gl_handles.hpp"
+#include "sim/render/ground_texture.hpp"
+#include "sim/render/meshes.hpp"
+#include "sim/render/projection.hpp"
+#include "sim/render/shaders.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kNear_m = 0.008;
+constexpr double kFar_m = 250.0;
+constexpr double kGroundHalfExtent_m = 200.0;
+constexpr Rgb kHorizon{0.80F, 0.79F, 0.77F};
+constexpr Rgb kHead{0.50F, 0.50F, 0.49F};
+constexpr Rgb kDarkModule{0.045F, 0.045F, 0.048F};
+constexpr Rgb kGreyModule{0.24F, 0.24F, 0.245F};
+
+/// Per-instance attributes of a solid.
+struct Instance {
+  std::array<float, 12> rows;  // 3x4 row-major X_WInstance
+  std::array<float, 3> scale;
+  std::array<float, 4> colour;  // reflectance, gloss
+};
+
+Instance make_instance(const Eigen::Isometry3d& X_W, const Eigen::Vector3d& scale, const Rgb& colour, double gloss) {
+  Instance instance{};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      instance.rows[static_cast<std::size_t>(4 * row + column)] = static_cast<float>(X_W(row, column));
+    }
+    instance.scale[static_cast<std::size_t>(row)] = static_cast<float>(scale[row]);
+  }
+  instance.colour = {colour.r, colour.g, colour.b, static_cast<float>(gloss)};
+  return instance;
+}
+
+/// A mesh on the GPU side, with room for instances.
+struct GpuMesh {
+  GlVertexArray array;
+  GlBuffer vertices;
+  GlBuffer indices;
+  GlBuffer instances;
+  GLsizei index_count = 0;
+  GLsizei instance_count = 0;
+};
+
+GpuMesh upload(const Mesh& mesh, bool instanced) {
+  GpuMesh gpu{GlVertexArray::create(), GlBuffer::create(), GlBuffer::create(), {}, 0, 0};
+  gpu.index_count = static_cast<GLsizei>(mesh.indices.size());
+  glBindVertexArray(gpu.array.get());
+  glBindBuffer(GL_ARRAY_BUFFER, gpu.vertices.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)), mesh.vertices.data(), GL_STATIC_DRAW);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gpu.indices.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(), GL_STATIC_DRAW);
+  const auto attribute = [](GLuint location, GLint count, std::size_t stride_floats, std::size_t offset_floats, GLuint divisor) {
+    glEnableVertexAttribArray(location);
+    glVertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
+                          reinterpret_cast<const void*>(offset_floats * sizeof(float)));  // an offset by OpenGL's convention
+    glVertexAttribDivisor(location, divisor);
+  };
+  attribute(0, 3, Mesh::kFloatsPerVertex, 0, 0);
+  attribute(1, 3, Mesh::kFloatsPerVertex, 3, 0);
+  attribute(2, 1, Mesh::kFloatsPerVertex, 6, 0);
+  if (instanced) {
+    gpu.instances = GlBuffer::create();
+    glBindBuffer(GL_ARRAY_BUFFER, gpu.instances.get());
+    constexpr std::size_t kStride = sizeof(Instance) / sizeof(float);
+    for (GLuint row = 0; row < 3; ++row) attribute(3 + row, 4, kStride, 4 * row, 1);
+    attribute(6, 3, kStride, 12, 1);
+    attribute(7, 4, kStride, 15, 1);
+  }
+  glBindVertexArray(0);
+  return gpu;
+}
+
+void set_instances(GpuMesh& mesh, std::span<const Instance> instances) {
+  mesh.instance_count = static_cast<GLsizei>(instances.size());
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.instances.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size_bytes()), instances.data(), GL_STREAM_DRAW);
+}
+
+/// A coloured flat surface.
+struct Flat {
+  GpuMesh mesh;
+  Rgb colour;
+  float pattern_strength;
+};
+
+void set_uniform(const GlProgram& program, const char* name, const Eigen::Matrix4f& value) {
+  glUniformMatrix4fv(glGetUniformLocation(program.get(), name), 1, GL_FALSE, value.data());
+}
+void set_uniform(const GlProgram& program, const char* name, const Eigen::Vector3f& value) {
+  glUniform3fv(glGetUniformLocation(program.get(), name), 1, value.data());
+}
+void set_uniform(const GlProgram& program, const char* name, const Rgb& value) {
+  glUniform3f(glGetUniformLocation(program.get(), name), value.r, value.g, value.b);
+}
+void set_uniform(const GlProgram& program, const char* name, float value) {
+  glUniform1f(glGetUniformLocation(program.get(), name), value);
+}
+void set_uniform(const GlProgram& program, const char* name, int value) {
+  glUniform1i(glGetUniformLocation(program.get(), name), value);
+}
+
+GlFramebuffer make_framebuffer() { return GlFramebuffer::create(); }
+
+}  // namespace
+
+class Renderer::Implementation {
+ public:
+  Implementation(const Scene& scene, const RenderOptions& options);
+  ~Implementation() {
+    // The names below are freed while this scope keeps the context current.
+    last_scope_.emplace(context_);
+  }
+  const std::vector<std::uint8_t>& draw(const ScenePoses& poses, const PinholeCamera& camera, const ShadowRegion& region);
+
+ private:
+  void build_meshes();
+  void build_textures();
+  void resize(int width, int height);
+  void place(const ScenePoses& poses);
+  void draw_shadow_map(const Eigen::Matrix4f& shadow);
+  void draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow);
+  void read_back(int width, int height);
+  void draw_solids();
+
+  Scene scene_;
+  RenderOptions options_;
+  GlContext context_;
+  // Order matters at destruction: the scope is destroyed after the names (declared before them), before the context.
+  std::optional<ContextScope> last_scope_;
+  GlProgram solid_program_, flat_program_, depth_program_;
+  GpuMesh head_, modules_, cylinders_, boxes_;
+  std::vector<Flat> flats_;  // painted in this order
+  GlTexture pattern_, shadow_map_;
+  GlFramebuffer shadow_framebuffer_, draw_framebuffer_, resolve_framebuffer_;
+  GlRenderbuffer colour_buffer_, depth_buffer_, resolve_buffer_;
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<Instance> head_instances_, module_instances_, cylinder_instances_, box_instances_;
+  std::vector<std::uint8_t> rgba_, rgb_;
+};
+
+Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options) : scene_(scene), options_(options) {
+  if (options.samples != 1 && options.samples != 4) throw std::runtime_error("renderer: samples must be 1 or 4");
+  if (scene.X_WObstacle.size() != scene.obstacles.size()) throw std::runtime_error("renderer: a pose is needed for each obstacle");
+  const ContextScope scope(context_);
+  const std::string lighting = shaders::lighting(options.shadow_taps);
+  solid_program_ = build_program(shaders::kSolidVertex, (lighting + shaders::kSolidFragment).c_str());
+  flat_program_ = build_program(shaders::kFlatVertex, (lighting + shaders::kFlatFragment).c_str());
+  depth_program_ = build_program(shaders::kSolidVertex, shaders::kDepthFragment);
+  build_meshes();
+  build_textures();
+  check_gl("building the scene");
+}
+
+void Renderer::Implementation::build_meshes() {
+  const int segments = options_.module_segments;
+  head_ = upload(make_head(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4), true);
+  modules_ = upload(make_module(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4), true);
+  cylinders_ = upload(make_cylinder(48), true);
+  boxes_ = upload(make_box(), true);
+  flats_.push_back({upload(make_square(kGroundHalfExtent_m), false), scene_.ground_colour, 1.0F});
+  for (const Disc& zone : scene_.zones) flats_.push_back({upload(make_disc(zone.centre_m, zone.radius_m, 64), false), zone.colour, 0.5F});
+  const Mesh ribbon = make_ribbon(scene_.line_m, scene_.line_width_m);
+  if (!ribbon.indices.empty()) flats_.push_back({upload(ribbon, false), scene_.line_colour, 0.3F});
+}
+
+void Renderer::Implementation::build_textures() {
+  const std::vector<std::uint8_t> texels = make_ground_texture();
+  pattern_ = GlTexture::create();
+  glBindTexture(GL_TEXTURE_2D, pattern_.get());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kGroundTextureSize, kGroundTextureSize, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+
+  // Without shadows a map of one texel that is never drawn into stands for "lit everywhere".
+  const int size = options_.shadow_map_size > 0 ? options_.shadow_map_size : 1;
+  shadow_map_ = GlTexture::create();
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.get());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size, size, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  constexpr std::array<float, 4> kLit{1.0F, 1.0F, 1.0F, 1.0F};
+  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, kLit.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  shadow_framebuffer_ = make_framebuffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map_.get(), 0);
+  glDrawBuffer(GL_NONE);
+  glReadBuffer(GL_NONE);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no shadow map");
+  glClearDepth(1.0);
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void Renderer::Implementation::resize(int width, int height) {
+  if (width == width_ && height == height_) return;
+  width_ = width;
+  height_ = height;
+  const int samples = options_.samples > 1 ? options_.samples : 0;
+  colour_buffer_ = GlRenderbuffer::create();
+  glBindRenderbuffer(GL_RENDERBUFFER, colour_buffer_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
+  depth_buffer_ = GlRenderbuffer::create();
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_buffer_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width, height);
+  draw_framebuffer_ = make_framebuffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, draw_framebuffer_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_buffer_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_buffer_.get());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no framebuffer");
+  if (samples > 0) {
+    resolve_buffer_ = GlRenderbuffer::create();
+    glBindRenderbuffer(GL_RENDERBUFFER, resolve_buffer_.get());
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+    resolve_framebuffer_ = make_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, resolve_framebuffer_.get());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolve_buffer_.get());
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no framebuffer");
+  }
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  rgba_.resize(4 * pixels);
+  rgb_.resize(3 * pixels);
+}
+
+void Renderer::Implementation::place(const ScenePoses& poses) {
+  head_instances_.clear();
+  module_instances_.clear();
+  cylinder_instances_.clear();
+  box_instances_.clear();
+  for (std::size_t i = 0; i < poses.X_WModule.size(); ++i) {
+    const Rgb& colour = i == 0 ? kHead : i % 2 == 1 ? kDarkModule : kGreyModule;
+    (i == 0 ? head_instances_ : module_instances_).push_back(make_instance(poses.X_WModule[i], Eigen::Vector3d::Ones(), colour, 0.15));
+  }
+  if (options_.head_camera_m && !poses.X_WModule.empty()) {
+    const Eigen::Isometry3d X_WBox = poses.X_WModule[0] * Eigen::Translation3d(*options_.head_camera_m);
+    box_instances_.push_back(make_instance(X_WBox, {0.03, 0.045, 0.03}, kDarkModule, 0.2));
+    const Eigen::Isometry3d X_WLens = X_WBox * Eigen::Translation3d(0.016, 0.0, 0.0) *
+                                      Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitY());
+    cylinder_instances_.push_back(make_instance(X_WLens, {0.010, 0.010, 0.008}, kGreyModule, 0.5));
+  }
+  const auto place_solid = [this](const Solid& solid, const Eigen::Isometry3d& X_W) {
+    auto& instances = solid.shape == SolidShape::kBox ? box_instances_ : cylinder_instances_;
+    instances.push_back(make_instance(X_W, solid.size_m, solid.colour, 0.05));
+  };
+  for (std::size_t i = 0; i < scene_.objects.size() && i < poses.X_WObject.size(); ++i) place_solid(scene_.objects[i], poses.X_WObject[i]);
+  for (std::size_t i = 0; i < scene_.obstacles.size(); ++i) place_solid(scene_.obstacles[i], scene_.X_WObstacle[i]);
+  set_instances(head_, head_instances_);
+  set_instances(modules_, module_instances_);
+  set_instances(cylinders_, cylinder_instances_);
+  set_instances(boxes_, box_instances_);
+}
+
+void Renderer::Implementation::draw_solids() {
+  for (const GpuMesh* mesh : {&head_, &modules_, &cylinders_, &boxes_}) {
+    if (mesh->instance_count == 0) continue;
+    glBindVertexArray(mesh->array.get());
+    glDrawElementsInstanced(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, nullptr, mesh->instance_count);
+  }
+}
+
+void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
+  if (options_.shadow_map_size == 0) return;
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
+  glViewport(0, 0, options_.shadow_map_size, options_.shadow_map_size);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_CLAMP);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5F, 2.0F);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glUseProgram(depth_program_.get());
+  set_uniform(depth_program_, "clip_from_world", shadow);
+  draw_solids();
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow) {
+  glBindFramebuffer(GL_FRAMEBUFFER, draw_framebuffer_.get());
+  glViewport(0, 0, camera.width, camera.height);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glFrontFace(GL_CW);
+  const auto display = [](float radiance) { return std::sqrt(radiance); };
+  glClearColor(display(kHorizon.r), display(kHorizon.g), display(kHorizon.b), 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, pattern_.get());
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.get());
+
+  const Eigen::Matrix4f clip = clip_from_world(camera, kNear_m, kFar_m);
+  const auto use = [&](const GlProgram& program) {
+    glUseProgram(program.get());
+    set_uniform(program, "clip_from_world", clip);
+    set_uniform(program, "shadow_from_world", shadow);
+    set_uniform(program, "shadow_map", 1);
+    set_uniform(program, "to_light", Eigen::Vector3f(scene_.light.direction.cast<float>()));
+    set_uniform(program, "sun", static_cast<float>(0.8 * scene_.light.intensity));
+    set_uniform(program, "ambient", static_cast<float>(scene_.light.ambient));
+    set_uniform(program, "eye", Eigen::Vector3f(camera.X_WC.translation().cast<float>()));
+    set_uniform(program, "horizon", kHorizon);
+    if (options_.shadow_map_size > 0) set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(options_.shadow_map_size));
+  };
+  use(solid_program_);
+  set_uniform(solid_program_, "normal_offset", 0.006F);
+  draw_solids();
+
+  // Nothing lies below the ground: painted in order behind the solids, without depth of its own.
+  use(flat_program_);
+  set_uniform(flat_program_, "pattern", 0);
+  set_uniform(flat_program_, "texture_scale", static_cast<float>(1.0 / kGroundTextureExtent_m));
+  glDepthMask(GL_FALSE);
+  for (const Flat& flat : flats_) {
+    set_uniform(flat_program_, "colour", flat.colour);
+    set_uniform(flat_program_, "pattern_strength", flat.pattern_strength);
+    glBindVertexArray(flat.mesh.array.get());
+    glDrawElements(GL_TRIANGLES, flat.mesh.index_count, GL_UNSIGNED_INT, nullptr);
+  }
+}
+
+void Renderer::Implementation::read_back(int width, int height) {
+  if (options_.samples > 1) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, draw_framebuffer_.get());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolve_framebuffer_.get());
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolve_framebuffer_.get());
+  }
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba_.data());
+  for (std::size_t pixel = 0, count = rgb_.size() / 3; pixel < count; ++pixel) {
+    for (std::size_t channel = 0; channel < 3; ++channel) rgb_[3 * pixel + channel] = rgba_[4 * pixel + channel];
+  }
+}
+
+const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses& poses, const PinholeCamera& camera,
+                                                                const ShadowRegion& region) {
+  const ContextScope scope(context_);
+  resize(camera.width, camera.height);
+  place(poses);
+  const Eigen::Matrix4f shadow = shadow_from_world(scene_.light.direction, region, options_.shadow_map_size > 0 ? options_.shadow_map_size : 1);
+  draw_shadow_map(shadow);
+  draw_image(camera, shadow);
+  read_back(camera.width, camera.height);
+  check_gl("drawing");
+  return rgb_;
+}
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options)
+    : implementation_(std::make_unique<Implementation>(scene, options)) {}
+Renderer::~Renderer() = default;
+
+const std::vector<std::uint8_t>& Renderer::draw(const ScenePoses& poses, const PinholeCamera& camera, const ShadowRegion& region) {
+  return implementation_->draw(poses, camera, region);
+}
+
+}  // namespace constrictor

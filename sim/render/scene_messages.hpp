@@ -1,0 +1,13 @@
+// From the simulation's messages to what the renderer draws.
+#pragma once
+
+#include "constrictor/messages.hpp"
+#include "sim/render/scene.hpp"
+
+namespace constrictor {
+
+[[nodiscard]] Eigen::Isometry3d pose_of(const msg::Pose3& pose);
+[[nodiscard]] Scene scene_of(const msg::SceneDescription& description);
+[[nodiscard]] ScenePoses poses_of(const msg::WorldState& world);
+
+}  // namespace constrictor

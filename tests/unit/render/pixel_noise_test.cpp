@@ -1,0 +1,57 @@
+// Pixel noise: its moments, and that it is a pure function of seed and tick.
+#include "sim/render/pixel_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace constrictor {
+namespace {
+
+constexpr std::size_t kSize = 320 * 240 * 3;
+
+TEST(PixelNoise, HasTheStandardDeviationAskedForAndNoBias) {
+  for (const double sd : {0.01, 0.03}) {
+    std::vector<std::uint8_t> rgb(kSize, 128);
+    PixelNoise(sd, 5).add(rgb, 17);
+    double sum = 0, squares = 0, neighbours = 0;
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const double d = rgb[i] - 128.0;
+      sum += d;
+      squares += d * d;
+      if (i > 0) neighbours += d * (rgb[i - 1] - 128.0);
+    }
+    const double n = static_cast<double>(kSize);
+    EXPECT_NEAR(sum / n, 0.0, 4 * sd * 255 / std::sqrt(n) + 0.01);
+    // Rounding to grey levels adds a variance of 1/12.
+    EXPECT_NEAR(std::sqrt(squares / n), std::sqrt(sd * sd * 255 * 255 + 1.0 / 12), 0.02 * sd * 255);
+    EXPECT_NEAR(neighbours / squares, 0.0, 5 / std::sqrt(n));  // uncorrelated
+  }
+}
+
+TEST(PixelNoise, DependsOnSeedAndTickOnly) {
+  const auto noise = [](std::uint64_t seed, std::int64_t tick) {
+    std::vector<std::uint8_t> rgb(1003, 100);
+    PixelNoise generator(0.05, seed);
+    generator.add(rgb, tick);
+    return rgb;
+  };
+  EXPECT_EQ(noise(1, 10), noise(1, 10));
+  EXPECT_NE(noise(1, 10), noise(1, 11));
+  EXPECT_NE(noise(1, 10), noise(2, 10));
+  PixelNoise generator(0.05, 1);
+  std::vector<std::uint8_t> rgb(1003, 100);
+  generator.add(rgb, 3);
+  rgb.assign(1003, 100);
+  generator.add(rgb, 10);  // what came before does not matter
+  EXPECT_EQ(rgb, noise(1, 10));
+}
+
+TEST(PixelNoise, ZeroLeavesTheImageAlone) {
+  std::vector<std::uint8_t> rgb(100, 77);
+  PixelNoise(0.0, 1).add(rgb, 1);
+  EXPECT_EQ(rgb, std::vector<std::uint8_t>(100, 77));
+}
+
+}  // namespace
+}  // namespace constrictor
