@@ -94,6 +94,9 @@ int main(int argc, char** argv) {
         << "  const char* doc;\n  bool has_range;\n  double min;\n  double max;\n  bool nan_allowed;  ///< NaN means \"unknown\" here\n  bool is_key;\n};\n\n"
         << "/// Name, documentation and fields of a message type.\ntemplate <class Message>\nstruct Description;\n\n";
     for (const auto& s : model.structs) write_struct(out, s);
+    out << "template <class... Messages>\nstruct TypeList {};\n/// Every struct of the IDL files, in order.\nusing AllMessages = TypeList<";
+    for (std::size_t i = 0; i < model.structs.size(); ++i) out << (i ? ", " : "") << "msg::" << model.structs[i].name;
+    out << ">;\n\n";
     out << "}  // namespace constrictor\n";
     std::filesystem::create_directories(std::filesystem::path(argv[1]).parent_path());
     std::ofstream file(argv[1], std::ios::binary);

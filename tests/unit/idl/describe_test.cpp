@@ -1,0 +1,131 @@
+// The description generator: what it reads from the IDL, and what it says about what it cannot read.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "constrictor/messages.hpp"
+#include "constrictor/reflect.hpp"
+#include "idl/generator/idl_parser.hpp"
+#include "random_message.hpp"
+
+namespace constrictor {
+namespace {
+
+using describe::Model;
+using describe::parse_idl;
+
+Model parsed(const std::string& text) {
+  Model model;
+  parse_idl("dir/made_up.idl", text, model);
+  return model;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parsed(text);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(IdlParser, ReadsFieldsAnnotationsAndComments) {
+  const Model model = parsed(
+      "module a { module b {\nconst long kN = 3;\n// First line.\n// Second line.\n@final struct S {\n"
+      "  @key string<31> name;\n  @range(min=-1.5, max=2) double x; double y;  // [m] NaN unknown\n"
+      "  unsigned long long count[kN];\n  sequence<octet> data;\n};\n}; };\n");
+  ASSERT_EQ(model.structs.size(), 1u);
+  const auto& s = model.structs[0];
+  EXPECT_EQ(s.comment, "First line. Second line.");
+  EXPECT_EQ(s.file, "made_up.idl");
+  ASSERT_EQ(s.fields.size(), 5u);
+  EXPECT_TRUE(s.fields[0].is_key);
+  EXPECT_EQ(s.fields[0].string_bound, 31u);
+  EXPECT_TRUE(s.fields[1].has_range);
+  EXPECT_EQ(s.fields[1].min, "-1.5");
+  EXPECT_EQ(s.fields[1].max, "2");
+  EXPECT_EQ(s.fields[1].comment, "[m] NaN unknown");
+  EXPECT_EQ(s.fields[2].comment, "[m] NaN unknown");
+  EXPECT_EQ(s.fields[3].array_length, 3u);
+  EXPECT_EQ(s.fields[3].type, "std::uint64_t");
+  EXPECT_TRUE(s.fields[4].is_sequence);
+}
+
+TEST(IdlParser, NamesFileAndLineOfWhatItCannotRead) {
+  EXPECT_EQ(error_of("module a {\n@final struct S {\n  map<long, long> m;\n};\n};"),
+            "dir/made_up.idl:3: found type 'map', which is not defined before");
+  EXPECT_EQ(error_of("enum E { A };"), "dir/made_up.idl:1: found 'enum'; accepted: module, const, @final struct");
+  EXPECT_EQ(error_of("@final struct S {\n  @optional long x;\n};"),
+            "dir/made_up.idl:2: found @optional; accepted: @key, @range(min=, max=)");
+  EXPECT_EQ(error_of("@final struct S {\n  long x[kUnknown];\n};"),
+            "dir/made_up.idl:2: found 'kUnknown', accepted a number or a constant");
+  EXPECT_EQ(error_of("@final struct S {\n  long x"), "dir/made_up.idl:2: found the end of the file");
+}
+
+std::string idl_text(const std::string& name) {
+  std::ifstream file(std::string(CONSTRICTOR_IDL_DIR) + "/" + name + ".idl", std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+const char* const kFiles[] = {"common", "plant", "simulation", "camera", "perception",
+                              "guidance", "task", "motion", "mission", "barrier"};
+
+/// Counts over all fields of all types.
+struct Counter {
+  int ranged = 0;
+  int keys = 0;
+  template <class T>
+  void operator()(const FieldInfo& info, T&) {
+    ranged += info.has_range ? 1 : 0;
+    keys += info.is_key ? 1 : 0;
+  }
+};
+
+TEST(Descriptions, HoldEveryAnnotationOfTheFiles) {
+  std::ptrdiff_t ranges = 0;
+  std::ptrdiff_t keys = 0;
+  for (const char* name : kFiles) {
+    // Comments aside: one of them explains @range.
+    const std::string text = std::regex_replace(idl_text(name), std::regex("//[^\n]*"), "");
+    const auto count = [&](const char* pattern) {
+      const std::regex regex(pattern);
+      return std::distance(std::sregex_iterator(text.begin(), text.end(), regex), std::sregex_iterator());
+    };
+    ranges += count("@range\\(");
+    keys += count("@key ");
+  }
+  Counter counter;
+  test::for_each_type(AllMessages{}, [&]<class T>() {
+    T message{};
+    Description<T>::visit(message, counter);
+  });
+  EXPECT_EQ(counter.ranged, ranges);
+  EXPECT_EQ(counter.keys, keys);
+  EXPECT_GT(keys, 20);
+}
+
+TEST(Descriptions, HashIsOverTheFilesOfThisBuild) {
+  std::string all;
+  for (const char* name : kFiles) all += idl_text(name);
+  Sha256 hash;
+  hash.update(std::as_bytes(std::span(all)));
+  EXPECT_EQ(hex(hash.finish()), msg::kIdlHash);
+}
+
+TEST(Descriptions, TellUnitRangeAndUnknownValue) {
+  const auto& timeout = Description<msg::TaskParameters>::k_timeout_s;
+  EXPECT_STREQ(timeout.name, "timeout_s");
+  EXPECT_STREQ(timeout.unit, "s");
+  EXPECT_TRUE(timeout.nan_allowed);
+  EXPECT_EQ(timeout.max, 3600.0);
+  EXPECT_STREQ(Description<msg::JointState>::kFile, "plant.idl");
+  EXPECT_TRUE(Description<msg::JointState>::k_robot_id.is_key);
+  EXPECT_FALSE(Description<msg::JointState>::k_position_rad.nan_allowed);
+}
+
+}  // namespace
+}  // namespace constrictor
