@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test but those labelled `long`.
+# Usage: scripts/test.sh [--all] [CTEST ARGUMENT...]
+#   --all   also the long tests, and the unit tests again under the address, undefined-behaviour and thread sanitizers
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+all=false
+if [ "${1:-}" = --all ]; then
+  all=true
+  shift
+fi
+
+./scripts/setup.sh
+echo "test: building"
+./scripts/build.sh
+
+# Tests of several processes are marked to run alone; the others share the cores.
+options=(--output-on-failure -j "$(nproc)")
+if [ "$all" = false ]; then
+  exec ctest --test-dir build/release "${options[@]}" -LE long "$@"
+fi
+
+ctest --test-dir build/release "${options[@]}" "$@"
+# Memory leaks at exit are OpenCV's and OSMesa's own; everything else counts.
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+for sanitizer in asan tsan; do
+  echo "test: building with $sanitizer"
+  cmake --preset "$sanitizer" >/dev/null
+  cmake --build "build/$sanitizer"
+  ctest --test-dir "build/$sanitizer" "${options[@]}" -LE 'long|integration' "$@"
+done
