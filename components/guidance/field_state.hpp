@@ -1,0 +1,56 @@
+// What guidance remembers of the world. Plain data, serialisable.
+#pragma once
+
+#include <cereal/types/deque.hpp>
+#include <cereal/types/vector.hpp>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace constrictor::guidance {
+
+/// An object or zone. Its place is in the pose filter (`slot`), or here while it is carried.
+struct Landmark {
+  std::uint16_t handle = 0;
+  std::uint8_t colour = 0;
+  std::uint8_t kind = 0;
+  std::int32_t slot = -1;     ///< landmark of the pose filter; -1: not in it
+  double x_m = 0.0, y_m = 0.0, sd_m = 0.0;  ///< in M, while slot is -1
+  double radius_m = 0.0;      ///< running mean; 0: not known
+  std::int32_t hits = 0;      ///< percepts that belonged to it, at most 1000
+  std::int32_t strays = 0;    ///< successive percepts that show it elsewhere
+  bool felt = false;
+  bool carried = false;
+  std::int64_t last_seen_tick = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, felt, carried, last_seen_tick);
+  }
+};
+
+/// A contact with something that is neither the ground nor the robot, in M.
+struct Felt {
+  double x_m = 0.0, y_m = 0.0, force_n = 0.0;
+  std::uint8_t module_index = 0;
+  std::int64_t tick = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, y_m, force_n, module_index, tick);
+  }
+};
+
+struct FieldState {
+  std::vector<Landmark> landmarks;
+  std::uint16_t next_handle = 1;
+  bool carrying = false;
+  std::uint8_t line_colour = 0;
+  std::vector<double> line_x_m, line_y_m;      ///< in M, in order of discovery
+  std::vector<std::int64_t> line_tick;         ///< of discovery
+  std::deque<Felt> felt;                       ///< oldest first
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt);
+  }
+};
+
+}  // namespace constrictor::guidance

@@ -1,0 +1,159 @@
+#include "guidance/guidance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+using guidance::Pose2;
+
+constexpr std::int64_t kMapPeriodTicks = 5;
+constexpr std::size_t kTrackTicks = 110;  // covers the speed's window and any camera's delay
+
+guidance::GuidanceConfig configuration_of(const Setup& setup) {
+  return guidance::load_guidance_config(setup.config_file.empty() ? share_path("components/guidance/guidance.yaml")
+                                                                  : setup.config_file);
+}
+
+double yaw_of(const msg::Quaternion& q) {
+  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
+}
+
+bool all_finite(const double* values, std::size_t count) {
+  return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+Guidance::Guidance(Wiring& wiring, const Setup& setup)
+    : model_(load_robot(setup.robot_file)),
+      config_(configuration_of(setup)),
+      joints_(wiring.latest(topics::kJointState)),
+      imu_(wiring.latest(topics::kImuState)),
+      contacts_(wiring.latest(topics::kContactState)),
+      line_(wiring.latest(topics::kLinePercept)),
+      objects_(wiring.latest(topics::kObjectPercepts)),
+      task_(wiring.latest(topics::kTaskStatus)),
+      pose_(wiring.output(topics::kRobotPose)),
+      map_(wiring.output(topics::kFieldMap)) {
+  odometry_.friction_along = model_.friction_along;
+  odometry_.friction_across = model_.friction_across;
+  odometry_.slip_scale_m_s = config_.slip_scale_m_s;
+  odometry_.gyro_sd_rad_s = config_.gyro_sd_rad_s;
+}
+
+void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
+  std::vector<double> load_n(model_.module_count, 1.0);
+  if (contacts_ && contacts_->module_count >= model_.module_count) {
+    for (std::size_t i = 0; i < load_n.size(); ++i) load_n[i] = contacts_->force_n[i].z;
+  }
+  const double yaw_rad = yaw_of(imu_->orientation);
+  const double gyro_rad_s = imu_->angular_velocity_rad_s.z;
+  if (!std::isfinite(yaw_rad) || !std::isfinite(gyro_rad_s)) return;
+  const guidance::HeadVelocity guess{{state_.vx_m_s, state_.vy_m_s}, state_.rate_rad_s, 0.0};
+  const guidance::HeadVelocity now = guidance::head_velocity(chain, load_n, gyro_rad_s, guess, odometry_);
+
+  if (state_.started) {
+    // mean velocity of the step; the turn is the IMU's own, which integrates faster than we sample
+    const double dt_s = tick.dt_s();
+    const Eigen::Vector2d mean = 0.5 * (Eigen::Vector2d(state_.vx_m_s, state_.vy_m_s) + now.v_m_s);
+    const double turn_rad = guidance::wrapped(yaw_rad - state_.imu_yaw_rad);
+    const double speed_sd = config_.speed_sd * mean.norm() + config_.speed_sd_m_s * (mean.norm() > 0.005 ? 1.0 : 0.1);
+    const double variance = speed_sd * speed_sd * config_.correlation_s * dt_s;
+    const Eigen::Vector3d noise(variance, variance, config_.yaw_sd_rad_sqrt_s * config_.yaw_sd_rad_sqrt_s * dt_s);
+    guidance::PoseFilter(state_.filter).predict(mean * dt_s, turn_rad, noise.asDiagonal());
+    remember(tick.index, mean * dt_s, turn_rad);
+  } else {
+    remember(tick.index, Eigen::Vector2d::Zero(), 0.0);
+  }
+  state_.started = true;
+  state_.imu_yaw_rad = yaw_rad;
+  state_.vx_m_s = now.v_m_s.x();
+  state_.vy_m_s = now.v_m_s.y();
+  state_.rate_rad_s = now.rate_rad_s;
+}
+
+void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {
+  Pose2 last;
+  if (!state_.track_tick.empty()) {
+    last = {state_.track_x_m.back(), state_.track_y_m.back(), state_.track_yaw_rad.back()};
+  }
+  const Eigen::Vector2d p = last.position() + guidance::turned(step_m, last.yaw_rad + 0.5 * turn_rad);
+  state_.track_tick.push_back(tick);
+  state_.track_x_m.push_back(p.x());
+  state_.track_y_m.push_back(p.y());
+  state_.track_yaw_rad.push_back(guidance::wrapped(last.yaw_rad + turn_rad));
+  if (state_.track_tick.size() > kTrackTicks) {
+    state_.track_tick.erase(state_.track_tick.begin());
+    for (auto* track : {&state_.track_x_m, &state_.track_y_m, &state_.track_yaw_rad}) track->erase(track->begin());
+  }
+}
+
+Pose2 Guidance::past(std::int64_t tick) const {
+  if (state_.track_tick.empty()) return {};
+  const auto found = std::lower_bound(state_.track_tick.begin(), state_.track_tick.end(), tick);
+  const std::size_t i = found == state_.track_tick.end() ? state_.track_tick.size() - 1
+                                                         : static_cast<std::size_t>(found - state_.track_tick.begin());
+  const Pose2 then{state_.track_x_m[i], state_.track_y_m[i], state_.track_yaw_rad[i]};
+  const Pose2 now{state_.track_x_m.back(), state_.track_y_m.back(), state_.track_yaw_rad.back()};
+  const Eigen::Vector2d p = guidance::from_parent(now, then.position());
+  return {p.x(), p.y(), guidance::wrapped(then.yaw_rad - now.yaw_rad)};
+}
+
+double Guidance::speed_m_s(double period_s) const {
+  if (state_.track_tick.size() < 2) return 0.0;
+  const auto ticks = static_cast<std::int64_t>(std::llround(config_.speed_window_s / period_s));
+  const std::int64_t newest = state_.track_tick.back();
+  const auto from = std::lower_bound(state_.track_tick.begin(), state_.track_tick.end(), newest - ticks);
+  const auto i = static_cast<std::size_t>(from - state_.track_tick.begin());
+  if (newest == state_.track_tick[i]) return 0.0;
+  // along the mean course, so that swaying adds nothing
+  Eigen::Vector2d course = Eigen::Vector2d::Zero();
+  for (std::size_t k = i; k < state_.track_tick.size(); ++k) course += guidance::along(state_.track_yaw_rad[k]);
+  if (course.norm() < 1e-6) return 0.0;
+  const Eigen::Vector2d moved(state_.track_x_m.back() - state_.track_x_m[i], state_.track_y_m.back() - state_.track_y_m[i]);
+  return moved.dot(course.normalized()) / (static_cast<double>(newest - state_.track_tick[i]) * period_s);
+}
+
+void Guidance::step(const Tick& tick) {
+  guidance::PoseFilter filter(state_.filter);
+  const std::size_t joint_count = model_.joints.size();
+  const bool body = joints_ && imu_ && joints_->joint_count == joint_count &&
+                    all_finite(joints_->position_rad, joint_count) && all_finite(joints_->velocity_rad_s, joint_count);
+  if (body) {
+    const guidance::BodyChain chain = guidance::body_chain(model_, joints_->position_rad, joints_->velocity_rad_s);
+    dead_reckon(tick, chain);
+    guidance::FieldMapper mapper(state_.field, filter, model_, config_);
+    if (task_) mapper.carry(*task_, chain, tick.index);
+    if (line_ && line_.fresh()) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
+    if (objects_ && objects_.fresh()) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
+    if (contacts_ && contacts_.fresh()) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
+  }
+
+  const Pose2 estimate = filter.pose();
+  msg::RobotPose pose{};
+  pose.x_m = estimate.x_m;
+  pose.y_m = estimate.y_m;
+  pose.yaw_rad = estimate.yaw_rad;
+  pose.speed_m_s = speed_m_s(tick.period_s());
+  const Eigen::Matrix3d covariance = filter.pose_covariance();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) pose.covariance[3 * i + j] = covariance(i, j);
+  }
+  pose_.write(pose);
+
+  if (tick.index % kMapPeriodTicks == 0) {
+    msg::FieldMap map{};
+    guidance::FieldMapper(state_.field, filter, model_, config_).fill(map);
+    map_.write(map);
+  }
+}
+
+ComponentFactory make_guidance_factory() {
+  return {"guidance", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Guidance>(wiring, setup); }};
+}
+
+}  // namespace constrictor

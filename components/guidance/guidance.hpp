@@ -1,0 +1,61 @@
+// The component: where the head is, and what is around it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "guidance/field_mapper.hpp"
+#include "guidance/odometry.hpp"
+#include "runtime/component.hpp"
+
+namespace constrictor {
+
+struct GuidanceState {
+  bool started = false;
+  double imu_yaw_rad = 0.0;                  ///< at the previous step
+  double vx_m_s = 0.0, vy_m_s = 0.0, rate_rad_s = 0.0;  ///< of the head, in its frame, at the previous step
+  guidance::PoseFilterState filter;
+  /// Dead reckoning alone, by tick, oldest first: relates poses of different ticks whatever the filter corrected since.
+  std::vector<std::int64_t> track_tick;
+  std::vector<double> track_x_m, track_y_m, track_yaw_rad;
+  guidance::FieldState field;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(started, imu_yaw_rad, vx_m_s, vy_m_s, rate_rad_s, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
+  }
+};
+
+/// Estimates the head's pose in M from the body's motion (odometry on a skin that does not slip sideways), the IMU's
+/// yaw and recognised landmarks; keeps the map. Writes the pose every tick, from the first: before joints and IMU were
+/// seen it is the start, with zero covariance. Joint or IMU samples that are not finite leave the pose where it was.
+class Guidance : public StatefulComponent<GuidanceState> {
+ public:
+  Guidance(Wiring& wiring, const Setup& setup);
+  void step(const Tick& tick) override;
+
+  [[nodiscard]] const GuidanceState& state() const { return state_; }
+
+ private:
+  void dead_reckon(const Tick& tick, const guidance::BodyChain& chain);
+  void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
+  /// Where the head was at a tick, seen from where it is now.
+  [[nodiscard]] guidance::Pose2 past(std::int64_t tick) const;
+  [[nodiscard]] double speed_m_s(double period_s) const;
+
+  RobotModel model_;
+  guidance::GuidanceConfig config_;
+  guidance::OdometryConfig odometry_;
+  Latest<msg::JointState> joints_;
+  Latest<msg::ImuState> imu_;
+  Latest<msg::ContactState> contacts_;
+  Latest<msg::LinePercept> line_;
+  Latest<msg::ObjectPercepts> objects_;
+  Latest<msg::TaskStatus> task_;
+  Output<msg::RobotPose> pose_;
+  Output<msg::FieldMap> map_;
+};
+
+/// Declares the component to the runtime.
+ComponentFactory make_guidance_factory();
+
+}  // namespace constrictor

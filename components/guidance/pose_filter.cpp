@@ -1,0 +1,134 @@
+#include "guidance/pose_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "guidance/body_chain.hpp"
+
+namespace constrictor::guidance {
+
+Eigen::Vector2d to_parent(const Pose2& pose, const Eigen::Vector2d& p) {
+  return pose.position() + turned(p, pose.yaw_rad);
+}
+
+Eigen::Vector2d from_parent(const Pose2& pose, const Eigen::Vector2d& p) {
+  return turned(p - pose.position(), -pose.yaw_rad);
+}
+
+Eigen::Matrix3d PoseFilter::pose_covariance() const { return covariance().topLeftCorner<3, 3>(); }
+
+Eigen::Vector2d PoseFilter::landmark(std::size_t index) const {
+  return {state_.mean[3 + 2 * index], state_.mean[4 + 2 * index]};
+}
+
+Eigen::Matrix2d PoseFilter::landmark_covariance(std::size_t index) const {
+  const auto at = static_cast<Eigen::Index>(3 + 2 * index);
+  return covariance().block<2, 2>(at, at);
+}
+
+void PoseFilter::predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise) {
+  const double yaw = state_.mean[2] + 0.5 * turn_rad;  // of the middle of the step
+  const Eigen::Vector2d step = turned(step_m, yaw);
+  state_.mean[0] += step.x();
+  state_.mean[1] += step.y();
+  state_.mean[2] = wrapped(state_.mean[2] + turn_rad);
+
+  Matrix F = Matrix::Identity(size(), size());
+  F(0, 2) = -step.y();
+  F(1, 2) = step.x();
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  G.topLeftCorner<2, 2>() << std::cos(yaw), -std::sin(yaw), std::sin(yaw), std::cos(yaw);
+  const Matrix P = F * covariance() * F.transpose();
+  covariance() = P;
+  covariance().topLeftCorner<3, 3>() += G * noise * G.transpose();
+}
+
+void PoseFilter::observation(std::size_t index, Matrix& H, Eigen::Vector2d& expected) const {
+  const double c = std::cos(state_.mean[2]), s = std::sin(state_.mean[2]);
+  Eigen::Matrix2d R_t;
+  R_t << c, s, -s, c;
+  expected = from_parent(pose(), landmark(index));
+  H = Matrix::Zero(2, size());
+  H.leftCols<2>() = -R_t;
+  H(0, 2) = expected.y();
+  H(1, 2) = -expected.x();
+  H.block<2, 2>(0, static_cast<Eigen::Index>(3 + 2 * index)) = R_t;
+}
+
+double PoseFilter::distance2(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const {
+  Matrix H;
+  Eigen::Vector2d expected;
+  observation(index, H, expected);
+  const Eigen::Matrix2d S = H * covariance() * H.transpose() + noise;
+  const Eigen::Vector2d innovation = z_m - expected;
+  return innovation.dot(S.ldlt().solve(innovation));
+}
+
+void PoseFilter::observe(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) {
+  Matrix H;
+  Eigen::Vector2d expected;
+  observation(index, H, expected);
+  correct(H, z_m - expected, noise);
+}
+
+void PoseFilter::correct(const Matrix& H, const Vector& innovation, const Matrix& noise) {
+  const Matrix P = covariance();
+  const Matrix S = H * P * H.transpose() + noise;
+  const Matrix K = S.ldlt().solve(H * P).transpose();
+  const Vector change = K * innovation;
+  if (!change.allFinite()) return;
+  mean() += change;
+  state_.mean[2] = wrapped(state_.mean[2]);
+  // Joseph's form keeps the covariance symmetric and positive
+  const Matrix I_KH = Matrix::Identity(size(), size()) - K * H;
+  covariance() = I_KH * P * I_KH.transpose() + K * noise * K.transpose();
+}
+
+void PoseFilter::add(const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) {
+  const Eigen::Index n = size();
+  const double c = std::cos(state_.mean[2]), s = std::sin(state_.mean[2]);
+  Eigen::Matrix2d R;
+  R << c, -s, s, c;
+  const Eigen::Vector2d arm = R * z_m;
+  Matrix G = Matrix::Zero(2, n);
+  G.leftCols<2>().setIdentity();
+  G(0, 2) = -arm.y();
+  G(1, 2) = arm.x();
+  const Matrix P = covariance();
+  Matrix grown(n + 2, n + 2);
+  grown.topLeftCorner(n, n) = P;
+  grown.bottomLeftCorner(2, n) = G * P;
+  grown.topRightCorner(n, 2) = (G * P).transpose();
+  grown.bottomRightCorner(2, 2) = G * P * G.transpose() + R * noise * R.transpose();
+  state_.mean.push_back(state_.mean[0] + arm.x());
+  state_.mean.push_back(state_.mean[1] + arm.y());
+  state_.covariance.assign(grown.data(), grown.data() + grown.size());
+}
+
+void PoseFilter::remove(std::size_t index) {
+  const Eigen::Index n = size(), at = static_cast<Eigen::Index>(3 + 2 * index), behind = n - at - 2;
+  const Matrix P = covariance();
+  Matrix left(n - 2, n - 2);
+  left.topLeftCorner(at, at) = P.topLeftCorner(at, at);
+  left.topRightCorner(at, behind) = P.topRightCorner(at, behind);
+  left.bottomLeftCorner(behind, at) = P.bottomLeftCorner(behind, at);
+  left.bottomRightCorner(behind, behind) = P.bottomRightCorner(behind, behind);
+  const auto from = state_.mean.begin() + static_cast<std::ptrdiff_t>(at);
+  state_.mean.erase(from, from + 2);
+  state_.covariance.assign(left.data(), left.data() + left.size());
+}
+
+void PoseFilter::observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m,
+                              double variance_m2) {
+  Matrix H = Matrix::Zero(1, size());
+  H(0, 0) = normal.x();
+  H(0, 1) = normal.y();
+  H(0, 2) = normal.dot(Eigen::Vector2d(-arm_m.y(), arm_m.x()));
+  Vector innovation(1);
+  innovation << -residual_m;
+  Matrix noise(1, 1);
+  noise << variance_m2;
+  correct(H, innovation, noise);
+}
+
+}  // namespace constrictor::guidance

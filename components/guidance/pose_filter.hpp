@@ -1,0 +1,68 @@
+// Extended Kalman filter of the head's pose and of landmarks seen from it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cereal/types/vector.hpp>
+#include <optional>
+#include <vector>
+
+namespace constrictor::guidance {
+
+struct Pose2 {
+  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
+  [[nodiscard]] Eigen::Vector2d position() const { return {x_m, y_m}; }
+};
+
+/// `p` of a frame at `pose`, in that pose's parent frame; and the reverse.
+Eigen::Vector2d to_parent(const Pose2& pose, const Eigen::Vector2d& p);
+Eigen::Vector2d from_parent(const Pose2& pose, const Eigen::Vector2d& p);
+
+/// State of the filter: x, y, yaw of the head in M, then x, y of each landmark; and its covariance, row-major.
+struct PoseFilterState {
+  std::vector<double> mean{0.0, 0.0, 0.0};
+  std::vector<double> covariance = std::vector<double>(9, 0.0);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(mean, covariance);
+  }
+};
+
+/// Simultaneous localisation and mapping with full covariance (Smith, Self and Cheeseman, 1990). Landmarks are numbered from
+/// 0; removing one renumbers those behind it.
+class PoseFilter {
+ public:
+  explicit PoseFilter(PoseFilterState& state) : state_(state) {}
+
+  [[nodiscard]] Pose2 pose() const { return {state_.mean[0], state_.mean[1], state_.mean[2]}; }
+  [[nodiscard]] Eigen::Matrix3d pose_covariance() const;
+  [[nodiscard]] std::size_t landmark_count() const { return (state_.mean.size() - 3) / 2; }
+  [[nodiscard]] Eigen::Vector2d landmark(std::size_t index) const;
+  [[nodiscard]] Eigen::Matrix2d landmark_covariance(std::size_t index) const;
+
+  /// Motion `step_m` in the head's frame, turn `turn_rad`; `noise` is their covariance.
+  void predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise);
+
+  /// Squared Mahalanobis distance of a landmark seen at `z_m` in the head's frame.
+  [[nodiscard]] double distance2(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const;
+  void observe(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
+  /// Adds a landmark at `z_m` in the head's frame; its number is landmark_count() - 1 after that.
+  void add(const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
+  void remove(std::size_t index);
+
+  /// The head lies `residual_m` off a known line with unit normal `normal` (in M), measured at a point `arm_m` (in M) from
+  /// the head: pulls the pose so that the residual vanishes.
+  void observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m, double variance_m2);
+
+ private:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(state_.mean.size()); }
+  [[nodiscard]] Eigen::Map<Vector> mean() const { return {state_.mean.data(), size()}; }
+  [[nodiscard]] Eigen::Map<Matrix> covariance() const { return {state_.covariance.data(), size(), size()}; }
+  void correct(const Matrix& H, const Vector& innovation, const Matrix& noise);
+  void observation(std::size_t index, Matrix& H, Eigen::Vector2d& expected) const;
+
+  PoseFilterState& state_;
+};
+
+}  // namespace constrictor::guidance
