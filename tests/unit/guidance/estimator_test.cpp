@@ -27,7 +27,16 @@ RobotModel snake() {
   return model;
 }
 
-/// A body whose yaw joints all lie on one path and slide along it: the ideal gait without lateral slip.
+/// A body with so short links that it nearly is a curve.
+RobotModel fine_snake() {
+  RobotModel model;
+  model.module_count = 48;
+  model.module_length_m = 0.0445;
+  model.joints.resize(47);
+  return model;
+}
+
+/// A fine body whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
 class SlidingBody {
  public:
   /// `heading`: of the path at a length.
@@ -41,23 +50,27 @@ class SlidingBody {
 
   struct Snapshot {
     Pose2 head;  // in the path's frame
-    std::array<double, 23> q{};
+    std::array<double, 47> q{};
   };
 
   /// With the head's joint at length `s`.
   [[nodiscard]] Snapshot at(double s) const {
-    const double l = 0.089;
-    std::vector<Eigen::Vector2d> joints{point(s)};
-    double behind = s;
-    for (int i = 0; i < 11; ++i) joints.push_back(point(behind = partner(behind, 2.0 * l, -1.0)));
-    const Eigen::Vector2d nose = point(partner(s, l, 1.0)), tail = point(partner(behind, l, -1.0));
-    std::vector<double> headings{angle(nose - joints[0])};
-    for (int i = 0; i < 11; ++i) headings.push_back(angle(joints[i] - joints[i + 1]));
-    headings.push_back(angle(joints.back() - tail));
+    const double l = fine_snake().module_length_m;
+    const Eigen::Vector2d nose = point(partner(s, l, 1.0));
+    Eigen::Vector2d ahead = nose, here = point(s);
     Snapshot snapshot;
-    for (std::size_t i = 0; i < 12; ++i) snapshot.q[2 * i] = wrapped(headings[i] - headings[i + 1]);
-    const Eigen::Vector2d centre = joints[0] + 0.5 * l * along(headings[0]);
-    snapshot.head = {centre.x(), centre.y(), headings[0]};
+    const double head = angle(nose - here);
+    double heading = head;
+    for (double& q : snapshot.q) {
+      s = partner(s, l, -1.0);
+      ahead = here;
+      here = point(s);
+      const double next = angle(ahead - here);
+      q = wrapped(heading - next);
+      heading = next;
+    }
+    const Eigen::Vector2d centre = nose - 0.5 * l * along(head);
+    snapshot.head = {centre.x(), centre.y(), head};
     return snapshot;
   }
 
@@ -87,11 +100,13 @@ struct Travel {
 
 /// Slides the body by `length_m` at `speed_m_s` and dead-reckons with the filter's prediction.
 Travel travel(const SlidingBody& body, double from, double length_m, double speed_m_s) {
-  const RobotModel model = snake();
+  const RobotModel model = fine_snake();
   const double dt = 0.02, h = 1e-3;
   PoseFilterState state;
   PoseFilter filter(state);
   HeadVelocity previous;
+  OdometryConfig config;
+  config.friction_along = 0.0;  // the ideal skin, on which a body slides along its own track
   const SlidingBody::Snapshot start = body.at(from);
   SlidingBody::Snapshot now = start;
   const int ticks = static_cast<int>(length_m / (std::abs(speed_m_s) * dt));
@@ -100,11 +115,11 @@ Travel travel(const SlidingBody& body, double from, double length_m, double spee
     const double s = from + k * dt * speed_m_s;
     now = body.at(s);
     const auto ahead = body.at(s + h * speed_m_s), behind = body.at(s - h * speed_m_s);
-    std::array<double, 23> rate{};
-    for (std::size_t i = 0; i < 23; ++i) rate[i] = (ahead.q[i] - behind.q[i]) / (2.0 * h);
+    std::array<double, 47> rate{};
+    for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = (ahead.q[i] - behind.q[i]) / (2.0 * h);
     const double gyro = wrapped(ahead.head.yaw_rad - behind.head.yaw_rad) / (2.0 * h);
     const BodyChain chain = body_chain(model, now.q.data(), rate.data());
-    const HeadVelocity v = head_velocity(chain, {}, gyro, previous, {});
+    const HeadVelocity v = head_velocity(chain, {}, gyro, previous, config);
     if (k > 0) {
       filter.predict(0.5 * dt * (previous.v_m_s + v.v_m_s), wrapped(now.head.yaw_rad - yaw), Eigen::Matrix3d::Zero());
     }
