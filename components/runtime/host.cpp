@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 
+#include "constrictor/reflect.hpp"
 #include "runtime/barrier/conductor.hpp"
 #include "runtime/barrier/member.hpp"
 #include "runtime/config_hash.hpp"
@@ -256,7 +257,7 @@ void Host::Impl::make_conductor() {
   if (options_.hash_log && !options_.setup.output_dir.empty()) {
     hash_log_ = std::make_unique<HashLog>(options_.setup.output_dir, options_.record);
   }
-  conductor_ = std::make_unique<Conductor>(conductor, *this);
+  conductor_ = std::make_unique<Conductor>(conductor, static_cast<ConductorSink&>(*this));
 }
 
 Greeting Host::Impl::greeting_of(const Member& member) const {

@@ -45,6 +45,8 @@ class LocalRun : private MemberSink, private ConductorSink {
   [[nodiscard]] Member& member(const std::string& name);
   /// Throws the member away as a crash would and resumes a new incarnation from its last checkpoint.
   void restart(const std::string& name);
+  /// The next tick becomes the final one.
+  void end_run() { conductor_->end_run(); }
   /// A new epoch with this seed.
   void reset(std::uint64_t seed) { conductor_->reset(seed); }
   /// SHA-256 chains of everything each member wrote, by name.

@@ -78,10 +78,8 @@ void Conductor::on_done(const StepDone& done) {
   // An older incarnation is fenced off; a step already known was done again after a restart that lost nothing.
   if (done.incarnation != member.greeting.incarnation || done.index <= member.last_done || done.index >= next_index_) return;
   member.last_done = done.index;
-  member.output_hash = done.output_hash;
   member.state = done.state;
-  member.pending.emplace_back(done.index, done.published);
-  member.pending_incarnations.emplace_back(done.index, done.incarnation);
+  member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
   for (const auto& written : done.written) {
     auto& history = member.history[written.topic];
     history.push_back(written.bytes);
@@ -116,13 +114,14 @@ std::vector<Conductor::Owed> Conductor::owed() const {
 
 void Conductor::tick(const std::vector<StepDone::Count>& plant) {
   for (auto& [name, member] : members_) {
-    while (!member.pending.empty() && member.pending.front().first + member.greeting.timing.latency <= next_index_) {
-      for (const auto& [topic, count] : member.pending.front().second) {
-        if (count > visible_[topic]) incarnations_[topic] = member.pending_incarnations.front().second;
+    for (; !member.pending.empty(); member.pending.pop_front()) {
+      const Pending& step = member.pending.front();
+      if (step.index + member.greeting.timing.latency > next_index_) break;
+      for (const auto& [topic, count] : step.published) {
+        if (count > visible_[topic]) incarnations_[topic] = step.incarnation;
         visible_[topic] = count;
       }
-      member.pending.pop_front();
-      member.pending_incarnations.pop_front();
+      member.output_hash = step.output_hash;
     }
   }
   const std::uint32_t plant_incarnation = incarnation(options_.plant);

@@ -65,19 +65,25 @@ class Conductor {
     std::int64_t want;
   };
   [[nodiscard]] std::vector<Owed> owed() const;
-  /// Output hash chain of each member after its last step; for reports and comparison of runs.
+  /// Output hash chain of each member over what was visible at the last tick; for reports and comparison of runs.
   [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const;
   [[nodiscard]] std::uint32_t incarnation(const std::string& component) const;
 
  private:
+  /// A step that is done and whose outputs are not visible yet.
+  struct Pending {
+    std::int64_t index;
+    std::uint32_t incarnation;
+    std::vector<StepDone::Count> published;
+    std::array<std::uint8_t, 32> output_hash;
+  };
   struct MemberState {
     Greeting greeting;
     bool greeted = false;
     bool ready = false;
     std::int64_t last_done = -1;
-    std::deque<std::pair<std::int64_t, std::vector<StepDone::Count>>> pending;  ///< done, not yet visible
-    std::deque<std::pair<std::int64_t, std::uint32_t>> pending_incarnations;
-    std::array<std::uint8_t, 32> output_hash{};
+    std::deque<Pending> pending;
+    std::array<std::uint8_t, 32> output_hash{};                       ///< of what is visible
     std::string state;                                                ///< checkpoint after last_done
     std::map<std::uint8_t, std::deque<std::string>> history;          ///< last outputs by topic
   };

@@ -119,7 +119,12 @@ void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   last_done_ = newest_tick_ = -1;
   ended_ = end_requested_ = false;
   output_hash_ = {};
-  for (auto& [topic, sample] : std::exchange(early_, {})) on_sample(topic, sample);
+  replay_early();
+}
+
+void Member::replay_early() {
+  for (const auto& [topic, sample] : std::exchange(early_, {})) on_sample(topic, sample);
+  for (const auto& tick : std::exchange(early_ticks_, {})) on_tick(tick);
 }
 
 void Member::on_resume(const Resumption& resumption) {
@@ -128,24 +133,23 @@ void Member::on_resume(const Resumption& resumption) {
   epoch_ = resumption.epoch;
   last_done_ = newest_tick_ = resumption.index;
   if (resumption.index >= 0) restore(resumption.state);
-  for (auto at = ticks_.begin(); at != ticks_.end();) {
-    const bool mine = at->second.run_id == epoch_->run_id && at->second.epoch == epoch_->epoch && at->first > last_done_;
-    if (mine) newest_tick_ = std::max(newest_tick_, at->first);
-    at = mine ? std::next(at) : ticks_.erase(at);
-  }
   // Readers that missed the last words of the dead process, or start later than it died, find them with the new writer.
   for (const auto& written : resumption.outputs) {
     const Sample sample = topic_ops(written.topic).parse(std::as_bytes(std::span(written.bytes)));
     if (!sample.message) throw std::runtime_error("checkpoint of " + name() + ": damaged output");
     sink_.publish(topics::kInfos[written.topic], sample);
   }
-  for (auto& [topic, sample] : std::exchange(early_, {})) on_sample(topic, sample);
+  replay_early();
 }
 
 void Member::on_tick(const msg::Tick& tick) {
-  if (epoch_ && (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch)) return refuse("tick: of another epoch");
+  if (!epoch_) {
+    if (early_ticks_.size() < kMaxEarly) early_ticks_.push_back(tick);
+    return;
+  }
+  if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch) return refuse("tick: of another epoch");
   if (tick.index <= last_done_ && !tick.final_tick) return;  // history, after a rejoin
-  if (tick.final_tick && epoch_) ended_ = true;
+  if (tick.final_tick) ended_ = true;
   newest_tick_ = std::max(newest_tick_, tick.index);
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
 }

@@ -85,6 +85,7 @@ class Member {
   struct OutputPort;
   class MemberWiring;
   void build(std::uint64_t seed);
+  void replay_early();
   [[nodiscard]] const msg::Tick* due() const;
   [[nodiscard]] bool complete(const Input& input, const msg::Tick& tick) const;
   void present(Input& input, const msg::Tick& tick);
@@ -108,6 +109,7 @@ class Member {
   std::vector<std::unique_ptr<OutputPort>> outputs_;
   std::optional<EpochId> epoch_;
   std::vector<std::pair<std::size_t, Sample>> early_;  ///< arrived before the epoch was known
+  std::vector<msg::Tick> early_ticks_;                 ///< likewise
   std::map<std::int64_t, msg::Tick> ticks_;   ///< arrived and not yet done
   std::int64_t last_done_ = -1;
   std::int64_t newest_tick_ = -1;

@@ -2,16 +2,20 @@
 // orders. One channel for each (writer incarnation, topic, reader): in order within, any order between, as DDS promises.
 #pragma once
 
+#include <algorithm>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
-#include <variant>
+#include <tuple>
 #include <vector>
 
 #include "runtime/barrier/conductor.hpp"
 #include "runtime/barrier/member.hpp"
+#include "toy_components.hpp"
 
 namespace constrictor::toys {
 
@@ -30,13 +34,13 @@ class QueueWorld : private ConductorSink {
     ConductorOptions options;
     for (const auto& factory : factories_) options.roster.push_back(factory.name);
     options.plant = options.roster.front();
-    conductor_ = std::make_unique<Conductor>(options, *this);
+    conductor_ = std::make_unique<Conductor>(options, static_cast<ConductorSink&>(*this));
     for (std::size_t i = 0; i < factories_.size(); ++i) start(i, 1);
   }
 
   [[nodiscard]] bool finished() const {
     for (const auto& node : nodes_) {
-      if (!node->member->ended()) return false;
+      if (!node->member->ended() || !conductor_->ended() || node->member->epoch() != *conductor_->epoch()) return false;
     }
     return true;
   }
@@ -50,10 +54,14 @@ class QueueWorld : private ConductorSink {
     for (const auto& node : nodes_) {
       if (can_step(*node->member)) list.push_back({Action::kStep, node->member->name(), 0});
       if (!mortal.contains(node->member->name()) || node->member->ended()) continue;
-      for (int lost = 0; lost <= 3; ++lost) list.push_back({Action::kCrash, node->member->name(), lost});
+      int most = 0;
+      for (const auto& [name, queue] : channels_) {
+        if (name.starts_with(node->member->name() + ".")) most = std::max(most, static_cast<int>(queue.size()));
+      }
+      for (int lost = 0; lost <= most; ++lost) list.push_back({Action::kCrash, node->member->name(), lost});
     }
     if (conductor_->may_tick()) list.push_back({Action::kTick, "", 0});
-    if (may_reset && conductor_->epoch()) list.push_back({Action::kReset, "", 0});
+    if (may_reset && conductor_->epoch() && !conductor_->ended()) list.push_back({Action::kReset, "", 0});
     return list;
   }
 
@@ -76,6 +84,19 @@ class QueueWorld : private ConductorSink {
       }
       case Action::kCrash: crash(action.what, action.lost); break;
       case Action::kReset: conductor_->reset(5); break;
+    }
+  }
+
+  /// Delivers all there is: used before the first tick, where another test explores the orders of the start.
+  void settle() {
+    for (bool any = true; any;) {
+      any = false;
+      for (auto& [name, queue] : channels_) {
+        if (queue.empty()) continue;
+        any = true;
+        apply({Action::kDeliver, name, 0});
+        break;
+      }
     }
   }
 
@@ -154,7 +175,7 @@ class QueueWorld : private ConductorSink {
     node->world = this;
     node->index = index;
     Setup setup;
-    node->member = std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, *node);
+    node->member = std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, static_cast<MemberSink&>(*node));
     if (nodes_.size() <= index) nodes_.resize(index + 1);
     nodes_[index] = std::move(node);
     Greeting greeting;
@@ -175,6 +196,7 @@ class QueueWorld : private ConductorSink {
       }
       if (channel.ends_with(">" + name)) queue.clear();
     }
+    std::erase_if(delivered_, [&](const auto& entry) { return entry.first.ends_with(">" + name); });  // gone with its buffers
     nodes_[index]->member.reset();
     start(index, incarnation);
     Node& reborn = *nodes_[index];
@@ -209,7 +231,9 @@ class QueueWorld : private ConductorSink {
       channels_["conductor>epoch>" + node->member->name()].push_back([this, reader, index, epoch, seed] {
         reader->member->on_epoch(epoch, seed);
         channels_[key(*nodes_[index], "ready", "conductor")].push_back(
-            [this, reader, epoch] { conductor_->on_ready(reader->member->name(), epoch, reader->member->incarnation()); });
+            [this, name = reader->member->name(), incarnation = reader->member->incarnation(), epoch] {
+              conductor_->on_ready(name, epoch, incarnation);
+            });
       });
     }
   }
