@@ -1,0 +1,158 @@
+// The runtime with toy components as real processes: same result in any grouping, after kills, stops and pauses; clear
+// refusals. Toy components mix every input into every output, so one lost or doubled message changes the result.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "runtime/domain_claim.hpp"
+#include "runtime/host.hpp"
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+const std::string kRoster = "physics,navigation,control,planner,report";
+const std::vector<std::string> kEach = {"physics", "navigation", "control", "planner", "report"};
+
+/// A run of the toys; `groups` are the processes.
+struct ToyRun {
+  DomainClaim claim;
+  long ticks;
+  std::vector<std::string> extra;
+  std::map<std::string, Process> processes;
+
+  explicit ToyRun(long run_ticks, std::vector<std::string> options = {}) : ticks(run_ticks), extra(std::move(options)) {}
+
+  void start(const std::string& group, int incarnation = 1, const std::map<std::string, std::string>& environment = {},
+             const std::string& roster = kRoster) {
+    std::vector<std::string> arguments = {program("toy_host"), group, "--domain", std::to_string(claim.domain()), "--roster", roster,
+                                          "--scenario", std::to_string(ticks), "--robot", "", "--incarnation", std::to_string(incarnation)};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    processes.insert_or_assign(group, Process(arguments, environment));
+  }
+  void start_all(const std::vector<std::string>& groups) {
+    for (const auto& group : groups) start(group);
+  }
+  /// Waits for the report's result; the empty string if anything failed.
+  std::string result(std::chrono::seconds bound = 60s) {
+    std::string text;
+    for (auto& [group, process] : processes) {
+      const auto status = process.wait(bound);
+      if (status != exit_status::kOk) ADD_FAILURE() << group << " ended with " << status.value_or(-1) << ": " << process.errors();
+      text += process.output();
+    }
+    return text;
+  }
+};
+
+std::string reference(long ticks) {
+  ToyRun run(ticks);
+  run.start_all({kRoster});
+  return run.result();
+}
+
+TEST(RuntimeProcesses, EveryGroupingGivesTheSameResult) {
+  const std::string expected = reference(300);
+  ASSERT_NE(expected.find("result"), std::string::npos);
+  for (const std::vector<std::string>& groups :
+       {kEach, {"physics,control", "navigation,planner", "report"}, {"physics", "navigation,control,planner,report"}}) {
+    ToyRun run(300);
+    run.start_all(groups);
+    EXPECT_EQ(run.result(), expected);
+  }
+}
+
+TEST(RuntimeProcesses, EachMemberButThePlantMayBeKilledAtAnyTick) {
+  const long ticks = 4000;
+  const std::string expected = reference(ticks);
+  std::mt19937 random(20261121);
+  for (const std::string victim : {"navigation", "control", "planner"}) {
+    ToyRun run(ticks);
+    run.start_all(kEach);
+    int kills = 0;
+    for (int incarnation = 2; incarnation < 12; ++incarnation) {
+      std::this_thread::sleep_for(std::chrono::microseconds(20'000 + random() % 150'000));  // somewhere in the run
+      if (!run.processes.at("physics").running()) break;
+      run.processes.at(victim).signal(SIGKILL);
+      ASSERT_TRUE(run.processes.at(victim).wait(10s));
+      run.start(victim, incarnation);
+      ++kills;
+    }
+    EXPECT_EQ(run.result(), expected) << victim << " after " << kills << " kills";
+    EXPECT_GE(kills, 3) << "the run was over too soon to mean anything";
+  }
+}
+
+TEST(RuntimeProcesses, AnyProcessMayBeStoppedAndContinued) {
+  const std::string expected = reference(3000);
+  for (const std::string& stopped : kEach) {
+    ToyRun run(3000);
+    run.start_all(kEach);
+    std::this_thread::sleep_for(250ms);
+    run.processes.at(stopped).signal(SIGSTOP);
+    std::this_thread::sleep_for(2s);
+    run.processes.at(stopped).signal(SIGCONT);
+    EXPECT_EQ(run.result(), expected) << stopped;
+  }
+}
+
+TEST(RuntimeProcesses, CappedPaceGivesTheSameResult) {
+  const std::string expected = reference(100);
+  ToyRun run(100, {"--pace", "4"});
+  const auto start = std::chrono::steady_clock::now();
+  run.start_all(kEach);
+  EXPECT_EQ(run.result(), expected);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 480ms);  // 100 ticks of 20 ms at four times real time
+}
+
+TEST(RuntimeProcesses, ASecondMemberOfOneNameIsRefusedAndTheRunGoesOn) {
+  const std::string expected = reference(2000);
+  ToyRun run(2000, {"--pace", "20"});
+  run.start_all(kEach);
+  std::this_thread::sleep_for(500ms);  // the run is under way
+  Process second({program("toy_host"), "navigation", "--domain", std::to_string(run.claim.domain()), "--roster", kRoster,
+                  "--scenario", "2000", "--robot", ""});
+  EXPECT_EQ(second.wait(20s), exit_status::kRefused);
+  EXPECT_NE(second.errors().find("two members of one name"), std::string::npos) << second.errors();
+  EXPECT_EQ(run.result(), expected);
+}
+
+TEST(RuntimeProcesses, AMissingMemberIsNamedAndTheOthersGiveUp) {
+  ToyRun run(100, {"--patience", "4"});
+  run.start_all({"physics", "navigation", "control", "report"});
+  for (auto& [group, process] : run.processes) EXPECT_EQ(process.wait(20s), exit_status::kWaitedTooLong) << group;
+  EXPECT_NE(run.processes.at("physics").errors().find("waits for Hello of planner"), std::string::npos)
+      << run.processes.at("physics").errors();
+}
+
+TEST(RuntimeProcesses, AnotherNumericProfileIsRefused) {
+  ToyRun run(100, {"--patience", "6"});
+  run.start_all({"physics", "navigation", "control", "report"});
+  run.start("planner", 1, {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA"}});
+  EXPECT_EQ(run.processes.at("planner").wait(20s), exit_status::kRefused);
+  EXPECT_NE(run.processes.at("planner").errors().find("numeric profile differs"), std::string::npos);
+}
+
+TEST(RuntimeProcesses, AnotherRosterIsRefused) {
+  ToyRun run(100, {"--patience", "6"});
+  run.start_all({"physics", "navigation", "control", "report"});
+  run.start("planner", 1, {}, "physics,navigation,control,planner");
+  EXPECT_EQ(run.processes.at("planner").wait(20s), exit_status::kRefused);
+  EXPECT_NE(run.processes.at("planner").errors().find("configuration hash differs"), std::string::npos);
+}
+
+TEST(RuntimeProcesses, SigtermEndsEveryProcessWithinTwoSeconds) {
+  ToyRun run(1'000'000);
+  run.start_all(kEach);
+  std::this_thread::sleep_for(300ms);
+  for (auto& [group, process] : run.processes) process.signal(SIGTERM);
+  for (auto& [group, process] : run.processes) EXPECT_EQ(process.wait(2s), exit_status::kOk) << group;
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,107 @@
+#include "support/process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+namespace constrictor::testing {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kPoll = std::chrono::milliseconds(2);
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
+}
+
+}  // namespace
+
+Process::Process(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-test-XXXXXX").string();
+  if (!::mkdtemp(pattern.data())) throw std::runtime_error("mkdtemp failed");
+  directory_ = pattern;
+  std::vector<char*> argv;
+  for (auto& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const std::string out = directory_ + "/out";
+  const std::string err = directory_ + "/err";
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("fork failed");
+  if (pid_ > 0) return;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing outlives the test program
+  for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+  ::dup2(::open(out.c_str(), O_CREAT | O_WRONLY | O_APPEND, 0600), 1);
+  ::dup2(::open(err.c_str(), O_CREAT | O_WRONLY | O_APPEND, 0600), 2);
+  ::execvp(argv[0], argv.data());
+  ::_exit(127);
+}
+
+Process::Process(Process&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), status_(other.status_), directory_(std::exchange(other.directory_, {})) {}
+
+Process& Process::operator=(Process&& other) noexcept {
+  if (this != &other) {
+    discard();
+    pid_ = std::exchange(other.pid_, -1);
+    status_ = other.status_;
+    directory_ = std::exchange(other.directory_, {});
+  }
+  return *this;
+}
+
+Process::~Process() { discard(); }
+
+void Process::discard() {
+  if (pid_ > 0 && running()) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  pid_ = -1;
+  std::error_code ignored;
+  if (!directory_.empty()) std::filesystem::remove_all(directory_, ignored);
+}
+
+void Process::signal(int number) const { ::kill(pid_, number); }
+
+bool Process::running() {
+  if (status_) return false;
+  int status = 0;
+  if (::waitpid(pid_, &status, WNOHANG) == 0) return true;
+  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return false;
+}
+
+std::optional<int> Process::wait(std::chrono::seconds bound) {
+  const auto end = Clock::now() + bound;
+  while (running() && Clock::now() < end) std::this_thread::sleep_for(kPoll);
+  return status_;
+}
+
+std::string Process::output() const { return read_file(directory_ + "/out"); }
+std::string Process::errors() const { return read_file(directory_ + "/err"); }
+
+bool Process::wait_for(const std::string& text, std::chrono::seconds bound) {
+  const auto end = Clock::now() + bound;
+  for (;;) {
+    const bool alive = running();
+    if (output().find(text) != std::string::npos || errors().find(text) != std::string::npos) return true;
+    if (!alive || Clock::now() >= end) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+std::string program(const std::string& name) { return std::string(CONSTRICTOR_BIN) + "/" + name; }
+
+}  // namespace constrictor::testing

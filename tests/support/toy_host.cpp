@@ -1,0 +1,50 @@
+// toy_host NAME[,NAME...] OPTIONS: hosts toy components as a process of their own, for tests of the runtime over DDS.
+#include <cstdio>
+#include <sstream>
+#include <string>
+
+#include "../unit/runtime/toy_components.hpp"
+#include "runtime/component_main.hpp"
+#include "runtime/numeric_profile.hpp"
+
+namespace {
+
+using namespace constrictor;
+
+/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was.
+class ToyReport : public StatefulComponent<toys::Mixer> {
+ public:
+  ToyReport(Wiring& wiring, const Setup& setup)
+      : wiring_(wiring), joints_(wiring.latest(topics::kJointState)), ticks_(std::stol(setup.scenario_file.string())) {}
+  void step(const Tick& tick) override {
+    state_.mix(joints_->position_rad[0]);
+    if (tick.index + 1 < ticks_) return;
+    std::printf("result %.17g %016llx\n", joints_->position_rad[0], static_cast<unsigned long long>(state_.value));
+    std::fflush(stdout);
+    wiring_.request_end_of_run();
+  }
+
+ private:
+  Wiring& wiring_;
+  Latest<msg::JointState> joints_;
+  long ticks_;
+};
+
+ComponentFactory factory(const std::string& name) {
+  if (name == "physics") return toys::plant();
+  if (name == "navigation") return toys::navigation({2, 2});
+  if (name == "control") return toys::control();
+  if (name == "planner") return toys::planner();
+  return {"report", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyReport>(w, s); }};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ensure_numeric_environment(argv);  // before the names are taken off: it starts the program anew
+  std::vector<ComponentFactory> factories;
+  std::istringstream names(argc > 1 ? argv[1] : "");
+  for (std::string name; std::getline(names, name, ',');) factories.push_back(factory(name));
+  if (factories.empty()) return 64;
+  return host_main(argc - 1, argv + 1, std::move(factories));
+}
