@@ -1,0 +1,22 @@
+// What a joint may be asked to do: shared by control (which never asks for more) and the plant (which never obeys more).
+#pragma once
+
+#include "robot/robot_model.hpp"
+
+namespace constrictor {
+
+/// One joint's setpoint. Non-finite entries make it unacceptable.
+struct JointSetpoint {
+  double position_rad = 0.0;
+  double velocity_rad_s = 0.0;   ///< feed-forward
+  double torque_limit_nm = 0.0;  ///< 0 relaxes the joint
+};
+
+/// True if every entry is finite, the position within the joint's limits (plus 1e-9 rad for rounding), and the torque limit not
+/// negative. Speed and torque beyond the joint's own are acceptable: they are clamped.
+[[nodiscard]] bool is_acceptable(const JointModel& joint, const JointSetpoint& setpoint);
+
+/// The nearest setpoint that the joint can follow. Expects finite entries.
+[[nodiscard]] JointSetpoint clamp_to_limits(const JointModel& joint, const JointSetpoint& setpoint);
+
+}  // namespace constrictor

@@ -1,0 +1,102 @@
+#include "robot/robot_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "configuration/configuration.hpp"
+#include "robot/joint_limits.hpp"
+
+namespace constrictor {
+namespace {
+
+const std::filesystem::path kRobots = ROBOT_DIR;
+
+/// mamba.yaml with one line replaced, as a file of its own.
+std::string error_of_changed_file(const std::string& from, const std::string& to) {
+  std::ifstream original(kRobots / "mamba.yaml");
+  std::ostringstream stream;
+  stream << original.rdbuf();
+  std::string text = stream.str();
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) return "the file has no " + from;
+  text.replace(at, from.size(), to);
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "robot_model_test.yaml";
+  std::ofstream(file) << text;
+  try {
+    (void)load_robot(file);
+  } catch (const ConfigurationError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find(": ") + 2);
+  }
+  return {};
+}
+
+TEST(RobotModel, MambaHasTheSizesOfTheStudy) {
+  const RobotModel robot = load_robot(kRobots / "mamba.yaml");
+  EXPECT_EQ(robot.module_count, 24U);
+  EXPECT_EQ(robot.joints.size(), 23U);
+  EXPECT_EQ(robot.yaw_joints().size(), 12U);
+  EXPECT_EQ(robot.yaw_joints()[1], 2U);
+  EXPECT_EQ(robot.joints[1].axis, JointAxis::kPitch);
+  EXPECT_EQ(robot.joints[22].axis, JointAxis::kYaw);
+  EXPECT_NEAR(robot.module_length_m * 24, 2.1, 0.05);
+  EXPECT_EQ(robot.joints[0].stiffness_nm_rad, 0.0);
+}
+
+TEST(RobotModel, SerpensIsElastic) {
+  EXPECT_GT(load_robot(kRobots / "serpens.yaml").joints[5].stiffness_nm_rad, 0.0);
+}
+
+TEST(RobotModel, CameraSeesTheGroundJustAheadAndTheHorizon) {
+  const RobotModel robot = load_robot(kRobots / "mamba.yaml");
+  const CameraModel& camera = robot.camera;
+  const double half_height =
+      std::atan(std::tan(0.5 * camera.horizontal_fov_rad) * camera.height / static_cast<double>(camera.width));
+  EXPECT_GT(half_height, camera.tilt_rad);  // the uppermost ray rises
+  const double height_m = robot.module_radius_m + camera.p_HC.z();
+  const double nearest_m = camera.p_HC.x() + height_m / std::tan(camera.tilt_rad + half_height);
+  EXPECT_GT(nearest_m, 0.08);
+  EXPECT_LT(nearest_m, 0.15);
+  // The lowest ray passes the nose's cap, a sphere about the head's front end.
+  const Eigen::Vector2d to_cap(0.5 * robot.module_length_m - camera.p_HC.x(), -camera.p_HC.z());
+  const double angle = camera.tilt_rad + half_height;
+  EXPECT_GT(std::abs(std::cos(angle) * to_cap.y() + std::sin(angle) * to_cap.x()), robot.module_radius_m);
+}
+
+TEST(RobotModel, NamesWhatIsWrong) {
+  EXPECT_EQ(error_of_changed_file("mass_kg: 0.3", "mass_kg: -1"), "module.mass_kg: found -1, accepted 0.01 to 20");
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 65"),
+            "module.count: found 65, accepted a whole number 2 to 64");
+  EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: [yaw, roll]"),
+            "joints.axes[1]: found roll, accepted one of yaw, pitch");
+  EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: []"),
+            "joints.axes: found a list of 0, accepted a list of yaw and pitch");
+  EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "damping_nm_s_rad: 1\n  max_torque_nm: 6.0"),
+            "joints.damping_nm_s_rad: found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
+  EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3 ", "  tilt: 0.3 "),
+            "camera.tilt_rad: found nothing, accepted -1.5 to 1.5");
+  EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\ncolour: green").substr(0, 42),
+            "colour: found an unknown key, accepted the");
+}
+
+TEST(JointLimits, RefuseWhatNoServoShouldSee) {
+  const JointModel joint;
+  EXPECT_TRUE(is_acceptable(joint, {0.5, 100.0, 100.0}));
+  EXPECT_FALSE(is_acceptable(joint, {2.0, 0.0, 1.0}));
+  EXPECT_FALSE(is_acceptable(joint, {0.0, 0.0, -1.0}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(is_acceptable(joint, {nan, 0.0, 1.0}));
+  EXPECT_FALSE(is_acceptable(joint, {0.0, nan, 1.0}));
+  EXPECT_FALSE(is_acceptable(joint, {0.0, 0.0, nan}));
+  const JointSetpoint clamped = clamp_to_limits(joint, {9.0, -9.0, 9.0});
+  EXPECT_EQ(clamped.position_rad, joint.max_rad);
+  EXPECT_EQ(clamped.velocity_rad_s, -joint.max_speed_rad_s);
+  EXPECT_EQ(clamped.torque_limit_nm, joint.max_torque_nm);
+}
+
+}  // namespace
+}  // namespace constrictor
