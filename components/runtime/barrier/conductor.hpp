@@ -31,6 +31,7 @@ struct ConductorOptions {
   std::string numeric_profile;
   std::uint64_t seed = 1;
   std::int64_t period_ns = 20'000'000;
+  bool realtime = false;            ///< nobody is waited for once all are ready
 };
 
 class Conductor {
@@ -40,7 +41,8 @@ class Conductor {
   /// A member introduces itself: joins, rejoins with a newer incarnation, or is refused with the reason.
   void on_greeting(const Greeting& greeting);
   void on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation);
-  void on_done(const StepDone& done);
+  /// Returns whether it counts: false for an older incarnation, another epoch, or a step done before.
+  bool on_done(const StepDone& done);
   /// Ends this epoch and begins the next; every member builds its component anew and says ready again.
   void reset(std::uint64_t seed);
   /// Lets the run end: the next tick is the final one.
