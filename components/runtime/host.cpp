@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <random>
@@ -257,6 +258,9 @@ void Host::Impl::make_conductor() {
   conductor.seed = options_.setup.seed;
   conductor.realtime = options_.realtime;
   conductor.period_ns = static_cast<Plant&>(plant_->component()).period_ns();
+  if (options_.max_sim_time_s > 0) {
+    conductor.last_index = std::llround(options_.max_sim_time_s * 1e9 / static_cast<double>(conductor.period_ns));
+  }
   if (options_.hash_log && !options_.setup.output_dir.empty()) {
     hash_log_ = std::make_unique<HashLog>(options_.setup.output_dir, options_.record);
   }

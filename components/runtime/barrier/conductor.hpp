@@ -32,6 +32,7 @@ struct ConductorOptions {
   std::uint64_t seed = 1;
   std::int64_t period_ns = 20'000'000;
   bool realtime = false;            ///< nobody is waited for once all are ready
+  std::int64_t last_index = -1;     ///< the run ends with this tick at the latest; negative: it has no such end
 };
 
 class Conductor {
@@ -55,7 +56,9 @@ class Conductor {
   [[nodiscard]] std::int64_t next_time_ns() const { return next_index_ * options_.period_ns; }
   /// Sends the next tick. `plant` are the counts after the plant sampled for it.
   void tick(const std::vector<StepDone::Count>& plant);
-  [[nodiscard]] bool next_is_final() const { return end_requested_at_ && *end_requested_at_ <= next_index_; }
+  [[nodiscard]] bool next_is_final() const {
+    return (end_requested_at_ && *end_requested_at_ <= next_index_) || (options_.last_index >= 0 && options_.last_index <= next_index_);
+  }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::optional<EpochId> epoch() const { return epoch_; }
 
