@@ -1,0 +1,75 @@
+#include "control/control.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "runtime/share.hpp"
+
+namespace constrictor {
+
+Control::Control(Wiring& wiring, const Setup& setup)
+    : robot_(load_robot(setup.robot_file)),
+      config_(load_control_config(setup.config_file.empty() ? share_path("components/control/control.yaml") : setup.config_file)),
+      chain_(robot_), limiter_(robot_, config_.speed_share), trajectory_in_(wiring.latest(topics::kDesiredTrajectory)),
+      joints_in_(wiring.latest(topics::kJointState)), command_out_(wiring.output(topics::kJointCommand)),
+      status_out_(wiring.output(topics::kMotionStatus)) {}
+
+msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
+  msg::DesiredTrajectory desired{};
+  known = false;
+  const char* fallback = "hold";
+  if (trajectory_in_) {
+    desired = *trajectory_in_;
+    method = registry_.find(desired.method);
+    known = method && method->accepts(desired, chain_);
+    if (trajectory_in_.age_ticks() > config_.relax_after_ticks) fallback = "relax";
+    if (known && trajectory_in_.age_ticks() <= config_.hold_after_ticks) return desired;
+  }
+  std::snprintf(desired.method, sizeof desired.method, "%s", fallback);
+  desired.shape_count = std::min<std::uint16_t>(desired.shape_count, static_cast<std::uint16_t>(chain_.joint_count()));
+  method = registry_.find(fallback);
+  return desired;
+}
+
+void Control::step(const Tick& tick) {
+  if (!joints_in_) return;
+  JointArray measured_rad{};
+  JointArray torque_nm{};
+  const std::size_t count = std::min<std::size_t>(joints_in_->joint_count, robot_.joints.size());
+  std::copy_n(joints_in_->position_rad, count, measured_rad.begin());
+  std::copy_n(joints_in_->torque_nm, count, torque_nm.begin());
+  if (!state_.limiter.started) state_.limiter.position_rad = measured_rad;
+
+  const ControlMethod* method = nullptr;
+  bool known = false;
+  const msg::DesiredTrajectory desired = choose(method, known);
+  const JointArray commanded_rad = state_.limiter.position_rad;
+  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s()};
+  if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
+    state_.body.scratch = {};
+    method->start(input, state_.body);
+    state_.method = desired.method;
+    state_.motion_id = desired.motion_id;
+  }
+  Setpoints setpoints;
+  const MethodProgress progress = method->step(input, state_.body, setpoints);
+  const bool relaxed = std::string_view(desired.method) == "relax";
+  command_out_.write(relaxed ? limiter_.relax(measured_rad, state_.limiter)
+                             : limiter_.limit(setpoints, measured_rad, tick.dt_s(), state_.limiter));
+
+  msg::MotionStatus status{};
+  std::snprintf(status.method, sizeof status.method, "%s", desired.method);
+  status.motion_id = desired.motion_id;
+  status.known = known;
+  status.done = known && progress.done;
+  status.progress = progress.progress;
+  status.phase_rad = state_.body.wave.phase_rad;
+  status_out_.write(status);
+}
+
+ComponentFactory make_control_factory() {
+  return {"control", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Control>(wiring, setup); }};
+}
+
+}  // namespace constrictor

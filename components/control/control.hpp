@@ -1,0 +1,48 @@
+// Control: the desired trajectory to servo setpoints, by the method that the trajectory names.
+#pragma once
+
+#include <cereal/types/string.hpp>
+#include <string>
+
+#include "control/control_method.hpp"
+#include "runtime/component.hpp"
+
+namespace constrictor {
+
+struct ControlState {
+  BodyState body;
+  LimiterState limiter;
+  std::string method;         ///< of the present motion; empty before the first
+  std::uint64_t motion_id = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(body, limiter, method, motion_id);
+  }
+};
+
+/// Reads DesiredTrajectory and JointState, writes JointCommand and MotionStatus every tick. Before the first trajectory, with one
+/// that no method accepts, and with one older than `hold_after_ticks` the posture is held; older than `relax_after_ticks` the
+/// joints are let go. Before the first JointState it writes nothing.
+class Control : public StatefulComponent<ControlState> {
+ public:
+  Control(Wiring& wiring, const Setup& setup);
+  void step(const Tick& tick) override;
+
+ private:
+  /// The trajectory to obey now, after the rules on age and validity.
+  [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
+
+  RobotModel robot_;
+  ControlConfig config_;
+  YawChain chain_;
+  JointLimiter limiter_;
+  MethodRegistry registry_;
+  Latest<msg::DesiredTrajectory> trajectory_in_;
+  Latest<msg::JointState> joints_in_;
+  Output<msg::JointCommand> command_out_;
+  Output<msg::MotionStatus> status_out_;
+};
+
+ComponentFactory make_control_factory();
+
+}  // namespace constrictor

@@ -1,0 +1,41 @@
+#include <cmath>
+
+#include "control/control_method.hpp"
+#include "control/methods/methods.hpp"
+
+namespace constrictor {
+
+bool ControlMethod::accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const {
+  if (desired.shape_count > chain.joint_count() || desired.wavelength_m <= 0.0) return false;
+  for (std::size_t k = 0; k < desired.shape_count; ++k) {
+    if (!std::isfinite(desired.shape_rad[k])) return false;
+  }
+  return std::isfinite(desired.frequency_hz) && std::isfinite(desired.amplitude_rad) && std::isfinite(desired.wavelength_m) &&
+         std::isfinite(desired.curvature_1_m) && std::isfinite(desired.speed_m_s) && std::isfinite(desired.squeeze_rad);
+}
+
+void ControlMethod::start(const MethodInput&, BodyState&) const {}
+
+MethodRegistry::MethodRegistry() {
+  methods_.push_back(make_hold());
+  methods_.push_back(make_relax());
+  methods_.push_back(make_undulation());
+  methods_.push_back(make_bend());
+  methods_.push_back(make_wrap());
+  methods_.push_back(make_squeeze());
+}
+
+const ControlMethod* MethodRegistry::find(std::string_view name) const {
+  for (const auto& method : methods_) {
+    if (method->name() == name) return method.get();
+  }
+  return nullptr;
+}
+
+std::vector<std::string_view> MethodRegistry::names() const {
+  std::vector<std::string_view> names;
+  for (const auto& method : methods_) names.push_back(method->name());
+  return names;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,44 @@
+// "undulation": lateral undulation, straight or on a posture (a U carries an object between its arms), forwards or backwards,
+// steered by the path's curvature. Never done. "bend": lets the wave fade and takes the posture slowly; done when it is reached.
+#include <algorithm>
+
+#include "control/methods/methods.hpp"
+#include "control/wave_motion.hpp"
+
+namespace constrictor {
+namespace {
+
+class Undulation : public ControlMethod {
+ public:
+  std::string_view name() const override { return "undulation"; }
+  void start(const MethodInput& input, BodyState& body) const override { keep_residual(input, body); }
+  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
+    const LinkArray shape_rad = desired_shape(input.desired, input.chain);
+    advance_wave(input, 1.0, body);
+    const double left_rad = advance_shape(input, shape_rad, desired_shape_rate(input), body);
+    ride(input, shape_rad, body, setpoints);
+    return {false, left_rad > 0.0 ? 0.0 : 1.0};
+  }
+};
+
+class Bend : public ControlMethod {
+ public:
+  std::string_view name() const override { return "bend"; }
+  void start(const MethodInput& input, BodyState& body) const override { keep_residual(input, body); }
+  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
+    const LinkArray shape_rad = desired_shape(input.desired, input.chain);
+    advance_wave(input, 1.0, body);
+    const double left_rad = advance_shape(input, shape_rad, desired_shape_rate(input), body);
+    ride(input, shape_rad, body, setpoints);
+    double& longest_rad = body.scratch[0];
+    longest_rad = std::max(longest_rad, left_rad);
+    return {left_rad <= 0.0, longest_rad > 0.0 ? 1.0 - left_rad / longest_rad : 1.0};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ControlMethod> make_undulation() { return std::make_unique<Undulation>(); }
+std::unique_ptr<ControlMethod> make_bend() { return std::make_unique<Bend>(); }
+
+}  // namespace constrictor

@@ -1,0 +1,195 @@
+// The component in an in-process run: an ideal servo as the plant, and a navigation that says what the test wants.
+#include "control/control.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+
+#include "runtime/local_run.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+/// Joints that are wherever they were told to be.
+class IdealServos : public Plant {
+ public:
+  IdealServos(Wiring& wiring, const Setup&)
+      : command_(wiring.latest(topics::kJointCommand)), joints_(wiring.output(topics::kJointState)) {
+    state_.joint_count = 23;
+    state_.position_rad[6] = 0.4;
+  }
+  void sample(const Tick&) override { joints_.write(state_); }
+  void step(const Tick&) override {
+    if (!command_) return;
+    for (int j = 0; j < 23; ++j) {
+      if (command_->torque_limit_nm[j] > 0.0) state_.position_rad[j] = command_->position_rad[j];
+    }
+  }
+  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+
+ private:
+  Latest<msg::JointCommand> command_;
+  Output<msg::JointState> joints_;
+  msg::JointState state_{};
+};
+
+using Script = std::function<bool(const Tick&, msg::DesiredTrajectory&)>;
+
+class ScriptedNavigation : public StatefulComponent<int> {
+ public:
+  ScriptedNavigation(Wiring& wiring, Script script)
+      : out_(wiring.output(topics::kDesiredTrajectory)), script_(std::move(script)) {}
+  void step(const Tick& tick) override {
+    msg::DesiredTrajectory desired{};
+    desired.wavelength_m = 1.07;
+    if (script_(tick, desired)) out_.write(desired);
+  }
+
+ private:
+  Output<msg::DesiredTrajectory> out_;
+  Script script_;
+};
+
+void set_method(msg::DesiredTrajectory& desired, const char* method, std::uint64_t motion_id) {
+  std::snprintf(desired.method, sizeof desired.method, "%s", method);
+  desired.motion_id = motion_id;
+}
+
+void set_u(msg::DesiredTrajectory& desired) {
+  desired.shape_count = 12;
+  for (int k = 5; k <= 7; ++k) desired.shape_rad[k] = 1.047;
+}
+
+LocalRun make_run(Script script) {
+  Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  return LocalRun({{"physics", [](Wiring& w, const Setup& s) { return std::make_unique<IdealServos>(w, s); }},
+                   make_control_factory(),
+                   {"navigation", [script](Wiring& w, const Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
+                  setup);
+}
+
+/// Largest change of any setpoint from one tick to the next, over a run.
+double largest_step_rad(LocalRun& run, int ticks) {
+  double largest = 0.0;
+  msg::JointCommand previous = *run.latest(topics::kJointCommand);
+  for (int i = 0; i < ticks; ++i) {
+    run.advance(1);
+    const msg::JointCommand& now = *run.latest(topics::kJointCommand);
+    for (int j = 0; j < 23; ++j) largest = std::max(largest, std::abs(now.position_rad[j] - previous.position_rad[j]));
+    previous = now;
+  }
+  return largest;
+}
+
+TEST(Control, HoldsTheMeasuredPostureBeforeTheFirstTrajectory) {
+  LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory&) { return false; });
+  run.advance(20);
+  const auto& command = *run.latest(topics::kJointCommand);
+  EXPECT_NEAR(command.position_rad[6], 0.4, 1e-12);
+  EXPECT_GT(command.torque_limit_nm[6], 0.0);
+  EXPECT_FALSE(run.latest(topics::kMotionStatus)->known);
+}
+
+TEST(Control, HoldsOnAnUnknownMethodAndOnAShapeWithNaN) {
+  LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
+    set_method(desired, tick.index < 50 ? "moonwalk" : "undulation", 1);
+    desired.frequency_hz = 0.7;
+    desired.shape_count = tick.index < 50 ? 0 : 65535;  // more joints than there are
+    return tick.index < 50;
+  });
+  run.advance(40);
+  EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[6], 0.4, 1e-12);
+  EXPECT_STREQ(run.latest(topics::kMotionStatus)->method, "hold");
+}
+
+TEST(Control, HoldsThenRelaxesWhenTheTrajectoryIsStale) {
+  LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
+    set_method(desired, "undulation", 1);
+    desired.frequency_hz = 0.7;
+    desired.amplitude_rad = 0.5;
+    return tick.index < 100;
+  });
+  run.advance(115);
+  EXPECT_STREQ(run.latest(topics::kMotionStatus)->method, "hold");
+  EXPECT_LT(largest_step_rad(run, 50), 1e-12);
+  run.advance(250);
+  EXPECT_STREQ(run.latest(topics::kMotionStatus)->method, "relax");
+  EXPECT_EQ(run.latest(topics::kJointCommand)->torque_limit_nm[6], 0.0);
+}
+
+TEST(Control, ChangesOfMethodDoNotJump) {
+  LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
+    const auto phase = tick.index / 150;
+    static constexpr const char* kMethods[] = {"undulation", "hold", "bend", "wrap", "squeeze", "undulation", "bend"};
+    set_method(desired, kMethods[phase % 7], static_cast<std::uint64_t>(phase));
+    desired.frequency_hz = 0.7;
+    desired.amplitude_rad = 0.5;
+    desired.curvature_1_m = phase == 5 ? -1.0 : 0.5;
+    if (phase >= 3 && phase < 6) set_u(desired);
+    desired.speed_m_s = 0.2;
+    desired.squeeze_rad = 0.3;
+    return true;
+  });
+  run.advance(1);
+  // The servo's own limit is 0.08 rad a tick; the gait itself needs up to about 0.05.
+  EXPECT_LT(largest_step_rad(run, 1050), 0.07);
+}
+
+TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {
+  LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory& desired) {
+    set_method(desired, "wrap", 1);
+    set_u(desired);
+    desired.speed_m_s = 0.2;
+    return true;
+  });
+  run.advance(100);
+  EXPECT_GT(run.latest(topics::kJointCommand)->position_rad[0], 0.3);
+  EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[14], 0.0, 1e-9);
+  run.advance(300);
+  EXPECT_TRUE(run.latest(topics::kMotionStatus)->done);
+  EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[0], 0.0, 1e-6);
+  for (int j : {10, 12, 14}) EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[j], 1.047, 1e-6);
+}
+
+TEST(Control, TorqueLimitCapsTheBaseOfTheUOnly) {
+  LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory& desired) {
+    set_method(desired, "squeeze", 1);
+    set_u(desired);
+    desired.squeeze_rad = 0.5;
+    desired.torque_limit_nm = 1.5;
+    return true;
+  });
+  run.advance(600);
+  const auto& command = *run.latest(topics::kJointCommand);
+  EXPECT_EQ(command.torque_limit_nm[10], 1.5);
+  EXPECT_EQ(command.torque_limit_nm[8], 6.0);
+  EXPECT_TRUE(run.latest(topics::kMotionStatus)->done);
+  EXPECT_NEAR(command.position_rad[12], 1.047 + 0.5 / 3.0, 1e-6);
+  EXPECT_LT(command.position_rad[8], -0.05);
+}
+
+TEST(Control, ContinuesIdenticallyAfterARestart) {
+  const Script script = [](const Tick& tick, msg::DesiredTrajectory& desired) {
+    set_method(desired, tick.index < 80 ? "undulation" : "wrap", tick.index < 80 ? 1 : 2);
+    desired.frequency_hz = 0.7;
+    desired.amplitude_rad = 0.5;
+    desired.speed_m_s = 0.2;
+    if (tick.index >= 80) set_u(desired);
+    return true;
+  };
+  LocalRun whole = make_run(script);
+  LocalRun broken = make_run(script);
+  whole.advance(300);
+  broken.advance(123);
+  broken.restart("control");
+  broken.advance(177);
+  EXPECT_EQ(whole.output_hashes().at("control"), broken.output_hashes().at("control"));
+}
+
+}  // namespace
+}  // namespace constrictor

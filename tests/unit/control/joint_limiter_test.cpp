@@ -1,0 +1,82 @@
+#include "control/joint_limiter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+class JointLimiterTest : public testing::Test {
+ protected:
+  RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  JointLimiter limiter{robot, 1.0};
+};
+
+TEST_F(JointLimiterTest, FirstSetpointStartsAtTheMeasuredPosture) {
+  LimiterState state;
+  JointArray measured{};
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) measured[j] = 0.3 * std::sin(static_cast<double>(j));
+  const auto command = limiter.limit(Setpoints{}, measured, 0.02, state);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    EXPECT_LE(std::abs(command.position_rad[j] - measured[j]), robot.joints[j].max_speed_rad_s * 0.02 + 1e-12);
+  }
+}
+
+TEST_F(JointLimiterTest, RandomWishesNeverLeaveTheRobotsLimits) {
+  constexpr unsigned kSeed = 20261121;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> wild(-20.0, 20.0);
+  LimiterState state;
+  JointArray previous{};
+  for (int step = 0; step < 2000; ++step) {
+    Setpoints wanted;
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      wanted.position_rad[j] = wild(random);
+      wanted.torque_limit_nm[j] = wild(random);
+      if (step % 7 == 0 && j % 5 == 0) wanted.position_rad[j] = std::numeric_limits<double>::quiet_NaN();
+      if (step % 11 == 0 && j % 3 == 0) wanted.torque_limit_nm[j] = std::numeric_limits<double>::infinity();
+    }
+    const auto command = limiter.limit(wanted, {}, 0.02, state);
+    ASSERT_EQ(command.joint_count, robot.joints.size());
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const JointModel& joint = robot.joints[j];
+      ASSERT_TRUE(std::isfinite(command.position_rad[j]));
+      ASSERT_GE(command.position_rad[j], joint.min_rad);
+      ASSERT_LE(command.position_rad[j], joint.max_rad);
+      ASSERT_LE(std::abs(command.position_rad[j] - previous[j]), joint.max_speed_rad_s * 0.02 + 1e-12);
+      ASSERT_LE(std::abs(command.velocity_rad_s[j]), joint.max_speed_rad_s + 1e-9);
+      ASSERT_GE(command.torque_limit_nm[j], 0.0);
+      ASSERT_LE(command.torque_limit_nm[j], joint.max_torque_nm);
+      previous[j] = command.position_rad[j];
+    }
+  }
+}
+
+TEST_F(JointLimiterTest, VelocityIsTheSetpointsRate) {
+  LimiterState state;
+  Setpoints wanted;
+  limiter.limit(wanted, {}, 0.02, state);
+  wanted.position_rad[4] = 0.01;
+  EXPECT_NEAR(limiter.limit(wanted, {}, 0.02, state).velocity_rad_s[4], 0.5, 1e-12);
+}
+
+TEST_F(JointLimiterTest, RelaxedJointsHaveNoTorqueAndHoldFromWhereTheyAre) {
+  LimiterState state;
+  limiter.limit(Setpoints{}, {}, 0.02, state);
+  JointArray measured{};
+  measured[2] = 0.7;
+  const auto command = limiter.relax(measured, state);
+  EXPECT_EQ(command.torque_limit_nm[2], 0.0);
+  Setpoints wanted;
+  wanted.position_rad[2] = 0.7;
+  EXPECT_NEAR(limiter.limit(wanted, {}, 0.02, state).position_rad[2], 0.7, 1e-12);
+}
+
+}  // namespace
+}  // namespace constrictor
