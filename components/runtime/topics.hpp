@@ -42,7 +42,7 @@ inline constexpr Topic<msg::ImuState> kImuState{
 inline constexpr Topic<msg::SceneDescription> kSceneDescription{
     {3, "simulation/scene", "SceneDescription", "physics", 1, 1, true, "once an epoch", "what does not move"}};
 inline constexpr Topic<msg::WorldState> kWorldState{
-    {4, "simulation/world_state", "WorldState", "physics", 1, 16, true, "every tick", "ground truth"}};
+    {4, "simulation/world_state", "WorldState", "physics", 1, 32, true, "every tick", "ground truth"}};
 inline constexpr Topic<msg::TouchedState> kTouchedState{
     {5, "simulation/touched", "TouchedState", "physics", 1, 8, true, "every tick", "what each contact touched"}};
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{
