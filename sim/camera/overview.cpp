@@ -1,0 +1,71 @@
+#include "sim/camera/overview.hpp"
+
+#include "configuration/configuration.hpp"
+#include "robot/robot_model.hpp"
+#include "runtime/share.hpp"
+#include "sim/render/scene_messages.hpp"
+#include "sim/render/viewpoint.hpp"
+
+namespace constrictor {
+
+OverviewConfiguration load_overview(const std::filesystem::path& path) {
+  auto file = Configuration::load(path);
+  OverviewConfiguration configuration;
+  configuration.width = static_cast<int>(file.integer("width", 16, 4096));
+  configuration.height = static_cast<int>(file.integer("height", 16, 4096));
+  configuration.period_ticks = static_cast<int>(file.integer("period_ticks", 1, 1000));
+  configuration.latency_ticks = static_cast<int>(file.integer("latency_ticks", 1, 100));
+  configuration.horizontal_fov_rad = file.number("horizontal_fov_rad", {0.1, 2.5});
+  configuration.elevation_rad = file.number("elevation_rad", {0.1, 1.5});
+  configuration.heading_rad = file.number("heading_rad", {-3.2, 3.2});
+  configuration.margin = file.number("margin", {0.0, 0.4});
+  configuration.surroundings_m = file.number("surroundings_m", {0.0, 20.0});
+  configuration.render.samples = static_cast<int>(file.integer("samples", 1, 4));
+  if (configuration.render.samples != 1 && configuration.render.samples != 4) {
+    throw file.error("samples", "found " + std::to_string(configuration.render.samples) + ", accepted 1 or 4");
+  }
+  configuration.render.shadow_map_size = static_cast<int>(file.integer("shadow_map_size", 0, 8192));
+  configuration.render.shadow_taps = 3;
+  configuration.render.module_segments = static_cast<int>(file.integer("module_segments", 8, 64));
+  file.finish();
+  return configuration;
+}
+
+Overview::Overview(Wiring& wiring, const Setup& setup)
+    : configuration_(load_overview(setup.config_file.empty() ? share_path("sim/camera/overview.yaml") : setup.config_file)),
+      timing_{static_cast<std::uint16_t>(configuration_.period_ticks), static_cast<std::uint16_t>(configuration_.latency_ticks)},
+      world_(wiring.latest(topics::kWorldState)),
+      description_(wiring.latest(topics::kSceneDescription)),
+      image_(wiring.output(topics::kOverviewImage)) {
+  configuration_.render.head_camera_m = load_robot(setup.robot_file).camera.p_HC;
+}
+
+void Overview::build(const msg::SceneDescription& description) {
+  const Scene scene = scene_of(description);
+  renderer_ = std::make_unique<Renderer>(scene, configuration_.render);
+  const auto extent = scene_extent(scene, configuration_.surroundings_m);
+  camera_ = fit_view(extent, side_heading(scene) + configuration_.heading_rad, configuration_.elevation_rad,
+                     configuration_.horizontal_fov_rad, configuration_.width, configuration_.height, configuration_.margin);
+  shadow_ = shadow_region_of(extent);
+}
+
+void Overview::step(const Tick&) {
+  if (!world_ || !description_) return;
+  if (!renderer_) build(*description_);
+  rgb_ = renderer_->draw(poses_of(*world_), camera_, shadow_);
+  msg::CameraImage image{};
+  image.width = static_cast<std::uint16_t>(camera_.width);
+  image.height = static_cast<std::uint16_t>(camera_.height);
+  image.exposure_tick = world_->header.tick;
+  image.data._buffer = rgb_.data();
+  image.data._length = static_cast<std::uint32_t>(rgb_.size());
+  image.data._maximum = image.data._length;
+  image_.write(image);
+  ++state_.frames;
+}
+
+ComponentFactory make_overview_factory() {
+  return {"overview", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Overview>(wiring, setup); }};
+}
+
+}  // namespace constrictor
