@@ -1,0 +1,66 @@
+#include "planner/planner.hpp"
+
+#include <algorithm>
+
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+template <std::size_t N>
+void set_text(char (&field)[N], const std::string& text) {
+  std::copy_n(text.begin(), std::min(text.size(), N - 1), field);
+}
+
+}  // namespace
+
+Planner::Planner(Wiring& wiring, const Setup& setup)
+    : config_(load_planner_config(setup.config_file.empty() ? share_path("components/planner/planner.yaml") : setup.config_file)),
+      planner_(config_, state_.mission),
+      line_(wiring.latest(topics::kLinePercept)),
+      objects_(wiring.latest(topics::kObjectPercepts)),
+      pose_(wiring.latest(topics::kRobotPose)),
+      status_(wiring.latest(topics::kTaskStatus)),
+      events_(wiring.events(topics::kTaskEvent)),
+      request_(wiring.output(topics::kPlannerRequest)),
+      mission_(wiring.output(topics::kMissionStatus)) {}
+
+void Planner::step(const Tick& tick) {
+  PlannerInputs inputs;
+  inputs.time_s = tick.time_s();
+  if (line_) inputs.line = &*line_;
+  if (objects_) inputs.objects = &*objects_;
+  inputs.fresh_percepts = objects_.has_value() && objects_.fresh();
+  if (pose_) inputs.pose = &*pose_;
+  if (status_) inputs.status = &*status_;
+  for (const auto& event : events_) inputs.events.push_back(&event);
+  if (const auto wanted = planner_.step(inputs)) {
+    msg::Request request{};
+    set_text(request.source, "planner");
+    request.level = msg::kAuthorityPlanner;
+    request.kind = msg::kRequestTask;
+    request.goal_id = wanted->goal_id;
+    request.command = msg::kCommandStart;
+    request.task = wanted->task;
+    request.parameters = wanted->parameters;
+    request_.write(request);
+  }
+  const auto& memory = state_.mission;
+  msg::MissionStatus mission{};
+  mission.mission = memory.state == MissionState::kDone     ? msg::kMissionSucceeded
+                    : memory.state == MissionState::kFailed ? msg::kMissionFailed
+                                                            : msg::kMissionRunning;
+  set_text(mission.state, name_of(memory.state));
+  mission.object_index = memory.object_index;
+  mission.object_count = static_cast<std::uint16_t>(config_.sequence.size());
+  mission.colour = planner_.colour();
+  mission.recoveries = memory.recoveries;
+  set_text(mission.reason, memory.reason);
+  mission_.write(mission);
+}
+
+ComponentFactory make_planner_factory() {
+  return {"planner", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Planner>(wiring, setup); }};
+}
+
+}  // namespace constrictor
