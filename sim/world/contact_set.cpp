@@ -1,0 +1,135 @@
+#include "sim/world/contact_set.hpp"
+
+#include <algorithm>
+
+namespace constrictor {
+namespace {
+
+using Eigen::Vector3d;
+
+// Room for every contact of a step; more are still simulated, but not felt. Far beyond what 64 modules reach.
+constexpr std::size_t kMostFelt = 1024;
+
+std::uint32_t key_of(std::uint8_t module, Touched touched, std::uint8_t index, std::uint8_t feature) {
+  return (std::uint32_t{module} << 24) | (static_cast<std::uint32_t>(touched) << 16) | (std::uint32_t{index} << 8) | feature;
+}
+
+void copy(const Vector3d& from, dVector3 to) {
+  to[0] = from.x();
+  to[1] = from.y();
+  to[2] = from.z();
+  to[3] = 0.0;
+}
+
+Vector3d vector_of(const dReal* from) { return {from[0], from[1], from[2]}; }
+
+/// R^T v for ODE's 3x4 row-major rotation.
+Vector3d to_body(dBodyID body, const Vector3d& v) {
+  const dReal* R = dBodyGetRotation(body);
+  return {R[0] * v.x() + R[4] * v.y() + R[8] * v.z(), R[1] * v.x() + R[5] * v.y() + R[9] * v.z(),
+          R[2] * v.x() + R[6] * v.y() + R[10] * v.z()};
+}
+
+}  // namespace
+
+ContactSet::ContactSet(dWorldID world, const SolverSettings& settings) : world_(world), group_(dJointGroupCreate(0)) {
+  surface_.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  surface_.soft_erp = settings.contact_erp;
+  surface_.soft_cfm = settings.contact_cfm;
+  feedback_.resize(kMostFelt);
+  records_.reserve(kMostFelt);
+  sums_.reserve(kMostFelt);
+}
+
+void ContactSet::begin_tick() {
+  sums_.clear();
+  steps_ = 0;
+}
+
+void ContactSet::begin_step() {
+  dJointGroupEmpty(group_.get());
+  records_.clear();
+}
+
+dJointID ContactSet::make(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second) {
+  dContact contact{};
+  contact.surface = surface_;
+  contact.surface.mu = friction.along;
+  if (friction.direction != nullptr) {
+    contact.surface.mode |= dContactMu2 | dContactFDir1;
+    contact.surface.mu2 = friction.across;
+    copy(*friction.direction, contact.fdir1);
+  }
+  copy(touch.position_m, contact.geom.pos);
+  copy(touch.normal, contact.geom.normal);
+  contact.geom.depth = touch.depth_m;
+  const dJointID joint = dJointCreateContact(world_, group_.get(), &contact);
+  dJointAttach(joint, first, second);
+  return joint;
+}
+
+void ContactSet::add(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second) {
+  make(touch, friction, first, second);
+}
+
+void ContactSet::add_felt(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second,
+                          std::uint8_t module, Touched touched, std::uint8_t index, std::uint8_t feature) {
+  const dJointID joint = make(touch, friction, first, second);
+  if (records_.size() == kMostFelt) return;
+  dJointSetFeedback(joint, &feedback_[records_.size()]);
+  records_.push_back({first, second, key_of(module, touched, index, feature), touch});
+}
+
+void ContactSet::sum_up(std::uint32_t key, dBodyID body, const Vector3d& position, const Vector3d& normal,
+                        const dReal* force) {
+  auto at = std::lower_bound(sums_.begin(), sums_.end(), key, [](const Sum& sum, std::uint32_t k) { return sum.key < k; });
+  if (at == sums_.end() || at->key != key) {
+    if (sums_.size() == kMostFelt) return;
+    Sum fresh;
+    fresh.key = key;
+    at = sums_.insert(at, fresh);
+  }
+  const Vector3d force_in_body = to_body(body, vector_of(force));
+  const double weight = force_in_body.norm() + 1e-12;  // contacts without force keep a position, too
+  at->force += force_in_body;
+  at->position += weight * to_body(body, position - vector_of(dBodyGetPosition(body)));
+  at->normal += weight * to_body(body, normal);
+  at->weight += weight;
+}
+
+void ContactSet::collect() {
+  ++steps_;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const Record& record = records_[i];
+    const dJointFeedback& feedback = feedback_[i];
+    sum_up(record.key, record.first, record.touch.position_m, record.touch.normal, feedback.f1);
+    const auto touched = static_cast<Touched>((record.key >> 16) & 0xFFU);
+    if (touched != Touched::kSelf) continue;
+    // The other module feels the same point from its side.
+    const auto module = static_cast<std::uint8_t>(record.key >> 24);
+    const auto other = static_cast<std::uint8_t>(record.key >> 8);
+    sum_up(key_of(other, Touched::kSelf, module, static_cast<std::uint8_t>(record.key)), record.second,
+           record.touch.position_m, -record.touch.normal, feedback.f2);
+  }
+}
+
+std::vector<ModuleContact> ContactSet::felt() const {
+  std::vector<ModuleContact> contacts;
+  contacts.reserve(sums_.size());
+  for (const Sum& sum : sums_) {
+    ModuleContact contact;
+    contact.module_index = static_cast<std::uint8_t>(sum.key >> 24);
+    contact.touched = static_cast<Touched>((sum.key >> 16) & 0xFFU);
+    contact.touched_index = static_cast<std::uint8_t>(sum.key >> 8);
+    contact.position_m = sum.position / sum.weight;
+    contact.normal = sum.normal.normalized();
+    contact.force_n = sum.force / steps_;
+    contacts.push_back(contact);
+  }
+  std::stable_sort(contacts.begin(), contacts.end(), [](const ModuleContact& a, const ModuleContact& b) {
+    return a.force_n.squaredNorm() > b.force_n.squaredNorm();
+  });
+  return contacts;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,24 @@
+// Owners of ODE's handles. Bodies and joints die with their world.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <memory>
+#include <type_traits>
+
+namespace constrictor {
+
+/// Initialises ODE once in the process.
+void ensure_ode();
+
+template <auto Destroy>
+struct OdeDeleter {
+  template <class T>
+  void operator()(T* handle) const { Destroy(handle); }
+};
+
+using OdeWorld = std::unique_ptr<std::remove_pointer_t<dWorldID>, OdeDeleter<dWorldDestroy>>;
+using OdeJointGroup = std::unique_ptr<std::remove_pointer_t<dJointGroupID>, OdeDeleter<dJointGroupDestroy>>;
+using OdeGeom = std::unique_ptr<std::remove_pointer_t<dGeomID>, OdeDeleter<dGeomDestroy>>;
+
+}  // namespace constrictor

@@ -1,0 +1,112 @@
+// The simulated world: the robot, its surroundings and ODE's solver. Pure C++: no topics, no files, no clock. Two worlds built
+// from equal arguments and given equal commands stay equal bit for bit, also when they take turns in one process.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/world/contact_set.hpp"
+#include "sim/world/joint_drive.hpp"
+#include "sim/world/ode_handles.hpp"
+#include "sim/world/solver_settings.hpp"
+#include "sim/world/state_hash.hpp"
+
+namespace constrictor {
+
+/// What an inertial unit in the head measures, without noise, in the head's frame.
+struct ImuTruth {
+  Eigen::Quaterniond q_WHead = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d angular_velocity_rad_s{0.0, 0.0, 0.0};
+  Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};  ///< mean over the last advance(); at rest 9.81 upwards
+};
+
+class World {
+ public:
+  static constexpr double kGravity_m_s2 = 9.81;
+
+  /// Both are copied. Throws nothing for arguments that load_robot and load_scenario accept.
+  World(const RobotModel& robot, const Scenario& scenario, const SolverSettings& settings = {});
+
+  /// Setpoints of all joints, each span joint_count() long; clamped to the joints' limits. Held until the next call. At first the
+  /// joints hold 0 with their full torque. A torque limit of 0 relaxes a joint.
+  void set_servo(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
+                 std::span<const double> torque_limit_nm);
+  /// Force in W at an object's centre during the next advance() only; several add up.
+  void apply_force(std::size_t object, const Eigen::Vector3d& force_n);
+  /// Integrates round(duration / step) steps, at least one.
+  void advance(double duration_s);
+
+  [[nodiscard]] std::size_t joint_count() const { return drives_.size(); }
+  [[nodiscard]] std::size_t module_count() const { return modules_.size(); }
+  [[nodiscard]] std::size_t object_count() const { return objects_.size(); }
+  [[nodiscard]] double time_s() const { return static_cast<double>(steps_done_) * settings_.step_s; }
+
+  [[nodiscard]] double joint_angle_rad(std::size_t joint) const { return drives_[joint]->angle_rad(); }
+  [[nodiscard]] double joint_rate_rad_s(std::size_t joint) const { return drives_[joint]->rate_rad_s(); }
+  /// Torque about the joint's axis on the module at the head's side, low-passed as the robot file says.
+  [[nodiscard]] double joint_torque_nm(std::size_t joint) const { return drives_[joint]->torque_nm(); }
+  [[nodiscard]] const JointDrive& joint(std::size_t joint) const { return *drives_[joint]; }
+
+  [[nodiscard]] Eigen::Isometry3d module_pose(std::size_t module) const;             ///< X_WM
+  [[nodiscard]] Eigen::Vector3d module_velocity_m_s(std::size_t module) const;       ///< of its centre, in W
+  [[nodiscard]] Eigen::Vector3d module_angular_velocity_rad_s(std::size_t module) const;  ///< in W
+  [[nodiscard]] Eigen::Isometry3d object_pose(std::size_t object) const;             ///< X_WO
+  [[nodiscard]] Eigen::Vector3d object_velocity_m_s(std::size_t object) const;       ///< of its centre, in W
+  [[nodiscard]] Eigen::Vector3d object_angular_velocity_rad_s(std::size_t object) const;  ///< in W
+  /// What the skin felt in the last advance(), the strongest first.
+  [[nodiscard]] std::vector<ModuleContact> contacts() const { return contacts_.felt(); }
+  [[nodiscard]] ImuTruth imu() const;
+
+  /// SHA-256 chain over position, quaternion (w x y z), linear and angular velocity of each module and object, then angle and rate
+  /// of each joint, extended at the end of each advance().
+  [[nodiscard]] const StateHash::Digest& state_hash() const { return hash_.digest(); }
+
+  [[nodiscard]] const RobotModel& robot() const { return robot_; }
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+
+ private:
+  struct Obstacle {
+    ConvexSolid solid;
+    OdeGeom geom;
+    double bound_m = 0.0;  ///< radius of the sphere about it
+  };
+
+  void build_robot();
+  void build_objects();
+  void build_obstacles();
+  void collide();
+  void collide_objects();
+  void collide_geoms(dGeomID first, dBodyID first_body, dGeomID second, dBodyID second_body);
+  [[nodiscard]] Capsule capsule_of(std::size_t module) const;
+  [[nodiscard]] ConvexSolid solid_of(std::size_t object) const;
+  void step();
+  void extend_hash();
+
+  RobotModel robot_;
+  Scenario scenario_;
+  SolverSettings settings_;
+  OdeWorld world_;
+  ContactSet contacts_;
+  std::vector<dBodyID> modules_;
+  std::vector<std::unique_ptr<JointDrive>> drives_;
+  std::vector<dBodyID> objects_;
+  std::vector<OdeGeom> object_geoms_;
+  std::vector<double> object_bound_m_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Eigen::Vector3d> forces_n_;  ///< on objects, in the present advance()
+  std::vector<Capsule> capsules_;          ///< of the present step
+  Touches touches_;
+  unsigned long reorder_state_;            ///< of ODE's global generator, which every world sets before it steps
+  std::int64_t steps_done_ = 0;
+  Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean of the last advance()
+  std::vector<double> hash_values_;
+  StateHash hash_;
+};
+
+}  // namespace constrictor
