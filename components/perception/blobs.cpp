@@ -35,7 +35,9 @@ class Gauge {
     double right = 0.0, left = 0.0;
     if (!object_azimuths(left, right)) return std::nullopt;
     blob.kind = msg::kBlobObject;
-    double range_m = on_zone ? kNan : lower_edge_range(left, right);
+    bool cut = false;
+    double range_m = on_zone ? kNan : lower_edge_range(left, right, cut);
+    blob.cut_bottom |= cut;
     if (!std::isfinite(range_m)) range_m = upper_edge_range(left, right);
     return finish(blob, left, right, range_m);
   }
@@ -63,7 +65,10 @@ class Gauge {
     if (left <= right) return std::nullopt;
     msg::Blob blob = box(region_.u_min, region_.u_max);
     blob.kind = blob.cut_top && camera_.horizon_row(0.5 * camera_.width()) < 1.0 ? msg::kBlobUndecided : msg::kBlobZone;
-    auto result = finish(blob, left, right, lower_edge_range(left, right));
+    bool cut = false;
+    const double range_m = lower_edge_range(left, right, cut);
+    blob.cut_bottom |= cut;
+    auto result = finish(blob, left, right, range_m);
     if (result && !std::isfinite(result->width_m) && lateral_max > lateral_min) {
       result->width_m = lateral_max - lateral_min;
     }
@@ -126,8 +131,8 @@ class Gauge {
     for (int v = horizon - 3; v <= horizon + 2; ++v) {
       const int row = std::clamp(v, region_.v_min, region_.v_max);
       const Eigen::Vector2d start(middle, row + 0.5);
-      const Edge l = find_edge(rgb_, regions_, id_, start, {-1.0, 0.0}, kMaxGapPixels);
-      const Edge r = find_edge(rgb_, regions_, id_, start, {1.0, 0.0}, kMaxGapPixels);
+      const Edge l = find_edge(rgb_, regions_, camera_, id_, start, {-1.0, 0.0}, kMaxGapPixels);
+      const Edge r = find_edge(rgb_, regions_, camera_, id_, start, {1.0, 0.0}, kMaxGapPixels);
       if (l.state != EdgeState::kNone) lefts.push_back(azimuth(l.pixel));
       if (r.state != EdgeState::kNone) rights.push_back(azimuth(r.pixel));
     }
@@ -149,22 +154,25 @@ class Gauge {
   }
 
   /// [m] horizontal distance of the lower edge from the camera around the middle azimuth; NaN if cut or hidden.
-  [[nodiscard]] double lower_edge_range(double left, double right) const {
+  /// `cut`: by the image's border or the robot's own head.
+  [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const {
     std::vector<double> ranges;
-    int lost = 0;
+    int lost = 0, cuts = 0;
     for (int i = 0; i < kPaths; ++i) {
       const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
       Eigen::Vector2d start, down;
       if (!plane(right + share * (left - right), start, down)) continue;
       // a plane whose horizon lies above the image is entered at the image's border
       if (start.y() < 0.0 && down.y() > 1e-3) start += (0.01 - start.y()) / down.y() * down;
-      const Edge edge = find_edge(rgb_, regions_, id_, start, down, region_.standing() ? kMaxGapPixels : 1e9);
+      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, down, region_.standing() ? kMaxGapPixels : 1e9);
       if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
+      if (edge.state == EdgeState::kCut) ++cuts;
       if (edge.state != EdgeState::kSeen) continue;
       if (const auto p = camera_.ground(edge.pixel.x(), edge.pixel.y(), 50.0)) {
         ranges.push_back((*p - camera_.position_on_ground()).norm());
       }
     }
+    cut = 2 * cuts > kPaths;
     if (ranges.empty() || lost > static_cast<int>(ranges.size())) return kNan;
     return median(ranges);
   }
@@ -176,7 +184,7 @@ class Gauge {
       const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
       Eigen::Vector2d start, down;
       if (!plane(right + share * (left - right), start, down)) continue;
-      const Edge edge = find_edge(rgb_, regions_, id_, start, -down, kMaxGapPixels);
+      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, -down, kMaxGapPixels);
       if (edge.state != EdgeState::kSeen) continue;
       const Eigen::Vector3d direction = camera_.ray(edge.pixel.x(), edge.pixel.y());
       const double rise = direction.z() / direction.head<2>().norm();

@@ -43,8 +43,8 @@ double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vec
   return strength(colour, c[0], c[1], c[2]);
 }
 
-Edge find_edge(const cv::Mat& rgb, const Regions& regions, std::uint8_t id, const Eigen::Vector2d& start,
-               const Eigen::Vector2d& direction, double max_gap) {
+Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, std::uint8_t id,
+               const Eigen::Vector2d& start, const Eigen::Vector2d& direction, double max_gap) {
   double first = -1.0, last = -1.0;
   for (double t = 0.0;; t += kStep) {
     const Eigen::Vector2d p = start + t * direction;
@@ -70,6 +70,10 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, std::uint8_t id, cons
     const Eigen::Vector2d p = start + t * direction;
     if (!inside(rgb, p)) break;
     const std::uint8_t other = id_at(regions.ids, p);
+    if (camera.own_head(p.x(), p.y())) {
+      edge.state = EdgeState::kCut;
+      return edge;
+    }
     if (other != 0 && other != id && regions.regions[other - 1u].standing()) {
       edge.state = EdgeState::kHidden;
       return edge;

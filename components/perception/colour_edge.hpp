@@ -24,8 +24,8 @@ double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vec
 
 /// Walks from `start` in `direction` (unit vector) and finds the last pixel of region `id`, then the point around it where
 /// the colour's strength falls to half. `max_gap` pixels that do not belong to the region are passed over. Cut: the image
-/// ends there. Hidden: another standing region begins there.
-Edge find_edge(const cv::Mat& rgb, const Regions& regions, std::uint8_t id, const Eigen::Vector2d& start,
-               const Eigen::Vector2d& direction, double max_gap);
+/// ends or the robot's own head begins there. Hidden: another standing region begins there.
+Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, std::uint8_t id,
+               const Eigen::Vector2d& start, const Eigen::Vector2d& direction, double max_gap);
 
 }  // namespace constrictor::perception

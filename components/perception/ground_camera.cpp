@@ -16,17 +16,33 @@ Eigen::Matrix3d rotation_from(const msg::Quaternion& q) {
   return R;
 }
 
-GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m)
-    : width_(info.width), height_(info.height), fx_(info.fx), fy_(info.fy), cx_(info.cx), cy_(info.cy) {
+GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
+                           const HeadShape& head)
+    : width_(info.width), height_(info.height), fx_(info.fx), fy_(info.fy), cx_(info.cx), cy_(info.cy), head_(head) {
   const Eigen::Matrix3d R_WH = rotation_from(orientation);
   const double yaw = std::atan2(R_WH(1, 0), R_WH(0, 0));
   Eigen::Matrix3d R_GW;
   R_GW << std::cos(yaw), std::sin(yaw), 0, -std::sin(yaw), std::cos(yaw), 0, 0, 0, 1;
   const Eigen::Matrix3d R_GH = R_GW * R_WH;
   const auto& p = info.X_HC.position_m;
-  R_GC_ = R_GH * rotation_from(info.X_HC.orientation);
-  p_GC_ = R_GH * Eigen::Vector3d(p.x, p.y, p.z) + Eigen::Vector3d(0, 0, head_height_m);
+  R_HC_ = rotation_from(info.X_HC.orientation);
+  p_HC_ = Eigen::Vector3d(p.x, p.y, p.z);
+  R_GC_ = R_GH * R_HC_;
+  p_GC_ = R_GH * p_HC_ + Eigen::Vector3d(0, 0, head_height_m);
   p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // a head that lies on its side still sees something
+}
+
+bool GroundCamera::own_head(double u, double v) const {
+  if (head_.radius_m <= 0.0) return false;
+  const Eigen::Vector3d d = (R_HC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0)).normalized();
+  // least distance between the ray and the capsule's axis; the margin is two pixels at a tenth of a metre
+  const double margin_m = 0.2 / fx_;
+  double s = std::clamp(p_HC_.x(), -head_.half_length_m, head_.half_length_m), t = 0.0;
+  for (int i = 0; i < 4; ++i) {  // alternating projection onto segment and ray
+    t = std::max(0.0, (Eigen::Vector3d(s, 0.0, 0.0) - p_HC_).dot(d));
+    s = std::clamp(p_HC_.x() + t * d.x(), -head_.half_length_m, head_.half_length_m);
+  }
+  return (p_HC_ + t * d - Eigen::Vector3d(s, 0.0, 0.0)).norm() < head_.radius_m + margin_m;
 }
 
 std::optional<Eigen::Vector2d> GroundCamera::ground(double u, double v, double max_range_m) const {

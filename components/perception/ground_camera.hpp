@@ -11,18 +11,28 @@ namespace constrictor::perception {
 /// Rotation matrix of a unit quaternion (normalised here; identity if it is zero or not finite).
 Eigen::Matrix3d rotation_from(const msg::Quaternion& orientation);
 
+/// The head module as a capsule along its x axis, for what of it the camera sees. Zero radius: nothing.
+struct HeadShape {
+  double half_length_m = 0.0;  ///< of the capsule's straight part
+  double radius_m = 0.0;
+};
+
 /// A pin-hole camera at a known height and attitude above flat ground. Frame G: origin on the ground below the head's
 /// centre, x forward along the head's yaw, y left, z up. Pixel coordinates (u, v) are continuous: the centre of the first
 /// pixel is (0.5, 0.5).
 class GroundCamera {
  public:
   /// `orientation` is the head's (ImuState); its yaw is taken out. `head_height_m` is that of the head's centre.
-  GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m);
+  GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
+               const HeadShape& head = {});
 
   /// Direction in G (not normalised) in which a pixel looks.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const {
     return R_GC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
   }
+
+  /// Whether the robot's own head is in the way at a pixel, or within about two pixels of it.
+  [[nodiscard]] bool own_head(double u, double v) const;
 
   /// Ground point seen at a pixel; none at or above the horizon, or beyond `max_range_m` from the camera.
   [[nodiscard]] std::optional<Eigen::Vector2d> ground(double u, double v, double max_range_m = 20.0) const;
@@ -60,6 +70,9 @@ class GroundCamera {
   double cy_;
   Eigen::Matrix3d R_GC_;
   Eigen::Vector3d p_GC_;
+  Eigen::Matrix3d R_HC_;
+  Eigen::Vector3d p_HC_;
+  HeadShape head_;
 };
 
 }  // namespace constrictor::perception

@@ -65,7 +65,7 @@ class Tracer {
     const auto pixel = camera_.pixel(p);
     if (!pixel || !camera_.inside(*pixel)) return Seen::kOutside;
     const int u = static_cast<int>(pixel->x()), v = static_cast<int>(pixel->y());
-    if (is_standing(u, v)) return Seen::kStanding;
+    if (is_standing(u, v) || camera_.own_head(pixel->x(), pixel->y())) return Seen::kStanding;
     return labels_.at<std::uint8_t>(v, u) == colour_ ? Seen::kLine : Seen::kGround;
   }
 

@@ -20,15 +20,18 @@ perception::PerceptionConfig configuration_of(const Setup& setup) {
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
     : detector_(configuration_of(setup)),
-      // the robot lies on its modules: the head's centre is one radius above the ground
-      head_height_m_(load_robot(setup.robot_file).module_radius_m),
       image_(wiring.latest(topics::kCameraImage)),
       info_(wiring.latest(topics::kCameraInfo)),
       imu_(wiring.latest(topics::kImuState)),
       task_(wiring.latest(topics::kTaskStatus)),
       line_(wiring.output(topics::kLinePercept)),
       objects_(wiring.output(topics::kObjectPercepts)),
-      processed_(wiring.output(topics::kProcessedImage)) {}
+      processed_(wiring.output(topics::kProcessedImage)) {
+  const RobotModel robot = load_robot(setup.robot_file);
+  // the robot lies on its modules: the head's centre is one radius above the ground
+  head_height_m_ = robot.module_radius_m;
+  head_ = {0.5 * robot.module_length_m, robot.module_radius_m};
+}
 
 msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
   const Attitude* nearest = nullptr;
@@ -54,7 +57,7 @@ void Perception::step(const Tick&) {
 
   // the matrix only views the message's pixels; the detector does not write to them
   const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
-  const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_);
+  const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_, head_);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
   perception::Percepts percepts = detector_.detect(rgb, camera, colour);
 

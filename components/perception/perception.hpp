@@ -44,7 +44,8 @@ class Perception : public StatefulComponent<PerceptionState> {
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
   perception::LineAndBlobDetector detector_;
-  double head_height_m_;
+  double head_height_m_ = 0.0;
+  perception::HeadShape head_;
   Latest<msg::CameraImage> image_;
   Latest<msg::CameraInfo> info_;
   Latest<msg::ImuState> imu_;

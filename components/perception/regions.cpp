@@ -173,6 +173,10 @@ bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camer
     });
   };
   const Eigen::Vector2d end = farthest_from(points.front());
+  // one or two rows of far away ground have no shape
+  if (region.area <= 3 * std::max(region.u_max - region.u_min + 1, region.v_max - region.v_min + 1) && nearest_m > 0.7) {
+    return true;
+  }
   const double length_m = std::max((farthest_from(end) - end).norm(), 1e-3);
   const double thickness_m = area_m2 / length_m;
   const double aspect = 0.785 * length_m * length_m / std::max(area_m2, 1e-6);  // 1: a disc

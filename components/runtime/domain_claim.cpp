@@ -1,7 +1,10 @@
 #include "runtime/domain_claim.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/file.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -9,6 +12,34 @@
 #include <string>
 
 namespace constrictor {
+
+namespace {
+
+/// The domain's lock, held; negative if somebody else holds it. Not inherited: a child must not keep the claim of a launcher
+/// that died. The file stays for ever: removing it would let two claimants lock two files of one name.
+int try_lock(std::uint32_t domain) {
+  const auto file = run_directory() / ("domain-" + std::to_string(domain) + ".lock");
+  const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+  if (lock < 0 || ::flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
+  ::close(lock);
+  return -1;
+}
+
+/// True if the first participant's discovery port of a domain is taken: another user's run, or a program that claims nothing.
+/// Source: RTPS 2.3, 9.6.1.1: port 7400 + 250 domain + 10 + 2 participant.
+bool somebody_talks_in(std::uint32_t domain) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_ANY);
+  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
+  const bool taken = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  ::close(socket);
+  return taken;
+}
+
+}  // namespace
 
 std::filesystem::path run_directory() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
@@ -18,21 +49,21 @@ std::filesystem::path run_directory() {
   return directory;
 }
 
-DomainClaim::DomainClaim() {
-  const auto directory = run_directory();
-  for (std::uint32_t domain = 1; domain <= 100; ++domain) {
-    const auto file = directory / ("domain-" + std::to_string(domain) + ".lock");
-    // Not inherited: a child must not keep the claim of a launcher that died.
-    const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
-    if (lock < 0) continue;
-    if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
-      domain_ = domain;
-      lock_ = lock;
-      return;
-    }
-    ::close(lock);
+bool domain_claimed(std::uint32_t domain) {
+  const int lock = try_lock(domain);
+  if (lock >= 0) ::close(lock);
+  return lock < 0;
+}
+
+DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
+  for (std::uint32_t domain = wanted.value_or(1); domain <= wanted.value_or(100) && lock_ < 0; ++domain) {
+    if (!wanted && somebody_talks_in(domain)) continue;
+    lock_ = try_lock(domain);
+    domain_ = domain;
   }
-  throw std::runtime_error("no free DDS domain: 1 to 100 are claimed by locks in " + directory.string());
+  if (lock_ >= 0) return;
+  throw std::runtime_error((wanted ? "DDS domain " + std::to_string(*wanted) + " is" : "no free DDS domain: 1 to 100 are") +
+                           " claimed by locks in " + run_directory().string());
 }
 
 DomainClaim::~DomainClaim() {

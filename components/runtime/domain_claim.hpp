@@ -3,17 +3,21 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace constrictor {
 
 /// $XDG_RUNTIME_DIR/constrictor, or /tmp/constrictor-UID: locks and notes of the runs on this host. Created if missing.
 std::filesystem::path run_directory();
 
-/// Claims the first free domain of 1 to 100 by a file lock, which the kernel gives back however the process ends.
-/// Throws std::runtime_error if all are taken.
+/// True while some process holds a claim on the domain.
+bool domain_claimed(std::uint32_t domain);
+
+/// Claims the first free domain of 1 to 100, or `wanted` and no other, by a file lock, which the kernel gives back however
+/// the process ends. A domain that somebody talks in without a claim is passed over. Throws std::runtime_error if there is none.
 class DomainClaim {
  public:
-  DomainClaim();
+  explicit DomainClaim(std::optional<std::uint32_t> wanted = std::nullopt);
   ~DomainClaim();
   DomainClaim(const DomainClaim&) = delete;
   DomainClaim& operator=(const DomainClaim&) = delete;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <random>
@@ -120,7 +121,7 @@ class Host::Impl : private MemberSink, private ConductorSink {
 };
 
 Host::Impl::Impl(HostOptions options, std::vector<ComponentFactory> factories)
-    : options_(std::move(options)), domain_(options_.domain), pacer_(options_.pace) {
+    : options_(std::move(options)), domain_(options_.domain), pacer_(options_.realtime ? 1.0 : options_.pace) {
   std::vector<std::string> names;
   for (const auto& factory : factories) names.push_back(factory.name);
   identity_ = join(names);
@@ -222,8 +223,10 @@ void Host::Impl::make_endpoints() {
   attach(done_reader_.get(), [this] {
     done_reader_.take([this](const msg::TickDone& message) {
       const StepDone step = dds::from_wire(message);
-      conductor_->on_done(step);
+      if (!conductor_->on_done(step)) return;
       last_progress_ = SteadyClock::now();
+      if (!hash_log_) return;
+      for (const auto& written : step.written) hash_log_->add(written.topic, written.bytes);
     });
   });
   attach(ready_reader_.get(), [this] {
@@ -253,7 +256,11 @@ void Host::Impl::make_conductor() {
   conductor.config_hash = config_hash_;
   conductor.numeric_profile = numeric_profile();
   conductor.seed = options_.setup.seed;
+  conductor.realtime = options_.realtime;
   conductor.period_ns = static_cast<Plant&>(plant_->component()).period_ns();
+  if (options_.max_sim_time_s > 0) {
+    conductor.last_index = std::llround(options_.max_sim_time_s * 1e9 / static_cast<double>(conductor.period_ns));
+  }
   if (options_.hash_log && !options_.setup.output_dir.empty()) {
     hash_log_ = std::make_unique<HashLog>(options_.setup.output_dir, options_.record);
   }
@@ -324,7 +331,10 @@ void Host::Impl::publish(const TopicInfo& topic, const Sample& sample) {
 }
 
 void Host::Impl::done(const StepDone& step) {
-  if (conductor_) return conductor_->on_done(step);
+  if (conductor_) {
+    conductor_->on_done(step);
+    return;
+  }
   std::string block;
   done_writer_.write(dds::to_wire(step, block));
 }
@@ -433,6 +443,7 @@ void Host::Impl::publish_status(LocalMember& local, std::uint8_t state) {
   status.state = state;
   status.tick = member.last_done();
   local.meter.fill(status);
+  status.overruns = member.counters().skipped;
   status.refused = member.counters().refused;
   dds::set_text(status.last_refusal, member.counters().last_refusal);
   dds::set_text(status.version, kVersion);

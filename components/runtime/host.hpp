@@ -29,6 +29,8 @@ struct HostOptions {
   std::string plant = "physics";         ///< who among them is the time master
   std::uint32_t incarnation = 1;         ///< of this process
   double pace = 0.0;                     ///< plant's host: at most so many times real time; 0: lock-step, uncapped
+  bool realtime = false;                 ///< plant's host: ticks on the wall clock, nobody is waited for
+  double max_sim_time_s = 0.0;           ///< plant's host: ends the run at this simulated time; 0: never
   double patience_s = 60.0;              ///< wait so long for a peer before giving up; 0: for ever
   bool hash_log = true;                  ///< plant's host: write output_dir/hashes.bin, what `constrictor diff` compares
   bool record = false;                   ///< plant's host: also the messages themselves, images aside

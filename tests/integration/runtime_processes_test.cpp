@@ -110,6 +110,20 @@ TEST(RuntimeProcesses, CappedPaceGivesTheSameResult) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, 480ms);  // 100 ticks of 20 ms at four times real time
 }
 
+TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
+  ToyRun run(150, {"--realtime"});
+  const auto start = std::chrono::steady_clock::now();
+  run.start_all(kEach);
+  std::this_thread::sleep_for(1s);
+  run.processes.at("planner").signal(SIGSTOP);  // lock-step would stand still for as long
+  run.processes.at("report").wait(20s);
+  const auto elapsed = std::chrono::steady_clock::now() - start;
+  run.processes.at("planner").signal(SIGCONT);
+  EXPECT_NE(run.result().find("result"), std::string::npos);
+  EXPECT_GE(elapsed, 2900ms);  // 150 ticks of 20 ms on the wall clock
+  EXPECT_LE(elapsed, 8s);
+}
+
 TEST(RuntimeProcesses, ASecondMemberOfOneNameIsRefusedAndTheRunGoesOn) {
   const std::string expected = reference(2000);
   ToyRun run(2000, {"--pace", "20"});

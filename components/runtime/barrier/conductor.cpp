@@ -71,12 +71,12 @@ std::int64_t Conductor::newest_due(const MemberState& member, std::int64_t tick)
   return latest_start - latest_start % member.greeting.timing.period;
 }
 
-void Conductor::on_done(const StepDone& done) {
+bool Conductor::on_done(const StepDone& done) {
   const auto found = members_.find(done.component);
-  if (found == members_.end() || epoch_ != done.epoch) return;
+  if (found == members_.end() || epoch_ != done.epoch) return false;
   MemberState& member = found->second;
   // An older incarnation is fenced off; a step already known was done again after a restart that lost nothing.
-  if (done.incarnation != member.greeting.incarnation || done.index <= member.last_done || done.index >= next_index_) return;
+  if (done.incarnation != member.greeting.incarnation || done.index <= member.last_done || done.index >= next_index_) return false;
   member.last_done = done.index;
   member.state = done.state;
   member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
@@ -89,11 +89,13 @@ void Conductor::on_done(const StepDone& done) {
     const std::int64_t at = done.index + member.greeting.timing.latency;
     end_requested_at_ = std::min(end_requested_at_.value_or(at), at);
   }
+  return true;
 }
 
 bool Conductor::may_tick() const {
   if (!epoch_ || ended_) return false;
   return std::all_of(members_.begin(), members_.end(), [this](const auto& entry) {
+    if (options_.realtime && entry.first != options_.plant) return entry.second.ready || next_index_ > 0;
     return entry.second.ready && entry.second.last_done >= newest_due(entry.second, next_index_);
   });
 }
@@ -105,7 +107,7 @@ std::vector<Conductor::Owed> Conductor::owed() const {
       owed.push_back({name, "Hello", 0, 1});
     } else if (epoch_ && !member.ready) {
       owed.push_back({name, "Ready", 0, 1});
-    } else if (epoch_ && member.last_done < newest_due(member, next_index_)) {
+    } else if (epoch_ && !options_.realtime && member.last_done < newest_due(member, next_index_)) {
       owed.push_back({name, "TickDone", member.last_done, newest_due(member, next_index_)});
     }
   }
@@ -136,6 +138,7 @@ void Conductor::tick(const std::vector<StepDone::Count>& plant) {
   tick.time_ns = next_time_ns();
   tick.period_ns = options_.period_ns;
   tick.final_tick = next_is_final();
+  tick.realtime = options_.realtime;
   std::copy(visible_.begin(), visible_.end(), tick.visible);
   std::copy(incarnations_.begin(), incarnations_.end(), tick.incarnations);
   ended_ = tick.final_tick;

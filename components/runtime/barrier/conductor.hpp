@@ -31,6 +31,8 @@ struct ConductorOptions {
   std::string numeric_profile;
   std::uint64_t seed = 1;
   std::int64_t period_ns = 20'000'000;
+  bool realtime = false;            ///< nobody is waited for once all are ready
+  std::int64_t last_index = -1;     ///< the run ends with this tick at the latest; negative: it has no such end
 };
 
 class Conductor {
@@ -40,7 +42,8 @@ class Conductor {
   /// A member introduces itself: joins, rejoins with a newer incarnation, or is refused with the reason.
   void on_greeting(const Greeting& greeting);
   void on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation);
-  void on_done(const StepDone& done);
+  /// Returns whether it counts: false for an older incarnation, another epoch, or a step done before.
+  bool on_done(const StepDone& done);
   /// Ends this epoch and begins the next; every member builds its component anew and says ready again.
   void reset(std::uint64_t seed);
   /// Lets the run end: the next tick is the final one.
@@ -53,7 +56,9 @@ class Conductor {
   [[nodiscard]] std::int64_t next_time_ns() const { return next_index_ * options_.period_ns; }
   /// Sends the next tick. `plant` are the counts after the plant sampled for it.
   void tick(const std::vector<StepDone::Count>& plant);
-  [[nodiscard]] bool next_is_final() const { return end_requested_at_ && *end_requested_at_ <= next_index_; }
+  [[nodiscard]] bool next_is_final() const {
+    return (end_requested_at_ && *end_requested_at_ <= next_index_) || (options_.last_index >= 0 && options_.last_index <= next_index_);
+  }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::optional<EpochId> epoch() const { return epoch_; }
 

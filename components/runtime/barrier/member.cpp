@@ -189,7 +189,7 @@ const msg::Tick* Member::due() const {
 bool Member::complete(const Input& input, const msg::Tick& tick) const {
   const std::size_t topic = input.slot.topic->id;
   const std::uint64_t target = tick.visible[topic];
-  if (target == 0) return true;
+  if (target == 0 || tick.realtime) return true;
   const auto newest = input.buffer.find(target);
   if (newest == input.buffer.end() || newest->second.sample.header->incarnation != tick.incarnations[topic]) return false;
   if (!newest->second.valid && input.last_valid > 0 && input.newest_valid(target) == 0) return false;
@@ -201,7 +201,8 @@ bool Member::complete(const Input& input, const msg::Tick& tick) const {
 }
 
 void Member::present(Input& input, const msg::Tick& tick) {
-  const std::uint64_t target = tick.visible[input.slot.topic->id];
+  const std::uint64_t arrived = input.buffer.empty() ? input.consumed : input.buffer.rbegin()->first;
+  const std::uint64_t target = tick.realtime ? arrived : tick.visible[input.slot.topic->id];
   input.slot.now_tick = tick.index;
   input.slot.fresh.clear();
   const std::uint64_t newest = input.newest_valid(target);
@@ -218,7 +219,15 @@ void Member::present(Input& input, const msg::Tick& tick) {
   input.buffer.erase(input.buffer.begin(), input.buffer.lower_bound(input.last_valid));
 }
 
+void Member::skip_to_newest() {
+  while (ticks_.size() > 1 && std::next(ticks_.begin())->second.realtime) {
+    ticks_.erase(ticks_.begin());
+    ++counters_.skipped;
+  }
+}
+
 bool Member::try_step() {
+  skip_to_newest();
   const msg::Tick* tick = due();
   if (!tick) return false;
   for (const auto& input : inputs_) {
@@ -285,6 +294,7 @@ void Member::finish_step(const msg::Tick& tick) {
   done.incarnation = incarnation_;
   done.index = tick.index;
   done.published = published();
+  for (const auto& input : inputs_) done.consumed.push_back({input->slot.topic->id, input->consumed});
   done.output_hash = output_hash_;
   done.end_of_run = end_requested_;
   if (checkpoints_) done.state = state_bytes();

@@ -76,6 +76,7 @@ class Member {
     std::uint64_t refused = 0;       ///< messages refused: invalid, of another epoch, too many
     std::string last_refusal;
     std::uint64_t duplicates = 0;    ///< dropped without a word: expected after a rejoin
+    std::uint64_t skipped = 0;       ///< due ticks passed over because the step was late (real-time pace only)
   };
   [[nodiscard]] const Counters& counters() const { return counters_; }
   void refuse(const std::string& reason);
@@ -89,6 +90,7 @@ class Member {
   [[nodiscard]] const msg::Tick* due() const;
   [[nodiscard]] bool complete(const Input& input, const msg::Tick& tick) const;
   void present(Input& input, const msg::Tick& tick);
+  void skip_to_newest();
   void write(OutputPort& port, const void* message);
   void finish_step(const msg::Tick& tick);
   [[nodiscard]] std::string state_bytes() const;

@@ -47,6 +47,7 @@ struct StepDone {
   std::uint32_t incarnation = 1;
   std::int64_t index = 0;
   std::vector<Count> published;  ///< cumulative, every topic it writes
+  std::vector<Count> consumed;   ///< newest sequence number of each input that the step saw
   std::array<std::uint8_t, 32> output_hash{};
   bool end_of_run = false;
   std::string state;             ///< runtime's and component's, opaque; empty where no checkpoint is kept

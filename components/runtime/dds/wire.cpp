@@ -32,6 +32,9 @@ msg::TickDone to_wire(const StepDone& done, std::string& block) {
   for (std::size_t i = 0; i < done.published.size(); ++i) {
     message.published[i] = {done.published[i].topic, done.published[i].count};
   }
+  if (done.consumed.size() > std::size(message.consumed)) throw std::logic_error(done.component + " reads too many topics");
+  message.consumed_count = static_cast<std::uint8_t>(done.consumed.size());
+  for (std::size_t i = 0; i < done.consumed.size(); ++i) message.consumed[i] = {done.consumed[i].topic, done.consumed[i].count};
   std::copy(done.output_hash.begin(), done.output_hash.end(), message.output_hash);
   message.end_of_run = done.end_of_run;
   block = pack_outputs(done.state, done.written);
@@ -48,6 +51,9 @@ StepDone from_wire(const msg::TickDone& message) {
   for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
     if (message.published[i].topic >= topics::kCount) throw std::runtime_error("TickDone.published: unknown topic");
     done.published.push_back({message.published[i].topic, message.published[i].count});
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(message.consumed_count, std::size(message.consumed)); ++i) {
+    done.consumed.push_back({message.consumed[i].topic, message.consumed[i].count});
   }
   std::copy(std::begin(message.output_hash), std::end(message.output_hash), done.output_hash.begin());
   done.end_of_run = message.end_of_run;

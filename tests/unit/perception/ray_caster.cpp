@@ -151,7 +151,7 @@ cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, 
   std::mt19937_64 random(scene.seed);
   std::normal_distribution<double> noise(0.0, scene.noise_sd > 0.0 ? scene.noise_sd : 1.0);
   cv::Mat image(info.height, info.width, CV_8UC3);
-  constexpr int kSub = 3;
+  constexpr int kSub = 2;
   for (int v = 0; v < image.rows; ++v) {
     for (int u = 0; u < image.cols; ++u) {
       Vector3d sum = Vector3d::Zero();
