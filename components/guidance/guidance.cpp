@@ -58,7 +58,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
 
   if (state_.started) {
     // mean velocity of the step; the turn is the IMU's own, which integrates faster than we sample
-    const double dt_s = tick.dt_s();
+    const double dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
     const Eigen::Vector2d mean = 0.5 * (Eigen::Vector2d(state_.vx_m_s, state_.vy_m_s) + now.v_m_s);
     const double turn_rad = guidance::wrapped(yaw_rad - state_.imu_yaw_rad);
     const double speed_sd = config_.speed_sd * mean.norm() + config_.speed_sd_m_s * (mean.norm() > 0.005 ? 1.0 : 0.1);
@@ -70,6 +70,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
     remember(tick.index, Eigen::Vector2d::Zero(), 0.0);
   }
   state_.started = true;
+  state_.last_tick = tick.index;
   state_.imu_yaw_rad = yaw_rad;
   state_.vx_m_s = now.v_m_s.x();
   state_.vy_m_s = now.v_m_s.y();
@@ -121,7 +122,7 @@ double Guidance::speed_m_s(double period_s) const {
 void Guidance::step(const Tick& tick) {
   guidance::PoseFilter filter(state_.filter);
   const std::size_t joint_count = model_.joints.size();
-  const bool body = joints_ && imu_ && joints_->joint_count == joint_count &&
+  const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && joints_->joint_count == joint_count &&
                     all_finite(joints_->position_rad, joint_count) && all_finite(joints_->velocity_rad_s, joint_count);
   if (body) {
     const guidance::BodyChain chain = guidance::body_chain(model_, joints_->position_rad, joints_->velocity_rad_s);

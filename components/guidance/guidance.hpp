@@ -12,6 +12,7 @@ namespace constrictor {
 
 struct GuidanceState {
   bool started = false;
+  std::int64_t last_tick = 0;                ///< of the samples last used
   double imu_yaw_rad = 0.0;                  ///< at the previous step
   double vx_m_s = 0.0, vy_m_s = 0.0, rate_rad_s = 0.0;  ///< of the head, in its frame, at the previous step
   guidance::PoseFilterState filter;
@@ -21,13 +22,14 @@ struct GuidanceState {
   guidance::FieldState field;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(started, imu_yaw_rad, vx_m_s, vy_m_s, rate_rad_s, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
+    archive(started, last_tick, imu_yaw_rad, vx_m_s, vy_m_s, rate_rad_s, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
   }
 };
 
 /// Estimates the head's pose in M from the body's motion (odometry on a skin that does not slip sideways), the IMU's
 /// yaw and recognised landmarks; keeps the map. Writes the pose every tick, from the first: before joints and IMU were
-/// seen it is the start, with zero covariance. Joint or IMU samples that are not finite leave the pose where it was.
+/// seen it is the start, with zero covariance. While no new finite joint or IMU sample comes the pose stays; the next one is
+/// taken over the whole time since.
 class Guidance : public StatefulComponent<GuidanceState> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);

@@ -1,0 +1,137 @@
+// The component in a run: its outputs' rhythm, bad samples, restarts.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "guidance/guidance.hpp"
+#include "robot/kinematics.hpp"
+#include "runtime/local_run.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+/// Joints that undulate; not finite between ticks 40 and 45.
+class Snake : public Plant {
+ public:
+  Snake(Wiring& wiring, const Setup&)
+      : joints_(wiring.output(topics::kJointState)), imu_(wiring.output(topics::kImuState)) {}
+  void sample(const Tick& tick) override {
+    msg::JointState joints{};
+    joints.joint_count = 23;
+    const double phase = 2.0 * 3.14159265 * 0.7 * tick.time_s();
+    for (int i = 0; i < 23; i += 2) {
+      joints.position_rad[i] = 0.5 * std::sin(phase - 0.5 * i);
+      joints.velocity_rad_s[i] = 0.5 * 2.0 * 3.14159265 * 0.7 * std::cos(phase - 0.5 * i);
+    }
+    if (tick.index >= 40 && tick.index < 45) joints.position_rad[3] = std::numeric_limits<double>::quiet_NaN();
+    joints_.write(joints);
+    msg::ImuState imu{};
+    const double yaw = 0.05 * std::sin(phase);
+    imu.orientation = {std::cos(0.5 * yaw), 0.0, 0.0, std::sin(0.5 * yaw)};
+    imu.angular_velocity_rad_s.z = 0.05 * 2.0 * 3.14159265 * 0.7 * std::cos(phase);
+    imu_.write(imu);
+  }
+  void step(const Tick&) override {}
+  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+
+ private:
+  Output<msg::JointState> joints_;
+  Output<msg::ImuState> imu_;
+};
+
+/// A red object, for the first moment, and a line straight ahead, every 5 ticks.
+class Eye : public StatefulComponent<std::int64_t> {
+ public:
+  Eye(Wiring& wiring, const Setup&)
+      : line_(wiring.output(topics::kLinePercept)), objects_(wiring.output(topics::kObjectPercepts)) {}
+  [[nodiscard]] Timing timing() const override { return {5, 1}; }
+  void step(const Tick& tick) override {
+    msg::ObjectPercepts objects{};
+    objects.exposure_tick = tick.index - 2;
+    objects.blob_count = tick.index < 15 ? 1 : 0;
+    objects.blobs[0].colour = msg::kColourRed;
+    objects.blobs[0].range_m = 0.9;
+    objects.blobs[0].width_m = 0.16;
+    objects_.write(objects);
+    msg::LinePercept line{};
+    line.exposure_tick = objects.exposure_tick;
+    line.visible = true;
+    line.colour = msg::kColourBlue;
+    line.point_count = 32;
+    for (int i = 0; i < 32; ++i) line.x_m[i] = 0.1 + 0.02 * i;
+    line_.write(line);
+  }
+
+ private:
+  Output<msg::LinePercept> line_;
+  Output<msg::ObjectPercepts> objects_;
+};
+
+template <class T>
+ComponentFactory factory(const char* name) {
+  return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<T>(w, s); }};
+}
+
+std::unique_ptr<LocalRun> make_run() {
+  Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  return std::make_unique<LocalRun>(
+      std::vector<ComponentFactory>{factory<Snake>("physics"), factory<Eye>("perception"), make_guidance_factory()}, setup);
+}
+
+TEST(GuidanceComponent, WritesThePoseEveryTickAndTheMapEveryFifth) {
+  auto run = make_run();
+  int poses = 0, maps = 0;
+  run->subscribe<msg::RobotPose>(topics::kRobotPose, [&](const msg::RobotPose& pose) {
+    ++poses;
+    EXPECT_TRUE(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.yaw_rad) &&
+                std::isfinite(pose.speed_m_s) && std::isfinite(pose.covariance[0]));
+    EXPECT_GE(pose.covariance[0], 0.0);
+  });
+  run->subscribe<msg::FieldMap>(topics::kFieldMap, [&](const msg::FieldMap&) { ++maps; });
+  run->advance(100);
+  EXPECT_EQ(poses, 100);
+  EXPECT_EQ(maps, 20);
+  ASSERT_EQ(run->latest(topics::kFieldMap)->object_count, 1);
+  EXPECT_EQ(run->latest(topics::kFieldMap)->objects[0].handle, 1);
+  EXPECT_GT(run->latest(topics::kFieldMap)->line_point_count, 5);
+}
+
+TEST(GuidanceComponent, JointsThatAreNotFiniteLeaveThePoseWhereItWas) {
+  auto run = make_run();
+  run->advance(40);
+  const double x = run->latest(topics::kRobotPose)->x_m;
+  run->advance(5);
+  EXPECT_EQ(run->latest(topics::kRobotPose)->x_m, x);
+  run->advance(10);
+  EXPECT_NE(run->latest(topics::kRobotPose)->x_m, x);
+}
+
+TEST(GuidanceComponent, ARestartChangesNothing) {
+  auto whole = make_run(), broken = make_run();
+  whole->advance(200);
+  for (int i = 0; i < 200; ++i) {
+    broken->advance(1);
+    if (i % 37 == 11) broken->restart("guidance");
+  }
+  EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
+}
+
+TEST(GuidanceComponent, ItsBodyIsThatOfTheRobotLibrary) {
+  const RobotModel model = load_robot(share_path("components/robot/mamba.yaml"));
+  std::vector<double> q(model.joints.size()), rate(q.size(), 0.0);
+  for (std::size_t i = 0; i < q.size(); i += 2) q[i] = 0.4 * std::sin(static_cast<double>(i));
+  const guidance::BodyChain chain = guidance::body_chain(model, q.data(), rate.data());
+  const auto poses = planar_module_poses(model, q);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_NEAR(chain.links[i].p_m.x(), poses[i].x_m, 1e-12);
+    EXPECT_NEAR(chain.links[i].p_m.y(), poses[i].y_m, 1e-12);
+    EXPECT_NEAR(chain.links[i].heading_rad, poses[i].yaw_rad, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace constrictor

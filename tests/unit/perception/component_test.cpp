@@ -1,0 +1,158 @@
+// The component in a run: attitudes of the exposure, colours of the task, refused images, restarts.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "perception/perception.hpp"
+#include "ray_caster.hpp"
+#include "runtime/local_run.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+using test::Arc;
+using test::Head;
+
+/// The head nods quickly: an image is only understood with the attitude of its own tick.
+Head head_at(std::int64_t tick) {
+  Head head;
+  head.pitch_rad = 0.05 * std::sin(1.3 * static_cast<double>(tick));
+  head.yaw_rad = 0.01 * static_cast<double>(tick);
+  return head;
+}
+
+class Imu : public Plant {
+ public:
+  Imu(Wiring& wiring, const Setup&) : imu_(wiring.output(topics::kImuState)) {}
+  void sample(const Tick& tick) override {
+    msg::ImuState state{};
+    state.orientation = test::orientation(head_at(tick.index));
+    imu_.write(state);
+  }
+  void step(const Tick&) override {}
+  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+
+ private:
+  Output<msg::ImuState> imu_;
+};
+
+/// Images of a blue and a yellow line; a broken one at tick 15.
+class Eye : public StatefulComponent<std::int64_t> {
+ public:
+  Eye(Wiring& wiring, const Setup&)
+      : info_(wiring.output(topics::kCameraInfo)), image_(wiring.output(topics::kCameraImage)) {}
+  [[nodiscard]] Timing timing() const override { return {5, 2}; }
+  void step(const Tick& tick) override {
+    const msg::CameraInfo info = test::camera_info(160, 120);
+    if (tick.index == 0) info_.write(info);
+    test::Scene scene;
+    scene.line = Arc{{-0.2, 0.08}, 0.0, 0.0};
+    scene.rounds = {{msg::kColourYellow, {0.8, -0.3}, 0.08, 0.15}};
+    cv::Mat picture = test::draw(scene, info, head_at(tick.index));
+    msg::CameraImage image{};
+    image.width = info.width;
+    image.height = info.height;
+    image.exposure_tick = tick.index;
+    image.data._buffer = picture.data;
+    image.data._length = image.data._maximum = tick.index == 15 ? 100 : 160 * 120 * 3;
+    image_.write(image);
+  }
+
+ private:
+  Output<msg::CameraInfo> info_;
+  Output<msg::CameraImage> image_;
+};
+
+/// Names the yellow line from tick 30 on.
+class Tasks : public StatefulComponent<std::int64_t> {
+ public:
+  Tasks(Wiring& wiring, const Setup&) : status_(wiring.output(topics::kTaskStatus)) {}
+  void step(const Tick& tick) override {
+    msg::TaskStatus status{};
+    if (tick.index == 30) status.parameters.line_colour = msg::kColourYellow;
+    status_.write(status);
+  }
+
+ private:
+  Output<msg::TaskStatus> status_;
+};
+
+template <class T>
+ComponentFactory factory(const char* name) {
+  return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<T>(w, s); }};
+}
+
+std::unique_ptr<LocalRun> make_run() {
+  Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  return std::make_unique<LocalRun>(
+      std::vector<ComponentFactory>{factory<Imu>("physics"), factory<Eye>("camera"), factory<Tasks>("navigation"),
+                                    make_perception_factory()},
+      setup);
+}
+
+TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {
+  auto run = make_run();
+  int percepts = 0;
+  run->subscribe<msg::LinePercept>(topics::kLinePercept, [&](const msg::LinePercept& line) {
+    if (line.colour != msg::kColourBlue) return;
+    ++percepts;
+    EXPECT_EQ(line.exposure_tick % 5, 0);
+    EXPECT_EQ(line.header.tick, line.exposure_tick + 2);  // when the image became visible
+    ASSERT_TRUE(line.visible);
+    EXPECT_NEAR(line.offset_m, 0.08, 0.015);
+    EXPECT_NEAR(line.heading_rad, 0.0, 0.06);
+  });
+  run->advance(30);
+  EXPECT_EQ(percepts, 5);  // exposures 0, 5, 10, 20, 25: 15 was broken
+  const auto& component = dynamic_cast<const Perception&>(run->component("perception"));
+  EXPECT_EQ(component.state().refused_images, 1u);
+  ASSERT_NE(run->latest(topics::kProcessedImage), nullptr);
+  EXPECT_EQ(run->latest(topics::kProcessedImage)->data._length, 160u * 120u * 3u);
+}
+
+TEST(PerceptionComponent, LooksForTheColourThatATaskNamedLast) {
+  auto run = make_run();
+  run->advance(28);
+  EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourBlue);
+  run->advance(20);
+  EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourYellow);
+  EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // the yellow thing stands
+}
+
+TEST(PerceptionComponent, ARestartChangesNothing) {
+  auto whole = make_run(), broken = make_run();
+  whole->advance(50);
+  for (int i = 0; i < 50; ++i) {
+    broken->advance(1);
+    if (i == 11 || i == 33 || i == 34) broken->restart("perception");
+  }
+  EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
+}
+
+TEST(PerceptionComponent, RefusesImagesThatDoNotFitTheCamera) {
+  const msg::CameraInfo info = test::camera_info();
+  std::vector<std::uint8_t> data(320 * 240 * 3);
+  msg::CameraImage image{};
+  image.width = 320;
+  image.height = 240;
+  image.data._buffer = data.data();
+  image.data._length = static_cast<std::uint32_t>(data.size());
+  EXPECT_EQ(perception::image_error(image, info), "");
+  image.data._length -= 1;
+  EXPECT_NE(perception::image_error(image, info), "");
+  image.data._length += 1;
+  image.width = 240;
+  image.height = 320;
+  EXPECT_NE(perception::image_error(image, info), "");
+  image.width = 320;
+  image.height = 240;
+  msg::CameraInfo blind = info;
+  blind.fx = std::nan("");
+  EXPECT_NE(perception::image_error(image, blind), "");
+}
+
+}  // namespace
+}  // namespace constrictor
