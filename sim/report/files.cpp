@@ -1,0 +1,68 @@
+#include "sim/report/files.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace constrictor::report {
+namespace {
+
+std::runtime_error failure(const std::filesystem::path& path, const std::string& what) {
+  return std::runtime_error(path.string() + ": " + what);
+}
+
+}  // namespace
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Journal::open(std::uint64_t length) {
+  std::filesystem::create_directories(path_.parent_path());
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) throw failure(path_, std::strerror(errno));
+  const off_t size = ::lseek(descriptor_, 0, SEEK_END);
+  if (size < static_cast<off_t>(length)) throw failure(path_, "is shorter than the checkpoint says: was it removed during the run?");
+  if (::ftruncate(descriptor_, static_cast<off_t>(length)) != 0) throw failure(path_, std::strerror(errno));
+}
+
+void Journal::append(std::string_view text, std::uint64_t& length) {
+  if (path_.empty()) return;
+  if (descriptor_ < 0) open(length);
+  while (!text.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, text.data(), text.size(), static_cast<off_t>(length));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw failure(path_, std::strerror(errno));
+    length += static_cast<std::uint64_t>(written);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::string Journal::read(std::uint64_t length) const {
+  if (path_.empty() || length == 0) return {};
+  std::ifstream file(path_, std::ios::binary);
+  std::string bytes(length, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(length));
+  if (!file) throw failure(path_, "is shorter than the checkpoint says: was it removed during the run?");
+  return bytes;
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::create_directories(path.parent_path());
+  std::filesystem::path beside = path;
+  beside += ".part";
+  {
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.flush();
+    if (!file) throw failure(beside, "cannot be written");
+  }
+  std::filesystem::rename(beside, path);
+}
+
+}  // namespace constrictor::report

@@ -1,0 +1,55 @@
+// Streaming statistics against ground truth.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace constrictor::report {
+
+/// Root mean square and maximum of the magnitude of what was added; NaN before the first.
+struct RootMeanSquare {
+  double sum_of_squares = 0.0;
+  double greatest = 0.0;
+  std::uint64_t count = 0;
+
+  void add(double value) {
+    sum_of_squares += value * value;
+    greatest = std::max(greatest, std::abs(value));
+    ++count;
+  }
+  [[nodiscard]] double rms() const {
+    return count > 0 ? std::sqrt(sum_of_squares / static_cast<double>(count)) : std::numeric_limits<double>::quiet_NaN();
+  }
+  [[nodiscard]] double max() const { return count > 0 ? greatest : std::numeric_limits<double>::quiet_NaN(); }
+
+  template <class Archive>
+  void serialize(Archive& archive) { archive(sum_of_squares, greatest, count); }
+};
+
+/// [m] distance of a point from a polyline; nothing where the nearest point is an end of it, beyond which there is no track to
+/// be across of, or where the line has fewer than two points.
+[[nodiscard]] std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& line_m);
+
+/// A pose on the ground plane.
+struct PlanarPose {
+  std::int64_t tick = -1;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+
+  template <class Archive>
+  void serialize(Archive& archive) { archive(tick, x_m, y_m, yaw_rad); }
+};
+
+/// X_AB from X_WA and X_WB; the tick is B's.
+[[nodiscard]] PlanarPose relative_pose(const PlanarPose& X_WA, const PlanarPose& X_WB);
+
+/// [rad] the same angle in (-pi, pi].
+[[nodiscard]] double wrapped(double angle_rad);
+
+}  // namespace constrictor::report

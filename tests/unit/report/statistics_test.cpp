@@ -1,0 +1,69 @@
+// Cross-track distance and planar poses against geometry by hand.
+#include "sim/report/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace constrictor::report {
+namespace {
+
+std::vector<Eigen::Vector2d> arc(double radius_m, int segments) {
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i <= segments; ++i) {
+    const double angle = std::numbers::pi * i / segments;
+    points.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle));
+  }
+  return points;
+}
+
+TEST(CrossTrack, OffsetPathHasItsOffset) {
+  const auto line = arc(1.5, 400);
+  RootMeanSquare statistics;
+  for (int i = 1; i < 100; ++i) {
+    const double angle = std::numbers::pi * i / 100;
+    const auto distance = cross_track_m(1.57 * Eigen::Vector2d(std::cos(angle), std::sin(angle)), line);
+    ASSERT_TRUE(distance);
+    statistics.add(*distance);
+  }
+  // A chord of the polyline lies at most r (1 - cos(pi / 800)) inside its arc.
+  EXPECT_NEAR(statistics.rms(), 0.07, 2e-5);
+  EXPECT_NEAR(statistics.max(), 0.07, 2e-5);
+}
+
+TEST(CrossTrack, SineOffsetHasItsRootMeanSquare) {
+  RootMeanSquare statistics;
+  for (int i = 0; i < 1000; ++i) {
+    statistics.add(*cross_track_m({1.0 + 0.002 * i, 0.1 * std::sin(2 * std::numbers::pi * i / 100)}, {{0, 0}, {10, 0}}));
+  }
+  EXPECT_NEAR(statistics.rms(), 0.1 / std::sqrt(2.0), 1e-12);
+}
+
+TEST(CrossTrack, BeyondTheEndsThereIsNone) {
+  const std::vector<Eigen::Vector2d> line{{0, 0}, {1, 0}, {2, 1}};
+  EXPECT_FALSE(cross_track_m({-0.5, 0.1}, line));
+  EXPECT_FALSE(cross_track_m({2.5, 1.5}, line));
+  EXPECT_DOUBLE_EQ(*cross_track_m({0.5, 0.3}, line), 0.3);
+  EXPECT_NEAR(*cross_track_m({1.1, -0.2}, line), std::hypot(0.1, 0.2), 1e-12);  // outside a corner: to the corner
+  EXPECT_FALSE(cross_track_m({0, 0}, {}));
+}
+
+TEST(PlanarPose, RelativePoseUndoesTheFirst) {
+  const PlanarPose a{0, 1.0, 2.0, 0.5};
+  const PlanarPose b{7, 1.0 + 3.0 * std::cos(0.5), 2.0 + 3.0 * std::sin(0.5), 0.5 + 3.0};
+  const PlanarPose relative = relative_pose(a, b);
+  EXPECT_NEAR(relative.x_m, 3.0, 1e-12);
+  EXPECT_NEAR(relative.y_m, 0.0, 1e-12);
+  EXPECT_NEAR(relative.yaw_rad, 3.0, 1e-12);
+  EXPECT_EQ(relative.tick, 7);
+  EXPECT_NEAR(relative_pose(b, a).yaw_rad, -3.0, 1e-12);
+  EXPECT_NEAR(wrapped(4.0), 4.0 - 2 * std::numbers::pi, 1e-12);
+}
+
+TEST(RootMeanSquare, IsNotANumberBeforeTheFirst) {
+  EXPECT_TRUE(std::isnan(RootMeanSquare{}.rms()));
+  EXPECT_TRUE(std::isnan(RootMeanSquare{}.max()));
+}
+
+}  // namespace
+}  // namespace constrictor::report
