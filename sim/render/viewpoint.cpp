@@ -50,7 +50,7 @@ PinholeCamera fit_view(const std::vector<Vector3d>& points_m, double heading_rad
   return camera;
 }
 
-std::vector<Vector3d> scene_extent(const Scene& scene, double surroundings_m) {
+std::vector<Vector3d> scene_extent(const Scene& scene, const Surroundings& surroundings) {
   std::vector<Vector3d> points;
   const auto add_circle = [&points](const Vector2d& centre, double radius) {
     for (int i = 0; i < 8; ++i) {
@@ -58,11 +58,19 @@ std::vector<Vector3d> scene_extent(const Scene& scene, double surroundings_m) {
       points.emplace_back(centre.x() + radius * std::cos(angle), centre.y() + radius * std::sin(angle), 0.0);
     }
   };
+  const auto add_pair = [&](const Vector2d& end, const Vector2d& outwards, double distance_m) {
+    const Vector2d direction = outwards.norm() > 0.0 ? Vector2d(outwards.normalized()) : Vector2d::UnitX();
+    const Vector2d side(-direction.y(), direction.x());
+    for (const double sign : {1.0, -1.0}) {
+      const Vector2d p = end + distance_m * direction + sign * surroundings.half_width_m * side;
+      points.emplace_back(p.x(), p.y(), 0.0);
+    }
+  };
   for (const Vector2d& p : scene.line_m) points.emplace_back(p.x(), p.y(), 0.0);
   for (const Disc& zone : scene.zones) add_circle(zone.centre_m, zone.radius_m);
-  if (!scene.line_m.empty()) {
-    add_circle(scene.line_m.front(), surroundings_m);
-    add_circle(scene.line_m.back(), surroundings_m);
+  if (const std::size_t n = scene.line_m.size(); n >= 2) {
+    add_pair(scene.line_m[0], scene.line_m[0] - scene.line_m[1], surroundings.behind_m);
+    add_pair(scene.line_m[n - 1], scene.line_m[n - 1] - scene.line_m[n - 2], surroundings.ahead_m);
   }
   if (points.empty()) add_circle(Vector2d::Zero(), 2.0);
   return points;

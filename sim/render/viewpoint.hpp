@@ -13,9 +13,15 @@ namespace constrictor {
 [[nodiscard]] PinholeCamera fit_view(const std::vector<Eigen::Vector3d>& points_m, double heading_rad, double elevation_rad,
                                      double horizontal_fov_rad, int width, int height, double margin);
 
-/// What a picture of the whole scene has to contain: line, zones, and the surroundings of the line's ends, where the objects
-/// stand and the robot starts.
-[[nodiscard]] std::vector<Eigen::Vector3d> scene_extent(const Scene& scene, double surroundings_m);
+/// How far the scene reaches beyond its line, in the direction the line has at its ends.
+struct Surroundings {
+  double behind_m = 1.0;      ///< before its beginning: the robot starts there
+  double ahead_m = 1.9;       ///< after its end: the objects stand there
+  double half_width_m = 0.4;  ///< to both sides, there
+};
+
+/// What a picture of the whole scene has to contain: line, zones, and the surroundings of the line's ends.
+[[nodiscard]] std::vector<Eigen::Vector3d> scene_extent(const Scene& scene, const Surroundings& surroundings);
 
 /// Heading that looks across the scene's long side, from the right of the direction in which the line runs.
 [[nodiscard]] double side_heading(const Scene& scene);

@@ -194,9 +194,9 @@ cv::Mat draw_figure(const std::string& title, const std::string& subtitle, const
   for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + kColumnWidths[i - 1] + kGap;
   text(canvas, title, kMargin, 38, 1.5, kInk, true);
   text(canvas, subtitle, kMargin, 62, 0.95, kGreyInk);
-  static const std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Torque of the yaw joints [Nm]"};
+  static const std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Yaw torques [Nm]"};
   for (std::size_t i = 0; i < kHeadings.size(); ++i) text(canvas, kHeadings[i], left[i + 1] + (i == 3 ? 30 : 0), kHeaderHeight - 10, 0.95, kInk, true);
-  joint_key(canvas, torques.torque_nm.size(), width - kMargin - 4, kHeaderHeight - 10);
+  joint_key(canvas, torques.torque_nm.size(), width - kMargin - 5, kHeaderHeight - 10);
 
   const double limit_nm = torque_limit(torques);
   int top = kHeaderHeight;
