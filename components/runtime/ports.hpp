@@ -102,7 +102,7 @@ class Wiring {
   /// A report may ask for the run to end; the conductor ends it after the present tick.
   virtual void request_end_of_run() = 0;
 
- protected:
+  // What the typed functions above come down to; public so that a wiring can wrap another.
   virtual const InputSlot* input(const TopicInfo& topic, bool events) = 0;
   virtual const OutputSlot* output_slot(const TopicInfo& topic) = 0;
 };

@@ -52,7 +52,6 @@ class Member::MemberWiring : public Wiring {
   explicit MemberWiring(Member& member) : member_(member) {}
   void request_end_of_run() override { member_.end_requested_ = true; }
 
- protected:
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     const std::uint64_t bit = std::uint64_t{1} << topic.id;
     if (member_.reads_ & bit) bug(member_.name(), "declares input " + std::string(topic.name) + " twice");
