@@ -76,7 +76,7 @@ double nearest_parameter(const ConvexSolid& solid, const Vector3d& a, const Vect
 
 }  // namespace
 
-void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, Touches& touches) {
+void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, TouchPoints& touches) {
   const Eigen::Isometry3d X_SW = solid.X_WS.inverse(Eigen::Isometry);
   const Vector3d a = X_SW * capsule.front;
   const Vector3d d = X_SW * capsule.back - a;
@@ -96,7 +96,7 @@ void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, Touch
   if (middle.distance_m < nearest_end - 1e-7) emit(middle);
 }
 
-void touch_capsules(const Capsule& first, const Capsule& second, Touches& touches) {
+void touch_capsules(const Capsule& first, const Capsule& second, TouchPoints& touches) {
   // Closest points of two segments. Source: C. Ericson, Real-Time Collision Detection, 5.1.9.
   const Vector3d d1 = first.back - first.front;
   const Vector3d d2 = second.back - second.front;
@@ -126,7 +126,7 @@ void touch_capsules(const Capsule& first, const Capsule& second, Touches& touche
   touches.add({on_second + normal * (second.radius_m - 0.5 * depth), normal, depth});
 }
 
-void touch_solid_ground(const ConvexSolid& solid, Touches& touches) {
+void touch_solid_ground(const ConvexSolid& solid, TouchPoints& touches) {
   const auto emit = [&](const Vector3d& p) {
     if (p.z() < 0.0) touches.add({p, Vector3d::UnitZ(), -p.z()});
   };

@@ -12,26 +12,26 @@
 namespace constrictor {
 
 /// A touched point in W.
-struct Touch {
+struct TouchPoint {
   Eigen::Vector3d position_m{0.0, 0.0, 0.0};
   Eigen::Vector3d normal{0.0, 0.0, 1.0};  ///< unit vector from the second body into the first
   double depth_m = 0.0;                   ///< > 0: overlap
 };
 
 /// A bounded list of touches, so that no tick allocates.
-class Touches {
+class TouchPoints {
  public:
-  void add(const Touch& touch) {
+  void add(const TouchPoint& touch) {
     if (count_ < touches_.size()) touches_[count_++] = touch;
   }
   void clear() { count_ = 0; }
   [[nodiscard]] std::size_t size() const { return count_; }
-  [[nodiscard]] const Touch& operator[](std::size_t i) const { return touches_[i]; }
-  [[nodiscard]] const Touch* begin() const { return touches_.data(); }
-  [[nodiscard]] const Touch* end() const { return touches_.data() + count_; }
+  [[nodiscard]] const TouchPoint& operator[](std::size_t i) const { return touches_[i]; }
+  [[nodiscard]] const TouchPoint* begin() const { return touches_.data(); }
+  [[nodiscard]] const TouchPoint* end() const { return touches_.data() + count_; }
 
  private:
-  std::array<Touch, 16> touches_;
+  std::array<TouchPoint, 16> touches_;
   std::size_t count_ = 0;
 };
 
@@ -50,12 +50,12 @@ struct ConvexSolid {
 };
 
 /// The capsule's touches of a solid: at each end and, where it is deeper, between them.
-void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, Touches& touches);
+void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, TouchPoints& touches);
 
 /// Where two capsules are closest, if they overlap. The normal points into `first`.
-void touch_capsules(const Capsule& first, const Capsule& second, Touches& touches);
+void touch_capsules(const Capsule& first, const Capsule& second, TouchPoints& touches);
 
-/// Touches of a solid with the ground z = 0: a box's corners below it, a cylinder's rims at four points each.
-void touch_solid_ground(const ConvexSolid& solid, Touches& touches);
+/// TouchPoints of a solid with the ground z = 0: a box's corners below it, a cylinder's rims at four points each.
+void touch_solid_ground(const ConvexSolid& solid, TouchPoints& touches);
 
 }  // namespace constrictor

@@ -51,7 +51,7 @@ void ContactSet::begin_step() {
   records_.clear();
 }
 
-dJointID ContactSet::make(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second) {
+dJointID ContactSet::make(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second) {
   dContact contact{};
   contact.surface = surface_;
   contact.surface.mu = friction.along;
@@ -68,11 +68,11 @@ dJointID ContactSet::make(const Touch& touch, const Friction& friction, dBodyID 
   return joint;
 }
 
-void ContactSet::add(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second) {
+void ContactSet::add(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second) {
   make(touch, friction, first, second);
 }
 
-void ContactSet::add_felt(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second,
+void ContactSet::add_felt(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second,
                           std::uint8_t module, Touched touched, std::uint8_t index, std::uint8_t feature) {
   const dJointID joint = make(touch, friction, first, second);
   if (records_.size() == kMostFelt) return;

@@ -41,9 +41,9 @@ class ContactSet {
   /// Removes the contacts of the previous step.
   void begin_step();
   /// A contact between `first` and `second` (null: what never moves) that nobody feels.
-  void add(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second);
+  void add(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second);
   /// A contact that module `module` (body `first`) feels; `feature` tells apart several touches of one pair.
-  void add_felt(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second, std::uint8_t module,
+  void add_felt(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second, std::uint8_t module,
                 Touched touched, std::uint8_t index, std::uint8_t feature);
   /// After the solver: adds the step's forces to the tick's sums.
   void collect();
@@ -55,7 +55,7 @@ class ContactSet {
     dBodyID first;
     dBodyID second;
     std::uint32_t key;
-    Touch touch;
+    TouchPoint touch;
   };
   struct Sum {
     std::uint32_t key;
@@ -65,7 +65,7 @@ class ContactSet {
     double weight = 0.0;
   };
 
-  dJointID make(const Touch& touch, const Friction& friction, dBodyID first, dBodyID second);
+  dJointID make(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second);
   void sum_up(std::uint32_t key, dBodyID body, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
               const dReal* force);
 

@@ -205,7 +205,7 @@ void World::collide() {
     for (const Vector3d& end : {capsule.front, capsule.back}) {
       const double depth = capsule.radius_m - end.z();
       if (depth > 0.0) {
-        const Touch touch{end - Vector3d(0.0, 0.0, capsule.radius_m), Vector3d::UnitZ(), depth};
+        const TouchPoint touch{end - Vector3d(0.0, 0.0, capsule.radius_m), Vector3d::UnitZ(), depth};
         contacts_.add_felt(touch, skin, modules_[i], nullptr, module, Touched::kGround, 0, feature);
       }
       ++feature;
@@ -252,7 +252,7 @@ void World::collide_objects() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     touches_.clear();
     touch_solid_ground(solid_of(i), touches_);
-    for (const Touch& touch : touches_) contacts_.add(touch, standing, objects_[i], nullptr);
+    for (const TouchPoint& touch : touches_) contacts_.add(touch, standing, objects_[i], nullptr);
     const Vector3d centre = vector_of(dBodyGetPosition(objects_[i]));
     for (std::size_t j = 0; j < i; ++j) {
       const double reach = object_bound_m_[i] + object_bound_m_[j];
@@ -271,7 +271,7 @@ void World::collide_geoms(dGeomID first, dBodyID first_body, dGeomID second, dBo
   dContactGeom found[8];
   const int count = dCollide(first, second, 8, found, sizeof(dContactGeom));
   for (int k = 0; k < count; ++k) {
-    const Touch touch{vector_of(found[k].pos), vector_of(found[k].normal), found[k].depth};
+    const TouchPoint touch{vector_of(found[k].pos), vector_of(found[k].normal), found[k].depth};
     contacts_.add(touch, {scenario_.friction.object_ground, 0.0, nullptr}, first_body, second_body);
   }
 }

@@ -101,7 +101,7 @@ class World {
   std::vector<Obstacle> obstacles_;
   std::vector<Eigen::Vector3d> forces_n_;  ///< on objects, in the present advance()
   std::vector<Capsule> capsules_;          ///< of the present step
-  Touches touches_;
+  TouchPoints touches_;
   unsigned long reorder_state_;            ///< of ODE's global generator, which every world sets before it steps
   std::int64_t steps_done_ = 0;
   Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean of the last advance()

@@ -1,0 +1,84 @@
+#include "sim/physics/physics.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "runtime/share.hpp"
+#include "sim/physics/scene_message.hpp"
+#include "sim/scenario/scenario_file.hpp"
+
+namespace constrictor {
+namespace {
+
+std::filesystem::path or_default(const std::filesystem::path& file, const char* fallback) {
+  return file.empty() ? share_path(fallback) : file;
+}
+
+}  // namespace
+
+Physics::Physics(Wiring& wiring, const Setup& setup)
+    : Physics(wiring, setup, load_physics_config(or_default(setup.config_file, "sim/physics/physics.yaml")),
+              load_robot(or_default(setup.robot_file, "components/robot/mamba.yaml")),
+              load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed)) {}
+
+Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot,
+                 const Scenario& scenario)
+    : config_(config),
+      world_(robot, scenario, config.solver),
+      sensors_(robot, setup.component_seed(), scenario.sensor_noise),
+      perturbations_(scenario),
+      guard_(robot, config.command),
+      angles_rad_(robot.joints.size()),
+      positions_rad_(robot.joints.size()),
+      rates_rad_s_(robot.joints.size()),
+      torques_nm_(robot.joints.size()),
+      command_(wiring.latest(topics::kJointCommand)),
+      joint_state_(wiring.output(topics::kJointState)),
+      contact_state_(wiring.output(topics::kContactState)),
+      imu_state_(wiring.output(topics::kImuState)),
+      world_state_(wiring.output(topics::kWorldState)),
+      touched_state_(wiring.output(topics::kTouchedState)),
+      scene_(wiring.output(topics::kSceneDescription)) {}
+
+void Physics::sample(const Tick&) {
+  if (!scene_written_) {
+    scene_.write(scene_message(world_.scenario(), world_.robot()));
+    scene_written_ = true;
+  }
+  joint_state_.write(sensors_.joints(world_));
+  msg::ContactState felt{};
+  msg::TouchedState touched{};
+  sensors_.contacts(world_, felt, touched);
+  contact_state_.write(felt);
+  touched_state_.write(touched);
+  imu_state_.write(sensors_.imu(world_, config_.period_s()));
+  world_state_.write(world_message(world_));
+}
+
+void Physics::obey() {
+  if (command_) {
+    const std::size_t count = std::min<std::size_t>(command_->joint_count, msg::kMaxJoints);
+    guard_.offer(command_.age_ticks(), std::span(command_->position_rad, count), std::span(command_->velocity_rad_s, count),
+                 std::span(command_->torque_limit_nm, count));
+  }
+  for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
+  const std::vector<JointSetpoint>& setpoints = guard_.setpoints(angles_rad_);
+  for (std::size_t i = 0; i < setpoints.size(); ++i) {
+    positions_rad_[i] = setpoints[i].position_rad;
+    rates_rad_s_[i] = setpoints[i].velocity_rad_s;
+    torques_nm_[i] = setpoints[i].torque_limit_nm;
+  }
+  world_.set_servo(positions_rad_, rates_rad_s_, torques_nm_);
+}
+
+void Physics::step(const Tick& tick) {
+  obey();
+  perturbations_.apply(world_, tick.time_s());
+  world_.advance(config_.period_s());
+}
+
+ComponentFactory make_physics_factory() {
+  return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Physics>(wiring, setup); }};
+}
+
+}  // namespace constrictor

@@ -1,0 +1,48 @@
+// The simulated plant: owns the joints, and with them the run's time. Loads the robot and one scene of a scenario, obeys
+// JointCommand, publishes what the robot's sensors measure and, for the simulation only, the truth.
+#pragma once
+
+#include "runtime/component.hpp"
+#include "sim/physics/perturbation_script.hpp"
+#include "sim/physics/physics_config.hpp"
+#include "sim/physics/sensors.hpp"
+
+namespace constrictor {
+
+class Physics final : public Plant {
+ public:
+  /// Reads the robot, the scenario with its seed, and the configuration. Throws ConfigurationError.
+  Physics(Wiring& wiring, const Setup& setup);
+
+  void sample(const Tick& tick) override;
+  /// Before the first command, and when commands are stale or refused: holds the measured posture, later relaxes (ServoGuard).
+  void step(const Tick& tick) override;
+  [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns; }
+
+  [[nodiscard]] const World& world() const { return world_; }
+  [[nodiscard]] const ServoGuard& guard() const { return guard_; }
+
+ private:
+  Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
+  void obey();
+
+  PhysicsConfig config_;
+  World world_;
+  Sensors sensors_;
+  PerturbationScript perturbations_;
+  ServoGuard guard_;
+  std::vector<double> angles_rad_, positions_rad_, rates_rad_s_, torques_nm_;  ///< one entry for each joint
+
+  Latest<msg::JointCommand> command_;
+  Output<msg::JointState> joint_state_;
+  Output<msg::ContactState> contact_state_;
+  Output<msg::ImuState> imu_state_;
+  Output<msg::WorldState> world_state_;
+  Output<msg::TouchedState> touched_state_;
+  Output<msg::SceneDescription> scene_;
+  bool scene_written_ = false;
+};
+
+ComponentFactory make_physics_factory();
+
+}  // namespace constrictor

@@ -1,0 +1,57 @@
+#include "sim/physics/perturbation_script.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace constrictor {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A world with an object on a frictionless floor, far from the robot: momentum is force times time.
+class PerturbationScriptTest : public testing::Test {
+ protected:
+  PerturbationScriptTest() {
+    robot_.module_count = 2;
+    robot_.module_length_m = 0.1;
+    robot_.module_radius_m = 0.035;
+    robot_.module_mass_kg = 0.3;
+    robot_.joints.resize(1);
+    ScenarioObject object;
+    object.mass_kg = 0.5;
+    object.position_m = {3.0, 0.0};
+    scenario_.objects.push_back(object);
+    scenario_.friction.object_ground = 0.0;
+  }
+  /// Velocity of the object after these seconds, in ticks of 20 ms.
+  double velocity_after(double seconds) {
+    World world(robot_, scenario_);
+    PerturbationScript script(scenario_);
+    for (int tick = 0; tick < static_cast<int>(seconds / 0.02 + 0.5); ++tick) {
+      script.apply(world, 0.02 * tick);
+      world.advance(0.02);
+    }
+    return world.object_velocity_m_s(0).x();
+  }
+
+  RobotModel robot_;
+  Scenario scenario_;
+};
+
+TEST_F(PerturbationScriptTest, ActsFromItsTimeForItsDuration) {
+  scenario_.perturbations.push_back({0, 0.5, kNan, 0.4, {1.0, 0.0, 0.0}});
+  EXPECT_NEAR(velocity_after(0.5), 0.0, 1e-6);
+  EXPECT_NEAR(velocity_after(0.7), 0.2 * 1.0 / 0.5, 1e-3);
+  EXPECT_NEAR(velocity_after(1.5), 0.4 * 1.0 / 0.5, 1e-3);
+}
+
+TEST_F(PerturbationScriptTest, BeginsOnceTheObjectWasMoved) {
+  scenario_.perturbations.push_back({0, 0.1, kNan, 0.2, {1.0, 0.0, 0.0}});  // sets it going: 0.4 m/s
+  scenario_.perturbations.push_back({0, kNan, 0.3, 0.2, {1.0, 0.0, 0.0}});  // 0.3 m later: 0.8 m/s
+  EXPECT_NEAR(velocity_after(0.7), 0.4, 1e-3);
+  EXPECT_NEAR(velocity_after(1.6), 0.8, 1e-3);
+}
+
+}  // namespace
+}  // namespace constrictor

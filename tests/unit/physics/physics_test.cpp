@@ -1,0 +1,238 @@
+// The plant as a member of a run: what it measures, what it obeys, and that equal runs are equal.
+#include "sim/physics/physics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "configuration/configuration.hpp"
+#include "runtime/local_run.hpp"
+
+namespace constrictor {
+namespace {
+
+const std::filesystem::path kProject = PROJECT_DIR;
+
+using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
+
+/// Stands for the control component: writes what the test says at each tick, or nothing.
+class Commander final : public Component {
+ public:
+  Commander(Wiring& wiring, CommandAt command_at)
+      : command_at_(std::move(command_at)), output_(wiring.output(topics::kJointCommand)) {}
+  void step(const Tick& tick) override {
+    msg::JointCommand command{};
+    command.joint_count = 23;
+    for (double& limit : command.torque_limit_nm) limit = 6.0;
+    for (std::size_t i = 23; i < msg::kMaxJoints; ++i) command.torque_limit_nm[i] = 0.0;
+    if (command_at_(tick.index, command)) output_.write(command);
+  }
+  [[nodiscard]] std::string save() const override { return {}; }
+  void load(const std::string&) override {}
+
+ private:
+  CommandAt command_at_;
+  Output<msg::JointCommand> output_;
+};
+
+Setup setup_of(const std::string& scenario, std::uint64_t seed = 1) {
+  Setup setup;
+  setup.robot_file = kProject / "components/robot/mamba.yaml";
+  setup.scenario_file = kProject / "sim/scenarios" / scenario;
+  setup.seed = seed;
+  return setup;
+}
+
+std::unique_ptr<LocalRun> make_run(CommandAt command_at, const Setup& setup = setup_of("line.yaml")) {
+  ComponentFactory control{"control", [command_at = std::move(command_at)](Wiring& wiring, const Setup&) {
+                             return std::make_unique<Commander>(wiring, command_at);
+                           }};
+  return std::make_unique<LocalRun>(std::vector<ComponentFactory>{make_physics_factory(), control}, setup);
+}
+
+CommandAt silence() {
+  return [](std::int64_t, msg::JointCommand&) { return false; };
+}
+
+/// Bends and swings the yaw joints.
+CommandAt swing() {
+  return [](std::int64_t tick, msg::JointCommand& command) {
+    for (std::size_t i = 0; i < 23; i += 2) {
+      command.position_rad[i] = 0.3 * std::sin(0.05 * static_cast<double>(tick) + 0.4 * static_cast<double>(i));
+    }
+    return true;
+  };
+}
+
+ServoGuard::Mode mode_of(LocalRun& run) { return dynamic_cast<Physics&>(run.component("physics")).guard().mode(); }
+
+std::string hash_of(LocalRun& run) {
+  const auto& hash = run.latest(topics::kWorldState)->state_hash;
+  return {reinterpret_cast<const char*>(hash), sizeof(hash)};
+}
+
+TEST(Physics, DescribesTheSceneOnce) {
+  auto run = make_run(silence());
+  int scenes = 0;
+  run->subscribe<msg::SceneDescription>(topics::kSceneDescription, [&](const msg::SceneDescription&) { ++scenes; });
+  run->advance(20);
+  EXPECT_EQ(scenes, 1);
+}
+
+TEST(Physics, RestsOnTheGround) {
+  auto run = make_run(silence());
+  run->advance(100);
+  const msg::ContactState& felt = *run->latest(topics::kContactState);
+  double weight = 0.0;
+  for (int i = 0; i < felt.module_count; ++i) weight += felt.force_n[i].z;
+  // 24 modules of 0.3 kg; each contact's noise is 0.05 N.
+  EXPECT_NEAR(weight, 24 * 0.3 * 9.81, 2.0);
+  const msg::ImuState& imu = *run->latest(topics::kImuState);
+  EXPECT_NEAR(imu.linear_acceleration_m_s2.z, 9.81, 0.3);
+  EXPECT_NEAR(imu.linear_acceleration_m_s2.x, 0.0, 0.3);
+  EXPECT_NEAR(imu.orientation.w, 1.0, 1e-3);  // yaw counts from the start, whatever the start pose
+  const msg::TouchedState& touched = *run->latest(topics::kTouchedState);
+  EXPECT_EQ(touched.contact_count, felt.contact_count);
+  for (int i = 0; i < touched.contact_count; ++i) EXPECT_EQ(touched.kind[i], msg::kTouchedGround);
+}
+
+TEST(Physics, HoldsItsPostureWithoutACommand) {
+  auto run = make_run(silence());
+  run->advance(50);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  for (int i = 0; i < 23; ++i) EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[i], 0.0, 0.01);
+}
+
+TEST(Physics, FollowsACommand) {
+  auto run = make_run([](std::int64_t, msg::JointCommand& command) {
+    command.position_rad[2] = 0.4;
+    return true;
+  });
+  run->advance(100);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kObeying);
+  EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[2], 0.4, 0.02);
+}
+
+TEST(Physics, HoldsPostureWhenTheCommandIsStaleAndRelaxesLater) {
+  auto run = make_run([](std::int64_t tick, msg::JointCommand& command) {
+    command.position_rad[2] = 0.4;
+    return tick < 60;
+  });
+  run->advance(64);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kObeying);
+  run->advance(20);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[2], 0.4, 0.02);
+  run->advance(260);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kRelaxed);
+}
+
+TEST(Physics, DoesNotObeyACommandWithNaNOrBeyondTheLimits) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 2.5}) {
+    auto run = make_run([bad](std::int64_t, msg::JointCommand& command) {
+      command.position_rad[0] = 0.5;
+      command.position_rad[4] = bad;
+      return true;
+    });
+    run->advance(50);
+    EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+    EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
+  }
+}
+
+TEST(Physics, DoesNotObeyACommandOfTheWrongSize) {
+  auto run = make_run([](std::int64_t, msg::JointCommand& command) {
+    command.joint_count = 22;
+    command.position_rad[0] = 0.5;
+    return true;
+  });
+  run->advance(50);
+  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
+}
+
+TEST(Physics, EqualRunsHaveEqualHashes) {
+  auto first = make_run(swing());
+  auto second = make_run(swing());
+  for (int i = 0; i < 5; ++i) {  // in turns, as two runs in one process
+    first->advance(20);
+    second->advance(20);
+  }
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+  EXPECT_EQ(first->output_hashes(), second->output_hashes());
+}
+
+TEST(Physics, OneUlpInOneCommandChangesTheHash) {
+  auto first = make_run(swing());
+  auto second = make_run([plain = swing()](std::int64_t tick, msg::JointCommand& command) {
+    const bool written = plain(tick, command);
+    if (tick == 40) command.position_rad[6] = std::nextafter(command.position_rad[6], 10.0);
+    return written;
+  });
+  first->advance(40);
+  second->advance(40);
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+  first->advance(20);
+  second->advance(20);
+  EXPECT_NE(hash_of(*first), hash_of(*second));
+}
+
+TEST(Physics, SeedsDiffer) {
+  auto first = make_run(swing(), setup_of("line.yaml", 1));
+  auto second = make_run(swing(), setup_of("line.yaml", 2));
+  first->advance(10);
+  second->advance(10);
+  EXPECT_NE(hash_of(*first), hash_of(*second));
+}
+
+TEST(Physics, NoiseHasTheRobotFilesStandardDeviation) {
+  auto run = make_run(silence());
+  double squares = 0.0;
+  int count = 0;
+  run->subscribe<msg::JointState>(topics::kJointState, [&](const msg::JointState& state) {
+    const World& world = dynamic_cast<Physics&>(run->component("physics")).world();
+    for (std::size_t i = 0; i < state.joint_count; ++i, ++count) {
+      squares += std::pow(state.position_rad[i] - world.joint_angle_rad(i), 2);
+    }
+  });
+  run->advance(100);
+  EXPECT_NEAR(std::sqrt(squares / count), 0.001, 0.0001);
+}
+
+TEST(Physics, AScenarioCanSwitchNoiseOff) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "quiet.yaml";
+  std::ofstream(file) << "name: quiet\nstart: {position_m: [1, 2], yaw_rad: 0.7}\nnoise: {sensors: false}\n";
+  auto setup = setup_of("line.yaml");
+  setup.scenario_file = file;
+  auto run = make_run(silence(), setup);
+  run->advance(100);
+  const World& world = dynamic_cast<Physics&>(run->component("physics")).world();
+  const msg::WorldState& truth = *run->latest(topics::kWorldState);
+  EXPECT_NEAR(truth.module_poses[0].position_m.x, 1.0, 1e-3);
+  EXPECT_NEAR(2.0 * std::asin(truth.module_poses[0].orientation.z), 0.7, 1e-3);
+  EXPECT_NEAR(run->latest(topics::kImuState)->orientation.z, 0.0, 1e-3);
+  for (std::size_t i = 0; i < 23; ++i) {  // a step apart, at rest
+    EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[i], world.joint_angle_rad(i), 1e-4);
+  }
+}
+
+TEST(Physics, NamesAPeriodThatIsNoMultipleOfTheStep) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "physics.yaml";
+  std::ofstream(file) << "period_s: 0.02\nsolver: {step_s: 0.003, iterations: 20}\n";
+  try {
+    (void)load_physics_config(file);
+    FAIL();
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find(
+                  "physics.yaml:1: period_s: found a period that is no multiple of solver.step_s, accepted a multiple"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace constrictor
