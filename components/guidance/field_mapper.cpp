@@ -4,8 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "guidance/planar.hpp"
+
 namespace constrictor::guidance {
 namespace {
+
+Eigen::Vector2d place_of(const PlanarPose& pose) { return {pose.x_m, pose.y_m}; }
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kMaxHits = 1000;
@@ -209,9 +213,9 @@ void FieldMapper::line(const msg::LinePercept& percept, const Pose2& exposure, s
 
 bool FieldMapper::is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const {
   const double half_m = 0.5 * model_.module_length_m;
-  for (std::size_t j = 0; j < chain.links.size(); ++j) {
+  for (std::size_t j = 0; j < chain.size(); ++j) {
     if ((j > module ? j - module : module - j) < 3) continue;
-    const Eigen::Vector2d d = p - chain.links[j].p_m, axis = along(chain.links[j].heading_rad);
+    const Eigen::Vector2d d = p - place_of(chain[j]), axis = along(chain[j].yaw_rad);
     const double s = std::clamp(d.dot(axis), -half_m, half_m);
     if ((d - s * axis).norm() < model_.module_radius_m + config_.touch_self_margin_m) return true;
   }
@@ -226,13 +230,11 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
   for (int i = 0; i < count; ++i) {
     const msg::Contact& contact = contacts.contacts[i];
     const std::size_t module = contact.module_index;
-    if (module >= chain.links.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
+    if (module >= chain.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
     const Eigen::Vector3d force(contact.force_n.x, contact.force_n.y, contact.force_n.z);
     const double force_n = force.norm();
     if (!(force_n > config_.touch_min_force_n)) continue;
-    const BodyChain::Link& link = chain.links[module];
-    const Eigen::Vector2d p =
-        link.p_m + turned(Eigen::Vector2d(contact.position_m.x, contact.position_m.y), link.heading_rad);
+    const Eigen::Vector2d p = transform(chain[module], {contact.position_m.x, contact.position_m.y});
     if (is_self(chain, module, p)) continue;
     const Eigen::Vector2d p_M = to_parent(filter_.pose(), p);
 
@@ -261,19 +263,19 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
 
 Eigen::Vector2d FieldMapper::base_of_u(const BodyChain& chain, double radius_m) const {
   // the middle of the three neighbouring yaw links that turn most
-  const std::size_t window = std::min<std::size_t>(6, chain.links.size() - 1);
+  const std::size_t window = std::min<std::size_t>(6, chain.size() - 1);
   std::size_t best = 0;
   double bend = 0.0;
-  for (std::size_t i = 0; i + window < chain.links.size(); ++i) {
-    const double turn = chain.links[i].heading_rad - chain.links[i + window].heading_rad;
+  for (std::size_t i = 0; i + window < chain.size(); ++i) {
+    const double turn = chain[i].yaw_rad - chain[i + window].yaw_rad;
     if (std::abs(turn) > std::abs(bend)) {
       bend = turn;
       best = i;
     }
   }
-  const BodyChain::Link& middle = chain.links[best + window / 2];
+  const PlanarPose& middle = chain[best + window / 2];
   const double side = bend >= 0.0 ? 1.0 : -1.0;
-  return middle.p_m + side * (radius_m + model_.module_radius_m) * left(middle.heading_rad);
+  return place_of(middle) + side * (radius_m + model_.module_radius_m) * left(middle.yaw_rad);
 }
 
 void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std::int64_t tick) {

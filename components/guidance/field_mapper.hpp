@@ -2,12 +2,15 @@
 #pragma once
 
 #include "constrictor/messages.hpp"
-#include "guidance/body_chain.hpp"
 #include "guidance/field_state.hpp"
 #include "guidance/guidance_config.hpp"
 #include "guidance/pose_filter.hpp"
+#include "robot/kinematics.hpp"
 
 namespace constrictor::guidance {
+
+/// Modules in the head's frame, head to tail.
+using BodyChain = std::vector<PlanarPose>;
 
 /// Works on a FieldState and a PoseFilter owned by the caller. `exposure` is where the head was when the image was taken,
 /// relative to where it is now (its pose now is zero), so that percepts are not smeared by motion and delay.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guidance/planar.hpp"
 #include "runtime/share.hpp"
 
 namespace constrictor {
@@ -38,43 +39,35 @@ Guidance::Guidance(Wiring& wiring, const Setup& setup)
       objects_(wiring.latest(topics::kObjectPercepts)),
       task_(wiring.latest(topics::kTaskStatus)),
       pose_(wiring.output(topics::kRobotPose)),
-      map_(wiring.output(topics::kFieldMap)) {
-  odometry_.friction_along = model_.friction_along;
-  odometry_.friction_across = model_.friction_across;
-  odometry_.slip_scale_m_s = config_.slip_scale_m_s;
-  odometry_.gyro_sd_rad_s = config_.gyro_sd_rad_s;
-}
+      map_(wiring.output(topics::kFieldMap)) {}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
-  std::vector<double> load_n(model_.module_count, 1.0);
+  guidance::OdometryInput input;
+  input.joint_rad = joints_->position_rad;
+  input.joint_rad_s = joints_->velocity_rad_s;
+  input.yaw_rad = yaw_of(imu_->orientation);
+  if (!std::isfinite(input.yaw_rad)) return;
+  input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
   if (contacts_ && contacts_->module_count >= model_.module_count) {
-    for (std::size_t i = 0; i < load_n.size(); ++i) load_n[i] = contacts_->force_n[i].z;
+    input.load_n.resize(model_.module_count);
+    for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
+    // what pushes from the side; touches of the robot's own modules cancel in the sum
+    const int count = std::min<int>(contacts_->contact_count, msg::kMaxContacts);
+    for (int i = 0; i < count; ++i) {
+      const msg::Contact& contact = contacts_->contacts[i];
+      if (contact.module_index >= chain.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
+      input.push_n += guidance::turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
+    }
   }
-  const double yaw_rad = yaw_of(imu_->orientation);
-  const double gyro_rad_s = imu_->angular_velocity_rad_s.z;
-  if (!std::isfinite(yaw_rad) || !std::isfinite(gyro_rad_s)) return;
-  const guidance::HeadVelocity guess{{state_.vx_m_s, state_.vy_m_s}, state_.rate_rad_s, 0.0};
-  const guidance::HeadVelocity now = guidance::head_velocity(chain, load_n, gyro_rad_s, guess, odometry_);
-
-  if (state_.started) {
-    // mean velocity of the step; the turn is the IMU's own, which integrates faster than we sample
-    const double dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
-    const Eigen::Vector2d mean = 0.5 * (Eigen::Vector2d(state_.vx_m_s, state_.vy_m_s) + now.v_m_s);
-    const double turn_rad = guidance::wrapped(yaw_rad - state_.imu_yaw_rad);
-    const double speed_sd = config_.speed_sd * mean.norm() + config_.speed_sd_m_s * (mean.norm() > 0.005 ? 1.0 : 0.1);
-    const double variance = speed_sd * speed_sd * config_.correlation_s * dt_s;
-    const Eigen::Vector3d noise(variance, variance, config_.yaw_sd_rad_sqrt_s * config_.yaw_sd_rad_sqrt_s * dt_s);
-    guidance::PoseFilter(state_.filter).predict(mean * dt_s, turn_rad, noise.asDiagonal());
-    remember(tick.index, mean * dt_s, turn_rad);
-  } else {
-    remember(tick.index, Eigen::Vector2d::Zero(), 0.0);
-  }
-  state_.started = true;
+  const guidance::HeadStep step = guidance::advance_odometry(state_.odometry, model_, config_.odometry, input);
   state_.last_tick = tick.index;
-  state_.imu_yaw_rad = yaw_rad;
-  state_.vx_m_s = now.v_m_s.x();
-  state_.vy_m_s = now.v_m_s.y();
-  state_.rate_rad_s = now.rate_rad_s;
+
+  const double speed_m_s = input.dt_s > 0.0 ? step.step_m.norm() / input.dt_s : 0.0;
+  const double speed_sd = config_.speed_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
+  const double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
+  const Eigen::Vector3d noise(variance, variance, config_.yaw_sd_rad_sqrt_s * config_.yaw_sd_rad_sqrt_s * input.dt_s);
+  guidance::PoseFilter(state_.filter).predict(step.step_m, step.turn_rad, noise.asDiagonal());
+  remember(tick.index, step.step_m, step.turn_rad);
 }
 
 void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {
@@ -125,7 +118,7 @@ void Guidance::step(const Tick& tick) {
   const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && joints_->joint_count == joint_count &&
                     all_finite(joints_->position_rad, joint_count) && all_finite(joints_->velocity_rad_s, joint_count);
   if (body) {
-    const guidance::BodyChain chain = guidance::body_chain(model_, joints_->position_rad, joints_->velocity_rad_s);
+    const guidance::BodyChain chain = planar_module_poses(model_, {joints_->position_rad, joint_count});
     dead_reckon(tick, chain);
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);

@@ -5,16 +5,13 @@
 #include <vector>
 
 #include "guidance/field_mapper.hpp"
-#include "guidance/odometry.hpp"
 #include "runtime/component.hpp"
 
 namespace constrictor {
 
 struct GuidanceState {
-  bool started = false;
-  std::int64_t last_tick = 0;                ///< of the samples last used
-  double imu_yaw_rad = 0.0;                  ///< at the previous step
-  double vx_m_s = 0.0, vy_m_s = 0.0, rate_rad_s = 0.0;  ///< of the head, in its frame, at the previous step
+  std::int64_t last_tick = 0;          ///< of the samples last used
+  guidance::OdometryState odometry;
   guidance::PoseFilterState filter;
   /// Dead reckoning alone, by tick, oldest first: relates poses of different ticks whatever the filter corrected since.
   std::vector<std::int64_t> track_tick;
@@ -22,7 +19,7 @@ struct GuidanceState {
   guidance::FieldState field;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(started, last_tick, imu_yaw_rad, vx_m_s, vy_m_s, rate_rad_s, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
+    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
   }
 };
 
@@ -46,7 +43,6 @@ class Guidance : public StatefulComponent<GuidanceState> {
 
   RobotModel model_;
   guidance::GuidanceConfig config_;
-  guidance::OdometryConfig odometry_;
   Latest<msg::JointState> joints_;
   Latest<msg::ImuState> imu_;
   Latest<msg::ContactState> contacts_;

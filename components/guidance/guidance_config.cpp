@@ -8,8 +8,10 @@ GuidanceConfig load_guidance_config(const std::filesystem::path& file) {
   GuidanceConfig c;
   Configuration root = Configuration::load(file);
   Configuration odometry = root.section("odometry", false);
-  c.slip_scale_m_s = odometry.number("slip_scale_m_s", {1e-4, 1.0}, c.slip_scale_m_s);
-  c.gyro_sd_rad_s = odometry.number("gyro_sd_rad_s", {1e-4, 10.0}, c.gyro_sd_rad_s);
+  OdometryConfig& o = c.odometry;
+  o.friction_along_share = odometry.number("friction_along_share", {0.0, 2.0}, o.friction_along_share);
+  o.slip_scale_m_s = odometry.number("slip_scale_m_s", {1e-4, 1.0}, o.slip_scale_m_s);
+  o.joint_gain = odometry.number("joint_gain", {0.01, 1.0}, o.joint_gain);
   c.speed_sd = odometry.number("speed_sd", {0.0, 1.0}, c.speed_sd);
   c.speed_sd_m_s = odometry.number("speed_sd_m_s", {0.0, 1.0}, c.speed_sd_m_s);
   c.correlation_s = odometry.number("correlation_s", {0.01, 10.0}, c.correlation_s);

@@ -3,12 +3,13 @@
 
 #include <filesystem>
 
+#include "guidance/odometry.hpp"
+
 namespace constrictor::guidance {
 
 /// Units and meaning: guidance.yaml.
 struct GuidanceConfig {
-  double slip_scale_m_s = 0.03;
-  double gyro_sd_rad_s = 0.01;
+  OdometryConfig odometry;
   double speed_sd = 0.08;
   double speed_sd_m_s = 0.01;
   double correlation_s = 0.7;

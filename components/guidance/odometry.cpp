@@ -1,61 +1,109 @@
 #include "guidance/odometry.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "guidance/planar.hpp"
+#include "robot/kinematics.hpp"
+
 namespace constrictor::guidance {
+namespace {
 
-HeadVelocity head_velocity(const BodyChain& chain, const std::vector<double>& load_n, double gyro_rad_s,
-                           const HeadVelocity& guess, const OdometryConfig& config) {
-  constexpr int kIterations = 8;
-  Eigen::Vector3d x(guess.v_m_s.x(), guess.v_m_s.y(), gyro_rad_s);
+constexpr double kGravity_m_s2 = 9.81;
+constexpr int kIterations = 15;
+
+/// Friction of one module in one of its two directions.
+struct Slider {
+  Eigen::Vector2d direction;
+  double own_m_s;   ///< speed in that direction relative to the centre of mass
+  double limit_n;   ///< Coulomb's
+};
+
+Eigen::Vector2d centre_of(const std::vector<PlanarPose>& poses) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const PlanarPose& pose : poses) sum += Eigen::Vector2d(pose.x_m, pose.y_m);
+  return sum / static_cast<double>(poses.size());
+}
+
+}  // namespace
+
+HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const OdometryConfig& config,
+                          const OdometryInput& input) {
+  const std::size_t joints = model.joints.size();
+  HeadStep result;
+  if (!state.started || !(input.dt_s > 0.0)) {
+    state.joint_rad.assign(input.joint_rad, input.joint_rad + joints);
+    state.joint_rad_s.assign(input.joint_rad_s, input.joint_rad_s + joints);
+    state.yaw_rad = input.yaw_rad;
+    state.vx_m_s = state.vy_m_s = 0.0;
+    state.started = true;
+    return result;
+  }
+
+  // Angles: rates carry the fast part, measured angles the slow one, so that neither noise nor jitter counts as motion.
+  const std::vector<double> before_rad = state.joint_rad;
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double predicted = state.joint_rad[i] + 0.5 * input.dt_s * (state.joint_rad_s[i] + input.joint_rad_s[i]);
+    state.joint_rad[i] = predicted + config.joint_gain * (input.joint_rad[i] - predicted);
+    state.joint_rad_s[i] = input.joint_rad_s[i];
+  }
+  result.turn_rad = wrapped(input.yaw_rad - state.yaw_rad);
+  state.yaw_rad = input.yaw_rad;
+
+  // Shapes before and after, in the direction of the middle of the step.
+  const double half_turn = 0.5 * result.turn_rad;
+  const auto before = planar_module_poses(model, before_rad, {0.0, 0.0, -half_turn});
+  const auto after = planar_module_poses(model, state.joint_rad, {0.0, 0.0, half_turn});
+  const Eigen::Vector2d centre_before = centre_of(before), centre_after = centre_of(after);
+
+  const std::size_t modules = model.module_count;
+  const double mass_kg = model.module_mass_kg * static_cast<double>(modules);
+  const bool measured = input.load_n.size() == modules;
+  std::vector<Slider> sliders;
+  sliders.reserve(2 * modules);
   double total_n = 0.0;
-  std::vector<double> load(chain.links.size());
-  for (std::size_t i = 0; i < load.size(); ++i) {
-    load[i] = i < load_n.size() && std::isfinite(load_n[i]) ? std::max(load_n[i], 0.0) : 1.0;
-    total_n += load[i];
+  for (std::size_t i = 0; i < modules; ++i) {
+    double load_n = model.module_mass_kg * kGravity_m_s2;
+    if (measured && std::isfinite(input.load_n[i])) load_n = std::max(input.load_n[i], 0.0);
+    total_n += load_n;
+    const Eigen::Vector2d moved = Eigen::Vector2d(after[i].x_m - before[i].x_m, after[i].y_m - before[i].y_m) -
+                                  (centre_after - centre_before);
+    const double heading = 0.5 * (before[i].yaw_rad + after[i].yaw_rad);
+    const Eigen::Vector2d own = moved / input.dt_s, l = left(heading), a = along(heading);
+    sliders.push_back({l, own.dot(l), load_n * model.friction_across});
+    sliders.push_back({a, own.dot(a), load_n * model.friction_along * config.friction_along_share});
   }
-  HeadVelocity result;
-  result.rate_rad_s = gyro_rad_s;
-  if (total_n <= 0.0) return result;  // nothing touches the ground: no constraint
 
+  // the velocity without friction, then with it
+  const double inertia = mass_kg / input.dt_s;
+  const Eigen::Vector2d free = turned({state.vx_m_s, state.vy_m_s}, -half_turn) + input.push_n / inertia;
+  Eigen::Vector2d velocity = free;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < chain.links.size(); ++i) {
-      const BodyChain::Link& link = chain.links[i];
-      const auto constrain = [&](const Eigen::Vector2d& d, double friction) {
-        // velocity of the module in direction d: d.v + rate (d x arm) + what its joints add
-        const Eigen::Vector3d row(d.x(), d.y(), d.y() * link.p_m.x() - d.x() * link.p_m.y());
-        const double own = d.dot(link.v_m_s);
-        const double slip = std::abs(row.dot(x) + own);
-        const double weight = friction * load[i] / total_n / std::max(slip, config.slip_scale_m_s);
-        A += weight * row * row.transpose();
-        b -= weight * own * row;
-      };
-      constrain(left(link.heading_rad), config.friction_across);
-      constrain(along(link.heading_rad), config.friction_along);
+    Eigen::Matrix2d A = inertia * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d b = inertia * free;
+    for (const Slider& s : sliders) {
+      const double slip = std::abs(s.direction.dot(velocity) + s.own_m_s);
+      const double weight = s.limit_n / std::max(slip, config.slip_scale_m_s);
+      A += weight * s.direction * s.direction.transpose();
+      b -= weight * s.own_m_s * s.direction;
     }
-    // the gyro, in the units of a module that slips by lateral_sd
-    const double ratio = config.lateral_sd_m_s / config.gyro_sd_rad_s;
-    const double gyro_weight = config.friction_across / config.slip_scale_m_s * ratio * ratio;
-    A(2, 2) += gyro_weight;
-    b(2) += gyro_weight * gyro_rad_s;
-    const Eigen::Vector3d next = A.ldlt().solve(b);
-    if (!next.allFinite()) return result;
-    const double change = (next - x).cwiseAbs().maxCoeff();
-    x = next;
-    if (change < 1e-5) break;
+    const Eigen::Vector2d next = A.inverse() * b;
+    const double change = (next - velocity).cwiseAbs().maxCoeff();
+    velocity = next;
+    if (change < 1e-6) break;
   }
-  result.v_m_s = x.head<2>();
-  result.rate_rad_s = x.z();
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    const BodyChain::Link& link = chain.links[i];
-    const Eigen::Vector2d d = left(link.heading_rad);
-    const double slip = d.dot(result.v_m_s + link.v_m_s) + x.z() * (d.y() * link.p_m.x() - d.x() * link.p_m.y());
-    result.slip_m_s += load[i] / total_n * std::abs(slip);
+  if (!velocity.allFinite()) velocity = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < sliders.size(); i += 2) {
+    const double share = total_n > 0.0 ? sliders[i].limit_n / (model.friction_across * total_n) : 0.0;
+    if (std::isfinite(share)) result.slip_m_s += share * std::abs(sliders[i].direction.dot(velocity) + sliders[i].own_m_s);
   }
+  // the head lies off the centre of mass by the shape
+  result.step_m = velocity * input.dt_s - (centre_after - centre_before);
+  const Eigen::Vector2d in_head = turned(velocity, -half_turn);
+  state.vx_m_s = in_head.x();
+  state.vy_m_s = in_head.y();
   return result;
 }
 

@@ -1,34 +1,55 @@
-// How fast the head moves, from how the body deforms on a skin that slides along but not across.
+// How the head moves over the ground, from how the body deforms on a skin that slides along but hardly across.
 #pragma once
 
 #include <Eigen/Core>
+#include <cereal/types/vector.hpp>
 #include <vector>
 
-#include "guidance/body_chain.hpp"
+#include "robot/robot_model.hpp"
 
 namespace constrictor::guidance {
 
 struct OdometryConfig {
-  double friction_along = 0.05;
-  double friction_across = 0.5;
-  double slip_scale_m_s = 0.03;   ///< sliding speed from which friction counts as fully developed
-  double gyro_sd_rad_s = 0.01;    ///< how far the measured yaw rate is trusted
-  double lateral_sd_m_s = 0.05;   ///< typical lateral slip of a module, sets the gyro's weight
+  double friction_along_share = 0.85;  ///< of the robot file's coefficient along the modules
+  double slip_scale_m_s = 0.01;        ///< sliding speed from which friction is fully developed
+  double joint_gain = 0.25;            ///< share of a joint's measured angle against its integrated rate
 };
 
-/// Velocity of the head in its own frame.
-struct HeadVelocity {
-  Eigen::Vector2d v_m_s{0.0, 0.0};
-  double rate_rad_s = 0.0;
-  double slip_m_s = 0.0;  ///< weighted mean of the lateral slip that remains: how well the body fits its track
+struct OdometryState {
+  bool started = false;
+  double yaw_rad = 0.0;                ///< of the IMU, at the previous step
+  std::vector<double> joint_rad;       ///< smoothed angles
+  std::vector<double> joint_rad_s;     ///< measured rates of the previous step
+  double vx_m_s = 0.0, vy_m_s = 0.0;   ///< of the centre of mass, in the head's frame
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(started, yaw_rad, joint_rad, joint_rad_s, vx_m_s, vy_m_s);
+  }
 };
 
-/// Least dissipation: a body that is slow against its friction moves such that the power lost to Coulomb friction,
-/// sum of N_i (mu_across |v_across| + mu_along |v_along|), is smallest for the given shape change. That is a robust
-/// regression on the no-lateral-slip constraint of all modules, solved by iteratively reweighted least squares; with little slip
-/// it is the constraint's weighted least-squares solution. `load_n`: normal force on each module (0: it does not touch the
-/// ground). `guess`: the solution of the previous tick. Non-finite loads count as 1.
-HeadVelocity head_velocity(const BodyChain& chain, const std::vector<double>& load_n, double gyro_rad_s,
-                           const HeadVelocity& guess, const OdometryConfig& config);
+/// What is measured in one step.
+struct OdometryInput {
+  const double* joint_rad = nullptr;   ///< joints of the robot, head to tail; finite
+  const double* joint_rad_s = nullptr;
+  double yaw_rad = 0.0;                ///< of the IMU; finite
+  std::vector<double> load_n;          ///< normal force on each module; empty: all bear the same
+  Eigen::Vector2d push_n{0.0, 0.0};    ///< sum of the contact forces by things other than the ground, in the head's frame
+  double dt_s = 0.02;
+};
+
+struct HeadStep {
+  Eigen::Vector2d step_m{0.0, 0.0};  ///< of the head, in the direction that it has in the middle of the step
+  double turn_rad = 0.0;
+  double slip_m_s = 0.0;             ///< mean sideways slip of the modules, weighted by load
+};
+
+/// One step of the body's balance of momentum in the plane with Coulomb friction under each module, as a convex problem:
+/// the velocity V of the centre of mass minimises
+///   M |V - V_before - push dt / M|^2 / (2 dt) + sum_i N_i (mu_across |v_i across| + mu_along |v_i along|),
+/// where v_i is V plus what the joints and the measured turn add (implicit Euler on the dissipation potential; solved by
+/// iteratively reweighted least squares). With high friction across it is the no-lateral-slip constraint of all modules in
+/// a robust sense; with none the centre of mass keeps its velocity. The first call only starts the state.
+HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const OdometryConfig& config,
+                          const OdometryInput& input);
 
 }  // namespace constrictor::guidance

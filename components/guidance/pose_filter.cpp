@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "guidance/body_chain.hpp"
+#include "guidance/planar.hpp"
 
 namespace constrictor::guidance {
 

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "guidance/guidance.hpp"
-#include "robot/kinematics.hpp"
 #include "runtime/local_run.hpp"
 #include "runtime/share.hpp"
 
@@ -118,19 +117,6 @@ TEST(GuidanceComponent, ARestartChangesNothing) {
     if (i % 37 == 11) broken->restart("guidance");
   }
   EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
-}
-
-TEST(GuidanceComponent, ItsBodyIsThatOfTheRobotLibrary) {
-  const RobotModel model = load_robot(share_path("components/robot/mamba.yaml"));
-  std::vector<double> q(model.joints.size()), rate(q.size(), 0.0);
-  for (std::size_t i = 0; i < q.size(); i += 2) q[i] = 0.4 * std::sin(static_cast<double>(i));
-  const guidance::BodyChain chain = guidance::body_chain(model, q.data(), rate.data());
-  const auto poses = planar_module_poses(model, q);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_NEAR(chain.links[i].p_m.x(), poses[i].x_m, 1e-12);
-    EXPECT_NEAR(chain.links[i].p_m.y(), poses[i].y_m, 1e-12);
-    EXPECT_NEAR(chain.links[i].heading_rad, poses[i].yaw_rad, 1e-12);
-  }
 }
 
 }  // namespace
