@@ -21,7 +21,7 @@ OverviewConfiguration load_overview(const std::filesystem::path& path) {
   configuration.surroundings.behind_m = file.number("behind_m", {0.0, 20.0});
   configuration.surroundings.ahead_m = file.number("ahead_m", {0.0, 20.0});
   configuration.surroundings.half_width_m = file.number("half_width_m", {0.0, 20.0});
-  configuration.inset = file.number("inset", {0.0, 0.9});
+  configuration.inset = file.number("inset", {0.0, 0.6});
   configuration.render.samples = static_cast<int>(file.integer("samples", 1, 4));
   if (configuration.render.samples != 1 && configuration.render.samples != 4) {
     throw file.error("samples", "found " + std::to_string(configuration.render.samples) + ", accepted 1 or 4");
@@ -66,6 +66,7 @@ void Overview::draw_inset(const ScenePoses& poses) {
   for (const Eigen::Isometry3d& X_WModule : poses.X_WModule) body.push_back(X_WModule.translation());
   const int width = static_cast<int>(camera_.width * configuration_.inset);
   const int height = static_cast<int>(camera_.height * configuration_.inset);
+  if (width < 8 || height < 8) return;
   const PinholeCamera camera = fit_view(body, heading_rad_, kInsetElevation_rad, 0.5, width, height, kInsetMargin);
   const std::vector<std::uint8_t>& inset = inset_renderer_->draw(poses, camera, shadow_region_of(body));
   const int top = camera_.height - height - 2 * kBorder;
