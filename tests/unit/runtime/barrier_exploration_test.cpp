@@ -130,9 +130,12 @@ TEST(BarrierExploration, ACrashOfControlAnywhereGivesTheSameResult) {
   explore({{plant(), navigation(), control()}, kTicksWithCrash, {"control"}, 1, 0, false});
 }
 
+#ifdef CONSTRICTOR_EXPLORE_LONG
 TEST(BarrierExploration, ACrashOfASlowerMemberAnywhereGivesTheSameResult) {
   explore({{plant(), navigation({2, 2}), control()}, kTicksWithCrash, {"navigation"}, 1, 0, false});
 }
+
+#endif
 
 TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
   explore({{plant(), control()}, 1, {"control"}, 1, 0});
