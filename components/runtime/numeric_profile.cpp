@@ -14,7 +14,7 @@ namespace constrictor {
 const std::vector<std::pair<std::string, std::string>>& numeric_environment() {
   static const std::vector<std::pair<std::string, std::string>> variables = {
       {"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"},
-      {"OPENCV_CPU_DISABLE", "AVX512_SKX,AVX2,FMA3,AVX,FP16,SSE4_2,SSE4_1,SSSE3"},
+      {"OPENCV_CPU_DISABLE", "AVX512-SKX,AVX2,FMA3,AVX,FP16,SSE4.2,SSE4.1,SSSE3"},
       {"OPENCV_OPENCL_RUNTIME", "disabled"},
       {"LP_NATIVE_VECTOR_WIDTH", "128"},
       {"GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1"},
