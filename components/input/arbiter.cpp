@@ -1,6 +1,11 @@
 #include "input/arbiter.hpp"
 
+#include <cstring>
+
 namespace constrictor {
+namespace {
+constexpr std::uint64_t kMaxOwnGoal = 0xffffffffu;
+}
 
 Ruling Arbiter::refuse(const std::string& reason) {
   ++state_.refused;
@@ -8,65 +13,101 @@ Ruling Arbiter::refuse(const std::string& reason) {
   return {Ruling::kRefused};
 }
 
-void Arbiter::take(const msg::Request& request) {
+void Arbiter::leave_to_nobody() {
+  state_.level = msg::kAuthorityNone;
+  state_.holder.clear();
+}
+
+Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
+  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  if (name.empty()) return refuse("source: found nothing, accepted a name");
+  // Values that the runtime's validation has let through are none of the enumerations' (outside requests may come by other ways).
+  if (built_in ? request.level != msg::kAuthorityPlanner
+               : request.level != msg::kAuthorityExternal && request.level != msg::kAuthorityOperator) {
+    return refuse("level of " + name + ": found " + std::to_string(request.level) +
+                  (built_in ? ", accepted 1" : ", accepted 2 (external planner) or 3 (operator)"));
+  }
+  const auto known = state_.sources.find(name);
+  if (known != state_.sources.end() && (known->second.index == 0) != built_in) {
+    return refuse("source " + name + ": that name is the " + (built_in ? "name of somebody outside" : "built-in planner's"));
+  }
+  const auto [entry, first] = state_.sources.try_emplace(name);
+  Source& source = entry->second;
+  if (first && !built_in) source.index = state_.next_index++;
+  const std::uint64_t number = request.header.sequence_number;
+  if (number <= source.sequence) {
+    return refuse("sequence_number of " + name + ": found " + std::to_string(number) + ", accepted more than " +
+                  std::to_string(source.sequence));
+  }
+  source.sequence = number;
+
+  switch (request.kind) {
+    case msg::kRequestEmergencyStop:
+      state_.stopped = true;
+      state_.stopper = name;
+      return {Ruling::kCancelAll};
+    case msg::kRequestClearStop: return clear_stop(request);
+    case msg::kRequestTask:
+    case msg::kRequestTake:
+    case msg::kRequestRelease: break;
+    case msg::kRequestMotion: return refuse(name + ": direct motion is not connected to control");
+    default: return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 5");
+  }
+  if (state_.stopped) return refuse(name + ": the emergency stop of " + state_.stopper + " is latched");
+  if (request.kind == msg::kRequestRelease) return release(name);
+  const bool holds = state_.holder == name;
+  if (!holds && request.level <= state_.level) return refuse(name + ": authority is with " + state_.holder);
+  if (request.kind == msg::kRequestTask) return decide_task(request, source);
+  const bool takes_over = !holds && state_.level != msg::kAuthorityNone;
   state_.level = request.level;
-  state_.holder = request.source;
+  state_.holder = name;
+  return {takes_over ? Ruling::kCancelAll : Ruling::kNothing};
 }
 
-std::uint64_t Arbiter::goal_id(const msg::Request& request) const {
-  const auto source = state_.sources.find(request.source);
-  const std::uint64_t index = source == state_.sources.end() ? 0 : source->second.index;
-  return (static_cast<std::uint64_t>(request.level) << 48) + (index << 32) + (request.goal_id & 0xffffffffu);
-}
-
-Ruling Arbiter::decide(const msg::Request& request) {
-  const std::string source = request.source;
-  if (source.empty()) return refuse("source: found nothing, accepted a name");
-  const auto [entry, first] = state_.sources.try_emplace(source);
-  // The built-in planner is always number 0, so that it knows its goals' ids whoever else spoke before.
-  if (first) entry->second.index = request.level == msg::kAuthorityPlanner ? 0 : static_cast<std::uint32_t>(state_.sources.size());
-  if (request.header.sequence_number <= entry->second.sequence) {
-    return refuse("sequence_number of " + source + ": found " + std::to_string(request.header.sequence_number) +
-                  ", accepted more than " + std::to_string(entry->second.sequence));
-  }
-  entry->second.sequence = request.header.sequence_number;
-  const bool holds = state_.holder == source;
-
-  if (request.kind == msg::kRequestEmergencyStop) {
-    state_.stopped = true;
-    state_.stopper = source;
-    return {Ruling::kCancelAll};
-  }
-  if (request.kind == msg::kRequestClearStop) {
-    if (!state_.stopped) return refuse("clear stop: found no emergency stop");
-    if (request.level < msg::kAuthorityOperator && source != state_.stopper) {
-      return refuse("clear stop of " + source + ": accepted from an operator or from " + state_.stopper);
+Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
+  const std::string name = request.source;
+  const std::uint64_t goal = request.goal_id;
+  if (request.command == msg::kCommandStart) {
+    if (request.task == msg::kTaskNone || request.task >= msg::kTaskCount) {
+      return refuse("task of " + name + ": found " + std::to_string(request.task) + ", accepted 1 to 8");
     }
-    state_.stopped = false;
-    state_.level = msg::kAuthorityNone;  // no motion begins by itself: somebody must ask anew
-    state_.holder.clear();
-    return {Ruling::kNothing};
+    if (goal <= source.last_goal || goal > kMaxOwnGoal) {
+      return refuse("goal_id of " + name + ": found " + std::to_string(goal) + ", accepted " + std::to_string(source.last_goal + 1) +
+                    " to " + std::to_string(kMaxOwnGoal));
+    }
+    source.last_goal = goal;
+  } else if (request.command != msg::kCommandCancel) {
+    return refuse("command of " + name + ": found " + std::to_string(request.command) + ", accepted 0 or 1");
+  } else if (goal == 0 || goal > source.last_goal) {
+    return refuse("cancel of " + name + ": goal " + std::to_string(goal) + " was never started");
   }
-  if (state_.stopped) return refuse(source + ": emergency stop of " + state_.stopper + " is latched");
-  if (request.kind == msg::kRequestRelease) {
-    if (!holds) return refuse("release of " + source + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
-    state_.level = msg::kAuthorityNone;
-    state_.holder.clear();
-    return {Ruling::kCancelAll};
+  state_.level = request.level;
+  state_.holder = name;
+  return {Ruling::kForward, mapped_goal_id(request.level, source.index, goal)};
+}
+
+Ruling Arbiter::clear_stop(const msg::Request& request) {
+  const std::string name = request.source;
+  if (!state_.stopped) return refuse("clear stop of " + name + ": there is no emergency stop");
+  if (request.level < msg::kAuthorityOperator && name != state_.stopper) {
+    return refuse("clear stop of " + name + ": accepted from an operator or from " + state_.stopper);
   }
-  if (!holds && request.level <= state_.level) {
-    return refuse(source + ": authority is with " + state_.holder);
+  state_.stopped = false;
+  leave_to_nobody();  // no motion begins by itself: somebody must ask anew
+  return {Ruling::kNothing};
+}
+
+Ruling Arbiter::release(const std::string& source) {
+  if (state_.holder != source) {
+    return refuse("release of " + source + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
   }
-  const bool over = !holds && state_.level != msg::kAuthorityNone;
-  take(request);
-  if (request.kind == msg::kRequestTask) return {Ruling::kForward};
-  return {over ? Ruling::kCancelAll : Ruling::kNothing};
+  leave_to_nobody();
+  return {Ruling::kCancelAll};
 }
 
 Ruling Arbiter::on_death(const std::string& source) {
   if (state_.holder != source) return {Ruling::kNothing};
-  state_.level = msg::kAuthorityNone;
-  state_.holder.clear();
+  leave_to_nobody();
   return {Ruling::kCancelAll};
 }
 

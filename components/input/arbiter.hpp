@@ -5,7 +5,6 @@
 #include <cereal/types/string.hpp>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "constrictor/messages.hpp"
@@ -15,31 +14,39 @@ namespace constrictor {
 /// Everything the arbiter remembers.
 struct ArbiterState {
   struct Source {
-    std::uint64_t sequence = 0;  ///< newest sequence number obeyed or refused
-    std::uint32_t index = 0;     ///< order of first appearance
+    std::uint64_t sequence = 0;   ///< newest sequence number that was ruled on
+    std::uint32_t index = 0;      ///< order of first appearance; the built-in planner has 0
+    std::uint64_t last_goal = 0;  ///< newest goal it started, by its own count
     template <class Archive>
     void serialize(Archive& archive) {
-      archive(sequence, index);
+      archive(sequence, index, last_goal);
     }
   };
   std::uint8_t level = msg::kAuthorityNone;
-  std::string holder;            ///< source that holds authority
-  bool stopped = false;          ///< latched emergency stop
+  std::string holder;             ///< source that holds authority
+  bool stopped = false;           ///< latched emergency stop
   std::string stopper;
   std::map<std::string, Source> sources;
+  std::uint32_t next_index = 1;
   std::uint64_t refused = 0;
-  std::string refusal;           ///< why the last refused request was refused
+  std::string refusal;            ///< why the last refused request was refused
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(level, holder, stopped, stopper, sources, refused, refusal);
+    archive(level, holder, stopped, stopper, sources, next_index, refused, refusal);
   }
 };
 
 /// What a request leads to.
 struct Ruling {
-  enum Kind { kRefused, kForward, kCancelAll, kNothing };
-  Kind kind = kNothing;          ///< kForward: pass the task on; kCancelAll: whatever runs must end
+  enum Kind {
+    kRefused,
+    kForward,    ///< pass the task command on with `goal_id`
+    kCancelAll,  ///< whatever runs must end
+    kNothing,
+  };
+  Kind kind = kNothing;
+  std::uint64_t goal_id = 0;  ///< of kForward: as it goes on task/command
 };
 
 /// Emergency stop over operator over external planner over built-in planner. A task request of a source of higher level than
@@ -48,18 +55,29 @@ class Arbiter {
  public:
   explicit Arbiter(ArbiterState& state) : state_(state) {}
 
-  /// Rules on one request; `name` and bounds were validated by the runtime before.
-  Ruling decide(const msg::Request& request);
-  /// The holder's process is gone: authority falls back to nobody and the robot holds its posture.
+  /// Rules on a request of the built-in planner (topic planner/request).
+  Ruling decide_planner(const msg::Request& request) { return decide(request, true); }
+  /// Rules on a request from outside the run: never at the built-in planner's level, nor under its name.
+  Ruling decide_outside(const msg::Request& request) { return decide(request, false); }
+  /// A source's process is gone. If it held authority, that falls to nobody and the robot holds its posture.
   Ruling on_death(const std::string& source);
-
-  /// The goal's id in task/command: (level << 48) + (index of the source << 32) + low 32 bits of the source's own id.
-  [[nodiscard]] std::uint64_t goal_id(const msg::Request& request) const;
+  /// Counts a refusal that was decided elsewhere.
+  Ruling refuse(const std::string& reason);
 
  private:
-  Ruling refuse(const std::string& reason);
-  void take(const msg::Request& request);
+  using Source = ArbiterState::Source;
+  Ruling decide(const msg::Request& request, bool built_in);
+  Ruling decide_task(const msg::Request& request, Source& source);
+  Ruling clear_stop(const msg::Request& request);
+  Ruling release(const std::string& source);
+  void leave_to_nobody();
   ArbiterState& state_;
 };
+
+/// The goal's id on task/command: (level << 48) + (index of the source << 32) + the source's own id, so that goals of different
+/// sources never meet and each source knows the ids of its own.
+constexpr std::uint64_t mapped_goal_id(std::uint8_t level, std::uint32_t index, std::uint64_t own_id) {
+  return (static_cast<std::uint64_t>(level) << 48) + (static_cast<std::uint64_t>(index & 0xffffu) << 32) + (own_id & 0xffffffffu);
+}
 
 }  // namespace constrictor

@@ -1,51 +1,79 @@
 #include "input/input.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace constrictor {
 namespace {
+
 constexpr std::int64_t kAuthorityInterval_ticks = 50;
+constexpr std::int64_t kStale_ticks = 50;
+
+template <std::size_t N>
+void set_text(char (&field)[N], const std::string& text) {
+  std::copy_n(text.begin(), std::min(text.size(), N - 1), field);
 }
 
-Input::Input(Wiring& wiring, const Setup&)
+}  // namespace
+
+Input::Input(Wiring& wiring, const Setup&, std::shared_ptr<OutsideRequests> outside)
     : planner_requests_(wiring.events(topics::kPlannerRequest)),
       command_(wiring.output(topics::kTaskCommand)),
-      authority_(wiring.output(topics::kAuthority)) {}
+      authority_(wiring.output(topics::kAuthority)),
+      outside_(std::move(outside)) {}
 
 void Input::step(const Tick& tick) {
   commands_left_ = topics::kTaskCommand.max_per_tick;
+  Arbiter arbiter(state_.arbiter);
+  const std::uint8_t level_before = state_.arbiter.level;
+  const std::string holder_before = state_.arbiter.holder;
+  const bool stopped_before = state_.arbiter.stopped;
   bool changed = false;
-  for (const auto& request : planner_requests_) changed = rule(request) || changed;
+  if (outside_) {
+    for (const auto& item : outside_->latch()) {
+      const Ruling ruling = item.died ? arbiter.on_death(item.source) : arbiter.decide_outside(item.request);
+      changed = obey(ruling, item.request) || changed;
+    }
+  }
+  for (const auto& request : planner_requests_) {
+    const std::int64_t age_ticks = tick.index - request.header.tick;
+    const Ruling ruling = age_ticks > kStale_ticks
+                              ? arbiter.refuse("request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " +
+                                               std::to_string(kStale_ticks))
+                              : arbiter.decide_planner(request);
+    changed = obey(ruling, request) || changed;
+  }
+  changed = changed || state_.arbiter.level != level_before || state_.arbiter.holder != holder_before ||
+            state_.arbiter.stopped != stopped_before;
   const bool due = state_.last_authority_tick < 0 || tick.index - state_.last_authority_tick >= kAuthorityInterval_ticks;
   if (changed || due) publish_authority(tick);
 }
 
-bool Input::rule(const msg::Request& request) {
-  const std::string holder_before = state_.arbiter.holder;
-  const std::uint64_t refused_before = state_.arbiter.refused;
-  const bool stopped_before = state_.arbiter.stopped;
-  Arbiter arbiter(state_.arbiter);
-  const Ruling ruling = arbiter.decide(request);
-  if (ruling.kind == Ruling::kForward) {
-    if (commands_left_ == 0) {
-      ++state_.arbiter.refused;
-      state_.arbiter.refusal = "more than " + std::to_string(topics::kTaskCommand.max_per_tick) + " task commands in a tick";
-      return true;
-    }
-    --commands_left_;
-    msg::TaskCommand command{};
-    command.goal_id = arbiter.goal_id(request);
-    command.command = request.command;
-    command.task = request.task;
-    command.parameters = request.parameters;
-    command_.write(command);
-    state_.running_goal = command.goal_id;
-    state_.running_task = request.task;
-  } else if (ruling.kind == Ruling::kCancelAll) {
-    cancel_running();
+bool Input::obey(const Ruling& ruling, const msg::Request& request) {
+  switch (ruling.kind) {
+    case Ruling::kNothing: return false;
+    case Ruling::kRefused: return true;
+    case Ruling::kCancelAll: cancel_running(); return true;
+    case Ruling::kForward: break;
   }
-  return state_.arbiter.holder != holder_before || state_.arbiter.refused != refused_before ||
-         state_.arbiter.stopped != stopped_before || ruling.kind == Ruling::kForward;
+  if (commands_left_ <= 1) {
+    Arbiter(state_.arbiter).refuse("more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
+    return true;
+  }
+  --commands_left_;
+  msg::TaskCommand command{};
+  command.goal_id = ruling.goal_id;
+  command.command = request.command;
+  command.task = request.task;
+  command.parameters = request.parameters;
+  command_.write(command);
+  if (request.command == msg::kCommandStart) {
+    state_.last_goal = state_.running_goal = ruling.goal_id;
+    state_.running_task = request.task;
+  } else if (ruling.goal_id == state_.running_goal) {
+    state_.running_goal = 0;
+  }
+  return true;
 }
 
 void Input::cancel_running() {
@@ -56,26 +84,25 @@ void Input::cancel_running() {
   command.command = msg::kCommandCancel;
   command.task = state_.running_task;
   command_.write(command);
+  state_.running_goal = 0;
 }
 
 void Input::publish_authority(const Tick& tick) {
   state_.last_authority_tick = tick.index;
-  const auto set = [](auto& field, const std::string& text) {
-    const std::size_t length = std::min(text.size(), std::size(field) - 1);
-    std::copy_n(text.begin(), length, field);
-  };
   msg::Authority authority{};
   authority.level = state_.arbiter.stopped ? msg::kAuthorityStop : state_.arbiter.level;
-  set(authority.source, state_.arbiter.stopped ? state_.arbiter.stopper : state_.arbiter.holder);
-  authority.goal_id = state_.running_goal;
+  set_text(authority.source, state_.arbiter.stopped ? state_.arbiter.stopper : state_.arbiter.holder);
+  authority.goal_id = state_.last_goal;
   authority.refused_count = state_.arbiter.refused;
-  set(authority.refusal, state_.arbiter.refusal);
+  set_text(authority.refusal, state_.arbiter.refusal);
   authority.emergency_stop = state_.arbiter.stopped;
   authority_.write(authority);
 }
 
-ComponentFactory make_input_factory() {
-  return {"input", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Input>(wiring, setup); }};
+ComponentFactory make_input_factory(std::shared_ptr<OutsideRequests> outside) {
+  return {"input", [outside = std::move(outside)](Wiring& wiring, const Setup& setup) {
+            return std::make_unique<Input>(wiring, setup, outside);
+          }};
 }
 
 }  // namespace constrictor

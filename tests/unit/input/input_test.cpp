@@ -1,9 +1,14 @@
+// The arbiter, the latch for outside requests, and `input` as a member of a run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <map>
 #include <random>
 #include <set>
 
-#include "input/arbiter.hpp"
+#include "input/input.hpp"
+#include "runtime/local_run.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,86 +24,283 @@ msg::Request request(const std::string& source, std::uint8_t level, std::uint8_t
   return r;
 }
 
+constexpr auto kPlanner = msg::kAuthorityPlanner;
+constexpr auto kExternal = msg::kAuthorityExternal;
+constexpr auto kOperator = msg::kAuthorityOperator;
+
 class ArbiterTest : public ::testing::Test {
  protected:
   ArbiterState state_;
   Arbiter arbiter_{state_};
-  Ruling::Kind decide(const msg::Request& r) { return arbiter_.decide(r).kind; }
+  Ruling decide(const msg::Request& r) { return r.level == kPlanner ? arbiter_.decide_planner(r) : arbiter_.decide_outside(r); }
+  Ruling::Kind kind(const msg::Request& r) { return decide(r).kind; }
 };
 
 TEST_F(ArbiterTest, BuiltInPlannerTakesAuthorityByItsFirstTask) {
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 1)), Ruling::kForward);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 1)), Ruling::kForward);
   EXPECT_EQ(state_.holder, "planner");
 }
 
 TEST_F(ArbiterTest, AHigherLevelTakesOverAndALowerOneIsRefusedUntilRelease) {
-  decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 1));
-  EXPECT_EQ(decide(request("pilot", msg::kAuthorityOperator, msg::kRequestTask, 1)), Ruling::kForward);
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 2)), Ruling::kRefused);
+  decide(request("planner", kPlanner, msg::kRequestTask, 1, 1));
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestTask, 1)), Ruling::kForward);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 2, 2)), Ruling::kRefused);
   EXPECT_NE(state_.refusal.find("pilot"), std::string::npos);
-  EXPECT_EQ(decide(request("pilot", msg::kAuthorityOperator, msg::kRequestRelease, 2)), Ruling::kCancelAll);
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 3)), Ruling::kForward);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestRelease, 2)), Ruling::kCancelAll);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 3, 3)), Ruling::kForward);
+}
+
+TEST_F(ArbiterTest, TakingAuthorityFromAnotherCancelsItsTaskAndFromNobodyDoesNothing) {
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestTake, 1)), Ruling::kNothing);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestTake, 1)), Ruling::kCancelAll);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestTake, 2)), Ruling::kNothing);
 }
 
 TEST_F(ArbiterTest, ASecondSourceOfTheSameLevelIsRefused) {
-  decide(request("a", msg::kAuthorityExternal, msg::kRequestTask, 1));
-  EXPECT_EQ(decide(request("b", msg::kAuthorityExternal, msg::kRequestTask, 1)), Ruling::kRefused);
+  decide(request("a", kExternal, msg::kRequestTask, 1));
+  EXPECT_EQ(kind(request("b", kExternal, msg::kRequestTask, 1)), Ruling::kRefused);
+}
+
+TEST_F(ArbiterTest, ReleaseByWhoDoesNotHoldIsRefused) {
+  decide(request("a", kExternal, msg::kRequestTask, 1));
+  EXPECT_EQ(kind(request("b", kExternal, msg::kRequestRelease, 1)), Ruling::kRefused);
+  EXPECT_EQ(state_.holder, "a");
 }
 
 TEST_F(ArbiterTest, EmergencyStopLatchesOverEverybodyAndClearingStartsNoMotion) {
-  decide(request("pilot", msg::kAuthorityOperator, msg::kRequestTask, 1));
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestEmergencyStop, 1)), Ruling::kCancelAll);
-  EXPECT_EQ(decide(request("pilot", msg::kAuthorityOperator, msg::kRequestTask, 2)), Ruling::kRefused);
-  EXPECT_EQ(decide(request("other", msg::kAuthorityPlanner, msg::kRequestClearStop, 1)), Ruling::kRefused);
-  EXPECT_EQ(decide(request("pilot", msg::kAuthorityOperator, msg::kRequestClearStop, 3)), Ruling::kNothing);
+  decide(request("pilot", kOperator, msg::kRequestTask, 1));
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestEmergencyStop, 1)), Ruling::kCancelAll);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestTask, 2, 2)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestClearStop, 1)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestClearStop, 3)), Ruling::kNothing);
   EXPECT_EQ(state_.level, msg::kAuthorityNone);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestClearStop, 4)), Ruling::kRefused);  // there is none any more
 }
 
-TEST_F(ArbiterTest, RepeatedOrOlderSequenceNumbersAreRefused) {
-  decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 5));
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 5)), Ruling::kRefused);
-  EXPECT_EQ(decide(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 4)), Ruling::kRefused);
+TEST_F(ArbiterTest, RepeatedOrOlderSequenceNumbersAndGoalsAreRefused) {
+  decide(request("planner", kPlanner, msg::kRequestTask, 5, 3));
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 5, 4)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 4, 4)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 6, 3)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 7, std::uint64_t{1} << 32)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 8, 4)), Ruling::kForward);
+}
+
+TEST_F(ArbiterTest, ValuesOutsideTheEnumerationsAreRefused) {
+  auto r = request("x", kExternal, msg::kRequestTask, 1);
+  r.task = msg::kTaskNone;
+  EXPECT_EQ(kind(r), Ruling::kRefused);
+  r = request("x", kExternal, msg::kRequestTask, 2);
+  r.command = 7;
+  EXPECT_EQ(kind(r), Ruling::kRefused);
+  EXPECT_EQ(kind(request("x", kExternal, 99, 3)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("", kExternal, msg::kRequestTask, 4)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("x", msg::kAuthorityStop, msg::kRequestTask, 5)), Ruling::kRefused);
+  EXPECT_EQ(state_.level, msg::kAuthorityNone);
+  EXPECT_EQ(state_.refused, 5u);
+}
+
+TEST_F(ArbiterTest, NobodyOutsideActsAsTheBuiltInPlanner) {
+  EXPECT_EQ(arbiter_.decide_outside(request("planner", kPlanner, msg::kRequestTask, 1)).kind, Ruling::kRefused);
+  decide(request("planner", kPlanner, msg::kRequestTask, 1));
+  EXPECT_EQ(arbiter_.decide_outside(request("planner", kOperator, msg::kRequestTask, 2, 2)).kind, Ruling::kRefused);
 }
 
 TEST_F(ArbiterTest, DeathOfTheHolderLeavesAuthorityWithNobody) {
-  decide(request("pilot", msg::kAuthorityOperator, msg::kRequestTask, 1));
+  decide(request("pilot", kOperator, msg::kRequestTask, 1));
   EXPECT_EQ(arbiter_.on_death("planner").kind, Ruling::kNothing);
   EXPECT_EQ(arbiter_.on_death("pilot").kind, Ruling::kCancelAll);
   EXPECT_TRUE(state_.holder.empty());
 }
 
+TEST_F(ArbiterTest, ACancelNamesTheGoalThatItsSourceStarted) {
+  const auto started = decide(request("x", kExternal, msg::kRequestTask, 1, 7)).goal_id;
+  auto cancel = request("x", kExternal, msg::kRequestTask, 2, 7);
+  cancel.command = msg::kCommandCancel;
+  EXPECT_EQ(decide(cancel).goal_id, started);
+  cancel.header.sequence_number = 3;
+  cancel.goal_id = 8;
+  EXPECT_EQ(kind(cancel), Ruling::kRefused);
+}
+
 TEST_F(ArbiterTest, GoalIdsOfDifferentSourcesNeverCollide) {
   std::set<std::uint64_t> ids;
   std::uint64_t sequence = 0;
-  for (const std::string source : {"a", "b", "c"}) {
-    for (std::uint8_t level = msg::kAuthorityExternal; level <= msg::kAuthorityOperator; ++level) {
-      for (std::uint64_t goal = 1; goal <= 3; ++goal) {
-        auto r = request(source, level, msg::kRequestTake, ++sequence, goal);
-        decide(r);
-        EXPECT_TRUE(ids.insert(arbiter_.goal_id(r)).second);
-      }
+  for (std::uint64_t goal = 1; goal <= 50; ++goal) {
+    for (const auto& [source, level] : std::vector<std::pair<std::string, std::uint8_t>>{
+             {"planner", kPlanner}, {"a", kExternal}, {"b", kExternal}, {"c", kOperator}}) {
+      const auto ruling = decide(request(source, level, msg::kRequestTask, ++sequence, goal));
+      ASSERT_EQ(ruling.kind, Ruling::kForward);
+      EXPECT_TRUE(ids.insert(ruling.goal_id).second);
+      decide(request(source, level, msg::kRequestRelease, ++sequence));
     }
   }
 }
 
-// Independent statement of the rule: after any sequence of requests, a forwarded task came from the highest level among those
-// that asked since it became free, and never while stopped.
-TEST_F(ArbiterTest, RandomRequestsNeverForwardPastTheHolderOrAStop) {
+// Stated independently of the arbiter: a task goes through only if its source holds authority or outranks who does, and never
+// while stopped; nothing but the requests that may change the holder does.
+TEST_F(ArbiterTest, RandomRequestsNeverPassTheHolderOrAStop) {
   std::mt19937 random(7);
-  const std::vector<std::pair<std::string, std::uint8_t>> sources = {{"planner", 1}, {"x", 2}, {"y", 2}, {"pilot", 3}};
+  const std::vector<std::pair<std::string, std::uint8_t>> sources = {
+      {"planner", kPlanner}, {"x", kExternal}, {"y", kExternal}, {"pilot", kOperator}};
   std::uint64_t sequence = 0;
+  int forwarded = 0;
   for (int i = 0; i < 20000; ++i) {
     const auto& [name, level] = sources[random() % sources.size()];
-    const auto kind = static_cast<std::uint8_t>(random() % 5);
-    const std::uint8_t level_before = state_.level;
-    const std::string holder_before = state_.holder;
-    const bool stopped_before = state_.stopped;
-    if (decide(request(name, level, kind, ++sequence)) == Ruling::kForward) {
-      EXPECT_FALSE(stopped_before);
-      EXPECT_TRUE(holder_before == name || level > level_before);
+    const auto what = static_cast<std::uint8_t>(random() % 6);
+    const ArbiterState before = state_;
+    ++sequence;
+    const auto ruling = kind(request(name, level, what, sequence, sequence));
+    if (ruling == Ruling::kForward) {
+      ++forwarded;
+      EXPECT_EQ(what, msg::kRequestTask);
+      EXPECT_FALSE(before.stopped);
+      EXPECT_TRUE(before.holder == name || level > before.level);
       EXPECT_EQ(state_.holder, name);
+    } else if (ruling == Ruling::kRefused) {
+      EXPECT_EQ(state_.holder, before.holder);
+      EXPECT_EQ(state_.level, before.level);
+      EXPECT_EQ(state_.stopped, before.stopped);
+      EXPECT_EQ(state_.refused, before.refused + 1);
     }
   }
+  EXPECT_GT(forwarded, 100);
+}
+
+TEST(OutsideRequests, OrderOfArrivalDoesNotMatter) {
+  std::vector<msg::Request> requests;
+  for (const std::string source : {"b", "a", "c"}) {
+    for (std::uint64_t number = 1; number <= 4; ++number) {
+      requests.push_back(request(source, kExternal, msg::kRequestTask, number, number));
+    }
+  }
+  std::mt19937 random(3);
+  for (int round = 0; round < 50; ++round) {
+    std::shuffle(requests.begin(), requests.end(), random);
+    OutsideRequests outside;
+    outside.add_death("b");
+    for (const auto& r : requests) outside.add(r);
+    const auto items = outside.latch();
+    ASSERT_EQ(items.size(), 13u);
+    std::string order;
+    for (const auto& item : items) order += item.source + (item.died ? "x" : std::to_string(item.request.header.sequence_number));
+    EXPECT_EQ(order, "a1a2a3a4b1b2b3b4bxc1c2c3c4");
+    EXPECT_TRUE(outside.latch().empty());
+  }
+}
+
+TEST(OutsideRequests, AFloodIsBoundedButAnEmergencyStopGetsThrough) {
+  OutsideRequests outside(8);
+  for (std::uint64_t i = 1; i <= 100; ++i) outside.add(request("x", kExternal, msg::kRequestTask, i, i));
+  outside.add(request("x", kExternal, msg::kRequestEmergencyStop, 101));
+  EXPECT_EQ(outside.dropped(), 92u);
+  const auto items = outside.latch();
+  ASSERT_EQ(items.size(), 9u);
+  EXPECT_EQ(items.back().request.kind, msg::kRequestEmergencyStop);
+}
+
+// ---- as a member of a run ----
+
+struct Nothing {
+  int steps = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(steps);
+  }
+};
+
+class IdlePlant : public Plant {
+ public:
+  void sample(const Tick&) override {}
+  void step(const Tick&) override {}
+  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+};
+
+using Script = std::map<std::int64_t, std::vector<msg::Request>>;
+
+/// Writes planner requests by tick.
+class ScriptedPlanner : public StatefulComponent<Nothing> {
+ public:
+  ScriptedPlanner(Wiring& wiring, Script script) : script_(std::move(script)), request_(wiring.output(topics::kPlannerRequest)) {}
+  void step(const Tick& tick) override {
+    const auto entry = script_.find(tick.index);
+    if (entry == script_.end()) return;
+    for (const auto& r : entry->second) request_.write(r);
+  }
+
+ private:
+  Script script_;
+  Output<msg::Request> request_;
+};
+
+std::vector<ComponentFactory> members(std::shared_ptr<OutsideRequests> outside, const Script& script) {
+  return {{"physics", [](Wiring&, const Setup&) { return std::make_unique<IdlePlant>(); }},
+          make_input_factory(std::move(outside)),
+          {"planner", [&script](Wiring& wiring, const Setup&) { return std::make_unique<ScriptedPlanner>(wiring, script); }}};
+}
+
+class InputMemberTest : public ::testing::Test {
+ protected:
+  void run(const Script& script, std::int64_t ticks, std::map<std::int64_t, std::function<void()>> at = {}) {
+    outside_ = std::make_shared<OutsideRequests>();
+    LocalRun local(members(outside_, script), constrictor::Setup{});
+    local.subscribe(topics::kTaskCommand, std::function<void(const msg::TaskCommand&)>([&](const auto& m) { commands_.push_back(m); }));
+    local.subscribe(topics::kAuthority, std::function<void(const msg::Authority&)>([&](const auto& m) { authority_.push_back(m); }));
+    for (std::int64_t tick = 0; tick < ticks; ++tick) {
+      if (const auto entry = at.find(tick); entry != at.end()) entry->second();
+      local.advance(1);
+    }
+  }
+  static msg::Request task(std::uint64_t goal) { return request("planner", kPlanner, msg::kRequestTask, 0, goal); }
+
+  std::shared_ptr<OutsideRequests> outside_;
+  std::vector<msg::TaskCommand> commands_;
+  std::vector<msg::Authority> authority_;
+};
+
+TEST_F(InputMemberTest, ForwardsThePlannersTasksInTheirOrderWithMappedIds) {
+  run({{3, {task(1)}}, {10, {task(2), task(3)}}}, 20);
+  ASSERT_EQ(commands_.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(commands_[i].goal_id, mapped_goal_id(kPlanner, 0, i + 1));
+  EXPECT_EQ(commands_[0].header.tick, 4);
+  EXPECT_EQ(authority_.back().level, kPlanner);
+  EXPECT_EQ(authority_.back().goal_id, commands_[2].goal_id);
+}
+
+TEST_F(InputMemberTest, AuthorityIsSaidAtFirstAndEvery50Ticks) {
+  run({}, 120);
+  ASSERT_EQ(authority_.size(), 3u);
+  EXPECT_EQ(authority_[1].header.tick - authority_[0].header.tick, 50);
+}
+
+TEST_F(InputMemberTest, AStopFromOutsideCancelsTheRunningTaskAndThePlannerIsRefused) {
+  run({{2, {task(1)}}, {20, {task(2)}}}, 30,
+      {{10, [&] { outside_->add(request("pilot", kOperator, msg::kRequestEmergencyStop, 1)); }}});
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[1].command, msg::kCommandCancel);
+  EXPECT_EQ(commands_[1].goal_id, commands_[0].goal_id);
+  EXPECT_TRUE(authority_.back().emergency_stop);
+  EXPECT_EQ(authority_.back().level, msg::kAuthorityStop);
+  EXPECT_EQ(authority_.back().refused_count, 1u);
+  EXPECT_NE(std::string(authority_.back().refusal).find("pilot"), std::string::npos);
+}
+
+TEST_F(InputMemberTest, DeathOfAnOperatorCancelsItsTask) {
+  run({}, 30, {{5, [&] { outside_->add(request("pilot", kOperator, msg::kRequestTask, 1, 1)); }},
+               {15, [&] { outside_->add_death("pilot"); }}});
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[1].command, msg::kCommandCancel);
+  EXPECT_EQ(authority_.back().level, msg::kAuthorityNone);
+}
+
+TEST_F(InputMemberTest, AStopFindsRoomInATickFullOfTasks) {
+  run({}, 10, {{5, [&] {
+                  for (std::uint64_t i = 1; i <= 6; ++i) outside_->add(request("pilot", kOperator, msg::kRequestTask, i, i));
+                  outside_->add(request("z", kExternal, msg::kRequestEmergencyStop, 1));
+                }}});
+  ASSERT_EQ(commands_.size(), 4u);
+  EXPECT_EQ(commands_.back().command, msg::kCommandCancel);
+  EXPECT_EQ(commands_.back().goal_id, commands_[2].goal_id);
 }
 
 }  // namespace
