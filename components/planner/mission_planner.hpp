@@ -1,37 +1,19 @@
 // The autonomous planner: the state machine of the paper's Section IV and Fig. 3 with its recoveries, for any sequence of
-// colours. Pure: percepts, events and the pose estimate in, task requests out. It knows no coordinate of any scenario.
+// colours. Pure: percepts, events, pose and map estimates in, task requests out. It knows no coordinate of any scenario.
 #pragma once
 
 #include <cereal/types/string.hpp>
-#include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "planner/line_trail.hpp"
+#include "planner/mission_state.hpp"
 #include "planner/planner_config.hpp"
 
 namespace constrictor {
-
-/// States of Fig. 3. The numbers are serialised.
-enum class MissionState : std::uint8_t {
-  kSearchLineOrObject,  ///< start and after a loss: explore until line or object is seen
-  kFollowLine,          ///< towards the objects
-  kSearchObject,        ///< sweep for the object of the wanted colour
-  kTrackObject,         ///< approach it
-  kPregrasp,
-  kGrasp,
-  kSearchLine,          ///< holding the object: find the line again
-  kTransport,           ///< follow the line until the drop zone is found
-  kDrop,
-  kTurnRound,           ///< empty again: turn back towards the objects
-  kDone,
-  kFailed,
-};
-
-/// Name for messages and reports, e.g. "follow line".
-const char* name_of(MissionState state);
 
 /// What the planner sees in one step. Pointers are null where nothing has arrived yet.
 struct PlannerInputs {
@@ -40,13 +22,16 @@ struct PlannerInputs {
   const msg::ObjectPercepts* objects = nullptr;
   bool fresh_percepts = false;                 ///< `line` and `objects` are of a new image
   const msg::RobotPose* pose = nullptr;
+  const msg::FieldMap* map = nullptr;
   const msg::TaskStatus* status = nullptr;
+  const msg::Authority* authority = nullptr;
   std::vector<const msg::TaskEvent*> events;   ///< since the last step, in order
 };
 
-/// A task the planner wants started.
+/// A task the planner wants started or, if the mission failed, cancelled.
 struct WantedTask {
-  std::uint64_t goal_id = 0;
+  std::uint64_t goal_id = 0;                   ///< the planner's own; `input` maps it
+  std::uint8_t command = msg::kCommandStart;
   std::uint8_t task = msg::kTaskNone;
   msg::TaskParameters parameters{};
 };
@@ -54,23 +39,32 @@ struct WantedTask {
 /// Everything the planner remembers.
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
-  bool entered = false;             ///< the state's task was requested
-  double entered_s = 0.0;
+  bool asked = false;               ///< the state's task was requested
+  bool suspended = false;           ///< somebody else has authority
+  bool stopped = false;             ///< after an emergency stop, until an operator or external planner hands over
+  double last_s = 0.0;              ///< time of the previous step
+  double active_s = 0.0;            ///< mission time, without suspensions
+  double entered_s = 0.0;           ///< active time at which the state began
+  double asked_s = 0.0;             ///< active time of the request
+  double unlike_s = 0.0;            ///< for which navigation's word on what is held contradicts the state
+  double line_ended_s = -1e9;       ///< active time of the last end of the line
+  double zone_seen_s = -1e9;        ///< active time at which a zone of any colour was seen last
   std::uint64_t goals = 0;          ///< requests made
   std::uint16_t object_index = 0;   ///< of the sequence
   std::uint16_t recoveries = 0;
-  std::uint16_t object_seen = 0;    ///< consecutive images
-  std::uint16_t zone_seen = 0;
-  std::uint16_t line_seen = 0;
-  std::uint16_t searches = 0;       ///< search attempts in a row: alternates what is tried
-  bool has_outbound_yaw = false;
-  double outbound_yaw_rad = 0.0;    ///< heading in which the line was followed towards the objects
+  std::uint16_t object_images = 0;  ///< consecutive images that show the wanted object
+  std::uint16_t zone_images = 0;
+  std::uint16_t line_images = 0;
+  std::uint16_t searches = 0;       ///< requests of the two searches so far: alternates what is tried
+  std::uint8_t searching = msg::kTaskNone;  ///< what the present search does: explore or rotate
+  bool guided = false;              ///< it does so by memory
+  LineTrail trail;
   std::string reason;               ///< why the mission failed
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(state, entered, entered_s, goals, object_index, recoveries, object_seen, zone_seen, line_seen, searches,
-            has_outbound_yaw, outbound_yaw_rad, reason);
+    archive(state, asked, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s, goals,
+            object_index, recoveries, object_images, zone_images, line_images, searches, searching, guided, trail, reason);
   }
 };
 
@@ -78,21 +72,43 @@ class MissionPlanner {
  public:
   MissionPlanner(const PlannerConfig& config, MissionMemory& memory) : config_(config), memory_(memory) {}
 
-  /// Advances the state machine; returns the task to start, if any.
+  /// Advances the state machine; returns the request to make, if any.
   std::optional<WantedTask> step(const PlannerInputs& inputs);
-  /// Colour of the object being retrieved.
+  /// Colour of the object being retrieved (of the last one when all are done).
   [[nodiscard]] std::uint8_t colour() const;
 
  private:
-  [[nodiscard]] MissionState next(const PlannerInputs& inputs);
-  [[nodiscard]] std::optional<MissionState> next_by_event(const msg::TaskEvent& event);
-  [[nodiscard]] std::optional<MissionState> next_by_goal_end(const msg::TaskEvent& event);
+  // supervision
+  [[nodiscard]] bool may_command(const PlannerInputs& inputs);
+  void resume(const PlannerInputs& inputs);
+  // what follows, by cause; empty: nothing does
+  [[nodiscard]] std::optional<MissionState> next(const PlannerInputs& inputs);
+  [[nodiscard]] std::optional<MissionState> next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs);
+  [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state);
+  [[nodiscard]] std::optional<MissionState> next_by_status(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_percepts(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
-  void count_percepts(const PlannerInputs& inputs);
+  [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
+  [[nodiscard]] MissionState delivered();
+  /// Counts a recovery: `to`, or failure if there were too many.
   [[nodiscard]] MissionState recover(MissionState to);
+  [[nodiscard]] MissionState fail(const std::string& reason);
+  void enter(MissionState state);
+  // percepts
+  void count_percepts(const PlannerInputs& inputs);
+  [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
+  /// Whether the line leads the way the state wants: by the trail, if there is one.
+  [[nodiscard]] bool leads_right(const PlannerInputs& inputs) const;
+  /// [rad] by which the head would have to turn left to face the wanted way along the line; empty: unknown.
+  [[nodiscard]] std::optional<double> to_turn_rad(const PlannerInputs& inputs) const;
+  /// [rad] bearing of what is searched for, by memory; empty: nothing is remembered.
+  [[nodiscard]] std::optional<double> remembered_bearing_rad(const PlannerInputs& inputs) const;
+  // requests
   [[nodiscard]] WantedTask task_of_state(const PlannerInputs& inputs);
-  void enter(MissionState state, double time_s);
+  void choose_search(const PlannerInputs& inputs, WantedTask& wanted);
+  [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
+  /// A duration given for the empty robot; with an object in the U everything takes longer.
+  [[nodiscard]] double scaled_s(double empty_s) const { return holding() ? empty_s * config_.holding_factor : empty_s; }
 
   const PlannerConfig& config_;
   MissionMemory& memory_;

@@ -1,6 +1,7 @@
 #include "planner/planner.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "runtime/share.hpp"
 
@@ -20,7 +21,9 @@ Planner::Planner(Wiring& wiring, const Setup& setup)
       line_(wiring.latest(topics::kLinePercept)),
       objects_(wiring.latest(topics::kObjectPercepts)),
       pose_(wiring.latest(topics::kRobotPose)),
+      map_(wiring.latest(topics::kFieldMap)),
       status_(wiring.latest(topics::kTaskStatus)),
+      authority_(wiring.latest(topics::kAuthority)),
       events_(wiring.events(topics::kTaskEvent)),
       request_(wiring.output(topics::kPlannerRequest)),
       mission_(wiring.output(topics::kMissionStatus)) {}
@@ -32,7 +35,9 @@ void Planner::step(const Tick& tick) {
   if (objects_) inputs.objects = &*objects_;
   inputs.fresh_percepts = objects_.has_value() && objects_.fresh();
   if (pose_) inputs.pose = &*pose_;
+  if (map_) inputs.map = &*map_;
   if (status_) inputs.status = &*status_;
+  if (authority_) inputs.authority = &*authority_;
   for (const auto& event : events_) inputs.events.push_back(&event);
   if (const auto wanted = planner_.step(inputs)) {
     msg::Request request{};
@@ -40,7 +45,7 @@ void Planner::step(const Tick& tick) {
     request.level = msg::kAuthorityPlanner;
     request.kind = msg::kRequestTask;
     request.goal_id = wanted->goal_id;
-    request.command = msg::kCommandStart;
+    request.command = wanted->command;
     request.task = wanted->task;
     request.parameters = wanted->parameters;
     request_.write(request);
@@ -50,7 +55,7 @@ void Planner::step(const Tick& tick) {
   mission.mission = memory.state == MissionState::kDone     ? msg::kMissionSucceeded
                     : memory.state == MissionState::kFailed ? msg::kMissionFailed
                                                             : msg::kMissionRunning;
-  set_text(mission.state, name_of(memory.state));
+  set_text(mission.state, memory.suspended ? "suspended" : name_of(memory.state));
   mission.object_index = memory.object_index;
   mission.object_count = static_cast<std::uint16_t>(config_.sequence.size());
   mission.colour = planner_.colour();

@@ -25,7 +25,9 @@ class Planner : public StatefulComponent<PlannerState> {
   Latest<msg::LinePercept> line_;
   Latest<msg::ObjectPercepts> objects_;
   Latest<msg::RobotPose> pose_;
+  Latest<msg::FieldMap> map_;
   Latest<msg::TaskStatus> status_;
+  Latest<msg::Authority> authority_;
   Events<msg::TaskEvent> events_;
   Output<msg::Request> request_;
   Output<msg::MissionStatus> mission_;

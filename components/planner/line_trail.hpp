@@ -1,0 +1,52 @@
+// Where the line was seen and which way along it leads to the objects: the planner's memory for the way back.
+#pragma once
+
+#include <cereal/types/vector.hpp>
+#include <optional>
+#include <vector>
+
+#include "constrictor/messages.hpp"
+
+namespace constrictor {
+
+/// A point of the line in the map's frame M with the direction that leads to the objects there.
+struct Crumb {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double outbound_rad = 0.0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, y_m, outbound_rad);
+  }
+};
+
+/// Made while a line is followed, from percepts and the pose estimate: directions come from where the robot has been, not from
+/// anything known beforehand.
+class LineTrail {
+ public:
+  /// Takes the line at the lookahead of a percept seen from `pose`; `outbound` says which way it is being followed. Places known
+  /// already (within 0.3 m) keep their direction. Ignores percepts without a visible line.
+  void record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound);
+  /// [rad] in M, direction along the line next to the pose that leads to the objects (or back); empty: no line known yet.
+  [[nodiscard]] std::optional<double> direction_rad(const msg::RobotPose& pose, bool outbound) const;
+  /// [rad] bearing from the head, positive left, of the place where the line is best joined in that direction: `ahead_m` along it
+  /// from its point nearest to the pose.
+  [[nodiscard]] std::optional<double> bearing_rad(const msg::RobotPose& pose, bool outbound, double ahead_m) const;
+  /// It was the wrong way: every direction is the opposite.
+  void reverse();
+  [[nodiscard]] bool empty() const { return crumbs_.empty(); }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(crumbs_);
+  }
+
+ private:
+  [[nodiscard]] const Crumb* nearest(double x_m, double y_m) const;
+  std::vector<Crumb> crumbs_;
+};
+
+/// Angle wrapped into [-pi, pi].
+double wrapped(double angle_rad);
+
+}  // namespace constrictor

@@ -1,0 +1,145 @@
+// What the mission planner makes of percepts, pose and map, and the requests that follow from it.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "planner/mission_planner.hpp"
+
+namespace constrictor {
+namespace {
+
+using enum MissionState;
+
+/// Nearest blob of a colour and kind for which `accept` holds.
+template <class Accept>
+const msg::Blob* nearest(const msg::ObjectPercepts& percepts, Accept accept) {
+  const msg::Blob* best = nullptr;
+  for (std::size_t i = 0; i < std::min<std::size_t>(percepts.blob_count, msg::kMaxBlobs); ++i) {
+    const auto& blob = percepts.blobs[i];
+    if (!std::isfinite(blob.range_m) || !std::isfinite(blob.bearing_rad) || !accept(blob)) continue;
+    if (!best || blob.range_m < best->range_m) best = &blob;
+  }
+  return best;
+}
+
+const msg::MapObject* nearest_in_map(const msg::FieldMap& map, std::uint8_t colour, std::uint8_t kind, double x_m, double y_m) {
+  const msg::MapObject* best = nullptr;
+  double best_m = 0.0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(map.object_count, msg::kMaxMapObjects); ++i) {
+    const auto& thing = map.objects[i];
+    if (thing.colour != colour || thing.kind != kind) continue;
+    const double distance_m = std::hypot(thing.x_m - x_m, thing.y_m - y_m);
+    if (best && distance_m >= best_m) continue;
+    best = &thing;
+    best_m = distance_m;
+  }
+  return best;
+}
+
+void count(std::uint16_t& images, bool seen) {
+  images = seen ? static_cast<std::uint16_t>(std::min(images + 1, 1000)) : std::uint16_t{0};
+}
+
+}  // namespace
+
+void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
+  if (!inputs.fresh_percepts || !inputs.line || !inputs.objects) return;
+  const std::uint8_t wanted = colour();
+  const auto* object = nearest(*inputs.objects, [&](const msg::Blob& blob) {
+    return blob.colour == wanted && blob.kind == msg::kBlobObject && !is_delivered(blob, inputs);
+  });
+  const auto* zone = nearest(*inputs.objects, [&](const msg::Blob& blob) { return blob.colour == wanted && blob.kind == msg::kBlobZone; });
+  const auto* any_zone = nearest(*inputs.objects, [](const msg::Blob& blob) { return blob.kind == msg::kBlobZone; });
+  count(memory_.object_images, object && object->range_m <= config_.object_range_m);
+  count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
+  count(memory_.line_images, inputs.line->visible && inputs.line->colour == config_.line_colour);
+  if (any_zone && any_zone->range_m < 2.0) memory_.zone_seen_s = memory_.active_s;
+  // The head looks along the course only once the line has been followed for a moment.
+  const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
+  if (follows && inputs.pose && memory_.line_images >= config_.confirm_images && memory_.active_s - memory_.entered_s > 1.0) {
+    memory_.trail.record(*inputs.line, *inputs.pose, memory_.state == kFollowLine);
+  }
+}
+
+// An object of a colour that was dropped before and stands on its zone is not to be fetched again.
+bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
+  const auto end = config_.sequence.begin() + std::min<std::ptrdiff_t>(memory_.object_index, std::ssize(config_.sequence));
+  if (std::find(config_.sequence.begin(), end, blob.colour) == end) return false;
+  if (!inputs.pose || !inputs.map) return false;
+  const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
+  const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
+  const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
+  const auto* zone = nearest_in_map(*inputs.map, blob.colour, msg::kBlobZone, x_m, y_m);
+  return zone && std::hypot(zone->x_m - x_m, zone->y_m - y_m) < config_.on_zone_m;
+}
+
+std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) const {
+  if (!inputs.pose) return std::nullopt;
+  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
+  if (!direction_rad) return std::nullopt;
+  return wrapped(*direction_rad - inputs.pose->yaw_rad);
+}
+
+bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
+  const auto turn_rad = to_turn_rad(inputs);
+  return !turn_rad || std::abs(*turn_rad) < config_.aligned_rad;
+}
+
+std::optional<double> MissionPlanner::remembered_bearing_rad(const PlannerInputs& inputs) const {
+  if (!inputs.pose) return std::nullopt;
+  const auto& pose = *inputs.pose;
+  if (inputs.map) {
+    const auto* thing = nearest_in_map(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
+    if (thing) {
+      const double dx_m = thing->x_m - pose.x_m;
+      const double dy_m = thing->y_m - pose.y_m;
+      const double distance_m = std::hypot(dx_m, dy_m);
+      if (distance_m > 0.3 && distance_m < config_.remembered_range_m) return wrapped(std::atan2(dy_m, dx_m) - pose.yaw_rad);
+    }
+  }
+  constexpr double kJoinAhead_m = 0.6;
+  return memory_.trail.bearing_rad(pose, !holding(), kJoinAhead_m);
+}
+
+WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
+  WantedTask wanted;
+  wanted.goal_id = ++memory_.goals;
+  wanted.task = row_of(memory_.state).task;
+  auto& parameters = wanted.parameters;
+  parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+  switch (wanted.task) {
+    case msg::kTaskFollowLine: parameters.line_colour = config_.line_colour; break;
+    case msg::kTaskDrop: parameters.drop_zone_colour = colour(); break;
+    case msg::kTaskRotate: {
+      const double turn_rad = to_turn_rad(inputs).value_or(1.0);
+      parameters.line_colour = config_.line_colour;
+      parameters.direction = turn_rad >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+      parameters.timeout_s = scaled_s(config_.turn_round_s);
+      break;
+    }
+    case msg::kTaskNone: choose_search(inputs, wanted); break;
+    default: parameters.object_colour = colour(); break;
+  }
+  return wanted;
+}
+
+// By memory at first: face what is remembered, go there. Where that did not help, left, right and forwards in turn.
+void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
+  auto& parameters = wanted.parameters;
+  parameters.line_colour = config_.line_colour;
+  const unsigned attempt = memory_.searches++;
+  const auto bearing_rad = remembered_bearing_rad(inputs);
+  memory_.guided = bearing_rad.has_value() && attempt % 8 < 4;
+  if (memory_.guided ? std::abs(*bearing_rad) < 0.6 : attempt % 2 == 0) {
+    memory_.searching = msg::kTaskExplore;
+    parameters.direction = !memory_.guided && attempt % 8 == 6 ? msg::kDirectionBackwards : msg::kDirectionForwards;
+  } else {
+    memory_.searching = msg::kTaskRotate;
+    const bool left = memory_.guided ? *bearing_rad > 0.0 : attempt % 4 == 1;
+    parameters.direction = left ? msg::kDirectionLeft : msg::kDirectionRight;
+    parameters.timeout_s = scaled_s(config_.rotate_s);
+  }
+  wanted.task = memory_.searching;
+}
+
+}  // namespace constrictor

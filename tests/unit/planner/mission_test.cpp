@@ -1,0 +1,93 @@
+// The nominal mission, what is looked for and what is ignored.
+#include <gtest/gtest.h>
+
+#include "scripted_planner.hpp"
+
+namespace constrictor {
+namespace {
+
+using enum MissionState;
+
+TEST_F(PlannerTest, RetrievesGreenThenRedAsInFigure3) {
+  step();
+  EXPECT_EQ(memory_.state, kSearchLineOrObject);
+  EXPECT_EQ(last_.task, msg::kTaskExplore);
+  for (const auto colour : config_.sequence) {
+    find_line();
+    fetch(colour);
+    carry();
+    drop(colour);
+    if (colour == msg::kColourRed) break;
+    EXPECT_EQ(memory_.state, kTurnRound);
+    EXPECT_EQ(last_.task, msg::kTaskRotate);
+    EXPECT_TRUE(std::isfinite(last_.parameters.timeout_s));
+  }
+  EXPECT_EQ(memory_.state, kDone);
+  EXPECT_EQ(memory_.recoveries, 0);
+  EXPECT_FALSE(step());
+}
+
+TEST_F(PlannerTest, SequencesOfOneToFourColoursAreRetrieved) {
+  const std::vector<std::uint8_t> all = {msg::kColourRed, msg::kColourYellow, msg::kColourGreen, msg::kColourRed};
+  for (std::size_t count = 1; count <= all.size(); ++count) {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    config_.sequence.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+    for (const auto colour : config_.sequence) {
+      find_line();
+      fetch(colour);
+      carry();
+      drop(colour);
+    }
+    EXPECT_EQ(memory_.state, kDone);
+  }
+}
+
+TEST_F(PlannerTest, IgnoresAnObjectOfAnotherColourAZoneAndWhatIsFar) {
+  find_line();
+  see(msg::kColourRed, msg::kBlobObject, 0.6);
+  steps(10);
+  see(msg::kColourGreen, msg::kBlobZone, 0.6);
+  steps(10);
+  see(msg::kColourGreen, msg::kBlobObject, 2.2);
+  steps(10);
+  see(msg::kColourGreen, msg::kBlobObject, std::numeric_limits<double>::quiet_NaN());
+  steps(10);
+  EXPECT_EQ(memory_.state, kFollowLine);
+}
+
+TEST_F(PlannerTest, ASingleImageDoesNotConvince) {
+  find_line();
+  for (int i = 0; i < 10; ++i) {
+    see(msg::kColourGreen, msg::kBlobObject, 1.0);
+    step();
+    objects_ = {};
+    step();
+  }
+  EXPECT_EQ(memory_.state, kFollowLine);
+}
+
+TEST_F(PlannerTest, AnObjectOnTheZoneWhereOneOfItsColourWasDroppedIsLeftThere) {
+  config_.sequence = {msg::kColourGreen, msg::kColourGreen};
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  drop(msg::kColourGreen);
+  map_.object_count = 1;
+  map_.objects[0].kind = msg::kBlobZone;
+  map_.objects[0].colour = msg::kColourGreen;
+  map_.objects[0].x_m = pose_.x_m + 1.0;
+  map_.objects[0].y_m = pose_.y_m;
+  face(0.0);
+  see(msg::kColourGreen, msg::kBlobObject, 1.1);
+  see_line(true);
+  steps(20);
+  EXPECT_EQ(memory_.state, kFollowLine);
+  map_.objects[0].x_m += 2.0;  // one that stands elsewhere is fetched
+  steps(4);
+  EXPECT_EQ(memory_.state, kTrackObject);
+}
+
+}  // namespace
+}  // namespace constrictor

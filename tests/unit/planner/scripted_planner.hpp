@@ -1,0 +1,166 @@
+// A mission planner in a world of scripted percepts and events.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cereal/archives/portable_binary.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "planner/mission_planner.hpp"
+
+namespace constrictor {
+
+constexpr std::uint64_t kPlannerGoalBase = static_cast<std::uint64_t>(msg::kAuthorityPlanner) << 48;
+
+inline std::string saved(const MissionMemory& memory) {
+  std::ostringstream stream;
+  cereal::PortableBinaryOutputArchive archive(stream);
+  archive(memory);
+  return std::move(stream).str();
+}
+
+/// A world of scripted percepts and events around a planner. Every step is made by a second planner, restored from the saved
+/// memory of the step before, as well: both must ask for the same and end up with the same memory.
+class PlannerTest : public ::testing::Test {
+ protected:
+  PlannerTest() {
+    config_.sequence = {msg::kColourGreen, msg::kColourRed};
+    config_.line_colour = msg::kColourBlue;
+    see_line(false);
+  }
+
+  std::optional<WantedTask> step(const std::vector<msg::TaskEvent>& events = {}) {
+    PlannerInputs inputs;
+    inputs.time_s = time_s_ += 0.02;
+    inputs.line = &line_;
+    inputs.objects = &objects_;
+    inputs.fresh_percepts = true;
+    inputs.pose = &pose_;
+    inputs.map = &map_;
+    inputs.authority = &authority_;
+    if (with_status_) {
+      // Navigation takes a goal up three ticks after the request.
+      taken_.push_back(memory_.goals);
+      if (taken_.size() > 3) taken_.erase(taken_.begin());
+      status_.goal_id = kPlannerGoalBase + taken_.front();
+      status_.state = msg::kGoalRunning;
+      inputs.status = &status_;
+    }
+    for (const auto& event : events) inputs.events.push_back(&event);
+
+    MissionMemory copy;
+    std::istringstream stream(saved(memory_));
+    cereal::PortableBinaryInputArchive archive(stream);
+    archive(copy);
+    const auto again = MissionPlanner(config_, copy).step(inputs);
+    const auto wanted = MissionPlanner(config_, memory_).step(inputs);
+    EXPECT_EQ(again.has_value(), wanted.has_value());
+    EXPECT_EQ(saved(copy), saved(memory_));
+    if (wanted) last_ = *wanted;
+    return wanted;
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step();
+  }
+  msg::TaskEvent event(std::uint8_t what, std::uint8_t goal_state = msg::kGoalRunning) const {
+    msg::TaskEvent e{};
+    e.goal_id = kPlannerGoalBase + memory_.goals;
+    e.task = last_.task;
+    e.event = what;
+    e.goal_state = goal_state;
+    return e;
+  }
+  /// As navigation reports what ends a goal well, and badly.
+  void succeed(std::uint8_t what) { step({event(what, msg::kGoalSucceeded)}); }
+  void abort(std::uint8_t what) { step({event(what, msg::kGoalAborted)}); }
+
+  void see_line(bool visible, double heading_rad = 0.0) {
+    line_ = {};
+    line_.visible = visible;
+    line_.colour = msg::kColourBlue;
+    line_.lookahead_m = 0.35;
+    line_.offset_m = visible ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+    line_.heading_rad = heading_rad;
+  }
+  void see(std::uint8_t colour, std::uint8_t kind, double range_m) {
+    objects_ = {};
+    objects_.blob_count = 1;
+    objects_.blobs[0].colour = colour;
+    objects_.blobs[0].kind = kind;
+    objects_.blobs[0].range_m = range_m;
+  }
+  void see_nothing() {
+    objects_ = {};
+    see_line(false);
+  }
+  void face(double yaw_rad) { pose_.yaw_rad = wrapped(yaw_rad); }
+  /// The line runs along x; drives `metres` along the head's direction with the line in view.
+  void drive(double metres) {
+    see_line(true);
+    for (int i = 0; i < 150; ++i) {
+      pose_.x_m += metres / 150.0 * std::cos(pose_.yaw_rad);
+      pose_.y_m += metres / 150.0 * std::sin(pose_.yaw_rad);
+      step();
+    }
+  }
+  void find_line() {
+    face(0.0);
+    see_line(true);
+    steps(4);
+    EXPECT_EQ(memory_.state, MissionState::kFollowLine);
+  }
+  /// From the line to the U around the object, the head facing back.
+  void fetch(std::uint8_t colour) {
+    drive(4.0);
+    see(colour, msg::kBlobObject, 1.2);
+    steps(4);
+    EXPECT_EQ(memory_.state, MissionState::kTrackObject);
+    EXPECT_EQ(last_.parameters.object_colour, colour);
+    succeed(msg::kEventObjectReached);
+    EXPECT_EQ(memory_.state, MissionState::kPregrasp);
+    succeed(msg::kEventObjectPregrasped);
+    EXPECT_EQ(memory_.state, MissionState::kGrasp);
+    see_nothing();
+    status_.carrying = true;
+    face(std::numbers::pi);
+    succeed(msg::kEventObjectGrasped);
+    EXPECT_EQ(memory_.state, MissionState::kSearchLine);
+  }
+  void carry() {
+    see_line(true);
+    steps(4);
+    EXPECT_EQ(memory_.state, MissionState::kTransport);
+    EXPECT_EQ(last_.task, msg::kTaskFollowLine);
+    drive(4.0);
+  }
+  void drop(std::uint8_t colour) {
+    see(colour, msg::kBlobZone, 0.8);
+    steps(4);
+    EXPECT_EQ(memory_.state, MissionState::kDrop);
+    EXPECT_EQ(last_.task, msg::kTaskDrop);
+    EXPECT_EQ(last_.parameters.drop_zone_colour, colour);
+    see_nothing();
+    status_.carrying = false;
+    steps(200);  // it backs off
+    EXPECT_EQ(memory_.state, MissionState::kDrop);
+    succeed(msg::kEventDroppingDone);
+  }
+
+  PlannerConfig config_;
+  MissionMemory memory_;
+  msg::LinePercept line_{};
+  msg::ObjectPercepts objects_{};
+  msg::RobotPose pose_{};
+  msg::FieldMap map_{};
+  msg::TaskStatus status_{};
+  msg::Authority authority_{};
+  std::vector<std::uint64_t> taken_;
+  bool with_status_ = true;
+  WantedTask last_;
+  double time_s_ = 0.0;
+};
+
+}  // namespace constrictor

@@ -1,0 +1,94 @@
+// The memory of the line, and the planner's file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "configuration/configuration.hpp"
+#include "planner/line_trail.hpp"
+#include "planner/planner_config.hpp"
+
+namespace constrictor {
+namespace {
+
+TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
+  // A quarter circle of radius 2 m to the left, from the origin along x, seen 0.35 m ahead.
+  LineTrail trail;
+  msg::LinePercept line{};
+  line.visible = true;
+  line.lookahead_m = 0.35;
+  for (double s = 0.0; s < std::numbers::pi; s += 0.02) {
+    const double angle = s / 2.0;
+    msg::RobotPose pose{};
+    pose.x_m = 2.0 * std::sin(angle);
+    pose.y_m = 2.0 - 2.0 * std::cos(angle);
+    pose.yaw_rad = angle;
+    const double ahead = std::asin(0.35 / 2.0);
+    line.offset_m = 2.0 * (1.0 - std::cos(ahead));
+    line.heading_rad = ahead;
+    trail.record(line, pose, true);
+  }
+  for (double angle = 0.3; angle < 1.5; angle += 0.05) {
+    msg::RobotPose pose{};
+    pose.x_m = 2.0 * std::sin(angle);
+    pose.y_m = 2.0 - 2.0 * std::cos(angle);
+    EXPECT_NEAR(*trail.direction_rad(pose, true), angle, 0.1);
+    EXPECT_NEAR(std::abs(wrapped(*trail.direction_rad(pose, false) - angle)), std::numbers::pi, 0.1);
+    pose.yaw_rad = angle;
+    EXPECT_NEAR(*trail.bearing_rad(pose, true, 0.6), 0.0, 0.35);
+    EXPECT_GT(std::abs(*trail.bearing_rad(pose, false, 0.6)), 2.6);
+  }
+}
+
+TEST(LineTrail, ReversedLeadsTheOtherWayAndUnknownIsSaid) {
+  LineTrail trail;
+  msg::RobotPose pose{};
+  EXPECT_FALSE(trail.direction_rad(pose, true));
+  EXPECT_FALSE(trail.bearing_rad(pose, true, 0.5));
+  msg::LinePercept line{};
+  line.visible = true;
+  line.lookahead_m = 0.35;
+  line.heading_rad = std::numeric_limits<double>::quiet_NaN();
+  trail.record(line, pose, true);
+  EXPECT_TRUE(trail.empty());
+  line.heading_rad = 0.4;
+  trail.record(line, pose, true);
+  trail.reverse();
+  EXPECT_NEAR(*trail.direction_rad(pose, true), 0.4 - std::numbers::pi, 1e-12);
+}
+
+TEST(PlannerConfig, DefaultFileIsAccepted) {
+  const auto config = load_planner_config(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
+  EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourGreen, msg::kColourRed}));
+}
+
+TEST(PlannerConfig, NamesFileLineKeyAndWhatIsAccepted) {
+  std::ifstream source(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
+  std::stringstream text;
+  text << source.rdbuf();
+  const auto message_of = [&](const std::string& from, const std::string& to) -> std::string {
+    std::string changed = text.str();
+    changed.replace(changed.find(from), from.size(), to);
+    const auto file = std::filesystem::path(::testing::TempDir()) / "bad_planner.yaml";
+    std::ofstream(file) << changed;
+    try {
+      (void)load_planner_config(file);
+    } catch (const ConfigurationError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message_of("[green, red]", "[green, pink]").find("bad_planner.yaml:2: sequence"), std::string::npos);
+  EXPECT_NE(message_of("[green, red]", "[green, pink]").find("pink"), std::string::npos);
+  EXPECT_NE(message_of("[green, red]", "[green, blue]").find("accepted others"), std::string::npos);
+  EXPECT_NE(message_of("[green, red]", "[]").find("accepted 1 to 16"), std::string::npos);
+  EXPECT_NE(message_of("confirm_images: 3", "confirm_images: 0").find("confirm_images: found 0"), std::string::npos);
+  EXPECT_NE(message_of("explore_s", "explore").find("explore"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace constrictor
