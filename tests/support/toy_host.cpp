@@ -1,5 +1,7 @@
 // toy_host NAME[,NAME...] OPTIONS: hosts toy components as a process of their own, for tests of the runtime over DDS.
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -11,16 +13,22 @@ namespace {
 
 using namespace constrictor;
 
-/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was.
+/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was: on its output and, if
+/// there is a directory for it, in mission.json. The scenario's name begins with the number of ticks.
 class ToyReport : public StatefulComponent<toys::Mixer> {
  public:
   ToyReport(Wiring& wiring, const Setup& setup)
-      : wiring_(wiring), joints_(wiring.latest(topics::kJointState)), ticks_(std::stol(setup.scenario_file.string())) {}
+      : wiring_(wiring), joints_(wiring.latest(topics::kJointState)), ticks_(std::stol(setup.scenario_file.filename().string())),
+        output_dir_(setup.output_dir) {}
   void step(const Tick& tick) override {
     state_.mix(joints_->position_rad[0]);
     if (tick.index + 1 < ticks_) return;
     std::printf("result %.17g %016llx\n", joints_->position_rad[0], static_cast<unsigned long long>(state_.value));
     std::fflush(stdout);
+    if (!output_dir_.empty()) {
+      std::ofstream(output_dir_ / "mission.json") << "{\"success\": true, \"ticks\": " << tick.index + 1 << ", \"state_hash\": \""
+                                                  << std::hex << state_.value << "\"}\n";
+    }
     wiring_.request_end_of_run();
   }
 
@@ -28,6 +36,7 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   Wiring& wiring_;
   Latest<msg::JointState> joints_;
   long ticks_;
+  std::filesystem::path output_dir_;
 };
 
 ComponentFactory factory(const std::string& name) {

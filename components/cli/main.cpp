@@ -1,0 +1,80 @@
+// The command `constrictor`.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/run_command.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/host.hpp"
+#include "runtime/version.hpp"
+
+namespace {
+
+using namespace constrictor;
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
+  app.set_version_flag("--version", kVersion);
+  app.require_subcommand(1);
+
+  cli::RunOptions run;
+  std::vector<std::string> groups;
+  auto* run_app = app.add_subcommand("run", "run a scenario with every component a process of its own, and write a report");
+  run_app->add_option("SCENARIO", run.scenario, "a name in sim/scenarios, or a file (default: the manifest's)");
+  run_app->add_option("--seed", run.seed, "varies the scene, masses, friction, light, noise and start pose")->capture_default_str();
+  run_app->add_option("--pace", run.pace, "lockstep, realtime, or at most N times real time (2x)")->capture_default_str();
+  run_app->add_flag("--in-process", run.in_process, "all components in one process");
+  run_app->add_option("--group", groups, "components, comma separated, that share a process; may be repeated")
+      ->allow_extra_args(false)->excludes("--in-process");
+  run_app->add_option("--report", run.report_dir, "directory for the report (default: a new one under runs/)");
+  run_app->add_option("--manifest", run.manifest, "launch manifest: a name in deploy, or a file")->capture_default_str();
+  run_app->add_option("--robot", run.robot, "robot: a name in components/robot, or a file (default: the manifest's)");
+  run_app->add_option("--config", run.config_files, "NAME=FILE: configuration of a component; may be repeated")->allow_extra_args(false);
+  run_app->add_option("--max-sim-time", run.max_sim_time_s, "[s] end the run at this simulated time")->check(CLI::Range(0.0, 1e6));
+  run_app->add_flag("--record", run.record, "log all messages but images, so that `constrictor diff` can name fields");
+  run_app->add_option("--domain", run.domain, "DDS domain (default: the first free of 1 to 100)")
+      ->envname("CONSTRICTOR_DOMAIN")->check(CLI::Range(0, 229));
+
+  std::optional<std::uint32_t> domain;
+  const auto choose_run = [&domain](CLI::App* sub) {
+    sub->add_option("--run", domain, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
+  };
+  auto* status_app = app.add_subcommand("status", "the runs on this host, and the health of one's components");
+  choose_run(status_app);
+  auto* stop_app = app.add_subcommand("stop", "end a run");
+  choose_run(stop_app);
+  std::string a;
+  std::string b;
+  auto* diff_app = app.add_subcommand("diff", "name the first tick, component, topic and field in which two runs differ");
+  diff_app->add_option("RUN_A", a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
+  diff_app->add_option("RUN_B", b, "report directory of another")->required()->check(CLI::ExistingDirectory);
+  app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
+  }
+  if (*status_app) return cli::status_command(domain);
+  if (*stop_app) return cli::stop_command(domain);
+  if (*diff_app) return cli::diff_command(a, b);
+  for (const auto& group : groups) run.groups.push_back(CLI::detail::split(group, ','));
+  return cli::run_command(run);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    // The options after `host NAME...` are those of the process it becomes.
+    if (argc > 1 && std::string(argv[1]) == "host") return cli::host_command(argc - 2, argv + 2);
+    return dispatch(argc, argv);
+  } catch (const ConfigurationError& error) {
+    std::fprintf(stderr, "constrictor: configuration: %s\n", error.what());
+    return exit_status::kConfiguration;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "constrictor: %s\n", error.what());
+    return exit_status::kSoftware;
+  }
+}

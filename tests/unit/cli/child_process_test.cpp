@@ -1,0 +1,71 @@
+#include "cli/child_process.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+class ChildProcessTest : public ::testing::Test {
+ protected:
+  ChildProcessTest() : log_(fs::temp_directory_path() / ("child_process_" + std::to_string(::getpid()) + ".log")) { fs::remove(log_); }
+  ~ChildProcessTest() override { fs::remove(log_); }
+  [[nodiscard]] ChildProcess shell(const std::string& script) const { return {{"/bin/sh", "-c", script}, {"WORD=hello"}, log_}; }
+  static ChildExit wait(ChildProcess& child) {
+    const auto end = std::chrono::steady_clock::now() + 10s;
+    while (!child.poll() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+    return child.poll().value_or(ChildExit{-1, 0});
+  }
+  fs::path log_;
+};
+
+TEST_F(ChildProcessTest, TellsExitStatusAndLastWords) {
+  ChildProcess child = shell("echo one; echo two >&2; echo $WORD; exit 78");
+  const ChildExit exit = wait(child);
+  EXPECT_EQ(exit.code(), 78);
+  EXPECT_EQ(exit.describe(), "exit status 78 (configuration)");
+  EXPECT_EQ(last_lines(log_, 0, 2), (std::vector<std::string>{"two", "hello"}));
+  EXPECT_EQ(last_lines(log_, 4, 9).size(), 2u);
+}
+
+TEST_F(ChildProcessTest, TellsTheSignalThatKilledIt) {
+  ChildProcess child = shell("kill -SEGV $$");
+  EXPECT_EQ(wait(child).describe(), "killed by signal 11 (Segmentation fault)");
+}
+
+TEST_F(ChildProcessTest, AMissingProgramSaysSo) {
+  ChildProcess child({"/nowhere/program"}, {}, log_);
+  EXPECT_EQ(wait(child).code(), 127);
+  EXPECT_EQ(last_lines(log_, 0, 1), std::vector<std::string>{"/nowhere/program: No such file or directory"});
+}
+
+TEST_F(ChildProcessTest, CountsCpuTimeAndMemory) {
+  ChildProcess child = shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done; read x < /dev/zero");
+  double pss_mib = 0;
+  for (int i = 0; i < 100 && pss_mib == 0; ++i) pss_mib = child.pss_mib();
+  EXPECT_GT(pss_mib, 0.01);
+  std::this_thread::sleep_for(100ms);
+  child.signal(SIGKILL);
+  EXPECT_GT(wait(child).cpu_s, 0.01);
+}
+
+TEST_F(ChildProcessTest, IsKilledWhenItsOwnerIsGone) {
+  pid_t pid = 0;
+  {
+    const ChildProcess child = shell("sleep 100");
+    pid = child.pid();
+    EXPECT_EQ(::kill(pid, 0), 0);
+  }
+  EXPECT_NE(::kill(pid, 0), 0);
+}
+
+}  // namespace
+}  // namespace constrictor::cli

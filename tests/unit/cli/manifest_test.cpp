@@ -1,0 +1,86 @@
+#include "cli/manifest.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "configuration/configuration.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A manifest file that is gone after the test.
+class File {
+ public:
+  explicit File(const std::string& text) : path_(fs::temp_directory_path() / ("manifest_" + std::to_string(::getpid()) + ".yaml")) {
+    std::ofstream(path_) << text;
+  }
+  ~File() { fs::remove(path_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  /// What is wrong with it, the folder left out.
+  [[nodiscard]] std::string error() const {
+    try {
+      load_manifest(path_);
+    } catch (const ConfigurationError& error) {
+      return std::string(error.what()).substr(path_.string().size());
+    }
+    return "accepted";
+  }
+
+ private:
+  fs::path path_;
+};
+
+const char* const kHead = "plant: physics\nrobot: r.yaml\nscenario: s.yaml\nprocesses:\n";
+
+TEST(Manifest, OfTheCaseStudyHasEveryComponentInAProcessOfItsOwn) {
+  const LaunchManifest manifest = load_manifest(share_path("deploy/case_study.yaml"));
+  EXPECT_EQ(manifest.plant, "physics");
+  EXPECT_EQ(manifest.processes.size(), manifest.roster().size());
+  EXPECT_GE(manifest.roster().size(), 9u);
+}
+
+TEST(Manifest, ReadsProcesses) {
+  const File file(std::string(kHead) +
+                  "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    config: {b: b.yaml}\n");
+  const LaunchManifest manifest = load_manifest(file.path());
+  EXPECT_EQ(manifest.roster(), (std::vector<std::string>{"physics", "a", "b"}));
+  EXPECT_EQ(manifest.processes[0].restarts, 0) << "the plant cannot be restarted";
+  EXPECT_EQ(manifest.processes[1].restarts, 3);
+  EXPECT_EQ(manifest.processes[1].name(), "a+b");
+  EXPECT_EQ(manifest.processes[1].environment, std::vector<std::string>{"X=1"});
+  EXPECT_EQ(manifest.config_files.at("b").filename(), "b.yaml");
+}
+
+TEST(Manifest, RefusesWhatMakesNoRun) {
+  EXPECT_EQ(File(std::string(kHead) + "  - components: [a]\n").error(), ":1: plant: found physics, accepted a component of processes");
+  EXPECT_NE(File(std::string(kHead) + "  - components: [physics]\n  - components: [a, a]\n").error().find("found a twice"), std::string::npos);
+  EXPECT_NE(File(std::string(kHead) + "  - components: []\n").error().find("accepted"), std::string::npos);
+  EXPECT_NE(File(std::string(kHead) + "  - components: [physics]\n    restart: 3\n").error().find("restart"), std::string::npos);
+  EXPECT_NE(File("plant: physics\n").error().find("robot"), std::string::npos);
+}
+
+TEST(Manifest, RegroupingMovesComponentsAndKeepsAllOfThem) {
+  const File file(std::string(kHead) + "  - components: [physics]\n  - components: [a, b]\n  - components: [c]\n    restarts: 2\n");
+  LaunchManifest manifest = load_manifest(file.path());
+  regroup(manifest, {{"c", "a"}});
+  ASSERT_EQ(manifest.processes.size(), 3u);
+  EXPECT_EQ(manifest.processes[0].name(), "c+a");
+  EXPECT_EQ(manifest.processes[0].restarts, 2);
+  EXPECT_EQ(manifest.processes[1].name(), "physics");
+  EXPECT_EQ(manifest.processes[2].name(), "b");
+  regroup(manifest, {{"physics", "a", "b", "c"}});
+  ASSERT_EQ(manifest.processes.size(), 1u);
+  EXPECT_EQ(manifest.processes[0].restarts, 0) << "the plant is in it";
+  EXPECT_THROW(regroup(manifest, {{"nobody"}}), ConfigurationError);
+  EXPECT_THROW(regroup(manifest, {{"a"}, {"b", "a"}}), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace constrictor::cli

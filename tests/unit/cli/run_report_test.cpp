@@ -1,0 +1,62 @@
+#include "cli/run_report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunReport : public ::testing::Test {
+ protected:
+  RunReport() : dir_(fs::temp_directory_path() / ("run_report_" + std::to_string(::getpid()))) { fs::create_directories(dir_); }
+  ~RunReport() override { fs::remove_all(dir_); }
+  [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(dir_ / "report.json")); }
+  fs::path dir_;
+};
+
+TEST_F(RunReport, JoinsMissionAndProcesses) {
+  std::ofstream(dir_ / "mission.json") << R"({"success": true, "sim_time_s": 20.0, "ticks": 1001, "state_hash": "ab", "objects": []})";
+  RunView view;
+  view.overruns["a"] = 2;
+  view.overruns["b"] = 3;
+  view.refused["b"] = 4;
+  const std::vector<ProcessRecord> processes = {{"a+b", {"a", "b"}, 1.5, 30.0, 1}, {"c", {"c"}, 0.5, 10.0, 0}};
+  EXPECT_TRUE(write_report(dir_, {"case_study", 7, 4.0, ""}, view, processes));
+  const auto json = report();
+  for (const char* key : {"success", "seed", "scenario", "sim_time_s", "wall_time_s", "real_time_factor", "ticks", "state_hash",
+                          "objects", "line", "pose_error", "events", "states", "processes"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["ticks"], 1001);
+  EXPECT_DOUBLE_EQ(json["real_time_factor"], 5.0);
+  EXPECT_EQ(json["processes"][0]["overruns"], 5);
+  EXPECT_EQ(json["processes"][0]["refused"], 4);
+  EXPECT_EQ(json["processes"][0]["restarts"], 1);
+  EXPECT_EQ(json["processes"][1]["refused"], 0);
+}
+
+TEST_F(RunReport, WithoutAMissionThereIsNoSuccess) {
+  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, ""}, {}, {}));
+  EXPECT_EQ(report()["success"], false);
+  EXPECT_TRUE(report()["state_hash"].is_null());
+}
+
+TEST_F(RunReport, AFailedRunIsNoSuccessWhateverTheMissionSays) {
+  std::ofstream(dir_ / "mission.json") << R"({"success": true})";
+  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, "control ended"}, {}, {}));
+  EXPECT_EQ(report()["error"], "control ended");
+}
+
+TEST_F(RunReport, ADamagedMissionIsNoSuccess) {
+  std::ofstream(dir_ / "mission.json") << "{\"success\": tr";
+  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, ""}, {}, {}));
+}
+
+}  // namespace
+}  // namespace constrictor::cli
