@@ -14,6 +14,7 @@ Eigen::Vector2d place_of(const PlanarPose& pose) { return {pose.x_m, pose.y_m}; 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kMaxHits = 1000;
 constexpr double kDefaultRadius_m = 0.085;
+constexpr double kPushed_m = 0.04;             // an object may slide so far, more or less, in a tick of touch
 constexpr std::int64_t kTentativeTicks = 150;  // an unconfirmed landmark not seen for so long was none
 
 }  // namespace
@@ -257,7 +258,10 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
         nearest_m = off_m;
       }
     }
-    if (nearest != nullptr) nearest->felt = true;
+    if (nearest == nullptr) continue;
+    nearest->felt = true;
+    // what is pushed slides: from now on its percepts shall move it, not the pose
+    if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
   }
 }
 

@@ -118,6 +118,13 @@ void PoseFilter::remove(std::size_t index) {
   state_.covariance.assign(left.data(), left.data() + left.size());
 }
 
+void PoseFilter::loosen(std::size_t index, double variance_m2) {
+  const auto at = static_cast<Eigen::Index>(3 + 2 * index);
+  for (Eigen::Index i = at; i < at + 2; ++i) {
+    if (covariance()(i, i) < 0.25) covariance()(i, i) += variance_m2;
+  }
+}
+
 void PoseFilter::observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m,
                               double variance_m2) {
   Matrix H = Matrix::Zero(1, size());

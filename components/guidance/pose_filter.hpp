@@ -48,6 +48,8 @@ class PoseFilter {
   /// Adds a landmark at `z_m` in the head's frame; its number is landmark_count() - 1 after that.
   void add(const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
   void remove(std::size_t index);
+  /// The landmark may have been moved: its variance grows by `variance_m2`, up to 0.25 m2.
+  void loosen(std::size_t index, double variance_m2);
 
   /// The head lies `residual_m` off a known line with unit normal `normal` (in M), measured at a point `arm_m` (in M) from
   /// the head: pulls the pose so that the residual vanishes.

@@ -81,6 +81,7 @@ struct Scenario {
   Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  ///< linear RGB
   Eigen::Vector2d start_m{0.0, 0.0};    ///< of the head's centre; the body lies straight behind it
   double start_yaw_rad = 0.0;
+  double start_height_m = 0.0;          ///< of the body above its rest on the ground; no file sets it, tests drop the robot
   bool sensor_noise = true;             ///< false: the robot file's noise figures are ignored
   double camera_noise_sd = 0.0;         ///< of pixels, full scale 1
 };

@@ -82,7 +82,8 @@ World::World(const RobotModel& robot, const Scenario& scenario, const SolverSett
 void World::build_robot() {
   dMass mass;
   dMassSetCapsuleTotal(&mass, robot_.module_mass_kg, 1, robot_.module_radius_m, robot_.module_length_m);
-  const Eigen::Isometry3d X_WHead = upright(scenario_.start_m, robot_.module_radius_m, scenario_.start_yaw_rad);
+  const Eigen::Isometry3d X_WHead =
+      upright(scenario_.start_m, scenario_.start_height_m + robot_.module_radius_m, scenario_.start_yaw_rad);
   for (const Eigen::Isometry3d& pose : module_poses(robot_, {}, X_WHead)) {
     const dBodyID body = dBodyCreate(world_.get());
     dBodySetMass(body, &mass);

@@ -397,6 +397,25 @@ TEST(Map, TouchConfirmsTheObjectAndIgnoresGroundAndSelf) {
   EXPECT_EQ(m.map().felt_count, 0);  // forgotten
 }
 
+TEST(Map, APushedObjectDoesNotPushThePose) {
+  Mapping m;
+  m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.15, 0.12, 0.08)}, 20);
+  m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
+  msg::ContactState contacts{};
+  contacts.module_count = 24;
+  contacts.contact_count = 1;
+  contacts.contacts[0].position_m = {0.1, 0.045, 0.0};
+  contacts.contacts[0].normal = {0.0, -1.0, 0.0};
+  contacts.contacts[0].force_n = {0.0, -2.0, 0.0};
+  for (int k = 0; k < 30; ++k) m.mapper.touch(contacts, m.chain(), m.tick + k, 0.02);
+  // it slid away by 0.15 m while the head stood still
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.15, 0.27, 0.08)}, 20);
+  ASSERT_EQ(m.map().object_count, 1);
+  EXPECT_NEAR(m.map().objects[0].y_m, 0.27, 0.03);
+  EXPECT_LT(m.filter.pose().position().norm(), 0.03);
+}
+
 TEST(Map, ACarriedObjectMovesWithTheBody) {
   Mapping m;
   for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = kPi / 3.0;

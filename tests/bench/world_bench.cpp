@@ -1,0 +1,41 @@
+// One control period (20 ms) of physics. Real-time factor = 20 ms / time per iteration.
+#include <benchmark/benchmark.h>
+
+#include "tests/unit/world/open_loop_gait.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kPeriod_s = 0.02;
+
+/// The gait on the flat. Arguments: step in us, iterations.
+void undulate(benchmark::State& state) {
+  SolverSettings settings;
+  settings.step_s = 1e-6 * static_cast<double>(state.range(0));
+  settings.iterations = static_cast<int>(state.range(1));
+  World world(load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"), Scenario{}, settings);
+  OpenLoopGait gait;
+  int tick = 0;
+  const auto centre_x = [&] { return world.module_pose(12).translation().x(); };
+  for (; tick < 100; ++tick) gait.drive(world, tick * kPeriod_s, kPeriod_s);
+  const double from = centre_x();
+  const int first = tick;
+  for (auto _ : state) {
+    gait.drive(world, tick * kPeriod_s, kPeriod_s);
+    ++tick;
+  }
+  state.counters["x_real_time"] =
+      benchmark::Counter(kPeriod_s * (tick - first), benchmark::Counter::kIsRate);
+  state.counters["speed_m_s"] = (centre_x() - from) / (kPeriod_s * (tick - first));
+}
+BENCHMARK(undulate)
+    ->ArgNames({"step_us", "iterations"})
+    ->Args({2000, 50})
+    ->Args({2000, 20})
+    ->Args({4000, 50})
+    ->Args({4000, 20})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(430);  // six cycles of the gait
+
+}  // namespace
+}  // namespace constrictor
