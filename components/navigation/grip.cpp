@@ -1,0 +1,102 @@
+#include "navigation/grip.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace constrictor {
+
+GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
+    : robot_(robot), config_(config), yaw_joints_(robot.yaw_joints()) {
+  for (int i = 0; i < config.base_joints; ++i) {
+    base_joints_.push_back(yaw_joints_.at(static_cast<std::size_t>(config.base_first_joint + i)));
+  }
+}
+
+std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double angle_rad) const {
+  std::array<double, msg::kMaxJoints> shape{};
+  for (int i = 0; i < config_.base_joints; ++i) {
+    shape[static_cast<std::size_t>(config_.base_first_joint + i)] = side * angle_rad;
+  }
+  return shape;
+}
+
+double GripSense::largest_closing_nm(const msg::JointState& joints, double side) const {
+  double largest_nm = 0.0;
+  for (const std::size_t j : base_joints_) largest_nm = std::max(largest_nm, side * joints.torque_nm[j]);
+  return largest_nm;
+}
+
+double GripSense::mean_closing_nm(const msg::JointState& joints, double side) const {
+  double sum_nm = 0.0;
+  for (const std::size_t j : base_joints_) sum_nm += side * joints.torque_nm[j];
+  return sum_nm / static_cast<double>(base_joints_.size());
+}
+
+bool GripSense::is_base_module(std::size_t module) const {
+  return module >= base_joints_.front() && module <= base_joints_.back() + 2;
+}
+
+bool GripSense::is_near_base(std::size_t module) const {
+  return module + 2 >= base_joints_.front() && module <= base_joints_.back() + 4;
+}
+
+double GripSense::base_force_n(const std::vector<Touch>& touches) const {
+  double sum_n = 0.0;
+  for (const Touch& touch : touches) sum_n += is_base_module(touch.module) ? touch.force_n : 0.0;
+  return sum_n;
+}
+
+double GripSense::apex_force_n(const std::vector<Touch>& touches) const {
+  double sum_n = 0.0;
+  for (const Touch& touch : touches) {
+    sum_n += touch.module > base_joints_.front() && touch.module <= base_joints_.back() ? touch.force_n : 0.0;
+  }
+  return sum_n;
+}
+
+int GripSense::touching_modules(const std::vector<Touch>& touches) const {
+  std::array<bool, msg::kMaxModules> touching{};
+  for (const Touch& touch : touches) touching[touch.module] = true;
+  return static_cast<int>(std::count(touching.begin(), touching.end(), true));
+}
+
+Eigen::Vector2d GripSense::held_object_H(const std::vector<Pose2>& body, double radius_m) const {
+  // The apex is the middle base joint; the mouth lies along the mean direction of the arms.
+  const std::size_t apex = base_joints_[base_joints_.size() / 2];
+  const Eigen::Vector2d p_HA = body[apex].p - 0.5 * robot_.module_length_m * body[apex].forward();
+  Eigen::Vector2d mouth{0.0, 0.0};
+  for (std::size_t m = 0; m < body.size(); ++m) {
+    if (m < base_joints_.front()) mouth += body[m].forward();
+    if (m > base_joints_.back() + 1) mouth -= body[m].forward();
+  }
+  if (mouth.norm() < 1e-6) mouth = {1.0, 0.0};
+  return p_HA + (radius_m + robot_.module_radius_m) * mouth.normalized();
+}
+
+std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, double side) const {
+  std::array<double, msg::kMaxJoints> shape{};
+  for (int i = 0; i < config_.base_joints; ++i) {
+    const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
+    shape[k] = joints.position_rad[yaw_joints_[k]] + side * config_.hold_margin_rad;
+  }
+  return shape;
+}
+
+void GripSense::hold_starts(Grip& grip) const {
+  grip.hold_torque_nm = config_.hold_torque_nm;
+  grip.torque_nm = config_.hold_torque_nm;
+  grip.contact_share = 1.0;
+  grip.below_s = 0.0;
+}
+
+bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const {
+  const double share = -std::expm1(-dt_s / config_.lost_filter_s);
+  grip.torque_nm += share * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
+  const double touching = base_force_n(touches) >= config_.touch_force_n ? 1.0 : 0.0;
+  grip.contact_share += share * (touching - grip.contact_share);
+  const bool below = grip.torque_nm < config_.lost_torque_nm && grip.contact_share < config_.lost_contact_share;
+  grip.below_s = below ? grip.below_s + dt_s : 0.0;
+  return grip.below_s >= config_.lost_after_s;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,4 @@
+#include "navigation/navigation.hpp"
+#include "runtime/component_main.hpp"
+
+int main(int argc, char** argv) { return constrictor::component_main(argc, argv, constrictor::make_navigation_factory()); }

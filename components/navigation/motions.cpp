@@ -1,0 +1,76 @@
+#include "navigation/motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace constrictor {
+namespace {
+
+void set_method(const char* method, TaskOutput& output) {
+  output.desired = {};
+  output.desired.wavelength_m = 1.0;
+  std::snprintf(output.desired.method, sizeof output.desired.method, "%s", method);
+}
+
+void set_posture(const Grip& grip, TaskOutput& output) {
+  if (!grip.carrying) return;
+  output.desired.shape_count = 0;
+  for (std::size_t k = 0; k < grip.shape_rad.size(); ++k) {
+    output.desired.shape_rad[k] = grip.shape_rad[k];
+    if (grip.shape_rad[k] != 0.0) output.desired.shape_count = static_cast<std::uint16_t>(k + 1);
+  }
+  output.desired.torque_limit_nm = grip.hold_torque_nm;
+}
+
+void set_gait(const Gait& gait, double curvature_1_m, double direction, TaskOutput& output) {
+  output.desired.frequency_hz = direction * gait.frequency_hz;
+  output.desired.amplitude_rad = gait.amplitude_rad;
+  output.desired.wavelength_m = gait.wavelength_m;
+  output.desired.curvature_1_m = curvature_1_m;
+}
+
+}  // namespace
+
+void stand(const Grip& grip, TaskOutput& output) {
+  set_method("hold", output);
+  set_posture(grip, output);
+}
+
+void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
+  set_method("undulation", output);
+  set_gait(gait, curvature_1_m, direction, output);
+  set_posture(grip, output);
+}
+
+void undulate_on(const Gait& gait, double curvature_1_m, double direction, const std::array<double, msg::kMaxJoints>& shape_rad,
+                 std::size_t shape_count, TaskOutput& output) {
+  set_method("undulation", output);
+  set_gait(gait, curvature_1_m, direction, output);
+  output.desired.shape_count = static_cast<std::uint16_t>(shape_count);
+  for (std::size_t k = 0; k < shape_count; ++k) output.desired.shape_rad[k] = shape_rad[k];
+}
+
+void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output) {
+  constexpr std::uint16_t kHeadJoints = 3;
+  set_method("bend", output);
+  set_posture(grip, output);
+  output.desired.shape_rate_rad_s = rate_rad_s;
+  if (output.desired.shape_count < kHeadJoints) output.desired.shape_count = kHeadJoints;
+  for (std::size_t k = 0; k < kHeadJoints; ++k) output.desired.shape_rad[k] += each_rad;
+}
+
+const Gait& present_gait(const NavigationConfig& config, const Grip& grip) { return grip.carrying ? config.carry : config.travel; }
+
+double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
+  const Pose2 X_MP{p_M, yaw_rad};
+  const double along_m = X_MP.to_local(X_MH.p).x();
+  return X_MH.to_local(X_MP.to_parent({along_m + lookahead_m, 0.0})).y();
+}
+
+double gait_period_s(const Gait& gait) { return 1.0 / std::max(0.1, std::abs(gait.frequency_hz)); }
+
+double angle_between(double to_rad, double from_rad) { return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi); }
+
+}  // namespace constrictor

@@ -1,0 +1,204 @@
+#include "navigation/navigation.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "navigation/motions.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+template <std::size_t N>
+void copy_text(char (&to)[N], const std::string& from) {
+  std::snprintf(to, N, "%s", from.c_str());
+}
+
+}  // namespace
+
+msg::TaskParameters GoalState::parameters() const {
+  msg::TaskParameters p{};
+  p.line_colour = line_colour;
+  p.object_colour = object_colour;
+  p.object_handle = object_handle;
+  p.drop_zone_colour = drop_zone_colour;
+  p.direction = direction;
+  p.timeout_s = timeout_s;
+  return p;
+}
+
+void GoalState::set_parameters(const msg::TaskParameters& p) {
+  line_colour = p.line_colour;
+  object_colour = p.object_colour;
+  object_handle = p.object_handle;
+  drop_zone_colour = p.drop_zone_colour;
+  direction = p.direction;
+  timeout_s = p.timeout_s;
+}
+
+Navigation::Navigation(Wiring& wiring, const Setup& setup)
+    : robot_(load_robot(setup.robot_file)),
+      config_(load_navigation_config(setup.config_file.empty() ? share_path("components/navigation/navigation.yaml")
+                                                               : setup.config_file)),
+      grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
+      line_in_(wiring.latest(topics::kLinePercept)), objects_in_(wiring.latest(topics::kObjectPercepts)),
+      pose_in_(wiring.latest(topics::kRobotPose)), map_in_(wiring.latest(topics::kFieldMap)),
+      joints_in_(wiring.latest(topics::kJointState)), contacts_in_(wiring.latest(topics::kContactState)),
+      motion_in_(wiring.latest(topics::kMotionStatus)), trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
+      status_out_(wiring.output(topics::kTaskStatus)), event_out_(wiring.output(topics::kTaskEvent)) {}
+
+bool Navigation::senses_ready() const {
+  return joints_in_ && pose_in_ && contacts_in_ && joints_in_.age_ticks() <= config_.stale_after_ticks &&
+         pose_in_.age_ticks() <= config_.stale_after_ticks && contacts_in_.age_ticks() <= config_.stale_after_ticks &&
+         joints_in_->joint_count == robot_.joints.size();
+}
+
+void Navigation::step(const Tick& tick) {
+  TaskOutput output;
+  stand(state_.grip, output);
+  if (!senses_ready()) {
+    for (const auto& command : commands_in_) {
+      if (command.command != msg::kCommandStart) continue;
+      msg::TaskEvent event{};
+      event.goal_id = command.goal_id;
+      event.task = command.task;
+      event.goal_state = msg::kGoalRefused;
+      copy_text(event.detail, "joints, contacts or pose are missing or stale");
+      event_out_.write(event);
+    }
+    write_trajectory(output);
+    write_status();
+    return;
+  }
+  const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
+  remember_pose(tick.index, X_MH, state_.things);
+  if (objects_in_ && objects_in_.fresh()) watch_objects(config_.object, *objects_in_, state_.things);
+
+  const std::vector<Pose2> body = planar_body(robot_, *joints_in_);
+  const std::vector<Touch> touches = lateral_touches(robot_, body, *contacts_in_, config_.grip.touch_force_n);
+  const msg::TaskParameters none{};
+  const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->known && motion_in_->done;
+  const auto input = [&](const msg::TaskParameters& parameters) {
+    return TaskInput{tick, robot_, config_, grip_sense_, parameters, X_MH,
+                     line_in_ && line_in_.fresh() ? &*line_in_ : nullptr, objects_in_ && objects_in_.fresh(), state_.things,
+                     map_in_ ? &*map_in_ : nullptr, *joints_in_, body, touches, done};
+  };
+  take_commands(input(none));
+  const msg::TaskParameters parameters = state_.goal.parameters();
+  const TaskInput present = input(parameters);
+  if (state_.task) run_task(present, output);
+  watch_grip(present, output);
+  write_trajectory(output);
+  write_status();
+}
+
+void Navigation::take_commands(const TaskInput& input) {
+  for (const auto& command : commands_in_) {
+    if (command.command == msg::kCommandStart) {
+      start_goal(command, input);
+    } else if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0)) {
+      end_goal(msg::kGoalCancelled, "cancelled");
+    }
+  }
+}
+
+void Navigation::start_goal(const msg::TaskCommand& command, const TaskInput& senses) {
+  const TaskInput input{senses.tick, senses.robot, senses.config, senses.grip_sense, command.parameters, senses.X_MH, senses.line,
+                        senses.image, senses.things, senses.map, senses.joints, senses.body, senses.touches, senses.motion_done};
+  std::unique_ptr<Task> task = make_task(command.task);
+  const std::string refusal = task ? task->refusal(input, state_.grip) : "no such task";
+  if (!refusal.empty()) {
+    msg::TaskEvent event{};
+    event.goal_id = command.goal_id;
+    event.task = command.task;
+    event.goal_state = msg::kGoalRefused;
+    copy_text(event.detail, refusal);
+    event_out_.write(event);
+    if (!state_.task) {
+      state_.goal = {};
+      state_.goal.goal_id = command.goal_id;
+      state_.goal.task = command.task;
+      state_.goal.state = msg::kGoalRefused;
+      state_.goal.set_parameters(command.parameters);
+      state_.goal.reason = refusal;
+    }
+    return;
+  }
+  if (state_.task) end_goal(msg::kGoalPreempted, "another task was started");
+  state_.goal = {};
+  state_.goal.goal_id = command.goal_id;
+  state_.goal.task = command.task;
+  state_.goal.state = msg::kGoalRunning;
+  state_.goal.set_parameters(command.parameters);
+  state_.task = std::move(task);
+  state_.task->start(input, state_.grip);
+  write_event(msg::kEventNone, msg::kGoalRunning, 0, 0, "accepted");
+}
+
+void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
+  state_.task->step(input, state_.grip, output);
+  state_.goal.phase = output.phase;
+  state_.goal.progress = std::max(state_.goal.progress, std::clamp(output.progress, 0.0, 1.0));
+  for (const EventRecord& record : output.events) {
+    write_event(record.event, msg::kGoalRunning, record.colour, record.handle, "");
+  }
+  if (output.state != msg::kGoalRunning) end_goal(output.state, output.reason);
+}
+
+void Navigation::watch_grip(const TaskInput& input, TaskOutput& output) {
+  Grip& grip = state_.grip;
+  if (!grip.carrying || !grip_sense_.lost(input.joints, input.touches, input.tick.dt_s(), grip)) return;
+  grip.carrying = false;
+  write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle, "base torque and touch below threshold");
+  if (state_.task) end_goal(msg::kGoalAborted, "object grasp lost");
+  stand(grip, output);
+}
+
+void Navigation::end_goal(std::uint8_t state, const std::string& reason) {
+  state_.goal.state = state;
+  state_.goal.reason = reason;
+  if (state == msg::kGoalSucceeded) state_.goal.progress = 1.0;
+  state_.task.reset();
+  write_event(msg::kEventNone, state, 0, 0, reason);
+}
+
+void Navigation::write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle,
+                             const std::string& detail) {
+  msg::TaskEvent message{};
+  message.goal_id = state_.goal.goal_id;
+  message.task = state_.goal.task;
+  message.event = event;
+  message.goal_state = goal_state;
+  message.colour = colour;
+  message.object_handle = handle;
+  copy_text(message.detail, detail);
+  event_out_.write(message);
+}
+
+void Navigation::write_trajectory(const TaskOutput& output) {
+  if (output.new_motion || state_.method != output.desired.method) ++state_.motion_id;
+  state_.method = output.desired.method;
+  msg::DesiredTrajectory desired = output.desired;
+  desired.motion_id = state_.motion_id;
+  trajectory_out_.write(desired);
+}
+
+void Navigation::write_status() {
+  msg::TaskStatus status{};
+  status.goal_id = state_.goal.goal_id;
+  status.task = state_.goal.task;
+  status.state = state_.goal.state;
+  status.progress = state_.goal.progress;
+  status.parameters = state_.goal.parameters();
+  status.carrying = state_.grip.carrying;
+  copy_text(status.phase, state_.goal.phase);
+  copy_text(status.reason, state_.goal.reason);
+  status_out_.write(status);
+}
+
+ComponentFactory make_navigation_factory() {
+  return {"navigation", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Navigation>(wiring, setup); }};
+}
+
+}  // namespace constrictor

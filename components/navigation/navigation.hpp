@@ -1,0 +1,96 @@
+// Navigation: the paper's task layer. Decides where, when and how the robot should move; one goal at a time.
+#pragma once
+
+#include <cereal/types/string.hpp>
+#include <memory>
+#include <string>
+
+#include "navigation/task.hpp"
+
+namespace constrictor {
+
+/// The goal that runs, or ran last.
+struct GoalState {
+  std::uint64_t goal_id = 0;
+  std::uint8_t task = msg::kTaskNone;
+  std::uint8_t state = msg::kGoalIdle;
+  std::uint8_t line_colour = 0;
+  std::uint8_t object_colour = 0;
+  std::uint16_t object_handle = 0;
+  std::uint8_t drop_zone_colour = 0;
+  std::uint8_t direction = 0;
+  double timeout_s = 0.0;
+  double progress = 0.0;
+  std::string phase;
+  std::string reason;
+
+  [[nodiscard]] msg::TaskParameters parameters() const;
+  void set_parameters(const msg::TaskParameters& parameters);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(goal_id, task, state, line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s, progress,
+            phase, reason);
+  }
+};
+
+struct NavigationState {
+  GoalState goal;
+  std::unique_ptr<Task> task;   ///< of the running goal; null otherwise
+  Grip grip;
+  ObjectWatchState things;
+  std::uint64_t motion_id = 0;
+  std::string method;           ///< of the motion asked for last
+
+  template <class Archive>
+  void save(Archive& archive) const {
+    const std::string bytes = task ? task->save() : std::string();
+    archive(goal, grip, things, motion_id, method, task != nullptr, bytes);
+  }
+  template <class Archive>
+  void load(Archive& archive) {
+    bool has_task = false;
+    std::string bytes;
+    archive(goal, grip, things, motion_id, method, has_task, bytes);
+    task = has_task ? make_task(goal.task) : nullptr;
+    if (task) task->load(bytes);
+  }
+};
+
+/// Reads TaskCommand, percepts, pose, map, joints, contacts and MotionStatus; writes DesiredTrajectory and TaskStatus every tick and
+/// TaskEvent on occurrence. A goal is answered once (accepted or refused with a reason) and each accepted one ends once. Without a
+/// goal, and while pose or joints are missing or stale, the robot stands still in its posture, holding what it holds.
+class Navigation : public StatefulComponent<NavigationState> {
+ public:
+  Navigation(Wiring& wiring, const Setup& setup);
+  void step(const Tick& tick) override;
+
+ private:
+  [[nodiscard]] bool senses_ready() const;
+  void take_commands(const TaskInput& input);
+  void start_goal(const msg::TaskCommand& command, const TaskInput& input);
+  void run_task(const TaskInput& input, TaskOutput& output);
+  void watch_grip(const TaskInput& input, TaskOutput& output);
+  void end_goal(std::uint8_t state, const std::string& reason);
+  void write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle, const std::string& detail);
+  void write_trajectory(const TaskOutput& output);
+  void write_status();
+
+  RobotModel robot_;
+  NavigationConfig config_;
+  GripSense grip_sense_;
+  Events<msg::TaskCommand> commands_in_;
+  Latest<msg::LinePercept> line_in_;
+  Latest<msg::ObjectPercepts> objects_in_;
+  Latest<msg::RobotPose> pose_in_;
+  Latest<msg::FieldMap> map_in_;
+  Latest<msg::JointState> joints_in_;
+  Latest<msg::ContactState> contacts_in_;
+  Latest<msg::MotionStatus> motion_in_;
+  Output<msg::DesiredTrajectory> trajectory_out_;
+  Output<msg::TaskStatus> status_out_;
+  Output<msg::TaskEvent> event_out_;
+};
+
+ComponentFactory make_navigation_factory();
+
+}  // namespace constrictor

@@ -1,0 +1,148 @@
+// Drop (Tables XI, XII): drives over the drop zone of a colour until it has left the view, goes on until the held object is over its
+// centre, stops, opens, and backs off.
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/motions.hpp"
+#include "navigation/steering.hpp"
+
+namespace constrictor {
+namespace {
+
+enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten };
+
+struct DropState {
+  int phase = kApproach;
+  double phase_s = 0.0;
+  Eigen::Vector2d p_MZ{0.0, 0.0};
+  double course_rad = 0.0;    ///< of the straight way over the zone, in M
+  double aside_m = 0.0;       ///< of the held object from the head's course, positive left
+  bool course_fixed = false;
+  SteeringState steering;
+  SteeringState object_x;     ///< averages of the held object's place in the head's frame over a gait period
+  SteeringState object_y;
+  Pose2 from;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, aside_m, course_fixed, steering, object_x, object_y, from);
+  }
+};
+
+class Drop : public StatefulTask<DropState> {
+ public:
+  std::string refusal(const TaskInput& input, const Grip& grip) const override {
+    const std::uint8_t colour = input.parameters.drop_zone_colour;
+    if (colour == msg::kColourUnknown) return "drop needs a drop zone colour";
+    if (!grip.carrying) return "nothing is carried";
+    if (!input.things.zones[colour].known) return "the drop zone is not in view";
+    return "";
+  }
+  void start(const TaskInput& input, Grip&) override { state_.p_MZ = input.things.zones[input.parameters.drop_zone_colour].p_M(); }
+
+  void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
+    state_.phase_s += input.tick.dt_s();
+    output.progress = state_.phase / 6.0;
+    switch (state_.phase) {
+      case kApproach:
+      case kOver: drive(input, grip, output); break;
+      case kStop:
+        output.phase = "stop";
+        stand(grip, output);
+        if (state_.phase_s < 1.0) break;
+        grip.carrying = false;  // it lets go on purpose
+        enter(input, kOpen);
+        break;
+      case kOpen: open(input, grip, output); break;
+      case kBack: back(input, grip, output); break;
+      default: straighten(input, grip, output); break;
+    }
+  }
+
+ private:
+  void enter(const TaskInput& input, int phase) {
+    state_.phase = phase;
+    state_.phase_s = 0.0;
+    state_.from = input.X_MH;
+  }
+
+  void drive(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const DropConfig& config = input.config.drop;
+    const Gait& gait = input.config.carry;
+    const Sighting& zone = input.things.zones[input.parameters.drop_zone_colour];
+    if (zone.missed == 0) {
+      state_.p_MZ = zone.p_M();
+    } else if (state_.phase == kApproach && !zone.visible) {
+      enter(input, kOver);
+    }
+    output.phase = state_.phase == kApproach ? "approach" : "over the zone";
+    // Where the held object is, averaged over a period of the gait that shakes it.
+    const double period_s = gait_period_s(gait);
+    const double now_s = input.tick.time_s();
+    const Eigen::Vector2d p_now = input.grip_sense.held_object_H(input.body, grip.radius_m);
+    const Steering steering(config.steering);
+    steering.observe(now_s, p_now.x(), period_s, state_.object_x);
+    steering.observe(now_s, p_now.y(), period_s, state_.object_y);
+    const Eigen::Vector2d p_HO{Steering::mean_error(state_.object_x), Steering::mean_error(state_.object_y)};
+    // The head drives along a straight course beside the zone's centre, so that the object behind it goes over the centre. The
+    // course is turned towards the zone while that is far enough ahead.
+    const Eigen::Vector2d d = state_.p_MZ - input.X_MH.p;
+    const bool far = d.norm() > config.fix_course_m && input.X_MH.to_local(state_.p_MZ).x() > 0.0;
+    if (far || !state_.course_fixed) {
+      state_.aside_m = std::clamp(p_HO.y(), -config.most_aside_m, config.most_aside_m);
+      const double share = std::clamp(state_.aside_m / std::max(0.3, d.norm()), -0.8, 0.8);
+      state_.course_rad = std::atan2(d.y(), d.x()) - std::asin(share);
+      state_.course_fixed = true;
+    }
+    const Pose2 X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
+    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -state_.aside_m});
+    const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
+    steering.observe(now_s, error_m, period_s, state_.steering);
+    undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+    const double past_m = X_MC.to_local(input.X_MH.to_parent(p_HO)).x();
+    if (past_m >= -config.brake_m || state_.phase_s > config.approach_timeout_s) {
+      enter(input, kStop);
+      stand(grip, output);
+    }
+  }
+
+  void open(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const DropConfig& config = input.config.drop;
+    output.phase = "open";
+    Gait still = input.config.travel;
+    still.amplitude_rad = 0.0;
+    still.frequency_hz = 0.0;
+    const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
+    undulate_on(still, 0.0, 1.0, shape, input.grip_sense.yaw_joint_count(), output);
+    output.desired.shape_rate_rad_s = std::max(0.02, largest_opening(grip, shape) / config.open_s);
+    if (state_.phase_s < config.open_s) return;
+    enter(input, kBack);
+  }
+
+  static double largest_opening(const Grip& grip, const std::array<double, msg::kMaxJoints>& shape) {
+    double largest_rad = 0.0;
+    for (std::size_t k = 0; k < shape.size(); ++k) largest_rad = std::max(largest_rad, std::abs(grip.shape_rad[k] - shape[k]));
+    return largest_rad;
+  }
+
+  void back(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const DropConfig& config = input.config.drop;
+    output.phase = "back off";
+    const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
+    undulate_on(input.config.travel, 0.0, -1.0, shape, input.grip_sense.yaw_joint_count(), output);
+    if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s) enter(input, kStraighten);
+  }
+
+  void straighten(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    output.phase = "straighten";
+    bend_head(0.0, input.config.drop.straighten_rate_rad_s, grip, output);
+    if (!input.motion_done || state_.phase_s < 0.2) return;
+    output.emit(msg::kEventDroppingDone, input.parameters.drop_zone_colour, grip.handle);
+    output.succeed();
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Task> make_drop() { return std::make_unique<Drop>(); }
+
+}  // namespace constrictor

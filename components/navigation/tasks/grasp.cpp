@@ -1,0 +1,171 @@
+// Grasp (Tables IX, X): the body wraps itself round the object that lies beside it, drives on until the base feels it, squeezes until
+// the base's torque says that it is held, and checks by touch that it is inside.
+#include <algorithm>
+#include <cereal/types/array.hpp>
+#include <cmath>
+
+#include "navigation/motions.hpp"
+
+namespace constrictor {
+namespace {
+
+enum Phase : int { kWrap, kSeat, kSqueeze, kCheck, kOpen };
+
+struct GraspState {
+  int phase = kWrap;
+  double phase_s = 0.0;
+  double seated_s = 0.0;
+  int touching = 0;          ///< modules that touched what is inside within the last moments
+  std::array<double, msg::kMaxModules> touched_s{};  ///< by module: time since its last touch
+  Pose2 before;              ///< the head at the previous step
+  double slid_m = 0.0;       ///< how far the arc has moved along the body
+  int squeezes = 0;
+  double speed_m_s = 0.0;    ///< of the head along itself, smoothed: how fast the body follows itself
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(phase, phase_s, seated_s, touching, touched_s, before, slid_m, squeezes, speed_m_s);
+  }
+};
+
+class Grasp : public StatefulTask<GraspState> {
+ public:
+  std::string refusal(const TaskInput&, const Grip& grip) const override {
+    if (grip.carrying) return "the body holds an object already";
+    return grip.pregrasped ? "" : "no object is pregrasped";
+  }
+  void start(const TaskInput& input, Grip& grip) override {
+    grip.pregrasped = false;
+    state_.before = input.X_MH;
+    state_.speed_m_s = input.config.grasp.wrap_speed_m_s;
+  }
+
+  void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
+    state_.phase_s += input.tick.dt_s();
+    output.progress = 0.25 * state_.phase;
+    switch (state_.phase) {
+      case kWrap: wrap(input, grip, output); break;
+      case kSeat: seat(input, grip, output); break;
+      case kSqueeze: squeeze(input, grip, output); break;
+      case kCheck: check(input, grip, output); break;
+      default: open(input, grip, output); break;
+    }
+  }
+
+ private:
+  void enter(int phase) {
+    state_.phase = phase;
+    state_.phase_s = 0.0;
+  }
+  static std::array<double, msg::kMaxJoints> open_u(const TaskInput& input, const Grip& grip) {
+    return input.grip_sense.open_shape(grip.side, input.config.grip.base_angle_rad);
+  }
+  static void set_u(const TaskInput& input, const Grip& grip, TaskOutput& output) {
+    const auto shape = open_u(input, grip);
+    output.desired.shape_count = static_cast<std::uint16_t>(input.grip_sense.yaw_joint_count());
+    std::copy_n(shape.begin(), input.grip_sense.yaw_joint_count(), output.desired.shape_rad);
+  }
+
+  void wrap(const TaskInput& input, const Grip& grip, TaskOutput& output) {
+    output.phase = "wrap";
+    // The head bends round the object before the body begins to move, so that it does not run past it.
+    Gait gait = input.config.grasp.wrap;
+    if (state_.slid_m < input.config.grasp.wrap_still_m) gait.amplitude_rad = gait.frequency_hz = 0.0;
+    undulate(gait, 0.0, 1.0, grip, output);
+    std::snprintf(output.desired.method, sizeof output.desired.method, "wrap");
+    set_u(input, grip, output);
+    output.desired.wrap_side = grip.side;
+    // The arc must slide along the body as fast as the body moves on, so that it stays round the object.
+    const GraspConfig& config = input.config.grasp;
+    const double moved_m = (input.X_MH.p - state_.before.p).dot(input.X_MH.forward());
+    const double share = -std::expm1(-input.tick.dt_s() / config.wrap_speed_filter_s);
+    state_.speed_m_s += share * (moved_m / input.tick.dt_s() - state_.speed_m_s);
+    state_.before = input.X_MH;
+    output.desired.speed_m_s = state_.slid_m < config.wrap_still_m
+                                   ? config.wrap_speed_m_s
+                                   : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
+    state_.slid_m += output.desired.speed_m_s * input.tick.dt_s();
+    if (input.motion_done && state_.phase_s > 0.2) enter(kSeat);
+  }
+
+  void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const GraspConfig& config = input.config.grasp;
+    output.phase = "seat";
+    undulate_on(config.seat, 0.0, 1.0, open_u(input, grip), input.grip_sense.yaw_joint_count(), output);
+    if (input.grip_sense.apex_force_n(input.touches) >= config.seat_force_n) state_.seated_s += input.tick.dt_s();
+    if (state_.seated_s >= config.seat_time_s) {
+      state_.touched_s.fill(1e9);
+      enter(kSqueeze);
+    } else if (state_.phase_s > config.seat_timeout_s) {
+      enter(kOpen);
+    }
+  }
+
+  /// Counts the modules near the base that touched within the last moments: the gait makes touches intermittent.
+  void touched(const TaskInput& input) {
+    for (double& since_s : state_.touched_s) since_s += input.tick.dt_s();
+    for (const Touch& touch : input.touches) state_.touched_s[touch.module] = 0.0;
+    state_.touching = 0;
+    for (std::size_t m = 0; m < input.robot.module_count; ++m) {
+      if (input.grip_sense.is_near_base(m) && state_.touched_s[m] < input.config.grasp.touch_memory_s) ++state_.touching;
+    }
+  }
+
+  void squeeze(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const GraspConfig& config = input.config.grasp;
+    output.phase = "squeeze";
+    // Driving on presses the object into the base and frees the arms from the ground's friction while they close.
+    undulate(config.squeeze, 0.0, 1.0, grip, output);
+    std::snprintf(output.desired.method, sizeof output.desired.method, "squeeze");
+    set_u(input, grip, output);
+    output.desired.squeeze_rad = config.squeeze_max_rad;
+    output.desired.torque_limit_nm = config.squeeze_cap_nm;
+    const double torque_nm = input.grip_sense.largest_closing_nm(input.joints, grip.side);
+    touched(input);
+    const bool firm = torque_nm >= config.squeeze_torque_nm && state_.touching >= config.touching_modules;
+    const bool closed = input.motion_done && state_.phase_s > 0.5;
+    if (!firm && !closed) return;
+    if (!firm && ++state_.squeezes < config.squeeze_attempts) {
+      state_.seated_s = 0.0;
+      enter(kSeat);
+      return;
+    }
+    grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip.side);
+    input.grip_sense.hold_starts(grip);
+    enter(kCheck);
+  }
+
+  void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const GraspConfig& config = input.config.grasp;
+    output.phase = "check";
+    Gait still = config.seat;
+    still.amplitude_rad = 0.0;
+    still.frequency_hz = 0.0;
+    undulate_on(still, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
+    output.desired.torque_limit_nm = grip.hold_torque_nm;
+    touched(input);
+    if (state_.phase_s < config.check_s) return;
+    const double torque_nm = input.grip_sense.mean_closing_nm(input.joints, grip.side);
+    if (state_.touching >= config.touching_modules && torque_nm >= input.config.grip.lost_torque_nm) {
+      grip.carrying = true;
+      output.emit(msg::kEventObjectGrasped, grip.colour, grip.handle);
+      output.succeed();
+    } else {
+      enter(kOpen);
+    }
+  }
+
+  /// There is nothing between the arms: open and stretch, so that another attempt can begin.
+  void open(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    output.phase = "open";
+    bend_head(0.0, input.config.drop.straighten_rate_rad_s, grip, output);
+    if (!input.motion_done || state_.phase_s < 0.2) return;
+    output.emit(msg::kEventObjectGraspLost, grip.colour, grip.handle);
+    output.abort("the object is not between the arms");
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Task> make_grasp() { return std::make_unique<Grasp>(); }
+
+}  // namespace constrictor

@@ -1,0 +1,216 @@
+// Pregrasp (Tables VII, VIII): the snake bends away until the object leaves the view, passes beside it in forward steps, and after
+// each feels for it by bending the part next to the head, until the object lies beside the body where it can be wrapped.
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/motions.hpp"
+#include "navigation/steering.hpp"
+
+namespace constrictor {
+namespace {
+
+enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
+
+struct PregraspState {
+  int phase = kBendAway;
+  double phase_s = 0.0;
+  double side = 1.0;          ///< +1: the object stays on the left
+  double course_rad = 0.0;    ///< heading of the passing line in M
+  Eigen::Vector2d p_MO{0.0, 0.0};
+  double radius_m = 0.085;
+  double past_m = 0.0;        ///< how far the head shall pass the object's centre
+  int attempts = 0;
+  bool felt = false;
+  bool deep = false;
+  Pose2 rest;                 ///< the head before it felt
+  SteeringState steering;
+  double unseen_s = 0.0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, felt, deep, rest, steering, unseen_s);
+  }
+};
+
+class Pregrasp : public StatefulTask<PregraspState> {
+ public:
+  std::string refusal(const TaskInput& input, const Grip& grip) const override {
+    const std::uint8_t colour = input.parameters.object_colour;
+    if (colour == msg::kColourUnknown) return "pregrasp needs an object colour";
+    if (grip.carrying) return "pregrasp cannot run while carrying";
+    const Sighting& thing = input.things.objects[colour];
+    const double unseen_s = static_cast<double>(input.tick.index - thing.seen_tick) * input.tick.period_s();
+    if (!thing.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
+    return "";
+  }
+
+  void start(const TaskInput& input, Grip& grip) override {
+    grip.pregrasped = false;
+    const Sighting& thing = input.things.objects[input.parameters.object_colour];
+    state_.p_MO = thing.p_M();
+    state_.radius_m = thing.radius_m;
+    state_.past_m = input.config.pregrasp.past_m;
+    state_.side = choose_side(input);
+    state_.course_rad = tangent_course(input, state_.side);
+  }
+
+  void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
+    const PregraspConfig& config = input.config.pregrasp;
+    const Sighting& thing = input.things.objects[input.parameters.object_colour];
+    state_.phase_s += input.tick.dt_s();
+    if (state_.phase == kBendAway && thing.missed == 0 && input.image) {
+      state_.p_MO = thing.p_M();
+      state_.radius_m = thing.radius_m;
+    }
+    output.progress = std::min(0.95, 0.2 * state_.phase + 0.1 * state_.attempts);
+    switch (state_.phase) {
+      case kBendAway: bend_away(input, grip, thing, output); break;
+      case kAdvance: advance(input, grip, output); break;
+      case kSettle:
+        output.phase = "settle";
+        bend_head(0.0, config.touch_rate_rad_s, grip, output);
+        if (state_.phase_s < config.settle_s || !input.motion_done) break;
+        state_.rest = input.X_MH;
+        state_.felt = false;
+        state_.deep = false;
+        enter(kTouch);
+        break;
+      case kTouch: touch(input, grip, output); break;
+      default: unbend(input, grip, output); break;
+    }
+  }
+
+ private:
+  void enter(int phase) {
+    state_.phase = phase;
+    state_.phase_s = 0.0;
+    state_.steering = {};
+  }
+
+  /// [m] distance of the object's centre from the passing body's middle line.
+  [[nodiscard]] double passing_m(const TaskInput& input) const {
+    return state_.radius_m + input.robot.module_radius_m + input.config.pregrasp.clearance_m;
+  }
+
+  /// Heading of the line from the head that passes the object at the wanted distance.
+  [[nodiscard]] double tangent_course(const TaskInput& input, double side) const {
+    const Eigen::Vector2d d = state_.p_MO - input.X_MH.p;
+    const double aside = std::min(0.9, passing_m(input) / std::max(0.01, d.norm()));
+    return std::atan2(d.y(), d.x()) - side * std::asin(aside);
+  }
+
+  /// The side with more room from other objects for passing and wrapping; the nearer one if both have enough.
+  [[nodiscard]] double choose_side(const TaskInput& input) const {
+    const PregraspConfig& config = input.config.pregrasp;
+    double room_m[2] = {1e9, 1e9};
+    for (const int option : {0, 1}) {
+      const double side = option == 0 ? 1.0 : -1.0;
+      const Pose2 X_MP{state_.p_MO, tangent_course(input, side)};
+      for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
+        const Sighting& other = input.things.objects[colour];
+        if (!other.known || colour == input.parameters.object_colour) continue;
+        // The head passes on one side, turns beyond the object and comes back on the other.
+        const Eigen::Vector2d p = X_MP.to_local(other.p_M());
+        const double lane_m = -side * passing_m(input);
+        const double along_m = std::clamp(p.x(), -0.9, 0.3);
+        const double lane = (p - Eigen::Vector2d(along_m, lane_m)).norm();
+        const double turn = (p - Eigen::Vector2d(0.25, 0.0)).norm();
+        room_m[option] = std::min({room_m[option], lane - other.radius_m, turn - other.radius_m});
+      }
+    }
+    const double wanted_m = config.other_clearance_m;
+    if (std::min(room_m[0], wanted_m) != std::min(room_m[1], wanted_m)) return room_m[0] > room_m[1] ? 1.0 : -1.0;
+    return input.X_MH.to_local(state_.p_MO).y() >= 0.0 ? 1.0 : -1.0;
+  }
+
+  /// Steers along the passing line.
+  void pass(const TaskInput& input, const Gait& gait, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    const Pose2 X_MP{state_.p_MO, state_.course_rad};
+    const Eigen::Vector2d p_line = X_MP.to_parent({0.0, -state_.side * passing_m(input)});
+    const Steering steering(config.steering);
+    const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
+    steering.observe(input.tick.time_s(), error_m, gait_period_s(gait), state_.steering);
+    undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+  }
+
+  /// [m] how far the head is past the object's centre.
+  [[nodiscard]] double past_m(const TaskInput& input) const { return Pose2{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x(); }
+
+  void bend_away(const TaskInput& input, Grip& grip, const Sighting& thing, TaskOutput& output) {
+    output.phase = "bend away";
+    pass(input, input.config.travel, grip, output);
+    const bool beside = std::abs(input.X_MH.to_local(state_.p_MO).y()) > 0.6 * std::abs(input.X_MH.to_local(state_.p_MO).x());
+    if (!thing.visible || beside || past_m(input) > -0.25) enter(kAdvance);
+    // Not where it was expected although it should be in view: somebody took it.
+    const double bearing_rad = std::abs(std::atan2(input.X_MH.to_local(state_.p_MO).y(), input.X_MH.to_local(state_.p_MO).x()));
+    if (!thing.visible && bearing_rad < 0.5 && past_m(input) < -0.35) lose(input, grip, output, "the object vanished while in view");
+  }
+
+  void advance(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    output.phase = "advance";
+    pass(input, input.config.creep, grip, output);
+    if (past_m(input) >= state_.past_m - config.brake_m) enter(kSettle);
+    if (state_.phase_s > 15.0) enter(kSettle);
+  }
+
+  void touch(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    output.phase = "touch";
+    bend_head(state_.side * config.touch_limit_rad, config.touch_rate_rad_s, grip, output);
+    const Touch* best = nullptr;
+    for (const Touch& t : input.touches) {
+      const Pose2& module = input.body[t.module];
+      const bool inner_side = state_.side * t.normal_H.dot(module.left()) < 0.3;
+      if (t.module < 9 && inner_side && t.force_n >= config.touch_force_n && (!best || t.force_n > best->force_n)) best = &t;
+    }
+    if (best) {
+      state_.felt = true;
+      state_.p_MO = input.X_MH.to_parent(best->p_H - state_.radius_m * best->normal_H);
+      const double along_m = state_.rest.to_local(state_.p_MO).x();
+      state_.deep = along_m >= config.deep_min_m && along_m <= config.deep_max_m;
+      enter(kUnbend);
+    } else if (input.motion_done && state_.phase_s > 0.2) {
+      enter(kUnbend);
+    }
+  }
+
+  void unbend(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    output.phase = "unbend";
+    bend_head(0.0, config.touch_rate_rad_s, grip, output);
+    if (!input.motion_done || state_.phase_s < 0.2) return;
+    ++state_.attempts;
+    if (state_.deep) {
+      grip.pregrasped = true;
+      grip.side = state_.side;
+      grip.colour = input.parameters.object_colour;
+      grip.handle = input.parameters.object_handle;
+      grip.radius_m = state_.radius_m;
+      grip.p_MO = state_.p_MO;
+      output.emit(msg::kEventObjectPregrasped, grip.colour, grip.handle);
+      output.succeed();
+      return;
+    }
+    if (state_.attempts >= config.attempts) {
+      lose(input, grip, output, "the object was not felt");
+      return;
+    }
+    // Felt ahead or not at all: another step, a little farther than the last.
+    if (!state_.felt) state_.past_m = std::max(state_.past_m, past_m(input)) + 0.12;
+    enter(kAdvance);
+  }
+
+  void lose(const TaskInput& input, Grip& grip, TaskOutput& output, const char* why) {
+    grip.pregrasped = false;
+    stand(grip, output);
+    output.emit(msg::kEventObjectPregraspLost, input.parameters.object_colour, input.parameters.object_handle);
+    output.abort(why);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Task> make_pregrasp() { return std::make_unique<Pregrasp>(); }
+
+}  // namespace constrictor

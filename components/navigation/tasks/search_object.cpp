@@ -1,0 +1,121 @@
+// Search object (Tables III, IV): the head looks to both sides, the body advances and turns on the spot, until an object of the
+// colour is seen; it must stay in view for a moment.
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/motions.hpp"
+
+namespace constrictor {
+namespace {
+
+enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm };
+
+struct SearchState {
+  int phase = kLookLeft;
+  int looks = 0;             ///< completed looks to both sides
+  double phase_s = 0.0;
+  double turned_rad = 0.0;
+  double last_yaw_rad = 0.0;
+  Pose2 from;                ///< where the phase began
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(phase, looks, phase_s, turned_rad, last_yaw_rad, from);
+  }
+};
+
+class SearchObject : public StatefulTask<SearchState> {
+ public:
+  std::string refusal(const TaskInput& input, const Grip&) const override {
+    return input.parameters.object_colour == msg::kColourUnknown ? "search_object needs an object colour" : "";
+  }
+  void start(const TaskInput& input, Grip&) override { enter(input, kLookAhead); }
+
+  void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
+    const SearchConfig& config = input.config.search;
+    const std::uint8_t colour = input.parameters.object_colour;
+    const Sighting& thing = input.things.objects[colour];
+    state_.phase_s += input.tick.dt_s();
+    state_.turned_rad += angle_between(input.X_MH.yaw_rad, state_.last_yaw_rad);
+    state_.last_yaw_rad = input.X_MH.yaw_rad;
+    output.progress = 1.0 - 1.0 / (1.0 + 0.25 * state_.looks);
+
+    if (state_.phase == kConfirm) {
+      confirm(input, grip, thing, output);
+      return;
+    }
+    if (thing.visible && thing.missed == 0) {
+      output.emit(msg::kEventObjectFound, colour);
+      enter(input, kConfirm);
+      confirm(input, grip, thing, output);
+      return;
+    }
+    // A body that holds something looks around by driving in bends; the U leaves the head no freedom to turn.
+    if (grip.carrying) {
+      undulate(input.config.carry, std::sin(0.3 * state_.phase_s), 1.0, grip, output);
+      output.phase = "drive";
+      return;
+    }
+    sweep(input, grip, config, output);
+  }
+
+ private:
+  void enter(const TaskInput& input, int phase) {
+    state_.phase = phase;
+    state_.phase_s = 0.0;
+    state_.turned_rad = 0.0;
+    state_.last_yaw_rad = input.X_MH.yaw_rad;
+    state_.from = input.X_MH;
+  }
+
+  void confirm(const TaskInput& input, Grip& grip, const Sighting& thing, TaskOutput& output) {
+    stand(grip, output);
+    output.phase = "confirm";
+    if (!thing.visible) {
+      output.emit(msg::kEventObjectLost, input.parameters.object_colour);
+      enter(input, kLookAhead);
+    } else if (state_.phase_s >= input.config.search.confirm_s) {
+      output.succeed();
+    }
+  }
+
+  void sweep(const TaskInput& input, Grip& grip, const SearchConfig& config, TaskOutput& output) {
+    const double each_rad = config.head_turn_rad / 3.0;
+    const bool done = input.motion_done && state_.phase_s > 0.1;
+    switch (state_.phase) {
+      case kLookLeft:
+        output.phase = "look left";
+        bend_head(each_rad, config.head_rate_rad_s, grip, output);
+        if (done) enter(input, kLookRight);
+        break;
+      case kLookRight:
+        output.phase = "look right";
+        bend_head(-each_rad, config.head_rate_rad_s, grip, output);
+        if (done) {
+          ++state_.looks;
+          enter(input, state_.looks % 2 == 0 ? kTurn : kAdvance);
+        }
+        break;
+      case kLookAhead:
+        output.phase = "look ahead";
+        bend_head(0.0, config.head_rate_rad_s, grip, output);
+        if (done) enter(input, kLookLeft);
+        break;
+      case kAdvance:
+        output.phase = "advance";
+        undulate(input.config.travel, 0.0, 1.0, grip, output);
+        if ((input.X_MH.p - state_.from.p).norm() >= config.advance_m || state_.phase_s > 6.0) enter(input, kLookAhead);
+        break;
+      default:
+        output.phase = "turn";
+        undulate(input.config.travel, config.turn_curvature_1_m, 1.0, grip, output);
+        if (std::abs(state_.turned_rad) >= config.turn_rad || state_.phase_s > 8.0) enter(input, kLookAhead);
+        break;
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Task> make_search_object() { return std::make_unique<SearchObject>(); }
+
+}  // namespace constrictor

@@ -1,0 +1,115 @@
+// Which contacts are felt from the side, and where a held object lies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "navigation/grip.hpp"
+#include "navigation/motions.hpp"
+#include "runtime/share.hpp"
+
+namespace constrictor {
+namespace {
+
+class TouchTest : public testing::Test {
+ protected:
+  RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  GripConfig config;
+  GripSense grip_sense{robot, config};
+  msg::JointState joints{};
+  TouchTest() { joints.joint_count = 23; }
+  static msg::Contact contact(std::uint8_t module, double y_m, double ny, double nz, double force_n) {
+    msg::Contact c{};
+    c.module_index = module;
+    c.position_m = {0.0, y_m, 0.0};
+    c.normal = {0.0, ny, nz};
+    c.force_n = {0.0, ny * force_n, nz * force_n};
+    return c;
+  }
+  [[nodiscard]] msg::JointState u_joints(double side) const {
+    msg::JointState u = joints;
+    for (int j : {10, 12, 14}) u.position_rad[j] = side * std::numbers::pi / 3.0;
+    return u;
+  }
+};
+
+TEST_F(TouchTest, GroundContactsAreNotTouches) {
+  msg::ContactState contacts{};
+  contacts.contact_count = 2;
+  contacts.contacts[0] = contact(4, 0.0, 0.0, 1.0, 3.0);
+  contacts.contacts[1] = contact(4, 0.035, -1.0, 0.0, 2.0);
+  const auto touches = lateral_touches(robot, planar_body(robot, joints), contacts, 0.4);
+  ASSERT_EQ(touches.size(), 1U);
+  EXPECT_EQ(touches[0].module, 4U);
+  EXPECT_NEAR(touches[0].p_H.x(), -4 * 0.089, 1e-12);
+  EXPECT_NEAR(touches[0].p_H.y(), 0.035, 1e-12);
+  EXPECT_NEAR(touches[0].force_n, 2.0, 1e-12);
+}
+
+TEST_F(TouchTest, ContactsOnTheBodyItselfAreNotTouches) {
+  // Folded by 90 degrees at three joints in a row the body comes back upon itself.
+  msg::JointState folded = joints;
+  for (int j : {4, 6, 8}) folded.position_rad[j] = 1.5;
+  const auto body = planar_body(robot, folded);
+  // The point of module 2's skin that is nearest to any module far along the body.
+  msg::ContactState contacts{};
+  contacts.contact_count = 1;
+  std::size_t other = 0;
+  double nearest_m = 1e9;
+  for (std::size_t m = 9; m < body.size(); ++m) {
+    if ((body[m].p - body[2].p).norm() < nearest_m) {
+      nearest_m = (body[m].p - body[2].p).norm();
+      other = m;
+    }
+  }
+  ASSERT_LT(nearest_m, 0.15);
+  // A contact on the other module's skin, towards module 2, felt by module 2.
+  const Eigen::Vector2d towards = (body[2].p - body[other].p).normalized();
+  const Eigen::Vector2d p_H = body[other].p + 0.036 * towards;
+  const Eigen::Vector2d p_2 = body[2].to_local(p_H);
+  contacts.contacts[0] = contact(2, 0.0, 1.0, 0.0, 3.0);
+  contacts.contacts[0].position_m = {p_2.x(), p_2.y(), 0.0};
+  EXPECT_TRUE(lateral_touches(robot, body, contacts, 0.4).empty());
+}
+
+TEST_F(TouchTest, HeldObjectLiesBetweenTheArmsOnItsSide) {
+  for (const double side : {1.0, -1.0}) {
+    const auto body = planar_body(robot, u_joints(side));
+    const Eigen::Vector2d p_HO = grip_sense.held_object_H(body, 0.085);
+    EXPECT_GT(side * p_HO.y(), 0.1);
+    EXPECT_LT(side * p_HO.y(), 0.2);
+    EXPECT_LT(p_HO.x(), -0.7);
+    // Clear of every module by about its radius.
+    for (const Pose2& module : body) EXPECT_GT((module.p - p_HO).norm(), 0.085 + 0.035 - 0.02);
+  }
+}
+
+TEST_F(TouchTest, GraspIsLostOnlyWithoutTorqueAndTouchForAWhile) {
+  Grip grip;
+  grip.side = -1.0;
+  grip.carrying = true;
+  grip_sense.hold_starts(grip);
+  msg::JointState u = u_joints(-1.0);
+  for (int j : {10, 12, 14}) u.torque_nm[j] = -1.2;
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, {}, 0.02, grip));
+  for (int j : {10, 12, 14}) u.torque_nm[j] = 0.1;
+  std::vector<Touch> touch(1);
+  touch[0].module = 12;
+  touch[0].force_n = 2.0;
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, 0.02, grip));
+  double lost_after_s = 0.0;
+  while (!grip_sense.lost(u, {}, 0.02, grip)) {
+    lost_after_s += 0.02;
+    ASSERT_LT(lost_after_s, 10.0);
+  }
+  EXPECT_GT(lost_after_s, config.lost_after_s);
+}
+
+TEST_F(TouchTest, PathErrorIsTheLateralPlaceOfThePathAhead) {
+  const Pose2 X_MH{{0.0, -0.2}, 0.0};
+  EXPECT_NEAR(path_error_m(X_MH, {5.0, 0.0}, 0.0, 0.3), 0.2, 1e-12);       // path to the left
+  EXPECT_LT(path_error_m({{0.0, 0.0}, 0.5}, {0.0, 0.0}, 0.0, 0.3), -0.1);  // head turned left of the path
+}
+
+}  // namespace
+}  // namespace constrictor
