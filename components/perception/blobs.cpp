@@ -27,13 +27,15 @@ class Gauge {
   Gauge(const cv::Mat& rgb, const Regions& regions, std::size_t index, const GroundCamera& camera,
         const PerceptionConfig& config)
       : rgb_(rgb), regions_(regions), region_(regions.regions[index]), id_(static_cast<std::uint8_t>(index + 1)),
-        camera_(camera), config_(config) {}
+        camera_(camera), config_(config) {
+    if (region_.standing()) find_sides();
+  }
 
   /// The part that stands up; `on_zone`: its lower edge melts into a zone of the same colour.
   std::optional<msg::Blob> object(bool on_zone) const {
     msg::Blob blob = box(region_.standing_first, region_.standing_last);
-    double right = 0.0, left = 0.0;
-    if (!object_azimuths(left, right)) return std::nullopt;
+    const double left = left_, right = right_;
+    if (left <= right) return std::nullopt;
     blob.kind = msg::kBlobObject;
     bool cut = false;
     double range_m = on_zone ? kNan : lower_edge_range(left, right, cut);
@@ -42,13 +44,13 @@ class Gauge {
     return finish(blob, left, right, range_m);
   }
 
-  /// The part that lies flat: the whole region, or its columns beside the object.
+  /// The part that lies flat: the whole region, or what lies beside the object.
   std::optional<msg::Blob> zone() const {
     double right = 1e9, left = -1e9, lateral_min = 1e9, lateral_max = -1e9;
     for (int v = region_.v_min; v <= region_.v_max; ++v) {
       int first = -1, last = -1;
       for (int u = region_.u_min; u <= region_.u_max; ++u) {
-        if (regions_.ids.at<std::uint8_t>(v, u) != id_ || in_object(u)) continue;
+        if (regions_.ids.at<std::uint8_t>(v, u) != id_ || in_object(u, v)) continue;
         if (first < 0) first = u;
         last = u;
       }
@@ -64,18 +66,18 @@ class Gauge {
     }
     if (left <= right) return std::nullopt;
     msg::Blob blob = box(region_.u_min, region_.u_max);
-    blob.kind = blob.cut_top && camera_.horizon_row(0.5 * camera_.width()) < 1.0 ? msg::kBlobUndecided : msg::kBlobZone;
+    blob.kind = may_be_object(blob, left, right) ? msg::kBlobUndecided : msg::kBlobZone;
     bool cut = false;
     const double range_m = lower_edge_range(left, right, cut);
     blob.cut_bottom |= cut;
     auto result = finish(blob, left, right, range_m);
-    if (result && !std::isfinite(result->width_m) && lateral_max > lateral_min) {
+    if (result && result->kind == msg::kBlobZone && !std::isfinite(result->width_m) && lateral_max > lateral_min) {
       result->width_m = lateral_max - lateral_min;
     }
     return result;
   }
 
-  /// Pixels beside the object's columns, and whether the flat part reaches nearer than the object does.
+  /// Pixels beside the object, and whether the flat part reaches nearer than the object does.
   void flat_part(int& pixels, bool& nearer) const {
     pixels = 0;
     int lowest = 0, object_lowest = 0;
@@ -83,7 +85,7 @@ class Gauge {
     for (int v = region_.v_min; v <= region_.v_max; ++v) {
       for (int u = region_.u_min; u <= region_.u_max; ++u) {
         if (regions_.ids.at<std::uint8_t>(v, u) != id_) continue;
-        if (!in_object(u)) {
+        if (!in_object(u, v)) {
           ++pixels;
           lowest = v;
         } else if (u == middle) {
@@ -95,8 +97,22 @@ class Gauge {
   }
 
  private:
-  [[nodiscard]] bool in_object(int u) const {
-    return region_.standing() && u >= region_.standing_first - 2 && u <= region_.standing_last + 2;
+  /// Whether a pixel lies between the vertical planes of the object's sides, or two pixels beyond.
+  [[nodiscard]] bool in_object(int u, int v) const {
+    if (!region_.standing()) return false;
+    const double margin = 2.5 / camera_.width();
+    const double a = azimuth({u + 0.5, v + 0.5});
+    return (right_open_ || a > right_ - margin) && (left_open_ || a < left_ + margin);
+  }
+
+  /// Whether a flat region at the image's border could be the foot of an object whose upper part is out of view: with the
+  /// camera tilted, upright edges lean outwards in the image.
+  [[nodiscard]] bool may_be_object(const msg::Blob& blob, double left, double right) const {
+    if (blob.cut_top) return true;
+    if (blob.cut_left == blob.cut_right) return false;
+    Eigen::Vector2d horizon, down;
+    if (!plane(blob.cut_left ? right : left, horizon, down)) return true;
+    return blob.cut_left ? horizon.x() < 3.0 : horizon.x() > camera_.width() - 3.0;
   }
 
   [[nodiscard]] double azimuth(const Eigen::Vector2d& pixel) const {
@@ -123,8 +139,8 @@ class Gauge {
     return blob;
   }
 
-  /// Azimuths of an object's sides, where they pass the horizon: there the tilt of the camera does not slant them.
-  bool object_azimuths(double& left, double& right) const {
+  /// Azimuths of an object's sides, where they pass the horizon: there they are clear of anything flat.
+  void find_sides() {
     std::vector<double> lefts, rights;
     const double middle = 0.5 * (region_.standing_first + region_.standing_last + 1);
     const int horizon = static_cast<int>(std::floor(camera_.horizon_row(middle)));
@@ -136,10 +152,12 @@ class Gauge {
       if (l.state != EdgeState::kNone) lefts.push_back(azimuth(l.pixel));
       if (r.state != EdgeState::kNone) rights.push_back(azimuth(r.pixel));
     }
-    if (lefts.empty() || rights.empty()) return false;
-    left = median(lefts);
-    right = median(rights);
-    return left > right;
+    if (lefts.empty() || rights.empty()) return;
+    left_ = median(lefts);
+    right_ = median(rights);
+    // beyond the image's border it goes on
+    left_open_ = region_.standing_first == 0;
+    right_open_ = region_.standing_last == camera_.width() - 1;
   }
 
   /// Image of the vertical plane of an azimuth: a point on the horizon and the direction downwards.
@@ -217,6 +235,8 @@ class Gauge {
   std::uint8_t id_;
   const GroundCamera& camera_;
   const PerceptionConfig& config_;
+  double left_ = 0.0, right_ = 0.0;  ///< azimuths of an object's sides
+  bool left_open_ = false, right_open_ = false;
 };
 
 }  // namespace

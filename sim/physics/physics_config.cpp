@@ -24,6 +24,8 @@ PhysicsConfig load_physics_config(const std::filesystem::path& file) {
   settings.surface_layer_m = solver.number("surface_layer_m", {0.0, 0.01}, settings.surface_layer_m);
   settings.max_correcting_velocity_m_s =
       solver.number("max_correcting_velocity_m_s", {0.001, 1000.0}, settings.max_correcting_velocity_m_s);
+  settings.one_ground_contact_a_joint =
+      solver.flag("one_ground_contact_a_joint", settings.one_ground_contact_a_joint);
   solver.finish();
   // A tick is a whole number of steps: time must not drift from the ticks.
   const double steps = period_s / settings.step_s;

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string>
 
 #include "sim/render/gl_handles.hpp"
+#include "sim/render/gpu_mesh.hpp"
 #include "sim/render/ground_texture.hpp"
 #include "sim/render/meshes.hpp"
 #include "sim/render/projection.hpp"
@@ -22,70 +22,6 @@ constexpr Rgb kHorizon{0.80F, 0.79F, 0.77F};
 constexpr Rgb kHead{0.50F, 0.50F, 0.49F};
 constexpr Rgb kDarkModule{0.045F, 0.045F, 0.048F};
 constexpr Rgb kGreyModule{0.24F, 0.24F, 0.245F};
-
-/// Per-instance attributes of a solid.
-struct Instance {
-  std::array<float, 12> rows;  // 3x4 row-major X_WInstance
-  std::array<float, 3> scale;
-  std::array<float, 4> colour;  // reflectance, gloss
-};
-
-Instance make_instance(const Eigen::Isometry3d& X_W, const Eigen::Vector3d& scale, const Rgb& colour, double gloss) {
-  Instance instance{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      instance.rows[static_cast<std::size_t>(4 * row + column)] = static_cast<float>(X_W(row, column));
-    }
-    instance.scale[static_cast<std::size_t>(row)] = static_cast<float>(scale[row]);
-  }
-  instance.colour = {colour.r, colour.g, colour.b, static_cast<float>(gloss)};
-  return instance;
-}
-
-/// A mesh on the GPU side, with room for instances.
-struct GpuMesh {
-  GlVertexArray array;
-  GlBuffer vertices;
-  GlBuffer indices;
-  GlBuffer instances;
-  GLsizei index_count = 0;
-  GLsizei instance_count = 0;
-};
-
-GpuMesh upload(const Mesh& mesh, bool instanced) {
-  GpuMesh gpu{GlVertexArray::create(), GlBuffer::create(), GlBuffer::create(), {}, 0, 0};
-  gpu.index_count = static_cast<GLsizei>(mesh.indices.size());
-  glBindVertexArray(gpu.array.get());
-  glBindBuffer(GL_ARRAY_BUFFER, gpu.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)), mesh.vertices.data(), GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gpu.indices.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(), GL_STATIC_DRAW);
-  const auto attribute = [](GLuint location, GLint count, std::size_t stride_floats, std::size_t offset_floats, GLuint divisor) {
-    glEnableVertexAttribArray(location);
-    glVertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
-                          reinterpret_cast<const void*>(offset_floats * sizeof(float)));  // an offset by OpenGL's convention
-    glVertexAttribDivisor(location, divisor);
-  };
-  attribute(0, 3, Mesh::kFloatsPerVertex, 0, 0);
-  attribute(1, 3, Mesh::kFloatsPerVertex, 3, 0);
-  attribute(2, 1, Mesh::kFloatsPerVertex, 6, 0);
-  if (instanced) {
-    gpu.instances = GlBuffer::create();
-    glBindBuffer(GL_ARRAY_BUFFER, gpu.instances.get());
-    constexpr std::size_t kStride = sizeof(Instance) / sizeof(float);
-    for (GLuint row = 0; row < 3; ++row) attribute(3 + row, 4, kStride, 4 * row, 1);
-    attribute(6, 3, kStride, 12, 1);
-    attribute(7, 4, kStride, 15, 1);
-  }
-  glBindVertexArray(0);
-  return gpu;
-}
-
-void set_instances(GpuMesh& mesh, std::span<const Instance> instances) {
-  mesh.instance_count = static_cast<GLsizei>(instances.size());
-  glBindBuffer(GL_ARRAY_BUFFER, mesh.instances.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size_bytes()), instances.data(), GL_STREAM_DRAW);
-}
 
 /// A coloured flat surface.
 struct Flat {

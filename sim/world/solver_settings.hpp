@@ -15,6 +15,8 @@ struct SolverSettings {
   double contact_cfm = 1e-5;
   double surface_layer_m = 0.001;           ///< depth to which contacts may rest without correction
   double max_correcting_velocity_m_s = 1.0;
+  /// Neighbouring modules' caps coincide at their joint. True: only the front one touches the ground there, a third faster.
+  bool one_ground_contact_a_joint = false;
   std::uint32_t reorder_seed = 1;           ///< of QuickStep's random reordering of constraints
 };
 

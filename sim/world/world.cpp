@@ -204,6 +204,7 @@ void World::collide() {
     const Friction skin{friction.ground_scale * robot_.friction_along, friction.ground_scale * robot_.friction_across, &along};
     std::uint8_t feature = 0;
     for (const Vector3d& end : {capsule.front, capsule.back}) {
+      if (feature == 1 && settings_.one_ground_contact_a_joint && i + 1 < modules_.size()) continue;
       const double depth = capsule.radius_m - end.z();
       if (depth > 0.0) {
         const TouchPoint touch{end - Vector3d(0.0, 0.0, capsule.radius_m), Vector3d::UnitZ(), depth};

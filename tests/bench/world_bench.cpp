@@ -8,11 +8,12 @@ namespace {
 
 constexpr double kPeriod_s = 0.02;
 
-/// The gait on the flat. Arguments: step in us, iterations.
+/// The gait on the flat. Arguments: step in us, iterations, ground contacts at each joint.
 void undulate(benchmark::State& state) {
   SolverSettings settings;
   settings.step_s = 1e-6 * static_cast<double>(state.range(0));
   settings.iterations = static_cast<int>(state.range(1));
+  settings.one_ground_contact_a_joint = state.range(2) == 1;
   World world(load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"), Scenario{}, settings);
   OpenLoopGait gait;
   int tick = 0;
@@ -29,11 +30,14 @@ void undulate(benchmark::State& state) {
   state.counters["speed_m_s"] = (centre_x() - from) / (kPeriod_s * (tick - first));
 }
 BENCHMARK(undulate)
-    ->ArgNames({"step_us", "iterations"})
-    ->Args({2000, 50})
-    ->Args({2000, 20})
-    ->Args({4000, 50})
-    ->Args({4000, 20})
+    ->ArgNames({"step_us", "iterations", "contacts"})
+    ->Args({2000, 50, 2})
+    ->Args({2000, 50, 1})
+    ->Args({2000, 20, 2})
+    ->Args({4000, 50, 2})
+    ->Args({4000, 50, 1})
+    ->Args({4000, 20, 2})
+    ->Args({1000, 500, 2})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(430);  // six cycles of the gait
 

@@ -243,6 +243,22 @@ TEST(Blobs, NothingIsSeenInAnEmptyScene) {
   }
 }
 
+TEST(Blobs, AnObjectLeavingTheViewIsNeverTakenForAZone) {
+  for (const double side : {-1.0, 1.0}) {
+    for (const double range : {0.2, 0.6}) {
+      for (double bearing = 0.5; bearing < 1.15; bearing += 0.1) {
+        SCOPED_TRACE("range " + std::to_string(range) + ", bearing " + std::to_string(side * bearing));
+        Scene scene;
+        scene.rounds = {Round{msg::kColourRed, (range + 0.085) * Eigen::Vector2d(std::cos(bearing), side * std::sin(bearing)),
+                              0.085, 0.15}};
+        const Percepts percepts = look(scene, kConditions[0]);
+        EXPECT_LE(percepts.objects.blob_count, 1);
+        EXPECT_EQ(find(percepts, msg::kColourRed, msg::kBlobZone), nullptr);
+      }
+    }
+  }
+}
+
 TEST(Blobs, CutAtTheBorderIsMarked) {
   Scene scene;
   scene.rounds = {Round{msg::kColourGreen, {0.18, 0.0}, 0.085, 0.15}};
