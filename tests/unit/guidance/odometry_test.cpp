@@ -1,0 +1,251 @@
+// The pose against motions that are known analytically.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "guidance/odometry.hpp"
+#include "guidance/planar.hpp"
+#include "guidance/pose_filter.hpp"
+#include "robot/kinematics.hpp"
+
+namespace constrictor {
+namespace {
+
+using namespace guidance;
+
+constexpr double kPi = std::numbers::pi;
+
+RobotModel snake() {
+  RobotModel model;
+  model.module_count = 24;
+  model.module_length_m = 0.089;
+  model.module_radius_m = 0.035;
+  model.module_mass_kg = 0.3;
+  model.joints.resize(23);
+  for (std::size_t i = 0; i < 23; ++i) model.joints[i].axis = i % 2 == 0 ? JointAxis::kYaw : JointAxis::kPitch;
+  return model;
+}
+
+/// A body with so short links that it nearly is a curve.
+RobotModel fine_snake() {
+  RobotModel model;
+  model.module_count = 48;
+  model.module_length_m = 0.0445;
+  model.module_mass_kg = 1e-3;  // next to no inertia
+  model.friction_along = 0.0;   // the ideal skin, on which a body slides along its own track
+  model.joints.resize(47);
+  return model;
+}
+
+/// A fine body whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
+class SlidingBody {
+ public:
+  /// `heading`: of the path at a length.
+  explicit SlidingBody(std::function<double(double)> heading) {
+    points_.push_back({0.0, 0.0});
+    for (int i = 1; i < 120000; ++i) {
+      const double h = heading((i - 0.5) * kStep);
+      points_.push_back(points_.back() + kStep * Eigen::Vector2d(std::cos(h), std::sin(h)));
+    }
+  }
+
+  struct Snapshot {
+    Pose2 head;  // in the path's frame
+    std::array<double, 47> q{};
+  };
+
+  /// With the head's joint at length `s`.
+  [[nodiscard]] Snapshot at(double s) const {
+    const double l = fine_snake().module_length_m;
+    const Eigen::Vector2d nose = point(partner(s, l, 1.0));
+    Eigen::Vector2d ahead = nose, here = point(s);
+    Snapshot snapshot;
+    const double head = angle(nose - here);
+    double heading = head;
+    for (double& q : snapshot.q) {
+      s = partner(s, l, -1.0);
+      ahead = here;
+      here = point(s);
+      const double next = angle(ahead - here);
+      q = wrapped(heading - next);
+      heading = next;
+    }
+    const Eigen::Vector2d centre = nose - 0.5 * l * along(head);
+    snapshot.head = {centre.x(), centre.y(), head};
+    return snapshot;
+  }
+
+ private:
+  static constexpr double kStep = 1e-4;
+  static double angle(const Eigen::Vector2d& d) { return std::atan2(d.y(), d.x()); }
+  [[nodiscard]] Eigen::Vector2d point(double s) const {
+    const auto i = static_cast<std::size_t>(s / kStep);
+    const double f = s / kStep - static_cast<double>(i);
+    return (1.0 - f) * points_[i] + f * points_[i + 1];
+  }
+  /// Length of the point at distance `chord` before or behind.
+  [[nodiscard]] double partner(double s, double chord, double sign) const {
+    double a = chord, b = 1.5 * chord;
+    for (int i = 0; i < 50; ++i) {
+      const double m = 0.5 * (a + b);
+      ((point(s + sign * m) - point(s)).norm() < chord ? a : b) = m;
+    }
+    return s + sign * 0.5 * (a + b);
+  }
+  std::vector<Eigen::Vector2d> points_;
+};
+
+struct Travel {
+  double length_m, position_error_m, yaw_error_rad;
+};
+
+/// Slides the body by `length_m` at `speed_m_s` and dead-reckons with the filter's prediction.
+Travel travel(const SlidingBody& body, double from, double length_m, double speed_m_s) {
+  const RobotModel model = fine_snake();
+  const double dt = 0.02, h = 1e-3;
+  PoseFilterState filter_state;
+  PoseFilter filter(filter_state);
+  OdometryState state;
+  const SlidingBody::Snapshot start = body.at(from);
+  SlidingBody::Snapshot now = start;
+  const int ticks = static_cast<int>(length_m / (std::abs(speed_m_s) * dt));
+  for (int k = 0; k <= ticks; ++k) {
+    const double s = from + k * dt * speed_m_s;
+    now = body.at(s);
+    const auto ahead = body.at(s + h * speed_m_s), behind = body.at(s - h * speed_m_s);
+    std::array<double, 47> rate{};
+    for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = (ahead.q[i] - behind.q[i]) / (2.0 * h);
+    OdometryInput input;
+    input.joint_rad = now.q.data();
+    input.joint_rad_s = rate.data();
+    input.yaw_rad = now.head.yaw_rad;
+    const HeadStep step = advance_odometry(state, model, {}, input);
+    filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
+  }
+  const Eigen::Vector2d truth = from_parent(start.head, now.head.position());
+  const Pose2 estimate = filter.pose();
+  return {length_m, (estimate.position() - truth).norm(),
+          std::abs(wrapped(estimate.yaw_rad - (now.head.yaw_rad - start.head.yaw_rad)))};
+}
+
+/// Runs the odometry over shapes q(t) of the snake at rest at first; returns the head's path's end in its first frame.
+Pose2 run_shapes(const RobotModel& model, int ticks, const std::function<double(std::size_t, double)>& joint,
+                 const std::function<double(double)>& yaw, std::vector<double> load_n = {}) {
+  PoseFilterState filter_state;
+  PoseFilter filter(filter_state);
+  OdometryState state;
+  const double dt = 0.02, h = 1e-5;
+  for (int k = 0; k <= ticks; ++k) {
+    std::array<double, 23> q{}, rate{};
+    for (std::size_t i = 0; i < 23; ++i) {
+      q[i] = joint(i, k * dt);
+      rate[i] = (joint(i, k * dt + h) - joint(i, k * dt - h)) / (2.0 * h);
+    }
+    OdometryInput input;
+    input.joint_rad = q.data();
+    input.joint_rad_s = rate.data();
+    input.yaw_rad = yaw(k * dt);
+    input.load_n = load_n;
+    const HeadStep step = advance_odometry(state, model, {}, input);
+    filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
+  }
+  return filter.pose();
+}
+
+TEST(Odometry, FollowsASlidingBodyStraightCurvedAndBackwards) {
+  struct Case { double amplitude, wavelength, curvature; };
+  for (const Case& c : {Case{0.5, 1.07, 0.0}, Case{0.5, 1.07, 0.5}, Case{0.35, 1.07, -0.8}, Case{0.6, 0.8, 0.0}}) {
+    const SlidingBody body([&](double s) { return c.amplitude * std::sin(2.0 * kPi * s / c.wavelength) + c.curvature * s; });
+    for (const double speed : {0.6, -0.4}) {
+      const Travel t = travel(body, speed > 0 ? 3.0 : 9.0, 5.0, speed);
+      EXPECT_LT(t.position_error_m, 0.03 * t.length_m) << "amplitude " << c.amplitude << ", curvature " << c.curvature
+                                                       << ", speed " << speed;
+      EXPECT_LT(t.yaw_error_rad, 1e-6);
+    }
+  }
+}
+
+TEST(Odometry, StandsStillWhileTheBodyDoes) {
+  const Pose2 end = run_shapes(snake(), 200, [](std::size_t i, double) { return i % 2 == 0 ? 0.3 : 0.0; },
+                               [](double) { return 0.4; });
+  EXPECT_LT(end.position().norm(), 1e-9);
+}
+
+TEST(Odometry, BendingTheHeadMovesTheHeadNotTheBody) {
+  // the other 23 modules lie straight and hold the ground: the head turns about the first joint
+  const Pose2 end = run_shapes(snake(), 100, [](std::size_t i, double t) { return i == 0 ? 0.3 * t : 0.0; },
+                               [](double t) { return 0.3 * t; });
+  const double half_m = 0.0445, angle = 0.6;
+  EXPECT_NEAR(end.x_m, half_m * (std::cos(angle) - 1.0), 0.004);
+  EXPECT_NEAR(end.y_m, half_m * std::sin(angle), 0.002);
+  EXPECT_NEAR(end.yaw_rad, angle, 1e-9);
+}
+
+TEST(Odometry, ModulesThatBearNoLoadDoNotHold) {
+  // the rear swings; only the front half touches the ground
+  std::vector<double> load(24, 0.0);
+  for (std::size_t i = 0; i <= 10; ++i) load[i] = 6.0;
+  const Pose2 end = run_shapes(snake(), 100, [](std::size_t i, double t) { return i == 10 ? 0.2 * t : 0.0; },
+                               [](double) { return 0.0; }, load);
+  EXPECT_LT(end.position().norm(), 0.005);
+}
+
+TEST(Odometry, WithoutFrictionTheCentreOfMassStays) {
+  // conservation of momentum: whatever the joints do
+  RobotModel ice = snake();
+  ice.friction_along = ice.friction_across = 0.0;
+  const auto joint = [](std::size_t i, double t) {
+    return i % 2 == 0 ? 0.4 * std::min(t, 1.0) * std::sin(4.0 * t - 0.6 * static_cast<double>(i)) : 0.0;
+  };
+  const auto yaw = [](double t) { return 0.3 * std::sin(2.0 * t); };
+  const int ticks = 300;
+  const Pose2 end = run_shapes(ice, ticks, joint, yaw);
+  const auto centre = [&](const Pose2& head, double t) {
+    std::array<double, 23> q{};
+    for (std::size_t i = 0; i < 23; ++i) q[i] = joint(i, t);
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const PlanarPose& p : planar_module_poses(ice, q, {head.x_m, head.y_m, head.yaw_rad})) {
+      sum += Eigen::Vector2d(p.x_m, p.y_m) / 24.0;
+    }
+    return sum;
+  };
+  EXPECT_LT((centre(end, 0.02 * ticks) - centre({}, 0.0)).norm(), 0.003);
+}
+
+TEST(PoseFilter, LandmarksSeenAgainTakeBackTheDrift) {
+  // a square of 2 m with odometry that believes each step 5 % too long and turns 2 % too far
+  PoseFilterState state;
+  PoseFilter filter(state);
+  const Eigen::Vector2d landmarks[] = {{1.0, 0.8}, {1.5, -0.6}};
+  const Eigen::Matrix2d noise = 0.02 * 0.02 * Eigen::Matrix2d::Identity();
+  Pose2 truth;
+  filter.add(landmarks[0], noise);
+  filter.add(landmarks[1], noise);
+  for (int side = 0; side < 4; ++side) {
+    for (int k = 0; k < 100; ++k) {
+      const Eigen::Vector2d step(0.02, 0.0);
+      const double turn = k < 50 ? kPi / 100.0 : 0.0;
+      const Eigen::Vector2d p = to_parent(truth, turned(step, 0.5 * turn));
+      truth = {p.x(), p.y(), wrapped(truth.yaw_rad + turn)};
+      filter.predict(1.05 * step, 1.02 * turn, Eigen::Vector3d(1e-5, 1e-6, 1e-5).asDiagonal());
+    }
+  }
+  const double before = (filter.pose().position() - truth.position()).norm();
+  const double spread = filter.pose_covariance().trace();
+  for (int k = 0; k < 5; ++k) {
+    for (std::size_t i = 0; i < 2; ++i) filter.observe(i, from_parent(truth, landmarks[i]), noise);
+  }
+  EXPECT_GT(before, 0.1);
+  EXPECT_LT((filter.pose().position() - truth.position()).norm(), 0.02);
+  EXPECT_LT(std::abs(wrapped(filter.pose().yaw_rad - truth.yaw_rad)), 0.02);
+  EXPECT_LT(filter.pose_covariance().trace(), spread);
+  const Eigen::Vector2d second = filter.landmark(1);
+  filter.remove(0);
+  EXPECT_EQ(filter.landmark_count(), 1u);
+  EXPECT_EQ(filter.landmark(0), second);
+}
+
+}  // namespace
+}  // namespace constrictor
