@@ -79,13 +79,19 @@ std::vector<std::string> RunObserver::poll() {
   });
   readers_->task.take([&](const msg::TaskStatus& task) { view_.task = task; });
   std::vector<std::string> waiting;
+  std::vector<std::string> waiting_for_tick;
   readers_->waiting.take([&](const msg::Waiting& message) {
     const auto told = told_waiting_.emplace(std::string(message.component) + message.topic + message.writer, -1).first;
     if (told->second == message.tick + 1) return;
     told->second = message.tick + 1;
-    waiting.push_back(fmt::format("{} waits for {} of {} at tick {}, for {:.0f} s so far", message.component, message.topic,
+    auto& list = std::string_view(message.topic) == "Tick" ? waiting_for_tick : waiting;
+    list.push_back(fmt::format("{} waits for {} of {} at tick {}, for {:.0f} s so far", message.component, message.topic,
                                   message.writer, message.tick, message.waited_s));
   });
+  if (!waiting.empty()) told_cause_ = std::chrono::steady_clock::now();
+  // Everybody waits for the tick that the plant holds back for somebody: only the cause is worth telling, if there is one.
+  const bool cause_known = std::chrono::steady_clock::now() - told_cause_ < std::chrono::seconds(5);
+  if (!cause_known && !waiting_for_tick.empty()) waiting.push_back(waiting_for_tick.front());
   return waiting;
 }
 

@@ -1,6 +1,7 @@
 // What a run tells observers over DDS: how far it is, who is healthy, who waits for whom. Never holds the run up.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -43,6 +44,7 @@ class RunObserver {
   std::map<std::string, std::uint64_t> earlier_overruns_;  ///< of incarnations before the newest
   std::map<std::string, std::uint64_t> earlier_refused_;
   std::map<std::string, std::int64_t> told_waiting_;       ///< component to the tick that was told
+  std::chrono::steady_clock::time_point told_cause_{};     ///< when a wait for anything but a tick was last told
 };
 
 /// "follow_line | mission carry | green, 1 of 2 done | 45.2 s simulated at 6.3x real time".

@@ -181,9 +181,9 @@ TEST_F(RunCommand, AStoppedLauncherDoesNotStopTheRun) {
 }
 
 TEST_F(RunCommand, WithoutASuccessfulMissionTheStatusIsOne) {
-  Process launcher = run(100'000, "r", {"--max-sim-time", "2"});
+  Process launcher = run(100'000, "r", {"--max-sim-time", "20", "--pace", "20x"});
   EXPECT_EQ(launcher.wait(30s), exit_status::kMissionFailed) << launcher.output();
-  EXPECT_EQ(report("r")["ticks"], 101);
+  EXPECT_EQ(report("r")["ticks"], 1001);
 }
 
 TEST_F(RunCommand, StatusShowsAndStopEndsTheOnlyRun) {
