@@ -183,7 +183,7 @@ TEST_F(RunCommand, AStoppedLauncherDoesNotStopTheRun) {
 TEST_F(RunCommand, WithoutASuccessfulMissionTheStatusIsOne) {
   Process launcher = run(100'000, "r", {"--max-sim-time", "20", "--pace", "20x"});
   EXPECT_EQ(launcher.wait(30s), exit_status::kMissionFailed) << launcher.output();
-  EXPECT_EQ(report("r")["ticks"], 1001);
+  EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // the final tick is sent but not stepped
 }
 
 TEST_F(RunCommand, StatusShowsAndStopEndsTheOnlyRun) {
