@@ -95,7 +95,7 @@ struct GraspConfig {
   Gait wrap{0.4, 0.35, 1.07};
   Gait seat{0.7, 0.4, 1.07};
   Gait squeeze{0.7, 0.3, 1.07};
-  double touch_memory_s = 1.0;        ///< for which a touch counts, as the gait makes touches intermittent
+  double touch_memory_s = 3.0;        ///< for which a touch counts, as the gait makes touches intermittent
   double seat_force_n = 1.0;
   double seat_time_s = 1.0;           ///< of touch in the middle of the base
   double seat_timeout_s = 20.0;
@@ -104,7 +104,7 @@ struct GraspConfig {
   double squeeze_cap_nm = 6.0;        ///< torque cap of the base joints while squeezing
   int squeeze_attempts = 3;           ///< each after driving on further
   int touching_modules = 2;           ///< that must touch the object
-  double check_s = 1.0;               ///< for which the hold is checked
+  double check_s = 3.0;               ///< for which the hold is checked
 };
 
 struct DropConfig {

@@ -137,10 +137,8 @@ class Grasp : public StatefulTask<GraspState> {
   void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
-    Gait still = config.seat;
-    still.amplitude_rad = 0.0;
-    still.frequency_hz = 0.0;
-    undulate_on(still, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
+    // Driving on as it will with the object: what is inside is pushed along and felt.
+    undulate_on(input.config.carry, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     touched(input);
     if (state_.phase_s < config.check_s) return;
