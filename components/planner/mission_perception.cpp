@@ -85,6 +85,21 @@ bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
   return !turn_rad || std::abs(*turn_rad) < config_.aligned_rad;
 }
 
+std::optional<double> MissionPlanner::turned_past_rad(const PlannerInputs& inputs) const {
+  const auto turn_rad = to_turn_rad(inputs);
+  if (!turn_rad) return std::nullopt;
+  return memory_.turning_left ? -*turn_rad : *turn_rad;
+}
+
+// While an empty body turns on the spot it is curled up: its course is still where the tail points, behind the head's turn.
+bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
+  if (!leads_right(inputs)) return false;
+  const bool curled = !holding() && (memory_.state == kTurnRound || memory_.searching == msg::kTaskRotate);
+  if (!curled) return true;
+  const auto past_rad = turned_past_rad(inputs);
+  return !past_rad || *past_rad > config_.turn_beyond_rad;
+}
+
 std::optional<double> MissionPlanner::remembered_bearing_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
@@ -113,7 +128,8 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     case msg::kTaskRotate: {
       const double turn_rad = to_turn_rad(inputs).value_or(1.0);
       parameters.line_colour = config_.line_colour;
-      parameters.direction = turn_rad >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+      memory_.turning_left = turn_rad >= 0.0;
+      parameters.direction = memory_.turning_left ? msg::kDirectionLeft : msg::kDirectionRight;
       parameters.timeout_s = scaled_s(config_.turn_round_s);
       break;
     }
@@ -135,8 +151,8 @@ void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& want
     parameters.direction = !memory_.guided && attempt % 8 == 6 ? msg::kDirectionBackwards : msg::kDirectionForwards;
   } else {
     memory_.searching = msg::kTaskRotate;
-    const bool left = memory_.guided ? *bearing_rad > 0.0 : attempt % 4 == 1;
-    parameters.direction = left ? msg::kDirectionLeft : msg::kDirectionRight;
+    memory_.turning_left = memory_.guided ? *bearing_rad > 0.0 : attempt % 4 == 1;
+    parameters.direction = memory_.turning_left ? msg::kDirectionLeft : msg::kDirectionRight;
     parameters.timeout_s = scaled_s(config_.rotate_s);
   }
   wanted.task = memory_.searching;

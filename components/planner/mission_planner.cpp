@@ -174,8 +174,8 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
   switch (memory_.state) {
     case kSearchLineOrObject:
       if (object) return kTrackObject;
-      if (line) return leads_right(inputs) ? kFollowLine : recover(kTurnRound);
-      return std::nullopt;
+      if (!line || may_follow(inputs)) return line ? std::optional(kFollowLine) : std::nullopt;
+      return leads_right(inputs) ? std::nullopt : std::optional(recover(kTurnRound));
     case kFollowLine: return object ? std::optional(kTrackObject) : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
@@ -185,10 +185,10 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     case kTurnRound:
     case kTurnBack: {
       if (zone && holding()) return kDrop;
-      if (line && leads_right(inputs)) return holding() ? kTransport : kFollowLine;
-      const auto turn_rad = to_turn_rad(inputs);
-      const bool faces_it = turn_rad && std::abs(*turn_rad) < 0.3;
-      return faces_it && !line ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
+      if (line && may_follow(inputs)) return holding() ? kTransport : kFollowLine;
+      const auto past_rad = turned_past_rad(inputs);
+      const bool there = past_rad && *past_rad > config_.turn_beyond_rad && *past_rad < config_.aligned_rad;
+      return there && !line ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
     }
     default: return std::nullopt;
   }

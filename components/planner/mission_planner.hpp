@@ -58,13 +58,14 @@ struct MissionMemory {
   std::uint16_t searches = 0;       ///< requests of the two searches so far: alternates what is tried
   std::uint8_t searching = msg::kTaskNone;  ///< what the present search does: explore or rotate
   bool guided = false;              ///< it does so by memory
+  bool turning_left = false;        ///< direction of the last rotate asked for
   LineTrail trail;
   std::string reason;               ///< why the mission failed
 
   template <class Archive>
   void serialize(Archive& archive) {
     archive(state, asked, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s, goals,
-            object_index, recoveries, object_images, zone_images, line_images, searches, searching, guided, trail, reason);
+            object_index, recoveries, object_images, zone_images, line_images, searches, searching, guided, turning_left, trail, reason);
   }
 };
 
@@ -101,6 +102,10 @@ class MissionPlanner {
   [[nodiscard]] bool leads_right(const PlannerInputs& inputs) const;
   /// [rad] by which the head would have to turn left to face the wanted way along the line; empty: unknown.
   [[nodiscard]] std::optional<double> to_turn_rad(const PlannerInputs& inputs) const;
+  /// [rad] by which a turn has gone beyond the wanted way along the line (negative: not there yet); empty: unknown.
+  [[nodiscard]] std::optional<double> turned_past_rad(const PlannerInputs& inputs) const;
+  /// Whether the line in view may be followed from here: it leads the right way and the body's own turn will not carry it off.
+  [[nodiscard]] bool may_follow(const PlannerInputs& inputs) const;
   /// [rad] bearing of what is searched for, by memory; empty: nothing is remembered.
   [[nodiscard]] std::optional<double> remembered_bearing_rad(const PlannerInputs& inputs) const;
   // requests

@@ -79,9 +79,10 @@ TEST_F(PlannerTest, AnObjectOnTheZoneWhereOneOfItsColourWasDroppedIsLeftThere) {
   map_.objects[0].colour = msg::kColourGreen;
   map_.objects[0].x_m = pose_.x_m + 1.0;
   map_.objects[0].y_m = pose_.y_m;
-  face(0.0);
-  see(msg::kColourGreen, msg::kBlobObject, 1.1);
   see_line(true);
+  turn();
+  see(msg::kColourGreen, msg::kBlobObject, 1.1);
+  face(0.0);
   steps(20);
   EXPECT_EQ(memory_.state, kFollowLine);
   map_.objects[0].x_m += 2.0;  // one that stands elsewhere is fetched

@@ -70,10 +70,10 @@ TEST_F(PlannerTest, TurnsRoundWhereTheLineEndsAmongZones) {
   steps(600);
   see_line(true);  // still facing the wrong end: not that way
   steps(10);
-  EXPECT_NE(memory_.state, kFollowLine);
-  face(std::numbers::pi);
-  steps(10);
+  EXPECT_EQ(memory_.state, kTurnRound);
+  turn();
   EXPECT_EQ(memory_.state, kFollowLine);
+  EXPECT_LT(std::cos(pose_.yaw_rad), -0.5);
 }
 
 TEST_F(PlannerTest, RecoversALostObjectPregraspAndGrasp) {
@@ -164,7 +164,7 @@ TEST_F(PlannerTest, ARefusedGoalIsARecovery) {
   EXPECT_EQ(memory_.recoveries, 1);
 }
 
-TEST_F(PlannerTest, AfterADropTheLineIsTakenOnlyTowardsTheObjects) {
+TEST_F(PlannerTest, AfterADropTheLineIsTakenOnlyTowardsTheObjectsAndWhenTheBodyHasFollowedTheHead) {
   find_line();
   fetch(msg::kColourGreen);
   carry();
@@ -172,7 +172,11 @@ TEST_F(PlannerTest, AfterADropTheLineIsTakenOnlyTowardsTheObjects) {
   see_line(true);
   steps(20);
   EXPECT_EQ(memory_.state, kTurnRound);
-  face(0.3);
+  const bool left = last_.parameters.direction == msg::kDirectionLeft;
+  face(left ? -0.5 : 0.5);  // nearly there
+  steps(20);
+  EXPECT_EQ(memory_.state, kTurnRound);
+  face(left ? 0.4 : -0.4);  // a little beyond
   steps(4);
   EXPECT_EQ(memory_.state, kFollowLine);
 }

@@ -106,8 +106,20 @@ class PlannerTest : public ::testing::Test {
       step();
     }
   }
+  /// Turns as asked, at 1 rad/s, until the state changes; at most once round.
+  void turn() {
+    const MissionState from = memory_.state;
+    for (int i = 0; i < 315 && memory_.state == from; ++i) {
+      face(pose_.yaw_rad + (last_.parameters.direction == msg::kDirectionLeft ? 0.02 : -0.02));
+      step();
+    }
+  }
   void find_line() {
-    face(0.0);
+    if (memory_.state == MissionState::kTurnRound) {
+      see_line(true);
+      turn();
+      face(0.0);
+    }
     see_line(true);
     steps(4);
     EXPECT_EQ(memory_.state, MissionState::kFollowLine);
