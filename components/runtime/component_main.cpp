@@ -41,7 +41,11 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--max-sim-time", options.max_sim_time_s, "plant only: [s] end the run at this simulated time; 0: never")->check(CLI::Range(0.0, 1e6));
   app.add_option("--patience", options.patience_s, "[s] wait so long for a peer before giving up; 0: for ever")->check(CLI::Range(0.0, 86400.0));
   app.add_flag("--record", options.record, "plant only: log every message but images for `constrictor diff`");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
+  }
 
   try {
     for (const auto& text : config_files) {

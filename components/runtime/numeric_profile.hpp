@@ -14,7 +14,7 @@ const std::vector<std::pair<std::string, std::string>>& numeric_environment();
 /// loaded). A variable that is set to something else is left alone: the profile then differs and the run refuses the process.
 void ensure_numeric_environment(char** argv);
 
-/// The profile in force: the variables' values and a fingerprint of what libm computes on fixed inputs. Two processes with
+/// The profile in force: the values of the variables (glibc's aside, which counts by its effect) and a fingerprint of what libm computes on fixed inputs. Two processes with
 /// equal profiles compute equal numbers.
 std::string numeric_profile();
 

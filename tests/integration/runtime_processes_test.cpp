@@ -147,9 +147,17 @@ TEST(RuntimeProcesses, AMissingMemberIsNamedAndTheOthersGiveUp) {
 TEST(RuntimeProcesses, AnotherNumericProfileIsRefused) {
   ToyRun run(100, {"--patience", "6"});
   run.start_all({"physics", "navigation", "control", "report"});
-  run.start("planner", 1, {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA"}});
+  run.start("planner", 1, {{"GLIBC_TUNABLES", "glibc.malloc.perturb=0"}});
   EXPECT_EQ(run.processes.at("planner").wait(20s), exit_status::kRefused);
   EXPECT_NE(run.processes.at("planner").errors().find("numeric profile differs"), std::string::npos);
+}
+
+TEST(RuntimeProcesses, MaskingMoreOfTheCpuInsideTheProfileChangesNothing) {
+  const std::string expected = reference(300);
+  ToyRun run(300);
+  run.start_all({"physics", "navigation", "control", "report"});
+  run.start("planner", 1, {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS"}});
+  EXPECT_EQ(run.result(), expected);
 }
 
 TEST(RuntimeProcesses, AnotherRosterIsRefused) {

@@ -1,15 +1,20 @@
-// nudged_control OPTIONS: the component `control`, but one ulp is added to one joint's setpoint at one tick
+// nudged_control [control] OPTIONS: the component `control`, but one ulp is added to one joint's setpoint at one tick
 // ($CONSTRICTOR_NUDGE_TICK, default 1000). A run whose hash does not notice would hash nothing worth hashing.
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <string>
 
 #include "control/control.hpp"
 #include "runtime/component_main.hpp"
+#include "runtime/numeric_profile.hpp"
 
 namespace {
 
 using namespace constrictor;
+
+// A yaw joint in the middle of the body, which moves: beside a setpoint of exactly 0 one ulp is nothing.
+constexpr std::size_t kJoint = 10;
 
 /// Passes everything through, and nudges JointCommand once.
 class NudgingWiring : public Wiring {
@@ -28,7 +33,7 @@ class NudgingWiring : public Wiring {
     nudged_.write = [this, slot](const void* message) {
       auto command = *static_cast<const msg::JointCommand*>(message);
       if (joints_ && joints_->now_tick == tick_) {
-        command.position_rad[0] = std::nextafter(command.position_rad[0], std::numeric_limits<double>::infinity());
+        command.position_rad[kJoint] = std::nextafter(command.position_rad[kJoint], std::numeric_limits<double>::infinity());
       }
       slot->write(&command);
     };
@@ -60,6 +65,11 @@ class NudgedControl : public Component {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ensure_numeric_environment(argv);  // before the name is taken off: it starts the program anew
+  if (argc > 1 && std::string(argv[1]) == "control") {
+    --argc;  // as a manifest's `program` it is told which components to host
+    ++argv;
+  }
   const char* text = std::getenv("CONSTRICTOR_NUDGE_TICK");
   const std::int64_t tick = text ? std::atoll(text) : 1000;
   return component_main(argc, argv, {"control", [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
