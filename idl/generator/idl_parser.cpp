@@ -207,6 +207,7 @@ class Parser {
     annotations(parsed);
     type(parsed);
     parsed.name = next();
+    if (parsed.name.front() == '_') parsed.name.erase(0, 1);  // IDL's escape for a name that is one of its keywords
     if (peek() == "[") {
       next();
       parsed.array_length = number(next());

@@ -1,8 +1,11 @@
 // The description generator: what it reads from the IDL, and what it says about what it cannot read.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "constrictor/messages.hpp"
@@ -51,6 +54,10 @@ TEST(IdlParser, ReadsFieldsAnnotationsAndComments) {
   EXPECT_EQ(s.fields[3].array_length, 3u);
   EXPECT_EQ(s.fields[3].type, "std::uint64_t");
   EXPECT_TRUE(s.fields[4].is_sequence);
+}
+
+TEST(IdlParser, TakesTheEscapeOffANameThatIsAKeyword) {
+  EXPECT_EQ(parsed("@final struct S {\n  long _component;\n};").structs.at(0).fields.at(0).name, "component");
 }
 
 TEST(IdlParser, NamesFileAndLineOfWhatItCannotRead) {
@@ -106,6 +113,26 @@ TEST(Descriptions, HoldEveryAnnotationOfTheFiles) {
   EXPECT_EQ(counter.ranged, ranges);
   EXPECT_EQ(counter.keys, keys);
   EXPECT_GT(keys, 20);
+}
+
+// idlc takes names that stricter compilers (Fast DDS's among them) refuse: keywords of OMG IDL 4.2, in any case, unless escaped.
+TEST(Descriptions, NoNameIsAKeywordOfOtherIdlCompilers) {
+  const std::set<std::string> keywords{
+      "abstract", "alias", "any", "attribute", "bitfield", "bitmask", "bitset", "case", "char", "component", "connector", "consumes",
+      "context", "custom", "default", "emits", "enum", "eventtype", "exception", "factory", "false", "finder", "fixed", "getraises",
+      "home", "import", "in", "inout", "interface", "local", "manages", "map", "mirrorport", "multiple", "native", "object", "oneway",
+      "out", "port", "porttype", "primarykey", "private", "provides", "public", "publishes", "raises", "readonly", "setraises", "supports",
+      "switch", "true", "truncatable", "typedef", "typeid", "typename", "typeprefix", "union", "uses", "valuebase", "valuetype", "void",
+      "wchar", "wstring"};
+  const std::regex word("[A-Za-z_][A-Za-z0-9_]*");
+  for (const char* name : kFiles) {
+    const std::string text = std::regex_replace(idl_text(name), std::regex("//[^\n]*"), "");
+    for (auto it = std::sregex_iterator(text.begin(), text.end(), word); it != std::sregex_iterator(); ++it) {
+      std::string lower = it->str();
+      std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      EXPECT_FALSE(keywords.contains(lower)) << name << ".idl: " << it->str() << " is a keyword; write _" << it->str();
+    }
+  }
 }
 
 TEST(Descriptions, HashIsOverTheFilesOfThisBuild) {
