@@ -116,7 +116,7 @@ std::string progress_line(const RunView& view, double real_time_factor) {
 
 const char* task_name(std::uint8_t task) {
   static constexpr std::array<const char*, msg::kTaskCount> kNames = {
-      "no task", "follow line", "search object", "track object", "pregrasp", "grasp", "drop", "rotate", "explore"};
+      "no task", "follow line", "search object", "track object", "pregrasp", "grasp", "drop", "rotate", "explore", "follow path"};
   return name_in(kNames, task);
 }
 

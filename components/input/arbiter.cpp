@@ -69,7 +69,7 @@ Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
   const std::uint64_t goal = request.goal_id;
   if (request.command == msg::kCommandStart) {
     if (request.task == msg::kTaskNone || request.task >= msg::kTaskCount) {
-      return refuse("task of " + name + ": found " + std::to_string(request.task) + ", accepted 1 to 8");
+      return refuse("task of " + name + ": found " + std::to_string(request.task) + ", accepted 1 to " + std::to_string(msg::kTaskCount - 1));
     }
     if (goal <= source.last_goal || goal > kMaxOwnGoal) {
       return refuse("goal_id of " + name + ": found " + std::to_string(goal) + ", accepted " + std::to_string(source.last_goal + 1) +

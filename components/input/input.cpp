@@ -66,6 +66,7 @@ bool Input::obey(const Ruling& ruling, const msg::Request& request) {
   command.command = request.command;
   command.task = request.task;
   command.parameters = request.parameters;
+  command.path = request.path;
   command_.write(command);
   if (request.command == msg::kCommandStart) {
     state_.last_goal = state_.running_goal = ruling.goal_id;

@@ -68,7 +68,7 @@ void Navigation::step(const Tick& tick) {
       event_out_.write(event);
     }
     write_trajectory(output);
-    write_status();
+    write_status(output);
     return;
   }
   const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
@@ -90,7 +90,7 @@ void Navigation::step(const Tick& tick) {
   if (state_.task) run_task(present, output);
   watch_grip(present, output);
   write_trajectory(output);
-  write_status();
+  write_status(output);
 }
 
 void Navigation::take_commands(const TaskInput& input) {
@@ -105,7 +105,7 @@ void Navigation::take_commands(const TaskInput& input) {
 
 void Navigation::start_goal(const msg::TaskCommand& command, const TaskInput& senses) {
   const TaskInput input{senses.tick, senses.robot, senses.config, senses.grip_sense, command.parameters, senses.X_MH, senses.line,
-                        senses.image, senses.things, senses.map, senses.joints, senses.body, senses.touches, senses.motion_done};
+                        senses.image, senses.things, senses.map, senses.joints, senses.body, senses.touches, senses.motion_done, &command.path};
   std::unique_ptr<Task> task = make_task(command.task);
   const std::string refusal = task ? task->refusal(input, state_.grip) : "no such task";
   if (!refusal.empty()) {
@@ -184,7 +184,7 @@ void Navigation::write_trajectory(const TaskOutput& output) {
   trajectory_out_.write(desired);
 }
 
-void Navigation::write_status() {
+void Navigation::write_status(const TaskOutput& output) {
   msg::TaskStatus status{};
   status.goal_id = state_.goal.goal_id;
   status.task = state_.goal.task;
@@ -192,6 +192,7 @@ void Navigation::write_status() {
   status.progress = state_.goal.progress;
   status.parameters = state_.goal.parameters();
   status.carrying = state_.grip.carrying;
+  status.cross_track_m = output.cross_track_m;
   copy_text(status.phase, state_.goal.phase);
   copy_text(status.reason, state_.goal.reason);
   status_out_.write(status);

@@ -73,7 +73,7 @@ class Navigation : public StatefulComponent<NavigationState> {
   void end_goal(std::uint8_t state, const std::string& reason);
   void write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle, const std::string& detail);
   void write_trajectory(const TaskOutput& output);
-  void write_status();
+  void write_status(const TaskOutput& output);
 
   RobotModel robot_;
   NavigationConfig config_;

@@ -79,6 +79,12 @@ void read_line_and_search(Configuration& root, NavigationConfig& config) {
   config.follow_line.end_reached_m = follow.number("end_reached_m", kLength);
   config.follow_line.end_images = read_int(follow, "end_images", 1, 100);
   follow.finish();
+  Configuration path = root.section("follow_path");
+  config.follow_path.steering = read_pid(path, "steering");
+  config.follow_path.lookahead_m = path.number("lookahead_m", kLength);
+  config.follow_path.reached_m = path.number("reached_m", kLength);
+  config.follow_path.lost_m = path.number("lost_m", kLength);
+  path.finish();
   Configuration search = root.section("search_object");
   config.search.head_turn_rad = search.number("head_turn_rad", kAngle);
   config.search.head_rate_rad_s = search.number("head_rate_rad_s", kSpeed);

@@ -38,6 +38,13 @@ struct FollowLineConfig {
   int end_images = 3;                          ///< images in a row that must show the end
 };
 
+struct FollowPathConfig {
+  PidGains steering{8.0, 2.0, 0.0, 1.2, 0.2};  ///< lateral offset of the path at the lookahead [m] to curvature [1/m]
+  double lookahead_m = 0.35;
+  double reached_m = 0.1;          ///< the path ends so far before its last point
+  double lost_m = 1.0;             ///< distance from the path beyond which it is given up
+};
+
 struct SearchConfig {
   double head_turn_rad = 0.9;      ///< how far the head looks to each side, over its three joints
   double head_rate_rad_s = 0.25;   ///< of each of the three joints
@@ -130,6 +137,7 @@ struct NavigationConfig {
   ObjectWatchLimits object;
   GripConfig grip;
   FollowLineConfig follow_line;
+  FollowPathConfig follow_path;
   SearchConfig search;
   TrackConfig track;
   RotateConfig rotate;

@@ -3,6 +3,7 @@
 
 #include <cereal/archives/portable_binary.hpp>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -33,6 +34,7 @@ struct TaskInput {
   const std::vector<Pose2>& body;      ///< modules in the head's frame
   const std::vector<Touch>& touches;   ///< lateral, neither ground nor self
   bool motion_done;                    ///< control has finished the motion that was asked for last
+  const msg::Path* path = nullptr;     ///< at a goal's start: of its command
 };
 
 struct EventRecord {
@@ -50,6 +52,7 @@ struct TaskOutput {
   std::string reason;                 ///< why aborted
   double progress = 0.0;              ///< 0..1
   const char* phase = "";             ///< for people
+  double cross_track_m = std::numeric_limits<double>::quiet_NaN();  ///< of a path being followed
 
   void emit(std::uint8_t event, std::uint8_t colour = msg::kColourUnknown, std::uint16_t handle = 0) {
     events.push_back({event, colour, handle});
@@ -58,7 +61,7 @@ struct TaskOutput {
   void abort(std::string why) { state = msg::kGoalAborted; reason = std::move(why); }
 };
 
-/// One of the eight tasks. Made for a goal, stepped at every tick until the goal ends.
+/// One of the tasks. Made for a goal, stepped at every tick until the goal ends.
 class Task {
  public:
   virtual ~Task() = default;
@@ -98,6 +101,7 @@ std::unique_ptr<Task> make_grasp();
 std::unique_ptr<Task> make_drop();
 std::unique_ptr<Task> make_rotate();
 std::unique_ptr<Task> make_explore();
+std::unique_ptr<Task> make_follow_path();
 /// By kTask…; null for kTaskNone and unknown numbers.
 std::unique_ptr<Task> make_task(std::uint8_t kind);
 

@@ -21,7 +21,7 @@ inline std::string colour_name(std::uint8_t colour) {
 
 inline std::string task_name(std::uint8_t task) {
   static constexpr std::array<const char*, msg::kTaskCount> kNames{
-      "none", "follow_line", "search_object", "track_object", "pregrasp", "grasp", "drop", "rotate", "explore"};
+      "none", "follow_line", "search_object", "track_object", "pregrasp", "grasp", "drop", "rotate", "explore", "follow_path"};
   return name_in(kNames, task);
 }
 

@@ -104,6 +104,7 @@ std::unique_ptr<Task> make_task(std::uint8_t kind) {
     case msg::kTaskDrop: return make_drop();
     case msg::kTaskRotate: return make_rotate();
     case msg::kTaskExplore: return make_explore();
+    case msg::kTaskFollowPath: return make_follow_path();
     default: return nullptr;
   }
 }
