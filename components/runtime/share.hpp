@@ -5,9 +5,9 @@
 
 namespace constrictor {
 
-/// Absolute path of a file given relative to the project's root, e.g. "components/control/control.yaml": looked up in
-/// $CONSTRICTOR_SHARE, then in the source tree this was built from, then beside the executable's ../share/constrictor.
-/// Returns the first that exists, else the source tree's (so that the error message names a path).
+/// Absolute path of a file given relative to the project's root, e.g. "components/control/control.yaml": the first that exists in
+/// $CONSTRICTOR_SHARE, in share/constrictor of the prefix that the program is installed in, else the source tree's (also if it
+/// does not exist there, so that the error message names a path).
 std::filesystem::path share_path(const std::filesystem::path& relative);
 
 }  // namespace constrictor

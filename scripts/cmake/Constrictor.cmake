@@ -4,10 +4,13 @@
 # Numbers must not depend on the machine's instruction set: no contraction to FMA, SSE2 arithmetic as x86-64 has it.
 add_library(constrictor_options INTERFACE)
 target_compile_options(constrictor_options INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno-restrict>
-  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CONSTRICTOR_WERROR}>>:-Werror>
+  $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow;-Wold-style-cast;-Wno-restrict>>
+  $<BUILD_INTERFACE:$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CONSTRICTOR_WERROR}>>:-Werror>>
   -ffp-contract=off)
-target_include_directories(constrictor_options INTERFACE ${PROJECT_SOURCE_DIR}/components ${PROJECT_SOURCE_DIR})
+target_compile_features(constrictor_options INTERFACE cxx_std_20)
+target_include_directories(constrictor_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/components> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:include/constrictor>)
 if(CONSTRICTOR_SANITIZE)
   add_compile_options(-fsanitize=${CONSTRICTOR_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${CONSTRICTOR_SANITIZE})
