@@ -27,7 +27,9 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
+  note_deliveries_of_others(inputs);
   if (!may_command(inputs)) return std::nullopt;
+  if (memory_.state == kDone) return std::nullopt;
   memory_.active_s += elapsed_s;
   // A contradiction about the object is judged over time: navigation's word and the state change at different ticks.
   const bool contradicts = inputs.status && memory_.asked && inputs.status->goal_id == kGoalBase + memory_.goals &&
@@ -79,6 +81,11 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
 // Anything may have happened meanwhile: what depends on where the body lies begins again with looking.
 void MissionPlanner::resume(const PlannerInputs& inputs) {
   memory_.suspended = false;
+  skip_delivered();
+  if (memory_.object_index >= config_.sequence.size()) {
+    enter(kDone);
+    return;
+  }
   const bool carrying = inputs.status ? inputs.status->carrying : holding();
   if (carrying) {
     enter(kSearchLine);
@@ -104,8 +111,24 @@ MissionState MissionPlanner::recover(MissionState to) {
 }
 
 MissionState MissionPlanner::delivered() {
-  ++memory_.object_index;
+  memory_.delivered |= std::uint32_t{1} << memory_.object_index;
+  skip_delivered();
   return memory_.object_index >= config_.sequence.size() ? kDone : kTurnRound;
+}
+
+void MissionPlanner::skip_delivered() {
+  while (memory_.object_index < config_.sequence.size() && (memory_.delivered >> memory_.object_index & 1u) != 0) ++memory_.object_index;
+}
+
+void MissionPlanner::note_deliveries_of_others(const PlannerInputs& inputs) {
+  for (const auto* event : inputs.events) {
+    if (event->event != msg::kEventDroppingDone || event->goal_id >> 48 == msg::kAuthorityPlanner) continue;
+    for (std::size_t i = memory_.object_index; i < config_.sequence.size(); ++i) {
+      if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;
+      memory_.delivered |= std::uint32_t{1} << i;
+      break;
+    }
+  }
 }
 
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {

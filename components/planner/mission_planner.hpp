@@ -50,7 +50,8 @@ struct MissionMemory {
   double line_ended_s = -1e9;       ///< active time of the last end of the line
   double zone_seen_s = -1e9;        ///< active time at which a zone of any colour was seen last
   std::uint64_t goals = 0;          ///< requests made
-  std::uint16_t object_index = 0;   ///< of the sequence
+  std::uint16_t object_index = 0;   ///< of the sequence: the first that is not delivered
+  std::uint32_t delivered = 0;      ///< bit i: object i of the sequence is on its zone, whoever brought it there
   std::uint16_t recoveries = 0;
   std::uint16_t object_images = 0;  ///< consecutive images that show the wanted object
   std::uint16_t zone_images = 0;
@@ -65,7 +66,7 @@ struct MissionMemory {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(state, asked, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s, goals,
-            object_index, recoveries, object_images, zone_images, line_images, searches, searching, guided, turning_left, trail, reason);
+            object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, turning_left, trail, reason);
   }
 };
 
@@ -91,6 +92,9 @@ class MissionPlanner {
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
   [[nodiscard]] MissionState delivered();
+  /// What an operator or an external planner dropped need not be fetched any more.
+  void note_deliveries_of_others(const PlannerInputs& inputs);
+  void skip_delivered();
   /// Counts a recovery: `to`, or failure if there were too many.
   [[nodiscard]] MissionState recover(MissionState to);
   [[nodiscard]] MissionState fail(const std::string& reason);

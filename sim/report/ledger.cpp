@@ -59,6 +59,7 @@ void ObjectLedger::on_event(const msg::TaskEvent& event, const msg::SceneDescrip
     if (held >= 0) {
       objects[static_cast<std::size_t>(held)].dropped = true;
       objects[static_cast<std::size_t>(held)].drop_tick = world.header.tick;
+      objects[static_cast<std::size_t>(held)].by_others = event.goal_id >> 48 != msg::kAuthorityPlanner;
     }
     held = -1;
   }
@@ -72,9 +73,13 @@ bool ObjectLedger::complete(const msg::SceneDescription& scene, const msg::World
   }
   std::sort(dropped.begin(), dropped.end(), [this](std::size_t a, std::size_t b) { return objects[a].drop_tick < objects[b].drop_tick; });
   if (dropped.size() != sequence.size()) return false;
-  for (std::size_t i = 0; i < dropped.size(); ++i) {
-    if (scene.objects[dropped[i]].colour != sequence[i]) return false;
-    if (!judge_zone(scene, world, dropped[i]).in_zone) return false;
+  auto next = sequence.begin();
+  for (const std::size_t object : dropped) {
+    if (!judge_zone(scene, world, object).in_zone) return false;
+    if (objects[object].by_others) continue;
+    next = std::find(next, sequence.end(), scene.objects[object].colour);
+    if (next == sequence.end()) return false;
+    ++next;
   }
   return true;
 }

@@ -13,9 +13,10 @@ struct ObjectRecord {
   bool grasped = false;
   bool dropped = false;
   std::int64_t drop_tick = -1;  ///< of the last drop
+  bool by_others = false;       ///< an operator or external planner dropped it, not the built-in planner
 
   template <class Archive>
-  void serialize(Archive& archive) { archive(grasped, dropped, drop_tick); }
+  void serialize(Archive& archive) { archive(grasped, dropped, drop_tick, by_others); }
 };
 
 /// Where an object lies relative to the zone of its colour.
@@ -35,7 +36,8 @@ struct ObjectLedger {
   void on_mission(const msg::MissionStatus& mission);
   /// A grasp counts only if an object of the colour touches the body, or nearly so.
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
-  /// Every object of the sequence was dropped in its order and lies in the zone of its colour.
+  /// Every object of the sequence was dropped and lies in the zone of its colour. Those that the built-in planner dropped were
+  /// dropped in the sequence's order; an operator or external planner may have an order of its own.
   [[nodiscard]] bool complete(const msg::SceneDescription& scene, const msg::WorldState& world) const;
 
   template <class Archive>

@@ -209,6 +209,48 @@ TEST_F(PlannerTest, WhoeverHasAuthorityInterruptsTheMissionAndItGoesOnByLooking)
   carry();
 }
 
+TEST_F(PlannerTest, WhatOthersDropIsDelivered) {
+  const auto dropped = [](std::uint8_t level, std::uint8_t colour) {
+    msg::TaskEvent event{};
+    event.goal_id = (std::uint64_t{level} << 48) + 7;
+    event.event = msg::kEventDroppingDone;
+    event.goal_state = msg::kGoalRunning;
+    event.colour = colour;
+    return event;
+  };
+  find_line();
+  authority_.level = msg::kAuthorityExternal;
+  step({dropped(msg::kAuthorityExternal, msg::kColourRed)});
+  authority_.level = msg::kAuthorityNone;
+  step();
+  EXPECT_EQ(memory_.object_index, 0);  // green is still to be fetched
+  EXPECT_NE(memory_.state, MissionState::kDone);
+  authority_.level = msg::kAuthorityOperator;
+  step();
+  step({dropped(msg::kAuthorityOperator, msg::kColourGreen)});
+  authority_.level = msg::kAuthorityNone;
+  EXPECT_FALSE(step());
+  EXPECT_EQ(memory_.object_index, 2);
+  EXPECT_EQ(memory_.state, MissionState::kDone);
+}
+
+TEST_F(PlannerTest, AnObjectThatSomebodyElseDroppedIsSkippedInItsTurn) {
+  find_line();
+  authority_.level = msg::kAuthorityExternal;
+  msg::TaskEvent event{};
+  event.goal_id = std::uint64_t{msg::kAuthorityExternal} << 48;
+  event.event = msg::kEventDroppingDone;
+  event.colour = msg::kColourRed;
+  step({event});
+  authority_.level = msg::kAuthorityNone;
+  step();
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  drop(msg::kColourGreen);
+  EXPECT_EQ(memory_.state, MissionState::kDone);
+}
+
 TEST_F(PlannerTest, AClearedEmergencyStopStartsNoMotionUntilSomebodyHandsOver) {
   find_line();
   authority_.level = msg::kAuthorityStop;

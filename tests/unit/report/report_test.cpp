@@ -121,6 +121,13 @@ TEST(Report, TheWrongOrderIsNoSuccess) {
   EXPECT_EQ(tell(story).mission["success"], false);
 }
 
+TEST(Report, AnExternalPlannerMayHaveAnOrderOfItsOwn) {
+  Story story;
+  story.first_colour = msg::kColourRed;
+  story.level = msg::kAuthorityExternal;
+  EXPECT_EQ(tell(story).mission["success"], true);
+}
+
 TEST(Report, EndsAtTheTimeLimit) {
   Story story;
   story.mission_end_tick = 1'000'000;

@@ -21,6 +21,7 @@ struct Story {
   double pose_error_y_m = -0.04;
   double yaw_error_rad = 0.02;
   std::uint8_t first_colour = msg::kColourGreen;   ///< the mission's order
+  std::uint8_t level = msg::kAuthorityPlanner;     ///< of whose goals the events are
   double red_drop_distance_m = 0.1;      ///< from the red zone's centre; its radius is 0.3
   std::int64_t mission_end_tick = 420;
 };
@@ -150,8 +151,8 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       out.write(pose);
     };
   }));
-  members.push_back(scripted("navigation", {1, 1}, [](Wiring& wiring) {
-    return [status = wiring.output(topics::kTaskStatus), events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
+  members.push_back(scripted("navigation", {1, 1}, [story](Wiring& wiring) {
+    return [story, status = wiring.output(topics::kTaskStatus), events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
       msg::TaskStatus task{};
       task.task = tick.index >= 20 && tick.index < 380 ? msg::kTaskFollowLine : msg::kTaskDrop;
       task.state = msg::kGoalRunning;
@@ -160,7 +161,7 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       for (const ScriptedEvent& scripted_event : scripted_events()) {
         if (scripted_event.tick != tick.index) continue;
         msg::TaskEvent event{};
-        event.goal_id = 1;
+        event.goal_id = (std::uint64_t{story.level} << 48) + 1;
         event.task = scripted_event.task;
         event.event = scripted_event.event;
         event.goal_state = msg::kGoalRunning;
