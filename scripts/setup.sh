@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Constrictor needs to build and run on Debian 12. Does nothing, at once, when all of it is there.
+# Usage: scripts/setup.sh [--fast-dds]
+#   --fast-dds   also Fast DDS, for the tests and the example with another vendor's DDS (40 MB and a Java runtime)
 set -euo pipefail
 
 packages=(
@@ -14,6 +16,10 @@ packages=(
   # tests and benchmarks
   libgtest-dev libgmock-dev libbenchmark-dev
 )
+
+if [ "${1:-}" = --fast-dds ]; then
+  packages+=(libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools)
+fi
 
 # dpkg-query fails when a package is unknown; what counts is what it lists as installed.
 installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null | sed -n 's/^installed //p' || true)

@@ -12,7 +12,7 @@ if [ "${1:-}" = --all ]; then
   shift
 fi
 
-./scripts/setup.sh
+./scripts/setup.sh --fast-dds
 echo "test: building"
 ./scripts/build.sh
 

@@ -18,8 +18,8 @@ constexpr const char* kLoopback = R"(<CycloneDDS><Domain>
 
 }  // namespace
 
-Domain::Domain(std::uint32_t domain) {
-  if (!std::getenv("CYCLONEDDS_URI")) {
+Domain::Domain(std::uint32_t domain, Reach reach) {
+  if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI")) {
     domain_ = Entity(dds_create_domain(domain, kLoopback), "dds_create_domain");
   }
   participant_ = Entity(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant");

@@ -92,6 +92,8 @@ class Writer {
   Writer(dds_entity_t participant, const std::string& topic, int depth, const std::string& user_data = {})
       : entity_(create_writer(participant, descriptor<T>(), topic, depth, user_data), "dds_create_writer") {}
   void write(const T& message) const { check(dds_write(entity_.get(), &message), "dds_write"); }
+  /// How many readers it has met.
+  [[nodiscard]] int readers() const { return check(dds_get_matched_subscriptions(entity_.get(), nullptr, 0), "dds_get_matched_subscriptions"); }
   [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
 
  private:
@@ -112,6 +114,8 @@ class Reader {
   void take(Use&& use) const {
     take_all(entity_.get(), [&](const void* message) { use(*static_cast<const T*>(message)); });
   }
+  /// How many writers it has met that are still there.
+  [[nodiscard]] int writers() const { return check(dds_get_matched_publications(entity_.get(), nullptr, 0), "dds_get_matched_publications"); }
   [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
 
  private:

@@ -30,7 +30,8 @@ std::vector<std::string> allowed_of(const std::string& folder, bool is_main) {
   if (folder == "components/configuration") return {};
   if (folder == "components/robot") return {"constrictor/", "configuration/"};
   if (folder == "components/runtime") return {"constrictor/", "configuration/"};
-  if (folder == "components/cli") return {"constrictor/", "configuration/", "robot/", "runtime/"};
+  // Programs on top of the runtime, outside the barrier.
+  if (folder == "components/cli" || folder == "components/ros_bridge") return {"constrictor/", "configuration/", "robot/", "runtime/"};
   std::vector<std::string> allowed = {"constrictor/", "configuration/", "robot/", "runtime/component.hpp",
                                       "runtime/ports.hpp", "runtime/topics.hpp", "runtime/share.hpp"};
   if (is_main) allowed.emplace_back("runtime/component_main.hpp");

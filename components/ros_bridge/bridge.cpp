@@ -1,0 +1,115 @@
+#include "ros_bridge/bridge.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace constrictor::ros {
+
+using namespace std::chrono_literals;
+
+Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
+    : options_(options), translator_(std::move(robot)), robot_side_(options.domain) {
+  const dds_entity_t robot_side = robot_side_.participant();
+  if (options.ros_domain != options.domain) {
+    other_domain_.emplace(options.ros_domain, options.ros_localhost_only ? dds::Reach::kLoopback : dds::Reach::kNetwork);
+  }
+  const dds_entity_t ros_side = other_domain_ ? other_domain_->participant() : robot_side;
+  // ROS 2's readers ask for reliable or best effort, volatile or (tf_static) transient-local: this writer's QoS matches them all,
+  // and keep-last never waits for one of them.
+  clock_out_ = {ros_side, "rt/clock", 1};
+  joints_out_ = {ros_side, "rt/joint_states", 10};
+  imu_out_ = {ros_side, "rt/imu", 10};
+  odom_out_ = {ros_side, "rt/odom", 10};
+  tf_out_ = {ros_side, "rt/tf", 10};
+  tf_static_out_ = {ros_side, "rt/tf_static", 1};
+  image_out_ = {ros_side, "rt/camera/image_raw", 2};
+  camera_info_out_ = {ros_side, "rt/camera/camera_info", 2};
+  velocity_ = dds::Reader<Twist>::observer(ros_side, "rt/cmd_vel");
+
+  tick_ = dds::Reader<msg::Tick>::observer(robot_side, "barrier/tick", 8);
+  joints_ = dds::Reader<msg::JointState>::observer(robot_side, "joint_state", 8);
+  imu_ = dds::Reader<msg::ImuState>::observer(robot_side, "imu_state", 8);
+  pose_ = dds::Reader<msg::RobotPose>::observer(robot_side, "guidance/pose", 8);
+  camera_image_ = dds::Reader<msg::CameraImage>::observer(robot_side, "camera/image", 2);
+  camera_info_ = dds::Reader<msg::CameraInfo>::member(robot_side, "camera/info");  // written once an epoch: also if that was before us
+  request_ = {robot_side, "request", 64};
+  wait_set_ = dds::WaitSet(robot_side);
+  for (const auto reader : {tick_.get(), joints_.get(), imu_.get(), pose_.get(), camera_info_.get(), camera_image_.get()}) {
+    wait_set_.attach(reader);
+  }
+  if (!other_domain_) wait_set_.attach(velocity_.get());
+}
+
+bool Bridge::over() const { return over_ || (met_ && tick_.writers() == 0); }
+
+void Bridge::serve(SteadyClock::time_point now) {
+  pass_out();
+  pass_velocity(now);
+  wait_set_.wait(20ms);  // a wait set knows one domain: the other side's commands are looked for so often
+}
+
+void Bridge::pass_out() {
+  tick_.take([this](const msg::Tick& tick) {
+    met_ = true;
+    over_ = over_ || tick.final_tick;
+    clock_out_.write(translator_.clock(tick.time_ns));
+  });
+  imu_.take([this](const msg::ImuState& imu) {
+    last_imu_ = imu;
+    imu_out_.write(translator_.imu(imu));
+  });
+  joints_.take([this](const msg::JointState& joints) {
+    last_joints_ = joints;
+    joints_out_.write(translator_.joint_state(joints));
+  });
+  pose_.take([this](const msg::RobotPose& pose) {
+    odom_out_.write(translator_.odometry(pose, last_imu_));
+    tf_out_.write(translator_.transforms(pose, last_joints_));
+  });
+  camera_info_.take([this](const msg::CameraInfo& info) {
+    camera_info_out_.write(translator_.camera_info(info));
+    tf_static_out_.write(translator_.camera_transform(info));
+    last_info_ = info;
+  });
+  camera_image_.take([this](const msg::CameraImage& image) {
+    const Image out = translator_.image(image);
+    image_out_.write(out);
+    if (!last_info_) return;
+    CameraInfo info = translator_.camera_info(*last_info_);  // ROS pairs image and info by their stamps
+    info.header.stamp = out.header.stamp;
+    camera_info_out_.write(info);
+  });
+}
+
+void Bridge::pass_velocity(SteadyClock::time_point now) {
+  std::optional<Drive> wish;
+  velocity_.take([&](const Twist& twist) { wish = drive_of(twist, options_.drive); });
+  if (wish) {
+    commanded_ = now;
+  } else if (holds_ && velocity_.writers() == 0) {
+    ask(msg::kRequestRelease, {});  // whoever steered has gone: the planner may go on
+    holds_ = false;
+    return;
+  } else if (holds_ && drive_ != Drive{} && std::chrono::duration<double>(now - commanded_).count() > options_.hold_after_s) {
+    wish = Drive{};
+  }
+  if (!wish || (holds_ && *wish == drive_)) return;
+  ask(msg::kRequestMotion, *wish);
+  holds_ = true;
+  drive_ = *wish;
+}
+
+void Bridge::ask(std::uint8_t kind, const Drive& drive) {
+  msg::Request request{};
+  request.robot_id = options_.robot_id;
+  dds::set_text(request.source, "ros_bridge");
+  request.header.sequence_number = ++sequence_;
+  request.level = options_.level;
+  request.kind = kind;
+  request.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+  request.frequency_hz = drive.frequency_hz;
+  request.curvature_1_m = drive.curvature_1_m;
+  request_.write(request);
+}
+
+}  // namespace constrictor::ros

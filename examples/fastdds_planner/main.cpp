@@ -1,0 +1,208 @@
+// fastdds_planner: retrieves the objects as an external planner on Fast DDS. It knows Constrictor by its IDL files and idl/README.md
+// alone: no header and no library of it is used here.
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "barrierPubSubTypes.h"
+#include "guidancePubSubTypes.h"
+#include "missionPubSubTypes.h"
+#include "participant.hpp"
+#include "perceptionPubSubTypes.h"
+#include "retrieval.hpp"
+#include "taskPubSubTypes.h"
+
+namespace {
+
+namespace msg = constrictor::msg;
+
+volatile std::sig_atomic_t g_stop = 0;
+
+constexpr const char* kName = "fastdds_planner";
+
+struct Options {
+  std::uint32_t domain = 0;
+  std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
+  double at_s = 5.0;  ///< simulated time at which it takes the mission over
+};
+
+/// Exits with status 64 if the arguments are not understood.
+Options parse(int argc, char** argv) {
+  const auto usage = [](int status) {
+    std::fprintf(status ? stderr : stdout,
+                 "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS]\n"
+                 "  --domain  as `constrictor run` prints it\n"
+                 "  --order   colours in the order of retrieval: green, red, blue, yellow (default green,red)\n"
+                 "  --at      simulated time at which it takes the mission over (default 5)\n");
+    std::exit(status);
+  };
+  Options options;
+  bool domain = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (name == "--help") usage(0);
+    if (++i == argc) usage(64);
+    if (name == "--domain") {
+      options.domain = static_cast<std::uint32_t>(std::atoi(argv[i]));
+      domain = true;
+    } else if (name == "--at") {
+      options.at_s = std::atof(argv[i]);
+    } else if (name == "--order") {
+      options.sequence.clear();
+      const std::string names[] = {"", "green", "red", "blue", "yellow"};
+      std::string list = std::string(argv[i]) + ",";
+      for (std::size_t end = list.find(','); end != std::string::npos; list.erase(0, end + 1), end = list.find(',')) {
+        const auto colour = std::find(std::begin(names) + 1, std::end(names), list.substr(0, end));
+        if (colour == std::end(names)) usage(64);
+        options.sequence.push_back(static_cast<std::uint8_t>(colour - std::begin(names)));
+      }
+    } else {
+      usage(64);
+    }
+  }
+  if (!domain) usage(64);
+  return options;
+}
+
+/// The robot as a planner sees it: topics in, requests out, `Retrieval` between.
+class Planner {
+ public:
+  explicit Planner(const Options& options)
+      : options_(options), participant_(options.domain, kName), logic_(options.sequence, msg::kColourBlue) {
+    requests_ = participant_.write<msg::RequestPubSubType>("request", 32);
+    pose_ = participant_.read<msg::RobotPosePubSubType>("guidance/pose", false, 1, [this](const msg::RobotPose& pose) {
+      now_s_ = static_cast<double>(pose.header().time_ns()) * 1e-9;
+      logic_.locate({pose.x_m(), pose.y_m(), pose.yaw_rad()});
+    });
+    participant_.read<msg::LinePerceptPubSubType>("perception/line", false, 8, [this](const msg::LinePercept& line) {
+      logic_.see({line.visible() && line.colour() == msg::kColourBlue, line.lookahead_m(), line.offset_m(), line.heading_rad()});
+    });
+    participant_.read<msg::ObjectPerceptsPubSubType>("perception/objects", false, 8, [this](const msg::ObjectPercepts& percepts) {
+      std::vector<retrieval::Thing> things;
+      for (std::size_t i = 0; i < std::min<std::size_t>(percepts.blob_count(), percepts.blobs().size()); ++i) {
+        const auto& blob = percepts.blobs()[i];
+        if (blob.kind() == msg::kBlobUndecided) continue;
+        things.push_back({blob.colour(), blob.kind() == msg::kBlobZone, blob.range_m(), blob.bearing_rad()});
+      }
+      logic_.see(things);
+    });
+    participant_.read<msg::AuthorityPubSubType>("authority", true, 8, [this](const msg::Authority& authority) {
+      mine_ = authority.level() == msg::kAuthorityExternal && std::string(authority.source()) == kName;
+      if (authority.refused_count() > refused_ && mine_) std::printf("refused: %s\n", authority.refusal().c_str());
+      refused_ = authority.refused_count();
+    });
+    participant_.read<msg::TaskStatusPubSubType>("task/status", false, 1, [this](const msg::TaskStatus& status) {
+      logic_.know({own(status.goal_id()), status.task(), status.state(), status.carrying()});
+    });
+    // Every event counts, also those of before we came: they say what was delivered already.
+    participant_.read<msg::TaskEventPubSubType>("task/event", true, 512, [this](const msg::TaskEvent& event) {
+      if (event.event() != msg::kEventNone) std::printf("event %d of task %d, colour %d\n", event.event(), event.task(), event.colour());
+      logic_.hear({own(event.goal_id()), event.event(), event.goal_state(), event.colour()});
+    });
+    participant_.read<msg::TickPubSubType>("barrier/tick", true, 8, [this](const msg::Tick& tick) { over_ = over_ || tick.final_tick(); });
+  }
+
+  /// Until everything is delivered (0), the run ends without (1), or somebody sends SIGTERM (1).
+  int run() {
+    while (!g_stop && !gone()) {
+      participant_.wait(0.2);
+      if (now_s_ < options_.at_s) continue;
+      if (!asked_ && connected()) {
+        std::printf("at %.1f s: asking for authority\n", now_s_);
+        msg::Request take = request(msg::kRequestTake);
+        send(take);
+        asked_ = true;
+      }
+      if (mine_ != commanding_) {
+        commanding_ = mine_;
+        std::printf("at %.1f s: authority %s\n", now_s_, mine_ ? "gained" : "lost");
+        if (mine_) logic_.take_over(now_s_);
+      }
+      if (!commanding_) continue;
+      if (const auto order = logic_.decide(now_s_)) send(*order);
+      if (logic_.done()) {
+        std::printf("at %.1f s: everything is delivered, %d setbacks\n", now_s_, logic_.setbacks());
+        msg::Request release = request(msg::kRequestRelease);
+        send(release);
+        while (mine_ && !gone() && !g_stop) participant_.wait(0.2);  // the release has arrived
+        return 0;
+      }
+    }
+    return 1;
+  }
+
+ private:
+  /// The run has ended, or its processes died.
+  bool gone() const {
+    eprosima::fastdds::dds::SubscriptionMatchedStatus writers;
+    pose_->get_subscription_matched_status(writers);
+    return over_ || (now_s_ >= 0 && writers.current_count == 0);
+  }
+  /// `input` hears only what is written after it and we have found each other.
+  bool connected() const {
+    eprosima::fastdds::dds::PublicationMatchedStatus readers;
+    requests_->get_publication_matched_status(readers);
+    return readers.current_count > 0;
+  }
+
+  /// A goal's id on task/event and task/status is (level << 48) + (number of the source << 32) + our own.
+  std::uint64_t own(std::uint64_t goal) const { return mine_ && goal >> 48 == msg::kAuthorityExternal ? goal & 0xffffffffu : 0; }
+
+  msg::Request request(std::uint8_t kind) {
+    msg::Request request;
+    request.robot_id(1);
+    request.source(kName);
+    request.header().sequence_number(++sequence_);
+    request.level(msg::kAuthorityExternal);
+    request.kind(kind);
+    request.parameters().timeout_s(std::numeric_limits<double>::quiet_NaN());
+    return request;
+  }
+  void send(msg::Request& request) {
+    if (!requests_->write(&request)) throw std::runtime_error("cannot write a request");
+    std::fflush(stdout);
+  }
+  void send(const retrieval::Order& order) {
+    std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task, static_cast<unsigned long long>(order.goal));
+    msg::Request wish = request(msg::kRequestTask);
+    wish.command(msg::kCommandStart);
+    wish.goal_id(order.goal);
+    wish.task(order.task);
+    auto& parameters = wish.parameters();
+    parameters.line_colour(order.line_colour);
+    parameters.object_colour(order.object_colour);
+    parameters.drop_zone_colour(order.zone_colour);
+    parameters.direction(order.direction);
+    if (order.timeout_s > 0) parameters.timeout_s(order.timeout_s);
+    wish.path().point_count(static_cast<std::uint16_t>(order.path.size()));
+    for (std::size_t i = 0; i < order.path.size(); ++i) std::tie(wish.path().x_m()[i], wish.path().y_m()[i]) = order.path[i];
+    send(wish);
+  }
+
+  Options options_;
+  example::Participant participant_;
+  retrieval::Retrieval logic_;
+  eprosima::fastdds::dds::DataWriter* requests_ = nullptr;
+  eprosima::fastdds::dds::DataReader* pose_ = nullptr;
+  std::uint64_t sequence_ = 0, refused_ = 0;
+  double now_s_ = -1;
+  bool asked_ = false, mine_ = false, commanding_ = false, over_ = false;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  std::signal(SIGINT, [](int) { g_stop = 1; });
+  try {
+    return Planner(parse(argc, argv)).run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fastdds_planner: %s\n", error.what());
+    return 70;
+  }
+}

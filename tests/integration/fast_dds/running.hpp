@@ -1,0 +1,42 @@
+// A `constrictor run` for tests of what outsiders see: its domain, its report.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+
+class Outside : public ::testing::Test {
+ protected:
+  Outside() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-outside-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+  }
+  ~Outside() override { std::filesystem::remove_all(dir_); }
+
+  [[nodiscard]] Process run(const std::string& name, const std::string& scenario, std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / name).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(std::move(arguments));
+  }
+  /// The domain that a run has claimed and printed; 0 if it said nothing in time.
+  [[nodiscard]] static unsigned domain_of(Process& run) {
+    if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
+    const std::string output = run.output();
+    return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
+  }
+
+  std::filesystem::path dir_;
+};
+
+}  // namespace constrictor::testing
