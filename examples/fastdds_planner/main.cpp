@@ -28,17 +28,19 @@ constexpr const char* kName = "fastdds_planner";
 struct Options {
   std::uint32_t domain = 0;
   std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
-  double at_s = 5.0;  ///< simulated time at which it takes the mission over
+  double at_s = 5.0;      ///< simulated time at which it takes the mission over,
+  std::size_t after = 0;  ///< and how many objects others must have delivered by then
 };
 
 /// Exits with status 64 if the arguments are not understood.
 Options parse(int argc, char** argv) {
   const auto usage = [](int status) {
     std::fprintf(status ? stderr : stdout,
-                 "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS]\n"
+                 "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS] [--after N]\n"
                  "  --domain  as `constrictor run` prints it\n"
                  "  --order   colours in the order of retrieval: green, red, blue, yellow (default green,red)\n"
-                 "  --at      simulated time at which it takes the mission over (default 5)\n");
+                 "  --at      simulated time at which it takes the mission over (default 5)\n"
+                 "  --after   number of objects that others must have delivered by then (default 0)\n");
     std::exit(status);
   };
   Options options;
@@ -52,6 +54,8 @@ Options parse(int argc, char** argv) {
       domain = true;
     } else if (name == "--at") {
       options.at_s = std::atof(argv[i]);
+    } else if (name == "--after") {
+      options.after = static_cast<std::size_t>(std::atoi(argv[i]));
     } else if (name == "--order") {
       options.sequence.clear();
       const std::string names[] = {"", "green", "red", "blue", "yellow"};
@@ -111,7 +115,7 @@ class Planner {
   int run() {
     while (!g_stop && !gone()) {
       participant_.wait(0.2);
-      if (now_s_ < options_.at_s) continue;
+      if (now_s_ < options_.at_s || options_.sequence.size() - logic_.remaining().size() < options_.after) continue;
       if (!asked_ && connected()) {
         std::printf("at %.1f s: asking for authority\n", now_s_);
         msg::Request take = request(msg::kRequestTake);

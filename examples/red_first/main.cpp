@@ -28,8 +28,8 @@ constexpr const char* kName = "red_first";
 
 class Planner {
  public:
-  Planner(std::uint32_t domain, std::vector<std::uint8_t> sequence, double at_s)
-      : at_s_(at_s), domain_(domain), logic_(std::move(sequence), msg::kColourBlue) {
+  Planner(std::uint32_t domain, std::vector<std::uint8_t> sequence, double at_s, std::size_t after)
+      : at_s_(at_s), wait_for_(after), objects_count_(sequence.size()), domain_(domain), logic_(std::move(sequence), msg::kColourBlue) {
     const dds_entity_t participant = domain_.participant();
     requests_ = {participant, "request", 32};
     pose_ = Reader<msg::RobotPose>::observer(participant, "guidance/pose");
@@ -48,7 +48,7 @@ class Planner {
   int run() {
     while (!g_stop && !gone()) {
       listen();
-      if (now_s_ < at_s_) continue;
+      if (now_s_ < at_s_ || objects_count_ - logic_.remaining().size() < wait_for_) continue;
       if (!asked_ && connected()) {
         std::printf("at %.1f s: asking for authority\n", now_s_);
         requests_.write(request(msg::kRequestTake));
@@ -145,6 +145,7 @@ class Planner {
   }
 
   double at_s_;
+  std::size_t wait_for_, objects_count_;
   constrictor::dds::Domain domain_;
   retrieval::Retrieval logic_;
   constrictor::dds::Writer<msg::Request> requests_;
@@ -167,11 +168,13 @@ int main(int argc, char** argv) {
   std::uint32_t domain = 0;
   std::vector<std::string> order = {"red", "green"};
   double at_s = 5.0;
+  std::size_t after = 0;
   CLI::App app{"Retrieves the objects as an external planner, red before green."};
   app.add_option("--domain", domain, "as `constrictor run` prints it")->envname("CONSTRICTOR_DOMAIN")->required();
   const std::vector<std::string> colours = {"", "green", "red", "blue", "yellow"};
   app.add_option("--order", order, "colours in the order of retrieval")->delimiter(',')->check(CLI::IsMember(colours));
   app.add_option("--at", at_s, "[s] simulated time at which it takes the mission over");
+  app.add_option("--after", after, "number of objects that others must have delivered by then");
   CLI11_PARSE(app, argc, argv);
   std::signal(SIGTERM, [](int) { g_stop = 1; });
   std::signal(SIGINT, [](int) { g_stop = 1; });
@@ -180,7 +183,7 @@ int main(int argc, char** argv) {
     sequence.push_back(static_cast<std::uint8_t>(std::find(colours.begin(), colours.end(), colour) - colours.begin()));
   }
   try {
-    return Planner(domain, std::move(sequence), at_s).run();
+    return Planner(domain, std::move(sequence), at_s, after).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "red_first: %s\n", error.what());
     return 70;

@@ -1,0 +1,98 @@
+// A run from the installed prefix, an example beside it, and what the test itself sees of both on DDS.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wait_set.hpp"
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+
+inline std::string example(const std::string& name) { return std::string(CONSTRICTOR_EXAMPLES) + "/" + name + "/" + name; }
+
+/// Authority and goals as they are said on DDS.
+struct Witness {
+  explicit Witness(unsigned domain)
+      : here(domain),
+        authority_reader(dds::Reader<msg::Authority>::member(here.participant(), "authority")),
+        event_reader(dds::Reader<msg::TaskEvent>::member(here.participant(), "task/event")),
+        wait_set(here.participant()) {
+    wait_set.attach(authority_reader.get());
+    wait_set.attach(event_reader.get());
+  }
+  /// Listens until `condition` holds; false if it does not within the bound.
+  template <class Condition>
+  bool until(Condition condition, std::chrono::seconds bound) {
+    for (const auto end = std::chrono::steady_clock::now() + bound; !condition();) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      wait_set.wait(std::chrono::milliseconds(100));
+      authority_reader.take([this](const msg::Authority& now) { authority = now; });
+      event_reader.take([this](const msg::TaskEvent& event) { events.push_back(event); });
+    }
+    return true;
+  }
+  [[nodiscard]] bool holds(const std::string& source) const {
+    return authority.level == msg::kAuthorityExternal && std::string(authority.source) == source;
+  }
+  /// Whether an external planner's goal of this task had this event.
+  [[nodiscard]] bool happened(std::uint8_t task, std::uint8_t event) const {
+    return std::any_of(events.begin(), events.end(), [&](const msg::TaskEvent& e) {
+      return e.goal_id >> 48 == msg::kAuthorityExternal && e.task == task && e.event == event;
+    });
+  }
+
+  dds::Domain here;
+  dds::Reader<msg::Authority> authority_reader;
+  dds::Reader<msg::TaskEvent> event_reader;
+  dds::WaitSet wait_set;
+  msg::Authority authority{};
+  std::vector<msg::TaskEvent> events;
+};
+
+class ExampleRun : public ::testing::Test {
+ protected:
+  ExampleRun() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-examples-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+  }
+  ~ExampleRun() override { std::filesystem::remove_all(dir_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
+  /// A copy of an installed configuration with one text replaced.
+  [[nodiscard]] std::string altered(const std::string& file, const std::string& what, const std::string& with) const {
+    std::ifstream stream(std::string(CONSTRICTOR_PREFIX) + "/share/constrictor/" + file);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what << " in " << file;
+    if (at != std::string::npos) text.replace(at, what.size(), with);
+    const auto path = dir_ / std::filesystem::path(file).filename();
+    std::ofstream(path) << text;
+    return path.string();
+  }
+  [[nodiscard]] Process run(const std::string& scenario, std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {CONSTRICTOR_PREFIX "/bin/constrictor", "run", scenario, "--report", (dir_ / "r").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(std::move(arguments));
+  }
+  /// The domain that a run has claimed and printed; 0 if it said nothing in time.
+  [[nodiscard]] static unsigned domain_of(Process& run) {
+    if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
+    const std::string output = run.output();
+    return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
+  }
+  [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(dir_ / "r/report.json"), nullptr, false); }
+
+  std::filesystem::path dir_;
+};
+
+}  // namespace constrictor::testing
