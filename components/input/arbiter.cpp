@@ -1,16 +1,36 @@
 #include "input/arbiter.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace constrictor {
 namespace {
 constexpr std::uint64_t kMaxOwnGoal = 0xffffffffu;
+constexpr std::size_t kMaxSources = 64;  // at a time; the dead are forgotten
+
+bool is_readable(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
 }
+
+}  // namespace
 
 Ruling Arbiter::refuse(const std::string& reason) {
   ++state_.refused;
   state_.refusal = reason;
+  state_.refused_source = state_.ruled_source;
+  state_.refused_sequence = state_.ruled_sequence;
   return {Ruling::kRefused};
+}
+
+Ruling Arbiter::refuse(const msg::Request& request, const std::string& reason) {
+  note(request);
+  return refuse(reason);
+}
+
+void Arbiter::note(const msg::Request& request) {
+  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  state_.ruled_source = is_readable(name) ? name : "?";  // it goes to people's terminals
+  state_.ruled_sequence = request.header.sequence_number;
 }
 
 void Arbiter::leave_to_nobody() {
@@ -18,9 +38,22 @@ void Arbiter::leave_to_nobody() {
   state_.holder.clear();
 }
 
+void Arbiter::hold(const msg::Request& request, Source& source) {
+  state_.level = request.level;
+  state_.holder = state_.ruled_source;
+  source.detached = request.detached;
+}
+
+bool Arbiter::holder_is_detached() const {
+  const auto holder = state_.sources.find(state_.holder);
+  return holder != state_.sources.end() && holder->second.detached;
+}
+
 Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
   const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
-  if (name.empty()) return refuse("source: found nothing, accepted a name");
+  note(request);
+  if (request.kind == msg::kRequestEmergencyStop) return stop(state_.ruled_source);
+  if (!is_readable(name)) return refuse("source: found nothing or unprintable characters, accepted a name without blanks");
   // Values that the runtime's validation has let through are none of the enumerations' (outside requests may come by other ways).
   if (built_in ? request.level != msg::kAuthorityPlanner
                : request.level != msg::kAuthorityExternal && request.level != msg::kAuthorityOperator) {
@@ -30,6 +63,9 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
   const auto known = state_.sources.find(name);
   if (known != state_.sources.end() && (known->second.index == 0) != built_in) {
     return refuse("source " + name + ": that name is the " + (built_in ? "name of somebody outside" : "built-in planner's"));
+  }
+  if (known == state_.sources.end() && state_.sources.size() >= kMaxSources) {
+    return refuse("source " + name + ": there are " + std::to_string(kMaxSources) + " already");
   }
   const auto [entry, first] = state_.sources.try_emplace(name);
   Source& source = entry->second;
@@ -42,32 +78,37 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
   source.sequence = number;
 
   switch (request.kind) {
-    case msg::kRequestEmergencyStop:
-      state_.stopped = true;
-      state_.stopper = name;
-      return {Ruling::kCancelAll};
     case msg::kRequestClearStop: return clear_stop(request);
     case msg::kRequestTask:
     case msg::kRequestTake:
-    case msg::kRequestRelease: break;
-    case msg::kRequestMotion: return refuse(name + ": direct motion is not connected to control");
+    case msg::kRequestRelease:
+    case msg::kRequestMotion: break;
     default: return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 5");
   }
   if (state_.stopped) return refuse(name + ": the emergency stop of " + state_.stopper + " is latched");
-  if (request.kind == msg::kRequestRelease) return release(name);
+  if (request.kind == msg::kRequestRelease) return release(request);
   const bool holds = state_.holder == name;
-  if (!holds && request.level <= state_.level) return refuse(name + ": authority is with " + state_.holder);
+  const bool outranks = request.level > state_.level || (request.level == state_.level && holder_is_detached());
+  if (!holds && !outranks) return refuse(name + ": authority is with " + state_.holder);
   if (request.kind == msg::kRequestTask) return decide_task(request, source);
+  if (request.kind == msg::kRequestMotion) {
+    if (request.motion >= msg::kMotionCount) {
+      return refuse("motion of " + name + ": found " + std::to_string(request.motion) + ", accepted 0 to " +
+                    std::to_string(msg::kMotionCount - 1));
+    }
+    hold(request, source);
+    return {Ruling::kMove};
+  }
   const bool takes_over = !holds && state_.level != msg::kAuthorityNone;
-  state_.level = request.level;
-  state_.holder = name;
+  hold(request, source);
   return {takes_over ? Ruling::kCancelAll : Ruling::kNothing};
 }
 
 Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
   const std::string name = request.source;
-  const std::uint64_t goal = request.goal_id;
+  std::uint64_t goal = request.goal_id;
   if (request.command == msg::kCommandStart) {
+    if (goal == 0) goal = source.last_goal + 1;
     if (request.task == msg::kTaskNone || request.task >= msg::kTaskCount) {
       return refuse("task of " + name + ": found " + std::to_string(request.task) + ", accepted 1 to " + std::to_string(msg::kTaskCount - 1));
     }
@@ -81,9 +122,14 @@ Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
   } else if (goal == 0 || goal > source.last_goal) {
     return refuse("cancel of " + name + ": goal " + std::to_string(goal) + " was never started");
   }
-  state_.level = request.level;
-  state_.holder = name;
+  hold(request, source);
   return {Ruling::kForward, mapped_goal_id(request.level, source.index, goal)};
+}
+
+Ruling Arbiter::stop(const std::string& source) {
+  state_.stopped = true;
+  state_.stopper = source.empty() ? "?" : source;
+  return {Ruling::kCancelAll};
 }
 
 Ruling Arbiter::clear_stop(const msg::Request& request) {
@@ -97,15 +143,20 @@ Ruling Arbiter::clear_stop(const msg::Request& request) {
   return {Ruling::kNothing};
 }
 
-Ruling Arbiter::release(const std::string& source) {
-  if (state_.holder != source) {
-    return refuse("release of " + source + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
+Ruling Arbiter::release(const msg::Request& request) {
+  const std::string name = request.source;
+  const bool for_another = holder_is_detached() && request.level >= state_.level;
+  if (state_.holder != name && !for_another) {
+    return refuse("release of " + name + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
   }
   leave_to_nobody();
   return {Ruling::kCancelAll};
 }
 
 Ruling Arbiter::on_death(const std::string& source) {
+  const auto known = state_.sources.find(source);
+  if (known == state_.sources.end() || known->second.index == 0 || known->second.detached) return {Ruling::kNothing};
+  state_.sources.erase(known);
   if (state_.holder != source) return {Ruling::kNothing};
   leave_to_nobody();
   return {Ruling::kCancelAll};

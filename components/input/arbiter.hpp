@@ -17,9 +17,10 @@ struct ArbiterState {
     std::uint64_t sequence = 0;   ///< newest sequence number that was ruled on
     std::uint32_t index = 0;      ///< order of first appearance; the built-in planner has 0
     std::uint64_t last_goal = 0;  ///< newest goal it started, by its own count
+    bool detached = false;        ///< what it holds outlives its writer
     template <class Archive>
     void serialize(Archive& archive) {
-      archive(sequence, index, last_goal);
+      archive(sequence, index, last_goal, detached);
     }
   };
   std::uint8_t level = msg::kAuthorityNone;
@@ -30,10 +31,15 @@ struct ArbiterState {
   std::uint32_t next_index = 1;
   std::uint64_t refused = 0;
   std::string refusal;            ///< why the last refused request was refused
+  std::string refused_source;     ///< whose it was
+  std::uint64_t refused_sequence = 0;
+  std::string ruled_source;       ///< who asked last, whether or not it was granted
+  std::uint64_t ruled_sequence = 0;
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(level, holder, stopped, stopper, sources, next_index, refused, refusal);
+    archive(level, holder, stopped, stopper, sources, next_index, refused, refusal, refused_source, refused_sequence,
+            ruled_source, ruled_sequence);
   }
 };
 
@@ -42,6 +48,7 @@ struct Ruling {
   enum Kind {
     kRefused,
     kForward,    ///< pass the task command on with `goal_id`
+    kMove,       ///< pass the direct motion on
     kCancelAll,  ///< whatever runs must end
     kNothing,
   };
@@ -49,8 +56,10 @@ struct Ruling {
   std::uint64_t goal_id = 0;  ///< of kForward: as it goes on task/command
 };
 
-/// Emergency stop over operator over external planner over built-in planner. A task request of a source of higher level than
-/// the holder's takes authority; one of the same or a lower level is refused until the holder releases it or dies.
+/// Emergency stop over operator over external planner over built-in planner. A request for a task, a motion or authority itself by
+/// a source of higher level than the holder's takes authority; one of the same or a lower level is refused until the holder
+/// releases it or dies. A detached holder does not die; sources of its own level may take over from it, or release for it.
+/// An emergency stop is obeyed from anybody, whatever else the request says.
 class Arbiter {
  public:
   explicit Arbiter(ArbiterState& state) : state_(state) {}
@@ -59,17 +68,23 @@ class Arbiter {
   Ruling decide_planner(const msg::Request& request) { return decide(request, true); }
   /// Rules on a request from outside the run: never at the built-in planner's level, nor under its name.
   Ruling decide_outside(const msg::Request& request) { return decide(request, false); }
-  /// A source's process is gone. If it held authority, that falls to nobody and the robot holds its posture.
+  /// A source's process is gone. If it held authority, that falls to nobody and the robot holds its posture. It is forgotten:
+  /// one of the same name is another source.
   Ruling on_death(const std::string& source);
-  /// Counts a refusal that was decided elsewhere.
-  Ruling refuse(const std::string& reason);
+  /// Refuses a request for a reason that was found elsewhere.
+  Ruling refuse(const msg::Request& request, const std::string& reason);
 
  private:
   using Source = ArbiterState::Source;
+  Ruling refuse(const std::string& reason);
+  void note(const msg::Request& request);
   Ruling decide(const msg::Request& request, bool built_in);
   Ruling decide_task(const msg::Request& request, Source& source);
+  Ruling stop(const std::string& source);
   Ruling clear_stop(const msg::Request& request);
-  Ruling release(const std::string& source);
+  Ruling release(const msg::Request& request);
+  void hold(const msg::Request& request, Source& source);
+  [[nodiscard]] bool holder_is_detached() const;
   void leave_to_nobody();
   ArbiterState& state_;
 };

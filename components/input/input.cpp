@@ -20,10 +20,12 @@ Input::Input(Wiring& wiring, const Setup&, std::shared_ptr<OutsideRequests> outs
     : planner_requests_(wiring.events(topics::kPlannerRequest)),
       command_(wiring.output(topics::kTaskCommand)),
       authority_(wiring.output(topics::kAuthority)),
-      outside_(std::move(outside)) {}
+      motion_out_(wiring.output(topics::kMotionCommand)),
+      outside_(outside ? std::move(outside) : wiring.outside_requests()) {}
 
 void Input::step(const Tick& tick) {
   commands_left_ = topics::kTaskCommand.max_per_tick;
+  motion_.reset();
   Arbiter arbiter(state_.arbiter);
   const std::uint8_t level_before = state_.arbiter.level;
   const std::string holder_before = state_.arbiter.holder;
@@ -38,11 +40,12 @@ void Input::step(const Tick& tick) {
   for (const auto& request : planner_requests_) {
     const std::int64_t age_ticks = tick.index - request.header.tick;
     const Ruling ruling = age_ticks > kStale_ticks
-                              ? arbiter.refuse("request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " +
+                              ? arbiter.refuse(request, "request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " +
                                                std::to_string(kStale_ticks))
                               : arbiter.decide_planner(request);
     changed = obey(ruling, request) || changed;
   }
+  if (motion_) motion_out_.write(*motion_);
   changed = changed || state_.arbiter.level != level_before || state_.arbiter.holder != holder_before ||
             state_.arbiter.stopped != stopped_before;
   const bool due = state_.last_authority_tick < 0 || tick.index - state_.last_authority_tick >= kAuthorityInterval_ticks;
@@ -51,13 +54,18 @@ void Input::step(const Tick& tick) {
 
 bool Input::obey(const Ruling& ruling, const msg::Request& request) {
   switch (ruling.kind) {
-    case Ruling::kNothing: return false;
+    case Ruling::kNothing: return true;  // ruled on: the source shall see it
     case Ruling::kRefused: return true;
     case Ruling::kCancelAll: cancel_running(); return true;
+    case Ruling::kMove: forward_motion(request); return true;
     case Ruling::kForward: break;
   }
+  return forward_task(ruling, request);
+}
+
+bool Input::forward_task(const Ruling& ruling, const msg::Request& request) {
   if (commands_left_ <= 1) {
-    Arbiter(state_.arbiter).refuse("more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
+    Arbiter(state_.arbiter).refuse(request, "more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
     return true;
   }
   --commands_left_;
@@ -71,13 +79,32 @@ bool Input::obey(const Ruling& ruling, const msg::Request& request) {
   if (request.command == msg::kCommandStart) {
     state_.last_goal = state_.running_goal = ruling.goal_id;
     state_.running_task = request.task;
+    state_.moving = false;  // the task ends it
+    motion_.reset();
   } else if (ruling.goal_id == state_.running_goal) {
     state_.running_goal = 0;
   }
   return true;
 }
 
+void Input::forward_motion(const msg::Request& request) {
+  msg::MotionCommand motion{};
+  set_text(motion.source, state_.arbiter.holder);
+  motion.level = request.level;
+  motion.motion = request.motion;
+  motion.frequency_hz = request.frequency_hz;
+  motion.curvature_1_m = request.curvature_1_m;
+  motion.angle_rad = request.angle_rad;
+  motion_ = motion;
+  state_.moving = true;
+  state_.running_goal = 0;  // the motion ends it
+}
+
 void Input::cancel_running() {
+  if (state_.moving) {
+    motion_ = msg::MotionCommand{};  // stand
+    state_.moving = false;
+  }
   if (state_.running_goal == 0 || commands_left_ == 0) return;
   --commands_left_;
   msg::TaskCommand command{};
@@ -96,6 +123,10 @@ void Input::publish_authority(const Tick& tick) {
   authority.goal_id = state_.last_goal;
   authority.refused_count = state_.arbiter.refused;
   set_text(authority.refusal, state_.arbiter.refusal);
+  set_text(authority.refused_source, state_.arbiter.refused_source);
+  authority.refused_sequence = state_.arbiter.refused_sequence;
+  set_text(authority.ruled_source, state_.arbiter.ruled_source);
+  authority.ruled_sequence = state_.arbiter.ruled_sequence;
   authority.emergency_stop = state_.arbiter.stopped;
   authority_.write(authority);
 }

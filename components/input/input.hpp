@@ -2,10 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "input/arbiter.hpp"
-#include "input/outside_requests.hpp"
 #include "runtime/component.hpp"
+#include "runtime/outside_requests.hpp"
 
 namespace constrictor {
 
@@ -14,17 +15,18 @@ struct InputState {
   std::uint64_t last_goal = 0;      ///< last goal started, as on task/command
   std::uint64_t running_goal = 0;   ///< the same until it is cancelled; 0: none
   std::uint8_t running_task = msg::kTaskNone;
+  bool moving = false;              ///< a direct motion is in force
   std::int64_t last_authority_tick = -1;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(arbiter, last_goal, running_goal, running_task, last_authority_tick);
+    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick);
   }
 };
 
-/// Reads planner/request and, if connected, what came from outside; writes task/command and authority. Outside requests are ruled
+/// Reads planner/request and what came from outside; writes task/command, motion/command and authority. Outside requests are ruled
 /// on first, in the order of OutsideRequests::latch, then the planner's in the order of their sequence numbers. At most three
-/// task commands a tick are forwarded, so that a cancel always finds room; the rest is refused and counted. A planner request
-/// older than a second is refused as stale.
+/// task commands a tick are forwarded, so that a cancel always finds room; the rest is refused and counted. Of direct motions the
+/// last of a tick counts. A planner request older than a second is refused as stale.
 class Input : public StatefulComponent<InputState> {
  public:
   Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests> outside = nullptr);
@@ -33,17 +35,21 @@ class Input : public StatefulComponent<InputState> {
  private:
   /// Carries out a ruling; true if authority changed, something was refused or forwarded.
   bool obey(const Ruling& ruling, const msg::Request& request);
+  bool forward_task(const Ruling& ruling, const msg::Request& request);
+  void forward_motion(const msg::Request& request);
   void cancel_running();
   void publish_authority(const Tick& tick);
 
   Events<msg::Request> planner_requests_;
   Output<msg::TaskCommand> command_;
   Output<msg::Authority> authority_;
+  Output<msg::MotionCommand> motion_out_;
   std::shared_ptr<OutsideRequests> outside_;
   int commands_left_ = 0;
+  std::optional<msg::MotionCommand> motion_;  ///< of the present step
 };
 
-/// `outside`: where requests from outside the run come in; null: none do.
+/// `outside`: where requests from outside the run come in; null: the runtime's own latch, fed by the topic `request`.
 ComponentFactory make_input_factory(std::shared_ptr<OutsideRequests> outside = nullptr);
 
 }  // namespace constrictor

@@ -45,7 +45,7 @@ Navigation::Navigation(Wiring& wiring, const Setup& setup)
       line_in_(wiring.latest(topics::kLinePercept)), objects_in_(wiring.latest(topics::kObjectPercepts)),
       pose_in_(wiring.latest(topics::kRobotPose)), map_in_(wiring.latest(topics::kFieldMap)),
       joints_in_(wiring.latest(topics::kJointState)), contacts_in_(wiring.latest(topics::kContactState)),
-      motion_in_(wiring.latest(topics::kMotionStatus)), trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
+      motion_in_(wiring.latest(topics::kMotionStatus)), direct_in_(wiring.events(topics::kMotionCommand)), trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
       status_out_(wiring.output(topics::kTaskStatus)), event_out_(wiring.output(topics::kTaskEvent)) {}
 
 bool Navigation::senses_ready() const {
@@ -85,9 +85,15 @@ void Navigation::step(const Tick& tick) {
                      map_in_ ? &*map_in_ : nullptr, *joints_in_, body, touches, done};
   };
   take_commands(input(none));
+  take_direct_motions();
   const msg::TaskParameters parameters = state_.goal.parameters();
   const TaskInput present = input(parameters);
-  if (state_.task) run_task(present, output);
+  if (state_.task) {
+    run_task(present, output);
+  } else if (state_.direct.active) {
+    step_motion(config_, grip_sense_, state_.grip, state_.direct, output);
+    state_.goal.phase = output.phase;
+  }
   watch_grip(present, output);
   write_trajectory(output);
   write_status(output);
@@ -100,6 +106,13 @@ void Navigation::take_commands(const TaskInput& input) {
     } else if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0)) {
       end_goal(msg::kGoalCancelled, "cancelled");
     }
+  }
+}
+
+void Navigation::take_direct_motions() {
+  for (const auto& command : direct_in_) {
+    if (state_.task) end_goal(msg::kGoalPreempted, "direct motion");
+    begin_motion(command, state_.direct, state_.grip);
   }
 }
 
@@ -126,6 +139,7 @@ void Navigation::start_goal(const msg::TaskCommand& command, const TaskInput& se
     return;
   }
   if (state_.task) end_goal(msg::kGoalPreempted, "another task was started");
+  state_.direct = {};
   state_.goal = {};
   state_.goal.goal_id = command.goal_id;
   state_.goal.task = command.task;

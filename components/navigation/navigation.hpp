@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "navigation/direct_motion.hpp"
 #include "navigation/task.hpp"
 
 namespace constrictor {
@@ -40,17 +41,18 @@ struct NavigationState {
   ObjectWatchState things;
   std::uint64_t motion_id = 0;
   std::string method;           ///< of the motion asked for last
+  DirectMotionState direct;
 
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, things, motion_id, method, task != nullptr, bytes);
+    archive(goal, grip, things, motion_id, method, direct, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, things, motion_id, method, has_task, bytes);
+    archive(goal, grip, things, motion_id, method, direct, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }
@@ -67,6 +69,7 @@ class Navigation : public StatefulComponent<NavigationState> {
  private:
   [[nodiscard]] bool senses_ready() const;
   void take_commands(const TaskInput& input);
+  void take_direct_motions();
   void start_goal(const msg::TaskCommand& command, const TaskInput& input);
   void run_task(const TaskInput& input, TaskOutput& output);
   void watch_grip(const TaskInput& input, TaskOutput& output);
@@ -86,6 +89,7 @@ class Navigation : public StatefulComponent<NavigationState> {
   Latest<msg::JointState> joints_in_;
   Latest<msg::ContactState> contacts_in_;
   Latest<msg::MotionStatus> motion_in_;
+  Events<msg::MotionCommand> direct_in_;
   Output<msg::DesiredTrajectory> trajectory_out_;
   Output<msg::TaskStatus> status_out_;
   Output<msg::TaskEvent> event_out_;

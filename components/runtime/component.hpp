@@ -19,6 +19,8 @@ struct Tick {
   std::int64_t time_ns = 0;    ///< [ns] simulated or robot time
   std::int64_t period_ns = 0;  ///< [ns] control period
   std::int64_t elapsed = 1;    ///< ticks since this component's previous step (its period at the first)
+  std::uint64_t run_id = 0;    ///< with `epoch`: the sequence of ticks that this belongs to; nothing computed may depend on it
+  std::uint32_t epoch = 0;
 
   [[nodiscard]] double time_s() const { return static_cast<double>(time_ns) * 1e-9; }
   /// [s] time over which this step integrates.

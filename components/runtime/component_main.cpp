@@ -37,6 +37,8 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--config", config_files, "NAME=FILE: configuration of a component, instead of its default");
   app.add_option("--incarnation", options.incarnation, "1, and one more with each restart")->check(CLI::Range(1u, 1'000'000u));
   app.add_option("--pace", options.pace, "plant only: at most so many times real time; 0: as fast as it goes")->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--operator-pace", options.operator_pace, "plant only: the same while an operator has authority; 0: no such cap")
+      ->capture_default_str()->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--realtime", options.realtime, "plant only: ticks on the wall clock, nobody is waited for");
   app.add_option("--max-sim-time", options.max_sim_time_s, "plant only: [s] end the run at this simulated time; 0: never")->check(CLI::Range(0.0, 1e6));
   app.add_option("--patience", options.patience_s, "[s] wait so long for a peer before giving up; 0: for ever")->check(CLI::Range(0.0, 86400.0));

@@ -24,10 +24,15 @@ struct Fixed {
 
 }  // namespace
 
-HashLog::HashLog(const std::filesystem::path& directory, bool record) : record_(record) {
+HashLog::HashLog(const std::filesystem::path& directory, bool record) : path_(directory / "hashes.bin"), record_(record) {
   std::filesystem::create_directories(directory);
-  file_.open(directory / "hashes.bin", std::ios::binary | std::ios::trunc);
-  if (!file_) throw std::runtime_error("cannot write " + (directory / "hashes.bin").string());
+  restart();
+  if (!file_) throw std::runtime_error("cannot write " + path_.string());
+}
+
+void HashLog::restart() {
+  file_.close();
+  file_.open(path_, std::ios::binary | std::ios::trunc);
   file_.write(kMagic, sizeof(kMagic));
 }
 

@@ -23,6 +23,8 @@ class HashLog {
 
   /// Creates `directory`/hashes.bin. Throws std::runtime_error if that fails.
   HashLog(const std::filesystem::path& directory, bool record);
+  /// A new epoch: the log begins anew.
+  void restart();
   void add(const TopicInfo& topic, const Sample& sample);
   /// The same for a message that came as canonical bytes.
   void add(std::uint8_t topic, const std::string& bytes);
@@ -32,6 +34,7 @@ class HashLog {
   static std::vector<Entry> read(const std::filesystem::path& directory);
 
  private:
+  std::filesystem::path path_;
   std::ofstream file_;
   bool record_;
 };

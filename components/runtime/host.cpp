@@ -28,7 +28,7 @@ std::string host_name() {
 }  // namespace
 
 Host::Impl::Impl(HostOptions options, std::vector<ComponentFactory> factories)
-    : options_(std::move(options)), domain_(options_.domain), pacer_(options_.realtime ? 1.0 : options_.pace) {
+    : options_(std::move(options)), domain_(options_.domain), pacer_(options_.realtime ? 1.0 : options_.pace, options_.operator_pace) {
   std::vector<std::string> names;
   for (const auto& factory : factories) names.push_back(factory.name);
   identity_ = join(names);
@@ -63,6 +63,7 @@ bool Host::Impl::conduct() {
   plant_->sample_plant(conductor_->next_index(), conductor_->next_time_ns(), period);
   conductor_->tick(plant_->published());
   pacer_.ticked();
+  if (pacer_.holding()) publish_run_state(true);  // the last of the steps that were asked for
   return true;
 }
 
@@ -121,7 +122,7 @@ void Host::Impl::report_waiting(const std::string& component, const std::string&
 
 void Host::Impl::watch() {
   const auto now = SteadyClock::now();
-  if (pacer_.holding()) last_progress_ = now;
+  if (pacer_.holding() || paused_elsewhere_) last_progress_ = now;
   const double waited = std::chrono::duration<double>(now - last_progress_).count();
   if (waited < 2.0 || now - last_waiting_report_ < std::chrono::seconds(1)) return;
   last_waiting_report_ = now;
@@ -173,6 +174,7 @@ int Host::Impl::run() {
     const bool stepped = step_members();
     const bool ticked = conduct();
     if (stepped || ticked) last_progress_ = SteadyClock::now();
+    if (conductor_) publish_run_state(false);
     if (std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->ended(); })) {
       exit_status_ = exit_status::kOk;
       break;

@@ -29,6 +29,7 @@ struct HostOptions {
   std::string plant = "physics";         ///< who among them is the time master
   std::uint32_t incarnation = 1;         ///< of this process
   double pace = 0.0;                     ///< plant's host: at most so many times real time; 0: lock-step, uncapped
+  double operator_pace = 1.0;            ///< plant's host: the same while an operator has authority; 0: no such cap
   bool realtime = false;                 ///< plant's host: ticks on the wall clock, nobody is waited for
   double max_sim_time_s = 0.0;           ///< plant's host: ends the run at this simulated time; 0: never
   double patience_s = 60.0;              ///< wait so long for a peer before giving up; 0: for ever

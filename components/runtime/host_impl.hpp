@@ -12,6 +12,7 @@
 #include "runtime/barrier/member.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/member_bus.hpp"
+#include "runtime/dds/outside_link.hpp"
 #include "runtime/dds/wire.hpp"
 #include "runtime/hash_log.hpp"
 #include "runtime/host.hpp"
@@ -50,6 +51,9 @@ class Host::Impl : private MemberSink, private ConductorSink {
   void take(std::size_t reader);
   void take_hello(const msg::Hello& message);
   void take_control(const msg::RunControl& control);
+  [[nodiscard]] std::string obey_control(const msg::RunControl& control);
+  void note_authority(const TopicInfo& topic, const Sample& sample);
+  void publish_run_state(bool changed);
   void say_ready();
   bool conduct();
   bool step_members();
@@ -77,21 +81,27 @@ class Host::Impl : private MemberSink, private ConductorSink {
   dds::Reader<msg::TickDone> done_reader_;
   dds::Reader<msg::Ready> ready_reader_;
   dds::Reader<msg::RunControl> control_reader_;
+  dds::Reader<msg::RunState> run_state_reader_;
   dds::Writer<msg::Tick> tick_writer_;
   dds::Writer<msg::EpochStart> epoch_writer_;
   dds::Writer<msg::Resume> resume_writer_;
+  dds::Writer<msg::RunState> run_state_writer_;
   dds::Writer<msg::Refused> refused_writer_;
   dds::Writer<msg::Hello> hello_writer_;
   dds::Writer<msg::TickDone> done_writer_;
   dds::Writer<msg::Ready> ready_writer_;
   dds::Writer<msg::Waiting> waiting_writer_;
   dds::Writer<msg::ComponentStatus> status_writer_;
+  std::unique_ptr<dds::OutsideLink> outside_link_;  ///< if a member here listens to outside requests
   dds::Entity wait_set_;
   std::vector<std::function<void()>> takers_;  ///< by index attached to the wait set
 
   std::map<std::string, Greeting> greetings_;  ///< of members elsewhere
   std::map<std::string, std::uint64_t> control_sequences_;
   Pacer pacer_;
+  msg::RunState run_state_{};                  ///< conductor: as published last
+  bool paused_elsewhere_ = false;              ///< as the conductor said
+  SteadyClock::time_point last_run_state_{};
   SteadyClock::time_point last_progress_ = SteadyClock::now();
   SteadyClock::time_point last_waiting_report_ = SteadyClock::now();
   SteadyClock::time_point last_match_check_{};

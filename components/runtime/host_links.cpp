@@ -50,12 +50,14 @@ void Host::Impl::make_endpoints() {
     done_reader_ = dds::Reader<msg::TickDone>::member(participant, wire::kTickDone);
     ready_reader_ = dds::Reader<msg::Ready>::member(participant, wire::kReady);
     control_reader_ = dds::Reader<msg::RunControl>::member(participant, wire::kRunControl);
+    run_state_writer_ = {participant, wire::kRunState, 1};
   } else {
     done_writer_ = {participant, wire::kTickDone, 4};
     ready_writer_ = {participant, wire::kReady, 1};
     tick_reader_ = dds::Reader<msg::Tick>::member(participant, wire::kTick);
     epoch_reader_ = dds::Reader<msg::EpochStart>::member(participant, wire::kEpochStart);
     resume_reader_ = dds::Reader<msg::Resume>::member(participant, wire::kResume);
+    run_state_reader_ = dds::Reader<msg::RunState>::member(participant, wire::kRunState);
   }
   wait_set_ = dds::Entity(dds_create_waitset(participant), "dds_create_waitset");
   const auto attach = [&](dds_entity_t reader, std::function<void()> taker) {
@@ -107,10 +109,21 @@ void Host::Impl::make_endpoints() {
       conductor_->on_ready(message.component, {message.run_id, message.epoch}, message.incarnation);
     });
   });
+  attach(run_state_reader_.get(), [this] {
+    run_state_reader_.take([this](const msg::RunState& state) { paused_elsewhere_ = state.paused; });
+  });
   attach(control_reader_.get(), [this] { control_reader_.take([this](const msg::RunControl& c) { take_control(c); }); });
+  for (auto& local : members_) {
+    if (!local.member->outside()) continue;
+    outside_link_ = std::make_unique<dds::OutsideLink>(participant, options_.setup.robot_id);
+    attach(outside_link_->get(), [this, &member = *local.member] {
+      outside_link_->take(*member.outside(), [&](const std::string& reason) { member.refuse(reason); });
+    });
+  }
   for (const auto& [topic_id, reader] : bus_->readers()) {
     attach(reader, [this, each, id = topic_id] {
       bus_->take(id, [&](const Sample& sample) {
+        note_authority(topics::kInfos[id], sample);
         each([&](Member& member) {
           if (member.reads() >> id & 1) member.on_sample(id, sample);
         });
@@ -180,25 +193,11 @@ void Host::Impl::take_hello(const msg::Hello& message) {
   if (conductor_) conductor_->on_greeting(greeting);
 }
 
-void Host::Impl::take_control(const msg::RunControl& control) {
-  if (const auto violation = validate(control)) {
-    std::fprintf(stderr, "run_control from %s refused: %s\n", control.source, violation->c_str());
-    return;
-  }
-  std::uint64_t& sequence = control_sequences_[control.source];
-  if (control.sequence_number <= sequence) return;
-  sequence = control.sequence_number;
-  switch (control.command) {
-    case msg::kRunReset: conductor_->reset(control.seed); break;
-    case msg::kRunEnd: conductor_->end_run(); break;
-    default: pacer_.control(control.command, control.pace); break;
-  }
-}
-
 void Host::Impl::publish(const TopicInfo& topic, const Sample& sample) {
   for (auto& local : members_) {
     if (local.member->reads() >> topic.id & 1) local.member->on_sample(topic.id, sample);
   }
+  note_authority(topic, sample);
   bus_->write(topic, sample);
   if (hash_log_ && conductor_) hash_log_->add(topic, sample);
 }
@@ -225,6 +224,8 @@ void Host::Impl::start_epoch(const EpochId& epoch, std::uint64_t seed) {
     local.member->on_epoch(epoch, seed);
   }
   pacer_.restart();
+  pacer_.operator_holds(false);
+  if (hash_log_) hash_log_->restart();
 }
 
 void Host::Impl::tick(const msg::Tick& message) {

@@ -8,16 +8,25 @@ namespace constrictor {
 
 class Pacer {
  public:
-  /// `pace`: at most so many times real time; 0: as fast as it goes.
-  explicit Pacer(double pace) : pace_(pace) {}
+  /// `pace`: at most so many times real time; 0: as fast as it goes. `operator_pace`: the same while an operator has authority.
+  explicit Pacer(double pace, double operator_pace = 0.0) : pace_(pace), operator_pace_(operator_pace) {}
 
   /// Whether a tick whose simulated time is `time_ns` may be sent now.
   [[nodiscard]] bool may_tick(std::int64_t time_ns);
   void ticked() {
     if (steps_ > 0) --steps_;
   }
-  /// Applies kRunPause, kRunResume, kRunStep or kRunPace.
-  void control(std::uint8_t command, double pace);
+  /// Applies kRunPause, kRunResume, kRunStep (`steps` more ticks) or kRunPace. A pace set while an operator has authority holds
+  /// for that operator too.
+  void control(std::uint8_t command, double pace, std::int64_t steps = 1);
+  /// An operator has taken authority, or has it no longer.
+  void operator_holds(bool holds);
+  [[nodiscard]] bool paused() const { return paused_; }
+  /// The pace in force, and whether it is the operator's cap.
+  [[nodiscard]] double pace() const { return capped() ? operator_pace_ : pace_; }
+  [[nodiscard]] bool capped() const {
+    return operator_ && !overruled_ && operator_pace_ > 0.0 && (pace_ <= 0.0 || pace_ > operator_pace_);
+  }
   /// A new epoch: time begins again.
   void restart() { started_ = false; }
   /// True while the pace, not a peer, keeps the next tick back.
@@ -28,6 +37,9 @@ class Pacer {
  private:
   using Clock = std::chrono::steady_clock;
   double pace_;
+  double operator_pace_;
+  bool operator_ = false;
+  bool overruled_ = false;          ///< a pace was set since the operator came
   bool paused_ = false;
   std::int64_t steps_ = 0;
   bool started_ = false;

@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "runtime/topics.hpp"
 
 namespace constrictor {
+
+class OutsideRequests;
 
 /// A message of any topic, immutable and shared. `header` points into it.
 struct Sample {
@@ -99,6 +102,10 @@ class Wiring {
   [[nodiscard]] Events<T> events(const Topic<T>& topic) { return Events<T>(input(topic, true)); }
   template <class T>
   [[nodiscard]] Output<T> output(const Topic<T>& topic) { return Output<T>(output_slot(topic)); }
+  /// Where requests from outside the run arrive, for the one member that listens to them (`input`). Null where nothing can.
+  [[nodiscard]] virtual std::shared_ptr<OutsideRequests> outside_requests() { return nullptr; }
+  /// Counts something that the component refused, in ComponentStatus; `reason` names what was found and what is accepted.
+  virtual void count_refusal(const std::string& reason) { static_cast<void>(reason); }
   /// A report may ask for the run to end; the conductor ends it after the present tick.
   virtual void request_end_of_run() = 0;
 

@@ -79,12 +79,15 @@ inline constexpr Topic<msg::Request> kPlannerRequest{
     {21, "planner/request", "Request", "planner", 4, 32, false, "on demand", "the built-in planner's wishes"}};
 inline constexpr Topic<msg::MissionStatus> kMissionStatus{
     {22, "mission_status", "MissionStatus", "planner", 1, 8, false, "every tick", "state machine of Fig. 3"}};
+inline constexpr Topic<msg::MotionCommand> kMotionCommand{
+    {23, "motion/command", "MotionCommand", "input", 1, 8, false, "on demand", "direct motion"}};
 
 /// Every member topic, by id.
 inline constexpr auto kAll = std::make_tuple(
     kJointState, kContactState, kImuState, kSceneDescription, kWorldState, kTouchedState, kCameraInfo, kCameraImage,
     kOverviewImage, kLinePercept, kObjectPercepts, kProcessedImage, kRobotPose, kFieldMap, kTaskCommand, kAuthority,
-    kTaskStatus, kTaskEvent, kDesiredTrajectory, kMotionStatus, kJointCommand, kPlannerRequest, kMissionStatus);
+    kTaskStatus, kTaskEvent, kDesiredTrajectory, kMotionStatus, kJointCommand, kPlannerRequest, kMissionStatus,
+    kMotionCommand);
 inline constexpr std::size_t kCount = std::tuple_size_v<decltype(kAll)>;
 static_assert(kCount <= msg::kMaxTopics);
 

@@ -61,6 +61,7 @@ class Conductor {
   }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::optional<EpochId> epoch() const { return epoch_; }
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
 
   /// Members that keep the next tick from coming, with what they owe ("Hello", "Ready" or "TickDone").
   struct Owed {

@@ -51,6 +51,11 @@ class Member::MemberWiring : public Wiring {
  public:
   explicit MemberWiring(Member& member) : member_(member) {}
   void request_end_of_run() override { member_.end_requested_ = true; }
+  void count_refusal(const std::string& reason) override { member_.refuse(reason); }
+  std::shared_ptr<OutsideRequests> outside_requests() override {
+    if (!member_.outside_) member_.outside_ = std::make_shared<OutsideRequests>();
+    return member_.outside_;
+  }
 
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     const std::uint64_t bit = std::uint64_t{1} << topic.id;
@@ -237,7 +242,7 @@ bool Member::try_step() {
   for (auto& port : outputs_) port->in_this_step = 0;
   const std::int64_t elapsed = last_done_ < 0 ? timing_.period : tick->index - last_done_;
   fresh_component_ = false;
-  component_->step(Tick{tick->index, tick->time_ns, tick->period_ns, elapsed});
+  component_->step(Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch});
   finish_step(*tick);
   return true;
 }
@@ -247,7 +252,7 @@ void Member::sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t
   stamp_ = {epoch_->run_id, epoch_->epoch, incarnation_, index, time_ns, 0};
   for (auto& port : outputs_) port->in_this_step = 0;
   fresh_component_ = false;
-  static_cast<Plant&>(*component_).sample(Tick{index, time_ns, period_ns, 1});
+  static_cast<Plant&>(*component_).sample(Tick{index, time_ns, period_ns, 1, epoch_->run_id, epoch_->epoch});
 }
 
 std::vector<StepDone::Count> Member::published() const {

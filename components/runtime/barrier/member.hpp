@@ -12,6 +12,7 @@
 
 #include "runtime/barrier/protocol.hpp"
 #include "runtime/component.hpp"
+#include "runtime/outside_requests.hpp"
 
 namespace constrictor {
 
@@ -45,6 +46,10 @@ class Member {
   [[nodiscard]] std::uint64_t reads() const { return reads_; }    ///< bit i: topic i
   [[nodiscard]] std::uint64_t writes() const { return writes_; }
   [[nodiscard]] Component& component() { return *component_; }
+  /// Where what outsiders ask of this component goes in; null if it does not listen to them.
+  [[nodiscard]] const std::shared_ptr<OutsideRequests>& outside() const { return outside_; }
+  /// Counts a message that could not be accepted.
+  void refuse(const std::string& reason);
 
   /// A new epoch: the component is built anew. A restarted member (incarnation > 1) waits for its Resumption instead.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);
@@ -79,7 +84,6 @@ class Member {
     std::uint64_t skipped = 0;       ///< due ticks passed over because the step was late (real-time pace only)
   };
   [[nodiscard]] const Counters& counters() const { return counters_; }
-  void refuse(const std::string& reason);
 
  private:
   struct Input;
@@ -121,6 +125,7 @@ class Member {
   std::array<std::uint8_t, 32> output_hash_{};
   std::vector<StepDone::Written> written_;    ///< by the step in progress
   Counters counters_;
+  std::shared_ptr<OutsideRequests> outside_;
 };
 
 }  // namespace constrictor

@@ -51,6 +51,8 @@ CONSTRICTOR_DESCRIPTOR(Refused)
 CONSTRICTOR_DESCRIPTOR(Waiting)
 CONSTRICTOR_DESCRIPTOR(ComponentStatus)
 CONSTRICTOR_DESCRIPTOR(RunControl)
+CONSTRICTOR_DESCRIPTOR(RunState)
+CONSTRICTOR_DESCRIPTOR(MotionCommand)
 #undef CONSTRICTOR_DESCRIPTOR
 
 /// A writer that keeps its last `depth` samples for readers that come late or again. It never blocks: keep-last.

@@ -20,6 +20,7 @@ inline constexpr const char* kRefused = "barrier/refused";
 inline constexpr const char* kWaiting = "barrier/waiting";
 inline constexpr const char* kStatus = "component_status";
 inline constexpr const char* kRunControl = "run_control";
+inline constexpr const char* kRunState = "run_state";
 /// A restarted member with the longest period and latency must still find its tick.
 inline constexpr int kTickDepth = 256;
 }  // namespace barrier_topics

@@ -100,6 +100,64 @@ TEST_F(ArbiterTest, ValuesOutsideTheEnumerationsAreRefused) {
   EXPECT_EQ(state_.refused, 5u);
 }
 
+TEST_F(ArbiterTest, AnybodyCanStopEvenWithARequestThatIsWrongOtherwise) {
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestTask, 9)), Ruling::kForward);
+  auto r = request("x", 77, msg::kRequestEmergencyStop, 9);  // unknown level, old sequence number
+  EXPECT_EQ(kind(r), Ruling::kCancelAll);
+  EXPECT_TRUE(state_.stopped);
+}
+
+TEST_F(ArbiterTest, ADirectMotionTakesAuthorityLikeATask) {
+  decide(request("planner", kPlanner, msg::kRequestTask, 1));
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestMotion, 1)), Ruling::kMove);
+  EXPECT_EQ(state_.holder, "x");
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestMotion, 2)), Ruling::kRefused);
+  auto unknown = request("x", kExternal, msg::kRequestMotion, 2);
+  unknown.motion = msg::kMotionCount;
+  EXPECT_EQ(kind(unknown), Ruling::kRefused);
+}
+
+TEST_F(ArbiterTest, ADetachedHolderOutlivesItsWriterUntilItsEqualsTakeOverOrRelease) {
+  auto script = request("script", kOperator, msg::kRequestTask, 1);
+  script.detached = true;
+  decide(script);
+  EXPECT_EQ(arbiter_.on_death("script").kind, Ruling::kNothing);
+  EXPECT_EQ(state_.holder, "script");
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestRelease, 1)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("x", kExternal, msg::kRequestTask, 2)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestTake, 1)), Ruling::kCancelAll);
+  EXPECT_EQ(kind(request("other", kOperator, msg::kRequestTake, 1)), Ruling::kRefused);  // the pilot sits there
+  decide(request("pilot", kOperator, msg::kRequestRelease, 2));
+  script.header.sequence_number = 2;
+  script.goal_id = 0;
+  EXPECT_EQ(decide(script).goal_id & 0xffffffffu, 2u);
+  EXPECT_EQ(kind(request("other", kOperator, msg::kRequestRelease, 2)), Ruling::kCancelAll);
+  EXPECT_EQ(state_.level, msg::kAuthorityNone);
+}
+
+TEST_F(ArbiterTest, NamesThatComeAndGoNeedNoMoreMemoryThanTheLiving) {
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = "n" + std::to_string(i);
+    decide(request(name, kExternal, msg::kRequestTake, 1));
+    arbiter_.on_death(name);
+  }
+  EXPECT_TRUE(state_.sources.empty());
+  for (int i = 0; i < 1000; ++i) decide(request("n" + std::to_string(i), kExternal, msg::kRequestRelease, 1));
+  EXPECT_LE(state_.sources.size(), 64u);
+  EXPECT_EQ(kind(request("last", kOperator, msg::kRequestEmergencyStop, 1)), Ruling::kCancelAll);
+}
+
+TEST_F(ArbiterTest, ARefusalSaysWhoseRequestItWas) {
+  decide(request("planner", kPlanner, msg::kRequestTask, 1));
+  decide(request("x", kExternal, msg::kRequestRelease, 41));
+  decide(request("x", kExternal, msg::kRequestTake, 42));
+  EXPECT_EQ(state_.refused_source, "x");
+  EXPECT_EQ(state_.refused_sequence, 41u);
+  EXPECT_EQ(state_.ruled_sequence, 42u);
+  decide(request("\x1b[2J", kExternal, msg::kRequestTake, 1));
+  EXPECT_EQ(state_.refused_source, "?");  // what is written to a terminal holds no escapes
+}
+
 TEST_F(ArbiterTest, NobodyOutsideActsAsTheBuiltInPlanner) {
   EXPECT_EQ(arbiter_.decide_outside(request("planner", kPlanner, msg::kRequestTask, 1)).kind, Ruling::kRefused);
   decide(request("planner", kPlanner, msg::kRequestTask, 1));
@@ -151,9 +209,9 @@ TEST_F(ArbiterTest, RandomRequestsNeverPassTheHolderOrAStop) {
     const ArbiterState before = state_;
     ++sequence;
     const auto ruling = kind(request(name, level, what, sequence, sequence));
-    if (ruling == Ruling::kForward) {
+    if (ruling == Ruling::kForward || ruling == Ruling::kMove) {
       ++forwarded;
-      EXPECT_EQ(what, msg::kRequestTask);
+      EXPECT_EQ(what, ruling == Ruling::kForward ? msg::kRequestTask : msg::kRequestMotion);
       EXPECT_FALSE(before.stopped);
       EXPECT_TRUE(before.holder == name || level > before.level);
       EXPECT_EQ(state_.holder, name);
@@ -184,7 +242,7 @@ TEST(OutsideRequests, OrderOfArrivalDoesNotMatter) {
     ASSERT_EQ(items.size(), 13u);
     std::string order;
     for (const auto& item : items) order += item.source + (item.died ? "x" : std::to_string(item.request.header.sequence_number));
-    EXPECT_EQ(order, "a1a2a3a4b1b2b3b4bxc1c2c3c4");
+    EXPECT_EQ(order, "a1a2a3a4b1b2b3b4c1c2c3c4bx");
     EXPECT_TRUE(outside.latch().empty());
   }
 }
@@ -246,6 +304,7 @@ class InputMemberTest : public ::testing::Test {
     LocalRun local(members(outside_, script), constrictor::Setup{});
     local.subscribe(topics::kTaskCommand, std::function<void(const msg::TaskCommand&)>([&](const auto& m) { commands_.push_back(m); }));
     local.subscribe(topics::kAuthority, std::function<void(const msg::Authority&)>([&](const auto& m) { authority_.push_back(m); }));
+    local.subscribe(topics::kMotionCommand, std::function<void(const msg::MotionCommand&)>([&](const auto& m) { motions_.push_back(m); }));
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       if (const auto entry = at.find(tick); entry != at.end()) entry->second();
       local.advance(1);
@@ -255,6 +314,7 @@ class InputMemberTest : public ::testing::Test {
 
   std::shared_ptr<OutsideRequests> outside_;
   std::vector<msg::TaskCommand> commands_;
+  std::vector<msg::MotionCommand> motions_;
   std::vector<msg::Authority> authority_;
 };
 
@@ -301,6 +361,94 @@ TEST_F(InputMemberTest, AStopFindsRoomInATickFullOfTasks) {
   ASSERT_EQ(commands_.size(), 4u);
   EXPECT_EQ(commands_.back().command, msg::kCommandCancel);
   EXPECT_EQ(commands_.back().goal_id, commands_[2].goal_id);
+}
+
+TEST_F(InputMemberTest, ADirectMotionEndsWithItsSourceAndATaskEndsItToo) {
+  const auto drive = [](std::uint64_t sequence) {
+    auto r = request("pilot", kOperator, msg::kRequestMotion, sequence);
+    r.motion = msg::kMotionDrive;
+    r.frequency_hz = 0.5;
+    return r;
+  };
+  run({}, 40, {{5, [&] { outside_->add(drive(1)); }},
+               {10, [&] { outside_->add_death("pilot"); }},
+               {20, [&] { outside_->add(drive(2)); }},
+               {25, [&] { outside_->add(request("pilot", kOperator, msg::kRequestTask, 3)); }},
+               {30, [&] { outside_->add(request("pilot", kOperator, msg::kRequestRelease, 4)); }}});
+  ASSERT_EQ(motions_.size(), 3u);
+  EXPECT_EQ(motions_[0].motion, msg::kMotionDrive);
+  EXPECT_EQ(motions_[0].header.tick, 5);
+  EXPECT_EQ(motions_[1].motion, msg::kMotionStand);
+  EXPECT_EQ(motions_[1].header.tick, 10);
+  EXPECT_EQ(motions_[2].motion, msg::kMotionDrive);  // and no stand at the release: the task had ended the motion
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[1].command, msg::kCommandCancel);
+}
+
+// Two writers of different strength at once: whose word goes on is decided by the strongest that holds, tick by tick.
+TEST_F(InputMemberTest, TwoWritersOfDifferentStrengthAreNeverBothObeyed) {
+  constexpr unsigned kSeed = 20261121;
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  constexpr std::int64_t kTicks = 4000;
+  constexpr int kCommands = 12000;
+  std::map<std::int64_t, std::function<void()>> at;
+  std::map<std::string, std::uint64_t> sequence;
+  std::set<std::int64_t> asked[2];          // ticks in which the external planner, the operator asked for a task or motion
+  std::set<std::int64_t> released;          // ticks in which the operator let go
+  std::vector<std::pair<std::int64_t, msg::Request>> requests;
+  for (int i = 0; i < kCommands; ++i) {
+    const bool operates = random() % 2 == 0;
+    const std::int64_t tick = i * kTicks / kCommands;
+    std::uint8_t kind = random() % 2 == 0 ? msg::kRequestTask : msg::kRequestMotion;
+    if (operates && random() % 20 == 0) kind = msg::kRequestRelease;
+    const std::string name = operates ? "pilot" : "machine";
+    const std::uint64_t number = ++sequence[name];
+    auto r = request(name, operates ? kOperator : kExternal, kind, number, 0);
+    r.motion = msg::kMotionDrive;
+    requests.emplace_back(tick, r);
+    if (kind == msg::kRequestRelease) released.insert(tick);
+    else asked[operates ? 1 : 0].insert(tick);
+  }
+  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
+    at[tick] = [&, tick] {
+      std::vector<msg::Request> now;
+      for (const auto& [when, r] : requests) {
+        if (when == tick) now.push_back(r);
+      }
+      // The two write at once: their words interleave, each keeping its own order.
+      std::stable_partition(now.begin(), now.end(), [&](const msg::Request& r) { return (r.level == kOperator) == (tick % 2 == 0); });
+      for (const auto& r : now) outside_->add(r);
+    };
+  }
+  run({}, kTicks, at);
+  std::map<std::int64_t, std::set<int>> levels;  // by tick: whose starts and motions went on
+  for (const auto& c : commands_) {
+    if (c.command == msg::kCommandStart) levels[c.header.tick].insert(static_cast<int>(c.goal_id >> 48));
+  }
+  for (const auto& m : motions_) {
+    if (m.level > 0) levels[m.header.tick].insert(m.level);
+  }
+  int of_operator = 0;
+  int of_external = 0;
+  bool held = false;  // by the operator, as this test tells it from the requests alone
+  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
+    const std::set<int> now = levels.contains(tick) ? levels[tick] : std::set<int>{};
+    of_operator += static_cast<int>(now.count(kOperator));
+    of_external += static_cast<int>(now.count(kExternal));
+    const bool held_before = held;
+    if (asked[1].contains(tick)) held = true;
+    if (released.contains(tick)) {
+      held = !authority_.empty() && std::any_of(authority_.begin(), authority_.end(), [&](const msg::Authority& a) {
+        return a.header.tick == tick && a.level == kOperator;
+      });
+      continue;  // in this tick both may have spoken, one after the other
+    }
+    if (held_before || held) { EXPECT_EQ(now.count(kExternal), 0u) << "tick " << tick; }
+    EXPECT_LE(now.size(), 1u) << "tick " << tick;
+  }
+  EXPECT_GT(of_operator, 1000);
+  EXPECT_GT(of_external, 20);
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ struct OutsideItem {
   msg::Request request{};
 };
 
-/// The latch. What is taken at a tick was added before it; it is sorted by (source, sequence_number), a source's death last.
-/// At most `capacity` items are kept between two ticks; more are dropped and counted, but never an emergency stop.
+/// The latch. What is taken at a tick was added before it; the strongest level first, then by source and
+/// sequence_number, deaths last.
+/// At most `capacity` items are kept between two ticks; more are dropped and counted, but always one emergency stop.
 class OutsideRequests {
  public:
   explicit OutsideRequests(std::size_t capacity = 64) : capacity_(capacity) {}
@@ -34,6 +35,7 @@ class OutsideRequests {
   std::size_t capacity_;
   mutable std::mutex mutex_;
   std::vector<OutsideItem> items_;
+  bool stop_kept_ = false;  ///< an emergency stop was kept beyond the capacity
   std::uint64_t dropped_ = 0;
 };
 

@@ -1,0 +1,113 @@
+#include "navigation/direct_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "navigation/motions.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kHeadRate_rad_s = 0.5;
+
+/// The wrapped body as a grip holds an object: its posture, by yaw joint, and the cap of its base.
+Grip held(const NavigationConfig& config, const GripSense& sense, const Grip& grip, const DirectMotionState& state) {
+  Grip now = grip;
+  if (grip.carrying || state.wrapped_side == 0.0) return now;
+  now.carrying = true;  // for the motions' sake only: nobody felt an object
+  now.side = state.wrapped_side;
+  now.shape_rad = sense.open_shape(now.side, config.grip.base_angle_rad);
+  if (state.squeezed) {
+    const double closing_rad = state.wrapped_side * config.grasp.squeeze_max_rad / config.grip.base_joints;
+    for (double& angle_rad : now.shape_rad) {
+      if (angle_rad != 0.0) angle_rad += closing_rad;
+    }
+  }
+  now.hold_torque_nm = state.squeezed ? config.grip.hold_torque_nm : 0.0;
+  return now;
+}
+
+void set_method(const char* method, TaskOutput& output) { std::snprintf(output.desired.method, sizeof output.desired.method, "%s", method); }
+
+void set_u(const NavigationConfig& config, const GripSense& sense, double side, TaskOutput& output) {
+  const auto shape = sense.open_shape(side, config.grip.base_angle_rad);
+  output.desired.shape_count = static_cast<std::uint16_t>(sense.yaw_joint_count());
+  std::copy_n(shape.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
+}
+
+}  // namespace
+
+void begin_motion(const msg::MotionCommand& command, DirectMotionState& state, Grip& grip) {
+  const bool same = state.active && state.motion == command.motion;
+  state.begins = !same || command.motion == msg::kMotionWrap || command.motion == msg::kMotionSqueeze;
+  state.active = true;
+  state.motion = command.motion;
+  state.frequency_hz = command.frequency_hz;
+  state.curvature_1_m = command.curvature_1_m;
+  state.angle_rad = command.angle_rad;
+  switch (command.motion) {
+    case msg::kMotionWrap:
+      state.wrapped_side = command.angle_rad < 0.0 ? -1.0 : 1.0;
+      state.squeezed = false;
+      grip.pregrasped = grip.carrying = false;
+      break;
+    case msg::kMotionSqueeze: state.squeezed = state.wrapped_side != 0.0; break;
+    case msg::kMotionOpen:
+      state.wrapped_side = 0.0;
+      state.squeezed = false;
+      grip.pregrasped = grip.carrying = false;
+      break;
+    default: break;
+  }
+}
+
+void step_motion(const NavigationConfig& config, const GripSense& sense, const Grip& grip,
+                 DirectMotionState& state, TaskOutput& output) {
+  const Grip body = held(config, sense, grip, state);
+  output.new_motion = std::exchange(state.begins, false);
+  switch (state.motion) {
+    case msg::kMotionDrive: {
+      output.phase = "drive";
+      Gait gait = present_gait(config, body);
+      gait.frequency_hz = std::abs(state.frequency_hz);
+      undulate(gait, state.curvature_1_m, state.frequency_hz < 0.0 ? -1.0 : 1.0, body, output);
+      break;
+    }
+    case msg::kMotionLook:
+      output.phase = "look";
+      bend_head(state.angle_rad / 3.0, kHeadRate_rad_s, body, output);
+      break;
+    case msg::kMotionWrap:
+      output.phase = "wrap";
+      undulate(config.grasp.wrap, 0.0, 1.0, grip, output);
+      set_method("wrap", output);
+      set_u(config, sense, state.wrapped_side, output);
+      output.desired.wrap_side = state.wrapped_side;
+      output.desired.speed_m_s = config.grasp.wrap_speed_m_s;
+      break;
+    case msg::kMotionSqueeze:
+      output.phase = "squeeze";
+      if (state.wrapped_side == 0.0) {
+        stand(body, output);
+        break;
+      }
+      undulate(config.grasp.squeeze, 0.0, 1.0, grip, output);
+      set_method("squeeze", output);
+      set_u(config, sense, state.wrapped_side, output);
+      output.desired.squeeze_rad = config.grasp.squeeze_max_rad;
+      output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
+      break;
+    case msg::kMotionOpen:
+      output.phase = "open";
+      bend_head(0.0, config.drop.straighten_rate_rad_s, body, output);
+      break;
+    default:
+      output.phase = "stand";
+      stand(body, output);
+      break;
+  }
+}
+
+}  // namespace constrictor

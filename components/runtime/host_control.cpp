@@ -1,0 +1,98 @@
+// Control of the run from outside: pause, resume, step, pace, reset, end; and what the run says about itself.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "constrictor/reflect.hpp"
+#include "runtime/host_impl.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr std::size_t kMaxControlSources = 256;
+constexpr auto kStateEvery = std::chrono::seconds(1);
+
+}  // namespace
+
+void Host::Impl::take_control(const msg::RunControl& control) {
+  std::string refusal;
+  if (const auto violation = validate(control)) {
+    refusal = "run_control." + *violation;
+  } else {
+    const auto known = control_sequences_.find(control.source);
+    if (known != control_sequences_.end() && control.sequence_number <= known->second) return;  // heard before
+    if (known == control_sequences_.end() && control_sequences_.size() >= kMaxControlSources) {
+      refusal = "run_control.source: too many sources";
+    } else {
+      control_sequences_[control.source] = control.sequence_number;
+      refusal = obey_control(control);
+    }
+  }
+  if (!refusal.empty()) {
+    std::fprintf(stderr, "%s: run_control refused: %s\n", options_.plant.c_str(), refusal.c_str());
+    members_.front().member->refuse(refusal);
+  }
+  dds::set_text(run_state_.control_source, control.source);
+  run_state_.control_sequence = control.sequence_number;
+  dds::set_text(run_state_.refusal, refusal);
+  publish_run_state(true);
+}
+
+std::string Host::Impl::obey_control(const msg::RunControl& control) {
+  switch (control.command) {
+    case msg::kRunReset:
+      if (!conductor_->epoch()) return "reset: the run has not begun";
+      conductor_->reset(control.seed);
+      break;
+    case msg::kRunEnd:
+      conductor_->end_run();
+      pacer_.control(msg::kRunResume, 0.0);  // the final tick must come
+      break;
+    case msg::kRunPace:
+      if (options_.realtime) return "pace: this run goes by the wall clock";
+      pacer_.control(control.command, control.pace);
+      break;
+    default:
+      // Of a step, `seed` is the number of ticks.
+      pacer_.control(control.command, control.pace, static_cast<std::int64_t>(std::min<std::uint64_t>(control.seed, 1'000'000)));
+      break;
+  }
+  return {};
+}
+
+void Host::Impl::note_authority(const TopicInfo& topic, const Sample& sample) {
+  if (!conductor_ || topic.id != topics::kAuthority.id) return;
+  const auto& authority = *static_cast<const msg::Authority*>(sample.message.get());
+  const bool before = pacer_.capped();
+  pacer_.operator_holds(authority.level == msg::kAuthorityOperator);
+  if (pacer_.capped() != before) publish_run_state(true);
+}
+
+void Host::Impl::publish_run_state(bool changed) {
+  const auto now = SteadyClock::now();
+  const bool due = now - last_run_state_ >= kStateEvery;
+  if ((!changed && !due) || !conductor_->epoch()) return;
+  msg::RunState& state = run_state_;
+  const bool same_epoch = state.run_id == conductor_->epoch()->run_id && state.epoch == conductor_->epoch()->epoch;
+  if (due || !same_epoch) {
+    const double wall_s = std::chrono::duration<double>(now - last_run_state_).count();
+    const double simulated_s = 1e-9 * static_cast<double>((conductor_->next_index() - state.tick) * static_cast<Plant&>(plant_->component()).period_ns());
+    const bool known = same_epoch && last_run_state_ != SteadyClock::time_point{};
+    state.real_time_factor = known ? simulated_s / wall_s : std::numeric_limits<double>::quiet_NaN();
+    last_run_state_ = now;
+    state.tick = conductor_->next_index();
+  }
+  state.run_id = conductor_->epoch()->run_id;
+  state.epoch = conductor_->epoch()->epoch;
+  state.seed = conductor_->seed();
+  msg::RunState message = state;
+  message.tick = conductor_->next_index();
+  message.paused = pacer_.paused();
+  message.realtime = options_.realtime;
+  message.pace = pacer_.pace();
+  message.operator_cap = pacer_.capped();
+  run_state_writer_.write(message);
+}
+
+}  // namespace constrictor
