@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "runtime/share.hpp"
@@ -11,8 +13,9 @@ namespace constrictor {
 Control::Control(Wiring& wiring, const Setup& setup)
     : robot_(load_robot(setup.robot_file)),
       config_(load_control_config(setup.config_file.empty() ? share_path("components/control/control.yaml") : setup.config_file)),
-      chain_(robot_), limiter_(robot_, config_.speed_share), trajectory_in_(wiring.latest(topics::kDesiredTrajectory)),
-      joints_in_(wiring.latest(topics::kJointState)), command_out_(wiring.output(topics::kJointCommand)),
+      chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
+      trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
+      authority_in_(wiring.latest(topics::kAuthority)), command_out_(wiring.output(topics::kJointCommand)),
       status_out_(wiring.output(topics::kMotionStatus)) {}
 
 msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
@@ -33,10 +36,10 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
 }
 
 void Control::step(const Tick& tick) {
-  if (!joints_in_) return;
+  if (!joints_in_ || joints_in_->joint_count != robot_.joints.size()) return;
   JointArray measured_rad{};
   JointArray torque_nm{};
-  const std::size_t count = std::min<std::size_t>(joints_in_->joint_count, robot_.joints.size());
+  const std::size_t count = robot_.joints.size();
   std::copy_n(joints_in_->position_rad, count, measured_rad.begin());
   std::copy_n(joints_in_->torque_nm, count, torque_nm.begin());
   if (!state_.limiter.started) state_.limiter.position_rad = measured_rad;
@@ -55,8 +58,10 @@ void Control::step(const Tick& tick) {
   Setpoints setpoints;
   const MethodProgress progress = method->step(input, state_.body, setpoints);
   const bool relaxed = std::string_view(desired.method) == "relax";
-  command_out_.write(relaxed ? limiter_.relax(measured_rad, state_.limiter)
-                             : limiter_.limit(setpoints, measured_rad, tick.dt_s(), state_.limiter));
+  msg::JointCommand wanted = relaxed ? limiter_.relax(measured_rad, state_.limiter)
+                                     : limiter_.limit(setpoints, measured_rad, tick.dt_s(), state_.limiter);
+  wanted.mode = relaxed ? msg::kServoRelaxed : msg::kServoFollow;
+  command_out_.write(gated(wanted, measured_rad, tick));
 
   msg::MotionStatus status{};
   std::snprintf(status.method, sizeof status.method, "%s", desired.method);
@@ -66,6 +71,30 @@ void Control::step(const Tick& tick) {
   status.progress = progress.progress;
   status.phase_rad = state_.body.wave.phase_rad;
   status_out_.write(status);
+}
+
+msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick) {
+  const std::size_t count = robot_.joints.size();
+  const GateInstant now{tick.run_id, tick.epoch, tick.index};
+  const GateRefusal refusal =
+      gate_.offer({now.run_id, now.epoch, now.tick, static_cast<std::uint64_t>(tick.index) + 1, wanted.mode, std::span(wanted.position_rad, count),
+                   std::span(wanted.velocity_rad_s, count), std::span(wanted.torque_limit_nm, count)},
+                  now, state_.gate);
+  if (refusal != GateRefusal::kNone) wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal));
+  const GateOrder order =
+      authority_in_ ? SafetyGate::order_of(authority_in_->emergency_stop, authority_in_->level, state_.gate) : GateOrder::kObey;
+  const auto& setpoints = gate_.setpoints(std::span(measured_rad).first(count), order, tick.dt_s(), state_.gate);
+  msg::JointCommand command = wanted;
+  command.mode = state_.gate.mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;
+  for (std::size_t j = 0; j < count; ++j) {
+    command.position_rad[j] = setpoints[j].position_rad;
+    command.velocity_rad_s[j] = setpoints[j].velocity_rad_s;
+    command.torque_limit_nm[j] = setpoints[j].torque_limit_nm;
+    // What comes after a hold begins where the joints are held.
+    if (state_.gate.mode != GateMode::kObeying) state_.limiter.position_rad[j] = setpoints[j].position_rad;
+  }
+  if (order != GateOrder::kObey) state_.method.clear();
+  return command;
 }
 
 ComponentFactory make_control_factory() {

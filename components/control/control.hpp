@@ -5,6 +5,7 @@
 #include <string>
 
 #include "control/control_method.hpp"
+#include "robot/safety_gate.hpp"
 #include "runtime/component.hpp"
 
 namespace constrictor {
@@ -12,17 +13,19 @@ namespace constrictor {
 struct ControlState {
   BodyState body;
   LimiterState limiter;
+  GateState gate;
   std::string method;         ///< of the present motion; empty before the first
   std::uint64_t motion_id = 0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(body, limiter, method, motion_id);
+    archive(body, limiter, gate, method, motion_id);
   }
 };
 
 /// Reads DesiredTrajectory and JointState, writes JointCommand and MotionStatus every tick. Before the first trajectory, with one
 /// that no method accepts, and with one older than `hold_after_ticks` the posture is held; older than `relax_after_ticks` the
-/// joints are let go. Before the first JointState it writes nothing.
+/// joints are let go. Without a JointState of this robot it writes nothing. Every command passes the safety gate: while nobody has
+/// authority after somebody had it, and during an emergency stop, the posture is held whatever the trajectory says.
 class Control : public StatefulComponent<ControlState> {
  public:
   Control(Wiring& wiring, const Setup& setup);
@@ -31,14 +34,19 @@ class Control : public StatefulComponent<ControlState> {
  private:
   /// The trajectory to obey now, after the rules on age and validity.
   [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
+  /// What goes to the servos of a command that control wants.
+  [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick);
 
   RobotModel robot_;
   ControlConfig config_;
   YawChain chain_;
   JointLimiter limiter_;
+  SafetyGate gate_;
+  Wiring& wiring_;
   MethodRegistry registry_;
   Latest<msg::DesiredTrajectory> trajectory_in_;
   Latest<msg::JointState> joints_in_;
+  Latest<msg::Authority> authority_in_;
   Output<msg::JointCommand> command_out_;
   Output<msg::MotionStatus> status_out_;
 };

@@ -10,6 +10,10 @@ struct JointSetpoint {
   double position_rad = 0.0;
   double velocity_rad_s = 0.0;   ///< feed-forward
   double torque_limit_nm = 0.0;  ///< 0 relaxes the joint
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(position_rad, velocity_rad_s, torque_limit_nm);
+  }
 };
 
 /// True if every entry is finite, the position within the joint's limits (plus 1e-9 rad for rounding), and the torque limit not

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 
 #include "runtime/share.hpp"
 #include "sim/physics/scene_message.hpp"
@@ -27,12 +28,14 @@ Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const
       world_(robot, scenario, config.solver),
       sensors_(robot, setup.component_seed(), scenario.sensor_noise),
       perturbations_(scenario),
-      guard_(robot, config.command),
+      gate_(robot, config.command),
+      wiring_(wiring),
       angles_rad_(robot.joints.size()),
       positions_rad_(robot.joints.size()),
       rates_rad_s_(robot.joints.size()),
       torques_nm_(robot.joints.size()),
       command_(wiring.latest(topics::kJointCommand)),
+      authority_(wiring.latest(topics::kAuthority)),
       joint_state_(wiring.output(topics::kJointState)),
       contact_state_(wiring.output(topics::kContactState)),
       imu_state_(wiring.output(topics::kImuState)),
@@ -55,14 +58,21 @@ void Physics::sample(const Tick&) {
   world_state_.write(world_message(world_));
 }
 
-void Physics::obey() {
+void Physics::obey(const Tick& tick) {
   if (command_) {
+    const std::uint64_t refused_before = refused_count(gate_state_);
     const std::size_t count = std::min<std::size_t>(command_->joint_count, msg::kMaxJoints);
-    guard_.offer(command_.age_ticks(), std::span(command_->position_rad, count), std::span(command_->velocity_rad_s, count),
-                 std::span(command_->torque_limit_nm, count));
+    const msg::Header& header = command_->header;
+    const GateRefusal refusal =
+        gate_.offer({header.run_id, header.epoch, header.tick, header.sequence_number, command_->mode, std::span(command_->position_rad, count),
+                     std::span(command_->velocity_rad_s, count), std::span(command_->torque_limit_nm, count)},
+                    {tick.run_id, tick.epoch, tick.index}, gate_state_);
+    if (refused_count(gate_state_) != refused_before) wiring_.count_refusal(std::string("joint_command: ") + text_of(refusal));
   }
+  const GateOrder order =
+      authority_ ? SafetyGate::order_of(authority_->emergency_stop, authority_->level, gate_state_) : GateOrder::kObey;
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
-  const std::vector<JointSetpoint>& setpoints = guard_.setpoints(angles_rad_);
+  const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
     positions_rad_[i] = setpoints[i].position_rad;
     rates_rad_s_[i] = setpoints[i].velocity_rad_s;
@@ -72,7 +82,7 @@ void Physics::obey() {
 }
 
 void Physics::step(const Tick& tick) {
-  obey();
+  obey(tick);
   perturbations_.apply(world_, tick.time_s());
   world_.advance(config_.period_s());
 }

@@ -15,25 +15,28 @@ class Physics final : public Plant {
   Physics(Wiring& wiring, const Setup& setup);
 
   void sample(const Tick& tick) override;
-  /// Before the first command, and when commands are stale or refused: holds the measured posture, later relaxes (ServoGuard).
+  /// Before the first command, when commands are stale or refused, and when nobody has authority: holds the posture (SafetyGate).
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns; }
 
   [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] const ServoGuard& guard() const { return guard_; }
+  [[nodiscard]] const GateState& gate() const { return gate_state_; }
 
  private:
   Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
-  void obey();
+  void obey(const Tick& tick);
 
   PhysicsConfig config_;
   World world_;
   Sensors sensors_;
   PerturbationScript perturbations_;
-  ServoGuard guard_;
+  SafetyGate gate_;
+  GateState gate_state_;
+  Wiring& wiring_;
   std::vector<double> angles_rad_, positions_rad_, rates_rad_s_, torques_nm_;  ///< one entry for each joint
 
   Latest<msg::JointCommand> command_;
+  Latest<msg::Authority> authority_;
   Output<msg::JointState> joint_state_;
   Output<msg::ContactState> contact_state_;
   Output<msg::ImuState> imu_state_;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "robot/servo_guard.hpp"
+#include "robot/safety_gate.hpp"
 #include "sim/world/solver_settings.hpp"
 
 namespace constrictor {
@@ -12,7 +12,7 @@ namespace constrictor {
 struct PhysicsConfig {
   std::int64_t period_ns = 20'000'000;
   SolverSettings solver;
-  ServoGuardLimits command;
+  GateLimits command;
 
   [[nodiscard]] double period_s() const { return static_cast<double>(period_ns) * 1e-9; }
 };

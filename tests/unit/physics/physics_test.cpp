@@ -69,7 +69,7 @@ CommandAt swing() {
   };
 }
 
-ServoGuard::Mode mode_of(LocalRun& run) { return dynamic_cast<Physics&>(run.component("physics")).guard().mode(); }
+GateMode mode_of(LocalRun& run) { return dynamic_cast<Physics&>(run.component("physics")).gate().mode; }
 
 std::string hash_of(LocalRun& run) {
   const auto& hash = run.latest(topics::kWorldState)->state_hash;
@@ -104,7 +104,7 @@ TEST(Physics, RestsOnTheGround) {
 TEST(Physics, HoldsItsPostureWithoutACommand) {
   auto run = make_run(silence());
   run->advance(50);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  EXPECT_EQ(mode_of(*run), GateMode::kHolding);
   for (int i = 0; i < 23; ++i) EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[i], 0.0, 0.01);
 }
 
@@ -114,7 +114,7 @@ TEST(Physics, FollowsACommand) {
     return true;
   });
   run->advance(100);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kObeying);
+  EXPECT_EQ(mode_of(*run), GateMode::kObeying);
   EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[2], 0.4, 0.02);
 }
 
@@ -124,12 +124,12 @@ TEST(Physics, HoldsPostureWhenTheCommandIsStaleAndRelaxesLater) {
     return tick < 60;
   });
   run->advance(64);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kObeying);
+  EXPECT_EQ(mode_of(*run), GateMode::kObeying);
   run->advance(20);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  EXPECT_EQ(mode_of(*run), GateMode::kHolding);
   EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[2], 0.4, 0.02);
   run->advance(260);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kRelaxed);
+  EXPECT_EQ(mode_of(*run), GateMode::kRelaxed);
 }
 
 TEST(Physics, DoesNotObeyACommandWithNaNOrBeyondTheLimits) {
@@ -140,7 +140,7 @@ TEST(Physics, DoesNotObeyACommandWithNaNOrBeyondTheLimits) {
       return true;
     });
     run->advance(50);
-    EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+    EXPECT_EQ(mode_of(*run), GateMode::kHolding);
     EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
   }
 }
@@ -152,7 +152,7 @@ TEST(Physics, DoesNotObeyACommandOfTheWrongSize) {
     return true;
   });
   run->advance(50);
-  EXPECT_EQ(mode_of(*run), ServoGuard::Mode::kHolding);
+  EXPECT_EQ(mode_of(*run), GateMode::kHolding);
   EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
 }
 

@@ -1,0 +1,295 @@
+#include "robot/safety_gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cereal/archives/portable_binary.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <sstream>
+
+namespace constrictor {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDt_s = 0.02;
+constexpr double kFastest_rad = 4.0 * kDt_s;  // of the default joint, in a tick
+
+class SafetyGateTest : public testing::Test {
+ protected:
+  static RobotModel two_joints() {
+    RobotModel robot;
+    robot.module_count = 3;
+    robot.joints.resize(2);
+    return robot;
+  }
+  /// A command that came `age` ticks after it was written.
+  GateRefusal offer(std::vector<double> position, std::vector<double> torque = {5.0, 5.0}, std::int64_t age = 1, std::uint8_t mode = 0) {
+    const std::vector<double> velocity(position.size(), velocity_);
+    return gate_.offer({7, run_epoch_, now_.tick - age, ++sequence_, mode, position, velocity, torque}, now_, state_);
+  }
+  const std::vector<JointSetpoint>& tick(GateOrder order = GateOrder::kObey) {
+    ++now_.tick;
+    return gate_.setpoints(measured_, order, kDt_s, state_);
+  }
+  /// Obeys until both joints' setpoints are there.
+  void drive_to(double a, double b) {
+    for (int i = 0; i < 100; ++i) {
+      offer({a, b});
+      tick();
+    }
+    measured_ = {a, b};
+  }
+  [[nodiscard]] std::uint64_t refused(GateRefusal reason) const { return SafetyGate::refused(state_, reason); }
+
+  SafetyGate gate_{two_joints(), {3, 10}};
+  GateState state_;
+  GateInstant now_{7, 2, 100};
+  std::uint32_t run_epoch_ = 2;
+  std::uint64_t sequence_ = 0;
+  double velocity_ = 0.0;
+  std::vector<double> measured_{0.25, -0.25};
+};
+
+TEST_F(SafetyGateTest, HoldsTheMeasuredPostureBeforeTheFirstCommand) {
+  const auto& setpoints = tick();
+  EXPECT_EQ(state_.mode, GateMode::kHolding);
+  EXPECT_EQ(setpoints[0].position_rad, 0.25);
+  EXPECT_EQ(setpoints[0].torque_limit_nm, 6.0);
+}
+
+TEST_F(SafetyGateTest, TheFirstCommandBeginsAtTheMeasuredPosture) {
+  EXPECT_EQ(offer({1.0, -0.25}), GateRefusal::kNone);
+  const auto& setpoints = tick();
+  EXPECT_EQ(state_.mode, GateMode::kObeying);
+  EXPECT_NEAR(setpoints[0].position_rad, 0.25 + kFastest_rad, 1e-8);
+  EXPECT_EQ(setpoints[1].position_rad, -0.25);
+}
+
+TEST_F(SafetyGateTest, ObeysExactlyWhatIsWithinTheLimits) {
+  drive_to(0.5, -0.5);
+  EXPECT_EQ(offer({0.51, -0.52}, {1.5, 6.0}), GateRefusal::kNone);
+  const auto& setpoints = tick();
+  EXPECT_EQ(setpoints[0].position_rad, 0.51);
+  EXPECT_EQ(setpoints[1].position_rad, -0.52);
+  EXPECT_EQ(setpoints[0].torque_limit_nm, 1.5);
+}
+
+TEST_F(SafetyGateTest, BoundsRateAndTorque) {
+  drive_to(0.0, 0.0);
+  velocity_ = -99.0;
+  offer({1.0, -1.0}, {50.0, 1.0});
+  const auto& setpoints = tick();
+  EXPECT_NEAR(setpoints[0].position_rad, kFastest_rad, 1e-8);
+  EXPECT_NEAR(setpoints[1].position_rad, -kFastest_rad, 1e-8);
+  EXPECT_EQ(setpoints[0].velocity_rad_s, -4.0);
+  EXPECT_EQ(setpoints[0].torque_limit_nm, 6.0);
+}
+
+// Each rule by itself: the whole message is refused, counted under its reason only, and the joints hold.
+TEST_F(SafetyGateTest, RefusesTheWholeMessageAndCountsByReason) {
+  struct Case {
+    GateRefusal reason;
+    std::function<GateRefusal()> offer;
+  };
+  const std::vector<Case> cases = {
+      {GateRefusal::kWrongEpoch, [&] { run_epoch_ = 1; const auto r = offer({0.0, 0.0}); run_epoch_ = 2; return r; }},
+      {GateRefusal::kFromFuture, [&] { return offer({0.0, 0.0}, {5, 5}, -1); }},
+      {GateRefusal::kStale, [&] { return offer({0.0, 0.0}, {5, 5}, 4); }},
+      {GateRefusal::kUnknownMode, [&] { return offer({0.0, 0.0}, {5, 5}, 1, 2); }},
+      {GateRefusal::kWrongCount, [&] { return offer({0.0, 0.0, 0.0}, {1, 1, 1}); }},
+      {GateRefusal::kWrongCount, [&] { return offer({0.0, 0.0}, {1}); }},
+      {GateRefusal::kWrongCount, [&] { return offer({}, {}); }},
+      {GateRefusal::kNotFinite, [&] { return offer({0.0, kNan}); }},
+      {GateRefusal::kNotFinite, [&] { return offer({0.0, 0.0}, {kInfinity, 1}); }},
+      {GateRefusal::kNotFinite, [&] { velocity_ = kInfinity; const auto r = offer({0.0, 0.0}); velocity_ = 0; return r; }},
+      {GateRefusal::kBeyondLimits, [&] { return offer({3.0, 0.0}); }},
+      {GateRefusal::kBeyondLimits, [&] { return offer({0.0, -3.0}); }},
+      {GateRefusal::kBeyondLimits, [&] { return offer({0.0, 0.0}, {-0.1, 1}); }},
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(i);
+    drive_to(0.3, -0.3);
+    const auto before = state_.refused;
+    EXPECT_EQ(cases[i].offer(), cases[i].reason) << text_of(cases[i].reason);
+    const auto& setpoints = tick();
+    EXPECT_EQ(state_.mode, GateMode::kHolding);
+    EXPECT_EQ(setpoints[0].position_rad, 0.3);
+    for (std::size_t reason = 0; reason < before.size(); ++reason) {
+      EXPECT_EQ(state_.refused[reason], before[reason] + (reason == static_cast<std::size_t>(cases[i].reason) ? 1 : 0));
+    }
+  }
+}
+
+TEST_F(SafetyGateTest, AnotherRunIsAnotherEpoch) {
+  const std::vector<double> zeros(2, 0.0);
+  EXPECT_EQ(gate_.offer({8, 2, now_.tick, 1, 0, zeros, zeros, zeros}, now_, state_), GateRefusal::kWrongEpoch);
+}
+
+TEST_F(SafetyGateTest, AMessageThatStaysIsJudgedEachTickButCountedOnce) {
+  const std::vector<double> bad{kNan, 0.0};
+  const std::vector<double> zeros(2, 0.0);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(gate_.offer({7, 2, 99, 5, 0, bad, zeros, zeros}, now_, state_), GateRefusal::kNotFinite);
+  EXPECT_EQ(refused(GateRefusal::kNotFinite), 1u);
+}
+
+TEST_F(SafetyGateTest, ACommandThatAgesIsObeyedUntilItsLimitAndThenSilence) {
+  const std::vector<double> zeros(2, 0.0);
+  const std::vector<double> torques(2, 5.0);
+  measured_ = {0.0, 0.0};
+  const std::int64_t written = now_.tick;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(gate_.offer({7, 2, written, 5, 0, zeros, zeros, torques}, now_, state_), GateRefusal::kNone);
+    tick();
+    EXPECT_EQ(state_.mode, GateMode::kObeying);
+  }
+  EXPECT_EQ(gate_.offer({7, 2, written, 5, 0, zeros, zeros, torques}, now_, state_), GateRefusal::kStale);
+  tick();
+  EXPECT_EQ(state_.mode, GateMode::kHolding);
+  EXPECT_EQ(refused(GateRefusal::kStale), 0u);
+}
+
+TEST_F(SafetyGateTest, HoldsTheLastSetpointWhereTheJointIsThereAndTheMeasuredAngleWhereNot) {
+  drive_to(0.5, 0.5);
+  offer({0.5, 0.5}, {1.5, 5.0});
+  tick();
+  measured_ = {0.46, 0.2};  // one joint yields a little, the other was pushed away
+  tick();
+  EXPECT_EQ(state_.setpoints[0].position_rad, 0.5);
+  EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 1.5) << "what was held with a capped torque is not squeezed harder";
+  EXPECT_EQ(state_.setpoints[1].position_rad, 0.2);
+  measured_ = {0.0, 0.0};  // sagging under load must not move the setpoint
+  tick();
+  EXPECT_EQ(state_.setpoints[1].position_rad, 0.2);
+}
+
+TEST_F(SafetyGateTest, RelaxesAfterALongSilenceAndObeysAgainFromWhereItIs) {
+  for (int i = 0; i < 10; ++i) tick();
+  EXPECT_EQ(state_.mode, GateMode::kHolding);
+  EXPECT_EQ(tick()[0].torque_limit_nm, 0.0);
+  EXPECT_EQ(state_.mode, GateMode::kRelaxed);
+  measured_ = {-0.7, 0.0};
+  EXPECT_EQ(tick()[0].position_rad, -0.7);
+  offer({0.5, 0.0});
+  EXPECT_NEAR(tick()[0].position_rad, -0.7 + kFastest_rad, 1e-8);
+  EXPECT_EQ(state_.mode, GateMode::kObeying);
+}
+
+TEST_F(SafetyGateTest, RelaxesWhenAskedTo) {
+  drive_to(0.5, 0.5);
+  offer({0.5, 0.5}, {5, 5}, 1, 1);
+  EXPECT_EQ(tick()[1].torque_limit_nm, 0.0);
+  EXPECT_EQ(state_.mode, GateMode::kRelaxed);
+  measured_ = {0.1, 0.1};
+  EXPECT_EQ(tick()[0].position_rad, 0.1) << "silence after it: held where the joint is now";
+  EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 6.0);
+}
+
+TEST_F(SafetyGateTest, AnEmergencyStopHoldsWhateverIsCommandedHoweverLong) {
+  drive_to(0.5, 0.5);
+  for (int i = 0; i < 400; ++i) {
+    if (i < 200) offer({1.0, -1.0});
+    tick(GateOrder::kStop);
+    ASSERT_EQ(state_.mode, GateMode::kStopped);
+    ASSERT_EQ(state_.setpoints[0].position_rad, 0.5);
+  }
+  offer({0.5, 0.5});
+  tick();
+  EXPECT_EQ(state_.mode, GateMode::kObeying);
+  EXPECT_EQ(state_.setpoints[0].position_rad, 0.5) << "the end of a stop starts no motion";
+}
+
+TEST_F(SafetyGateTest, WithoutAuthorityThePostureIsHeldAlthoughCommandsCome) {
+  drive_to(0.5, 0.5);
+  for (int i = 0; i < 50; ++i) {
+    offer({1.0, 1.0});
+    EXPECT_EQ(tick(GateOrder::kHold)[0].position_rad, 0.5);
+  }
+  EXPECT_EQ(state_.mode, GateMode::kHolding);
+  offer({1.0, 1.0});
+  EXPECT_NEAR(tick()[0].position_rad, 0.5 + kFastest_rad, 1e-8) << "taking over begins at the posture that is held";
+}
+
+TEST_F(SafetyGateTest, AuthorityOfNobodyCountsAfterSomebodyHadIt) {
+  EXPECT_EQ(SafetyGate::order_of(false, 0, state_), GateOrder::kObey);
+  EXPECT_EQ(SafetyGate::order_of(false, 1, state_), GateOrder::kObey);
+  EXPECT_EQ(SafetyGate::order_of(false, 0, state_), GateOrder::kHold);
+  EXPECT_EQ(SafetyGate::order_of(true, 4, state_), GateOrder::kStop);
+  EXPECT_EQ(SafetyGate::order_of(false, 3, state_), GateOrder::kObey);
+}
+
+TEST_F(SafetyGateTest, MeasurementsThatAreNoNumbersChangeNothing) {
+  measured_ = {kNan, 0.4};
+  EXPECT_EQ(tick()[0].position_rad, 0.0);
+  drive_to(0.5, 0.5);
+  measured_ = {kNan, 0.5};
+  EXPECT_EQ(tick()[0].position_rad, 0.5);
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(state_.mode, GateMode::kRelaxed);
+  EXPECT_EQ(state_.setpoints[0].position_rad, 0.5);
+}
+
+TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
+  constexpr unsigned kSeed = 20261121;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> wild(-4.0, 4.0);
+  std::vector<double> before = measured_;
+  GateMode mode_before = GateMode::kHolding;
+  int obeyed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<double> position{wild(random) / 2.5, wild(random) / 2.5};
+    std::vector<double> torque{std::abs(wild(random)), wild(random) + 3.8};
+    if (random() % 9 == 0) position[random() % 2] = random() % 2 == 0 ? kNan : kInfinity;
+    velocity_ = 10.0 * wild(random);
+    if (random() % 3 != 0) offer(position, torque, static_cast<std::int64_t>(random() % 6) - 1, static_cast<std::uint8_t>(random() % 12 == 0));
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double there = state_.started ? state_.setpoints[j].position_rad : measured_[j];
+      measured_[j] += std::clamp(there - measured_[j], -0.05, 0.05);  // a servo that follows
+    }
+    const auto& setpoints = tick(static_cast<GateOrder>(random() % 20 < 18 ? 0 : random() % 3));
+    obeyed += state_.mode == GateMode::kObeying;
+    for (std::size_t j = 0; j < 2; ++j) {
+      const JointSetpoint& s = setpoints[j];
+      ASSERT_LE(std::abs(s.position_rad), 1.57);
+      ASSERT_LE(std::abs(s.velocity_rad_s), 4.0);
+      ASSERT_GE(s.torque_limit_nm, 0.0);
+      ASSERT_LE(s.torque_limit_nm, 6.0);
+      // A setpoint may only jump to where the joint is.
+      const double jump = std::abs(s.position_rad - before[j]);
+      ASSERT_TRUE(jump <= kFastest_rad + 1e-8 || s.position_rad == measured_[j]) << i << " from mode " << static_cast<int>(mode_before);
+      before[j] = s.position_rad;
+    }
+    mode_before = state_.mode;
+  }
+  EXPECT_GT(obeyed, 2000);
+}
+
+TEST_F(SafetyGateTest, ContinuesIdenticallyFromItsSavedState) {
+  drive_to(0.5, 0.2);
+  offer({0.9, kNan});
+  tick();
+  std::stringstream stream;
+  {
+    cereal::PortableBinaryOutputArchive archive(stream);
+    archive(state_);
+  }
+  GateState restored;
+  cereal::PortableBinaryInputArchive restore(stream);
+  restore(restored);
+  offer({0.9, 0.9});
+  SafetyGate other(two_joints(), {3, 10});
+  const std::vector<double> position{0.9, 0.9};
+  const std::vector<double> zeros(2, 0.0);
+  const std::vector<double> torque(2, 5.0);
+  other.offer({7, 2, now_.tick - 1, sequence_, 0, position, zeros, torque}, now_, restored);
+  tick();
+  const auto& again = other.setpoints(measured_, GateOrder::kObey, kDt_s, restored);
+  EXPECT_EQ(again[0].position_rad, state_.setpoints[0].position_rad);
+  EXPECT_EQ(restored.refused, state_.refused);
+}
+
+}  // namespace
+}  // namespace constrictor
