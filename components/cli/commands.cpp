@@ -64,13 +64,13 @@ int status_command(std::optional<std::uint32_t> domain) {
   return exit_status::kOk;
 }
 
-int stop_command(std::optional<std::uint32_t> domain) {
+int end_command(std::optional<std::uint32_t> domain) {
   const RunNote run = find_run(domain);
   ::kill(run.pid, SIGTERM);
   const auto end = Clock::now() + 20s;
   while (domain_claimed(run.domain)) {
     if (Clock::now() > end) {
-      std::fprintf(stderr, "stop: run %u (pid %d) did not end within 20 s\n", run.domain, run.pid);
+      std::fprintf(stderr, "end: run %u (pid %d) did not end within 20 s\n", run.domain, run.pid);
       return exit_status::kWaitedTooLong;
     }
     std::this_thread::sleep_for(kPoll);

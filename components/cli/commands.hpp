@@ -11,7 +11,7 @@ namespace constrictor::cli {
 int status_command(std::optional<std::uint32_t> domain);
 
 /// Asks a run's launcher to end it and waits until it did. Throws RegistryError if the run cannot be told.
-int stop_command(std::optional<std::uint32_t> domain);
+int end_command(std::optional<std::uint32_t> domain);
 
 /// Says where two runs part. 0: equal, 1: they differ.
 int diff_command(const std::filesystem::path& a, const std::filesystem::path& b);

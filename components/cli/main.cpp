@@ -1,10 +1,14 @@
 // The command `constrictor`.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 #include "cli/commands.hpp"
 #include "cli/run_command.hpp"
+#include "cli/run_control.hpp"
+#include "cli/task_command.hpp"
+#include "cli/teleop_command.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
@@ -42,14 +46,18 @@ int dispatch(int argc, char** argv) {
   };
   auto* status_app = app.add_subcommand("status", "the runs on this host, and the health of one's components");
   choose_run(status_app);
-  auto* stop_app = app.add_subcommand("stop", "end a run");
-  choose_run(stop_app);
+  auto* end_app = app.add_subcommand("end", "end a run and all of its processes");
+  choose_run(end_app);
   std::string a;
   std::string b;
   auto* diff_app = app.add_subcommand("diff", "name the first tick, component, topic and field in which two runs differ");
   diff_app->add_option("RUN_A", a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
   diff_app->add_option("RUN_B", b, "report directory of another")->required()->check(CLI::ExistingDirectory);
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]");
+  std::function<int()> action;
+  cli::add_run_control(app, action);
+  cli::add_teleop(app, action);
+  cli::add_task(app, action);
 
   try {
     app.parse(argc, argv);
@@ -57,7 +65,8 @@ int dispatch(int argc, char** argv) {
     return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
   }
   if (*status_app) return cli::status_command(domain);
-  if (*stop_app) return cli::stop_command(domain);
+  if (*end_app) return cli::end_command(domain);
+  if (action) return action();
   if (*diff_app) return cli::diff_command(a, b);
   for (const auto& group : groups) run.groups.push_back(CLI::detail::split(group, ','));
   return cli::run_command(run);

@@ -30,7 +30,7 @@ bool write_report(const std::filesystem::path& report_dir, const RunOutcome& out
   // The keys every report has, in this order; those of the mission are null if nobody reported on it.
   Json ordered = Json::object();
   ordered["success"] = success;
-  ordered["seed"] = outcome.seed;
+  ordered["seed"] = report.value("seed", outcome.seed);  // a reset may have changed it
   ordered["scenario"] = outcome.scenario;
   const double sim_time_s = report.value("sim_time_s", view.sim_time_s());
   ordered["sim_time_s"] = sim_time_s;

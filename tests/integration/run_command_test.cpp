@@ -186,7 +186,7 @@ TEST_F(RunCommand, WithoutASuccessfulMissionTheStatusIsOne) {
   EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // the final tick is sent but not stepped
 }
 
-TEST_F(RunCommand, StatusShowsAndStopEndsTheOnlyRun) {
+TEST_F(RunCommand, StatusShowsAndEndEndsTheOnlyRun) {
   environment_ = {{"XDG_RUNTIME_DIR", dir_.string()}};  // a registry of its own: this is the only run there
   Process none = command({"status"});
   EXPECT_EQ(none.wait(10s), exit_status::kSoftware);
@@ -199,8 +199,8 @@ TEST_F(RunCommand, StatusShowsAndStopEndsTheOnlyRun) {
     EXPECT_NE(status.output().find(std::string("\n") + name), std::string::npos) << status.output();
   }
   EXPECT_EQ(status.output().find("not heard of"), std::string::npos) << status.output();
-  Process stop = command({"stop"});
-  EXPECT_EQ(stop.wait(20s), exit_status::kOk) << stop.errors();
+  Process end = command({"end"});
+  EXPECT_EQ(end.wait(20s), exit_status::kOk) << end.errors();
   EXPECT_EQ(launcher.wait(5s), 128 + SIGTERM);
   expect_nobody_left();
 }

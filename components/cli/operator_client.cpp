@@ -1,0 +1,133 @@
+#include "cli/operator_client.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/outside_link.hpp"
+#include "runtime/topics.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr auto kPoll = 10ms;
+
+}  // namespace
+
+struct OperatorClient::Endpoints {
+  Endpoints(std::uint32_t number, std::chrono::nanoseconds lease)
+      : domain(number),
+        authority(dds::Reader<msg::Authority>::member(domain.participant(), std::string(topics::kAuthority.name))),
+        request(domain.participant(), lease.count()) {}
+  dds::Domain domain;
+  dds::Reader<msg::Authority> authority;  // every word, so that no ruling is missed
+  dds::RequestWriter request;
+};
+
+OperatorClient::OperatorClient(std::uint32_t domain, std::string source, std::chrono::milliseconds lease, bool detached)
+    : source_(std::move(source)), detached_(detached), endpoints_(std::make_unique<Endpoints>(domain, lease)) {
+  // Rising also from one process of this name to the next.
+  sequence_ = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+}
+
+OperatorClient::~OperatorClient() = default;
+
+bool OperatorClient::connect(std::chrono::milliseconds bound) {
+  const auto end = Clock::now() + bound;
+  while (!endpoints_->request.heard() || !authority_) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(kPoll);
+    poll();
+  }
+  return true;
+}
+
+std::uint64_t OperatorClient::ask(msg::Request request) {
+  dds::set_text(request.source, source_);
+  request.robot_id = 1;
+  request.level = msg::kAuthorityOperator;
+  request.detached = detached_;
+  request.header.sequence_number = ++sequence_;
+  endpoints_->request.write(request);
+  return sequence_;
+}
+
+std::uint64_t OperatorClient::ask(std::uint8_t kind) {
+  msg::Request request{};
+  request.kind = kind;
+  return ask(request);
+}
+
+std::uint64_t OperatorClient::move(std::uint8_t motion, double frequency_hz, double curvature_1_m, double angle_rad) {
+  msg::Request request{};
+  request.kind = msg::kRequestMotion;
+  request.motion = motion;
+  request.frequency_hz = frequency_hz;
+  request.curvature_1_m = curvature_1_m;
+  request.angle_rad = angle_rad;
+  return ask(request);
+}
+
+std::uint64_t OperatorClient::start(std::uint8_t task, const msg::TaskParameters& parameters) {
+  msg::Request request{};
+  request.kind = msg::kRequestTask;
+  request.command = msg::kCommandStart;
+  request.task = task;  // goal_id 0: input numbers it
+  request.parameters = parameters;
+  return ask(request);
+}
+
+void OperatorClient::assert_alive() const { endpoints_->request.assert_alive(); }
+
+void OperatorClient::flush() const { endpoints_->request.flush(std::chrono::nanoseconds(1s).count()); }
+
+std::int32_t OperatorClient::participant() const { return endpoints_->domain.participant(); }
+
+void OperatorClient::poll() {
+  endpoints_->authority.take([this](const msg::Authority& authority) {
+    authority_ = authority;
+    if (source_ == authority.refused_source && authority.refused_sequence > refused_) {
+      refused_ = authority.refused_sequence;
+      refusal_ = authority.refusal;
+    }
+    if (source_ == authority.ruled_source) ruled_ = std::max(ruled_, authority.ruled_sequence);
+    ruled_ = std::max(ruled_, refused_);
+  });
+}
+
+bool OperatorClient::holds_authority() const {
+  return authority_ && authority_->level == msg::kAuthorityOperator && source_ == authority_->source;
+}
+
+OperatorClient::Answer OperatorClient::wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound) {
+  const auto end = Clock::now() + bound;
+  for (;;) {
+    poll();
+    if (refused_ == number) return Answer::kRefused;
+    if (ruled_ >= number) return Answer::kGranted;
+    if (Clock::now() > end) return Answer::kNone;
+    assert_alive();
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+std::string unique_source(const std::string& what) {
+  char host[64] = {};
+  ::gethostname(host, sizeof(host) - 1);
+  return fmt::format("{}.{:.12}.{}", what, host, ::getpid());
+}
+
+msg::TaskParameters no_parameters() {
+  msg::TaskParameters parameters{};
+  parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+  return parameters;
+}
+
+}  // namespace constrictor::cli

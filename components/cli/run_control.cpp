@@ -1,0 +1,185 @@
+#include "cli/run_control.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "cli/operator_client.hpp"
+#include "cli/run_registry.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wire.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr auto kPoll = 10ms;
+constexpr auto kBound = 10s;
+constexpr const char* kSource = "constrictor";
+
+struct Options {
+  std::optional<std::uint32_t> run;
+  std::uint64_t steps = 1;
+  std::uint64_t seed = 1;
+  std::string pace;
+};
+
+double parse_pace(const std::string& text) {
+  if (text == "lockstep") return 0.0;
+  char* end = nullptr;
+  const double pace = std::strtod(text.c_str(), &end);
+  const bool number = end != text.c_str() && (*end == '\0' || std::string(end) == "x");
+  if (!number || !(pace > 0.0 && pace <= 1000.0)) {
+    throw ConfigurationError(fmt::format("pace: found '{}', accepted lockstep or a factor such as 2x (to 1000x)", text));
+  }
+  return pace;
+}
+
+/// Sends one RunControl and hears the conductor's answer.
+class RunControlClient {
+ public:
+  explicit RunControlClient(std::uint32_t domain)
+      : domain_(domain), state_(dds::Reader<msg::RunState>::member(domain_.participant(), dds::barrier_topics::kRunState)),
+        control_(domain_.participant(), dds::barrier_topics::kRunControl, 1) {}
+
+  /// The state after the command was obeyed. Throws RegistryError if it was refused or nobody answered.
+  msg::RunState send(msg::RunControl control) {
+    dds::set_text(control.source, kSource);
+    control.sequence_number = static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+    control_.write(control);  // kept for the conductor until it finds this writer
+    const auto state = wait([&](const msg::RunState& s) {
+      return std::string(s.control_source) == kSource && s.control_sequence == control.sequence_number;
+    });
+    if (*state.refusal) throw RegistryError(state.refusal);
+    return state;
+  }
+  template <class Condition>
+  msg::RunState wait(Condition&& condition) {
+    const auto end = Clock::now() + kBound;
+    for (;;) {
+      std::optional<msg::RunState> found;
+      state_.take([&](const msg::RunState& s) {
+        if (condition(s)) found = s;
+      });
+      if (found) return *found;
+      if (Clock::now() > end) throw RegistryError(fmt::format("no answer from the run within {} s", kBound.count()));
+      std::this_thread::sleep_for(kPoll);
+    }
+  }
+
+ private:
+  dds::Domain domain_;
+  dds::Reader<msg::RunState> state_;
+  dds::Writer<msg::RunControl> control_;
+};
+
+std::string pace_text(const msg::RunState& state) {
+  if (state.realtime) return "real-time pace";
+  std::string text = state.pace > 0.0 ? fmt::format("at most {}x real time", state.pace) : "lock-step, as fast as it goes";
+  if (state.operator_cap) text += " while an operator has authority";
+  return text;
+}
+
+int control(const Options& options, std::uint8_t command) {
+  const RunNote run = find_run(options.run);
+  RunControlClient client(run.domain);
+  msg::RunControl message{};
+  message.command = command;
+  if (command == msg::kRunStep) message.seed = options.steps;
+  if (command == msg::kRunReset) message.seed = options.seed;
+  if (command == msg::kRunPace) message.pace = parse_pace(options.pace);
+  std::int64_t from = 0;
+  if (command == msg::kRunStep) {
+    msg::RunControl pause{};
+    pause.command = msg::kRunPause;
+    from = client.send(pause).tick;  // from here on only the steps move it
+  }
+  msg::RunState state = client.send(message);
+  if (command == msg::kRunStep) {
+    const auto done = [&](const msg::RunState& s) { return s.tick >= from + static_cast<std::int64_t>(options.steps); };
+    if (!done(state)) state = client.wait(done);
+  }
+  if (command == msg::kRunReset) fmt::print("run {}: reset to seed {}, epoch {}\n", run.domain, state.seed, state.epoch);
+  else if (state.paused) fmt::print("run {}: paused, next tick {}\n", run.domain, state.tick);
+  else fmt::print("run {}: runs, {}\n", run.domain, pace_text(state));
+  return exit_status::kOk;
+}
+
+/// Asks `input` as an operator and tells the answer. 75 if there is none, which a paused run explains.
+int ask(OperatorClient& client, std::uint8_t kind, const char* granted) {
+  switch (client.wait_for_answer(client.ask(kind), 5s)) {
+    case OperatorClient::Answer::kGranted: fmt::print("{}\n", granted); return exit_status::kOk;
+    case OperatorClient::Answer::kRefused:
+      std::fprintf(stderr, "refused: %s\n", client.refusal().c_str());
+      return exit_status::kMissionFailed;
+    case OperatorClient::Answer::kNone: break;
+  }
+  std::fprintf(stderr, "no answer within 5 s; is the run paused? It is told as soon as the run goes on\n");
+  client.flush();
+  return exit_status::kWaitedTooLong;
+}
+
+int operate(const Options& options, const std::function<int(OperatorClient&)>& use) {
+  const RunNote run = find_run(options.run);
+  OperatorClient client(run.domain, unique_source("operator"), 0ms);
+  if (!client.connect(5s)) {
+    std::fprintf(stderr, "run %u has no `input` that listens\n", run.domain);
+    return exit_status::kWaitedTooLong;
+  }
+  return use(client);
+}
+
+int stop(OperatorClient& client) {
+  return ask(client, msg::kRequestEmergencyStop, "emergency stop: the posture is held until `constrictor clear-stop`");
+}
+
+int clear_stop(OperatorClient& client) {
+  return ask(client, msg::kRequestClearStop, "emergency stop cleared; nothing moves until `constrictor release` or another request");
+}
+
+/// Takes authority, and gives it to whoever takes it up: the built-in planner, if there is one.
+int release(OperatorClient& client) {
+  // A detached holder, or nobody: its authority is ours to give back. Whoever sits at a terminal keeps it.
+  const auto taken = client.wait_for_answer(client.ask(msg::kRequestTake), 5s);
+  if (taken == OperatorClient::Answer::kRefused) {
+    std::fprintf(stderr, "refused: %s\n", client.refusal().c_str());
+    return exit_status::kMissionFailed;
+  }
+  return ask(client, msg::kRequestRelease, "released: a planner may take up");
+}
+
+}  // namespace
+
+void add_run_control(CLI::App& app, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  const auto add = [&](const char* name, const char* text, std::function<int()> what) {
+    auto* sub = app.add_subcommand(name, text);
+    sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
+    sub->callback([&action, what = std::move(what)] { action = what; });
+    return sub;
+  };
+  const auto controls = [options](std::uint8_t command) { return [options, command] { return control(*options, command); }; };
+  add("pause", "halt a run's time", controls(msg::kRunPause));
+  add("resume", "let a paused run go on", controls(msg::kRunResume));
+  add("step", "let a run do one tick, or so many, and pause it", controls(msg::kRunStep))
+      ->add_option("TICKS", options->steps, "how many")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))->capture_default_str();
+  add("pace", "set how fast a run may go", controls(msg::kRunPace))
+      ->add_option("PACE", options->pace, "lockstep (as fast as it goes), or at most N times real time: 2x")->required();
+  add("reset", "begin a run anew, with another seed", controls(msg::kRunReset))->add_option("SEED", options->seed, "the seed")->required();
+  add("stop", "latched emergency stop: the robot holds its posture", [options] { return operate(*options, stop); });
+  add("clear-stop", "clear an emergency stop; starts no motion", [options] { return operate(*options, clear_stop); });
+  add("release", "give authority back to the planner, also after an emergency stop", [options] { return operate(*options, release); });
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,14 @@
+// `constrictor teleop`: drive the robot by hand, in a terminal or from a script.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace constrictor::cli {
+
+void add_teleop(CLI::App& app, std::function<int()>& action);
+
+}  // namespace constrictor::cli

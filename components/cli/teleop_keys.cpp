@@ -1,0 +1,102 @@
+#include "cli/teleop_keys.hpp"
+
+#include <algorithm>
+
+namespace constrictor::cli {
+namespace {
+
+constexpr double kTurn_1_m = 0.8;         // path curvature of "left" and "right"
+constexpr double kRotate_rad_per_m = 2.5; // turn rate on the spot per speed
+constexpr double kLook_rad = 0.25;
+
+TeleopAction action_of(char key) {
+  switch (key) {
+    case 'i': return TeleopAction::kForward;
+    case ',': return TeleopAction::kBack;
+    case 'j': return TeleopAction::kLeft;
+    case 'l': return TeleopAction::kRight;
+    case 'u': return TeleopAction::kRotateLeft;
+    case 'o': return TeleopAction::kRotateRight;
+    case 'k': return TeleopAction::kStand;
+    case '+':
+    case '=': return TeleopAction::kFaster;
+    case '-': return TeleopAction::kSlower;
+    case 'f': return TeleopAction::kLookLeft;
+    case 'g': return TeleopAction::kLookAhead;
+    case 'h': return TeleopAction::kLookRight;
+    case 'w': return TeleopAction::kWrapLeft;
+    case 'e': return TeleopAction::kWrapRight;
+    case 's': return TeleopAction::kSqueeze;
+    case 'd': return TeleopAction::kOpen;
+    case ' ': return TeleopAction::kEmergencyStop;
+    case 'c': return TeleopAction::kClearStop;
+    case 't': return TeleopAction::kTask;
+    case 'x': return TeleopAction::kCancel;
+    case 'r': return TeleopAction::kRelease;
+    case 'q':
+    case '\033':
+    case '\003': return TeleopAction::kQuit;
+    default: return TeleopAction::kNone;
+  }
+}
+
+}  // namespace
+
+const char* const kTeleopHelp[3] = {
+    "i/, forward/back  j/l turn  u/o rotate  k stand  +/- speed  f/g/h look  w/e wrap",
+    "s squeeze  d open  t task  x cancel task  r release authority  q quit",
+    "SPACE emergency stop  c clear it"};
+
+TeleopAction next_action(std::string_view& typed) {
+  if (typed.empty()) return TeleopAction::kNone;
+  if (typed.size() >= 3 && typed[0] == '\033' && (typed[1] == '[' || typed[1] == 'O')) {
+    // Parameters, then one final letter.
+    std::size_t end = 2;
+    while (end < typed.size() && (typed[end] < '@' || typed[end] > '~')) ++end;
+    const char key = end < typed.size() ? typed[end] : '\0';
+    typed.remove_prefix(std::min(end + 1, typed.size()));
+    switch (key) {
+      case 'A': return TeleopAction::kForward;
+      case 'B': return TeleopAction::kBack;
+      case 'C': return TeleopAction::kRight;
+      case 'D': return TeleopAction::kLeft;
+      default: return TeleopAction::kNone;
+    }
+  }
+  const char key = typed.front();
+  typed.remove_prefix(1);
+  return action_of(key);
+}
+
+double TeleopDrive::turn_rad_s() const {
+  return forward == 0.0 ? turn * kRotate_rad_per_m * speed_m_s : turn * kTurn_1_m * speed_m_s;
+}
+
+bool TeleopDrive::apply(TeleopAction action) {
+  switch (action) {
+    case TeleopAction::kForward:
+    case TeleopAction::kBack:
+      forward = action == TeleopAction::kForward ? 1.0 : -1.0;
+      turn = 0.0;
+      return true;
+    case TeleopAction::kLeft:
+    case TeleopAction::kRight:
+      if (forward == 0.0) forward = 1.0;
+      turn = action == TeleopAction::kLeft ? 1.0 : -1.0;
+      return true;
+    case TeleopAction::kRotateLeft:
+    case TeleopAction::kRotateRight:
+      forward = 0.0;
+      turn = action == TeleopAction::kRotateLeft ? 1.0 : -1.0;
+      return true;
+    case TeleopAction::kStand: forward = turn = 0.0; return true;
+    case TeleopAction::kFaster: speed_m_s = std::min(0.9, speed_m_s + 0.1); return true;
+    case TeleopAction::kSlower: speed_m_s = std::max(0.1, speed_m_s - 0.1); return true;
+    case TeleopAction::kLookLeft: look_rad = std::min(1.5, look_rad + kLook_rad); return false;
+    case TeleopAction::kLookRight: look_rad = std::max(-1.5, look_rad - kLook_rad); return false;
+    case TeleopAction::kLookAhead: look_rad = 0.0; return false;
+    default: return false;
+  }
+}
+
+}  // namespace constrictor::cli

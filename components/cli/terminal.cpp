@@ -1,0 +1,108 @@
+#include "cli/terminal.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <stdexcept>
+#include <string_view>
+
+namespace constrictor::cli {
+namespace {
+
+constexpr std::string_view kEnter = "\033[?1049h\033[?25l\033[2J";
+constexpr std::string_view kLeave = "\033[0m\033[?25h\033[?1049l";
+
+volatile std::sig_atomic_t g_interrupted = 0;
+void on_signal(int) { g_interrupted = 1; }
+
+void put(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, text.data(), text.size());
+    if (written < 0 && errno != EINTR) return;
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// Waits until the other end of the pipe closes. Unless a farewell came first, its owner died: the terminal is set right.
+[[noreturn]] void guard(int pipe, const termios& before) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTTOU, SIGTSTP}) ::signal(number, SIG_IGN);
+  char farewell = 0;
+  ssize_t count = 0;
+  do {
+    count = ::read(pipe, &farewell, 1);
+  } while (count < 0 && errno == EINTR);
+  if (count == 0) {
+    put(kLeave);
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &before);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Terminal::Terminal() {
+  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0 || ::tcgetattr(STDIN_FILENO, &before_) != 0) {
+    throw std::runtime_error("this needs a terminal; without one see --drive, or `constrictor task`");
+  }
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");
+  guardian_ = ::fork();
+  if (guardian_ == 0) {
+    ::close(ends[1]);
+    guard(ends[0], before_);
+  }
+  ::close(ends[0]);
+  guardian_pipe_ = ends[1];
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaction(number, &action, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGTSTP, SIG_IGN);  // a suspended operator would be a dead one
+  termios raw = before_;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | IEXTEN);
+  raw.c_iflag &= ~static_cast<tcflag_t>(IXON | ICRNL);
+  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VTIME] = 0;
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+  put(kEnter);
+}
+
+Terminal::~Terminal() {
+  put(kLeave);
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  static_cast<void>(!::write(guardian_pipe_, "x", 1));
+  ::close(guardian_pipe_);
+  if (guardian_ > 0) ::waitpid(guardian_, nullptr, 0);
+}
+
+bool Terminal::interrupted() { return g_interrupted != 0; }
+
+bool Terminal::read(std::string& typed, std::chrono::milliseconds bound) {
+  typed.clear();
+  pollfd descriptor{STDIN_FILENO, POLLIN, 0};
+  const int ready = ::poll(&descriptor, 1, static_cast<int>(bound.count()));
+  if (ready <= 0) return ready == 0 || errno == EINTR;
+  if (descriptor.revents & (POLLERR | POLLNVAL)) return false;
+  char bytes[64];
+  const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  if (count <= 0) return count < 0 && (errno == EINTR || errno == EAGAIN);  // readable, yet nothing to read: it hung up
+  typed.assign(bytes, static_cast<std::size_t>(count));
+  return true;
+}
+
+void Terminal::draw(const std::vector<std::string>& lines) {
+  std::string text;
+  for (std::size_t row = 0; row < lines.size(); ++row) {
+    if (row < drawn_.size() && drawn_[row] == lines[row]) continue;
+    text += "\033[" + std::to_string(row + 1) + ";1H" + lines[row] + "\033[0m\033[K";
+  }
+  drawn_ = lines;
+  put(text);
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,66 @@
+// Runs and the commands that meet them, in a registry of the test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+
+/// True once `condition` holds; false if it does not within the bound.
+template <class Condition>
+bool eventually(Condition&& condition, std::chrono::milliseconds bound = std::chrono::seconds(20)) {
+  const auto end = std::chrono::steady_clock::now() + bound;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+class CliFixture : public ::testing::Test {
+ protected:
+  CliFixture() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-cli-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+    environment_ = {{"XDG_RUNTIME_DIR", dir_.string()}};
+  }
+  ~CliFixture() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
+  [[nodiscard]] Process start(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), program("constrictor"));
+    return Process(std::move(arguments), environment_);
+  }
+  /// Runs a command to its end; its exit status, -1 if it hangs. `output_` has what it said.
+  int command(std::vector<std::string> arguments, std::chrono::seconds bound = std::chrono::seconds(30)) {
+    Process process = start(std::move(arguments));
+    const int status = process.wait(bound).value_or(-1);
+    output_ = process.output() + process.errors();
+    return status;
+  }
+  /// DDS domain of the only run of this test.
+  [[nodiscard]] std::uint32_t domain() const {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(dir_)) {
+      std::uint32_t number = 0;
+      if (std::sscanf(entry.path().filename().c_str(), "run-%u.json", &number) == 1 && entry.path().extension() == ".json") return number;
+    }
+    return 0;
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
+  }
+
+  std::filesystem::path dir_;
+  std::map<std::string, std::string> environment_;
+  std::string output_;
+};
+
+}  // namespace constrictor::testing

@@ -1,0 +1,122 @@
+// `constrictor teleop` as a person meets it: in a terminal of 80x24 (tmux), keys in, screen out, and the terminal as it was.
+#include <signal.h>
+#include <unistd.h>
+
+#include <sstream>
+
+#include "integration/cli_fixture.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class TerminalClient : public CliFixture {
+ protected:
+  TerminalClient() : socket_("constrictor-test-" + std::to_string(::getpid())) {
+    write("blind.yaml",
+          "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 20\nprocesses:\n"
+          "  - {components: [physics, guidance, navigation, control, input]}\n");
+  }
+  ~TerminalClient() override { tmux({"kill-server"}); }
+
+  std::string tmux(std::vector<std::string> arguments) const {
+    std::vector<std::string> all = {"tmux", "-L", socket_, "-f", "/dev/null"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    Process process(all, environment_);
+    process.wait(10s);
+    return process.output();
+  }
+  [[nodiscard]] std::string screen() const { return tmux({"capture-pane", "-p", "-t", "robot"}); }
+  void type(const std::string& key) const { tmux({"send-keys", "-t", "robot", key}); }
+  void enter(const std::string& line) const { tmux({"send-keys", "-t", "robot", line, "Enter"}); }
+  [[nodiscard]] bool shows(const std::string& text, std::chrono::milliseconds bound = 20s) const {
+    return eventually([&] { return screen().find(text) != std::string::npos; }, bound);
+  }
+  [[nodiscard]] std::string file(const std::string& name) const {
+    std::ifstream stream(dir_ / name);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// Writes the terminal's settings to a file and waits until they are there.
+  [[nodiscard]] std::string settings(const std::string& name) const {
+    enter("stty -g > " + (dir_ / name).string() + "; touch " + (dir_ / name).string() + ".done");
+    EXPECT_TRUE(eventually([&] { return fs::exists(dir_ / (name + ".done")); }, 10s)) << screen();
+    return file(name);
+  }
+
+  std::string socket_;
+};
+
+TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
+  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
+  enter("PS1='$ '; clear; echo was here before");
+  ASSERT_TRUE(shows("was here before"));
+  const std::string before = settings("before");
+  ASSERT_FALSE(before.empty());
+
+  enter(program("constrictor") + " teleop");
+  ASSERT_TRUE(shows("SPACE emergency stop")) << screen();
+  ASSERT_TRUE(shows("authority  nobody")) << screen();
+  ASSERT_TRUE(shows("a full bar is")) << screen();
+  EXPECT_EQ(screen().find("was here before"), std::string::npos) << "a full screen of its own";
+  std::istringstream lines(screen());
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 80u) << line;
+  EXPECT_EQ(count, 24);
+
+  type("i");
+  EXPECT_TRUE(shows("granted: drive")) << screen();
+  EXPECT_TRUE(shows("authority  operator teleop.")) << screen();
+  EXPECT_TRUE(shows("(you)")) << screen();
+  EXPECT_TRUE(shows("drive      +0.3 m/s")) << screen();
+  EXPECT_TRUE(shows("1x, operator)") || shows("(at most 1x")) << screen();
+  type("+");
+  EXPECT_TRUE(shows("+0.4 m/s")) << screen();
+  type("Left");  // the arrow key: an escape sequence
+  EXPECT_TRUE(shows("turn +0.32 rad/s")) << screen();
+
+  type("t");
+  EXPECT_TRUE(shows("task> _")) << screen();
+  enter("rotate direction=up");
+  EXPECT_TRUE(shows("direction: found 'up'")) << screen();
+  type("t");
+  enter("rotate direction=left");
+  EXPECT_TRUE(shows("rotate running")) << screen();
+
+  type("Space");
+  EXPECT_TRUE(shows("EMERGENCY STOP")) << screen();
+  type("i");
+  EXPECT_TRUE(shows("REFUSED")) << screen();
+  type("c");
+  EXPECT_TRUE(shows("authority  nobody")) << screen();
+
+  type("q");
+  EXPECT_TRUE(shows("was here before")) << screen();
+  EXPECT_EQ(settings("after"), before);
+
+  // Killed without a chance to say anything.
+  enter(program("constrictor") + " teleop & echo $! > " + (dir_ / "pid").string() + "; fg");
+  ASSERT_TRUE(shows("SPACE emergency stop")) << screen();
+  ::kill(std::stoi(file("pid")), SIGKILL);
+  EXPECT_TRUE(shows("was here before")) << screen();
+  EXPECT_EQ(settings("killed"), before);
+  EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+  launcher.wait(10s);
+}
+
+TEST_F(TerminalClient, WithoutATerminalItSaysWhatElseThereIs) {
+  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  EXPECT_EQ(command({"teleop"}), exit_status::kSoftware);
+  EXPECT_NE(output_.find("--drive"), std::string::npos) << output_;
+  EXPECT_EQ(command({"teleop", "--drive", "fast"}), exit_status::kConfiguration);
+  EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+  launcher.wait(10s);
+}
+
+}  // namespace
+}  // namespace constrictor::testing

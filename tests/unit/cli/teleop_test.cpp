@@ -1,0 +1,156 @@
+// The terminal client's pure parts: keys, driving, names, and the screen within 80 columns of 24 lines.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cli/task_command.hpp"
+#include "cli/task_names.hpp"
+#include "cli/teleop_keys.hpp"
+#include "cli/teleop_screen.hpp"
+#include "configuration/configuration.hpp"
+#include "robot/drive_gait.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(TeleopKeys, ReadsArrowsAndLettersOneByOne) {
+  std::string_view typed = "i\033[A\033[1;5Dk \033";
+  for (const auto expected : {TeleopAction::kForward, TeleopAction::kForward, TeleopAction::kLeft, TeleopAction::kStand,
+                              TeleopAction::kEmergencyStop, TeleopAction::kQuit, TeleopAction::kNone}) {
+    EXPECT_EQ(next_action(typed), expected);
+  }
+}
+
+TEST(TeleopKeys, AnyBytesEndAndMostMeanNothing) {
+  std::string bytes;
+  for (int i = 0; i < 256; ++i) bytes += static_cast<char>(i);
+  std::string_view typed = bytes;
+  int steps = 0;
+  while (!typed.empty() && ++steps < 1000) next_action(typed);
+  EXPECT_TRUE(typed.empty());
+}
+
+TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {
+  TeleopDrive drive;
+  EXPECT_TRUE(drive.apply(TeleopAction::kLeft));
+  EXPECT_GT(drive.drive_m_s(), 0.0);
+  EXPECT_GT(drive.turn_rad_s(), 0.0);
+  EXPECT_TRUE(drive.apply(TeleopAction::kRotateRight));
+  EXPECT_EQ(drive.drive_m_s(), 0.0);
+  EXPECT_LT(drive.turn_rad_s(), 0.0);
+  EXPECT_TRUE(drive.apply(TeleopAction::kStand));
+  EXPECT_EQ(drive.turn_rad_s(), 0.0);
+  for (int i = 0; i < 30; ++i) drive.apply(TeleopAction::kFaster);
+  EXPECT_LE(drive.speed_m_s, 0.9 + 1e-9);
+  for (int i = 0; i < 30; ++i) drive.apply(TeleopAction::kSlower);
+  EXPECT_GE(drive.speed_m_s, 0.1 - 1e-9);
+}
+
+TEST(DriveGait, SignsAreThoseOfSpeedAndTurnAndAllIsWithinTheMessage) {
+  EXPECT_GT(drive_gait(0.3, 0.0).frequency_hz, 0.0);
+  EXPECT_LT(drive_gait(-0.3, 0.0).frequency_hz, 0.0);
+  EXPECT_GT(drive_gait(0.3, 0.2).curvature_1_m, 0.0);
+  EXPECT_LT(drive_gait(0.0, -0.5).curvature_1_m, -2.0);
+  EXPECT_EQ(drive_gait(0.0, 0.0).frequency_hz, 0.0);
+  for (const double v : {-1e9, -1.0, 0.0, 0.01, 5.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    for (const double w : {-1e9, 0.0, 1e-6, 3.0, std::nan("")}) {
+      const DriveGait gait = drive_gait(v, w);
+      EXPECT_LE(std::abs(gait.frequency_hz), 2.0) << v << " " << w;
+      EXPECT_LE(std::abs(gait.curvature_1_m), 5.0) << v << " " << w;
+    }
+  }
+}
+
+TEST(TaskNames, EveryNameIsFoundAgainHoweverItsWordsAreJoined) {
+  for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) EXPECT_EQ(task_by_name(task_word(task)), task);
+  for (std::uint8_t event = 1; event < msg::kEventCount; ++event) EXPECT_EQ(event_by_name(event_name(event)), event);
+  EXPECT_EQ(task_by_name("Follow-Line"), msg::kTaskFollowLine);
+  EXPECT_EQ(event_by_name("line_lost"), msg::kEventLineLost);
+  EXPECT_FALSE(task_by_name("none"));
+  EXPECT_FALSE(event_by_name("nothing"));
+}
+
+TEST(TaskNames, ATaskIsOneLineAndWhatIsWrongIsNamed) {
+  std::uint8_t task = 0;
+  msg::TaskParameters parameters{};
+  EXPECT_EQ(parse_task("rotate direction=left timeout_s=2.5", task, parameters), "");
+  EXPECT_EQ(task, msg::kTaskRotate);
+  EXPECT_EQ(parameters.direction, msg::kDirectionLeft);
+  EXPECT_EQ(parameters.timeout_s, 2.5);
+  EXPECT_EQ(parse_task("drop drop-zone-colour=red object_handle=7", task, parameters), "");
+  EXPECT_EQ(parameters.drop_zone_colour, msg::kColourRed);
+  EXPECT_EQ(parameters.object_handle, 7);
+  for (const char* bad : {"", "fly", "rotate direction", "rotate direction=up", "rotate timeout_s=-1", "rotate timeout_s=2x",
+                          "rotate speed=1", "drop object_handle=70000", "follow_line line_colour=pink"}) {
+    EXPECT_NE(parse_task(bad, task, parameters), "") << bad;
+  }
+}
+
+TEST(Durations, TakeUnitsAndRefuseTheRest) {
+  EXPECT_EQ(parse_duration("--for", "5s"), 5s);
+  EXPECT_EQ(parse_duration("--for", "250ms"), 250ms);
+  EXPECT_EQ(parse_duration("--for", "1.5m"), 90s);
+  for (const char* bad : {"", "s", "-1s", "0", "5 parsecs", "nan", "inf"}) EXPECT_THROW(parse_duration("--for", bad), ConfigurationError) << bad;
+}
+
+TeleopScreen full_screen() {
+  TeleopScreen s;
+  s.run = "7 case_study seed 123456789012345678";
+  s.source = "teleop.host.1";
+  s.authority = msg::Authority{};
+  std::snprintf(s.authority->source, sizeof s.authority->source, "%s", s.source.c_str());
+  s.authority->level = msg::kAuthorityOperator;
+  s.view.run = msg::RunState{};
+  s.view.run->tick = 1234567;
+  s.view.run->real_time_factor = 0.987;
+  s.view.run->pace = 1.0;
+  s.view.run->operator_cap = true;
+  s.view.task = msg::TaskStatus{};
+  std::snprintf(s.view.task->reason, sizeof s.view.task->reason, "%s", std::string(126, 'r').c_str());
+  s.view.mission = msg::MissionStatus{};
+  s.view.joints = msg::JointState{};
+  s.view.joints->joint_count = 64;
+  for (double& torque : s.view.joints->torque_nm) torque = -1e6;
+  s.view.contacts = msg::ContactState{};
+  s.view.contacts->module_count = 64;
+  for (int i = 0; i < 3; ++i) s.view.events.emplace_back(200, 'e');
+  s.notice = "tab\tand escape \033[2J and umlaut \xc3\xa4";
+  return s;
+}
+
+TEST(TeleopScreen, FitsAPlainTerminalWhateverThereIsToShow) {
+  for (const TeleopScreen& s : {TeleopScreen{}, full_screen()}) {
+    const auto lines = render(s);
+    EXPECT_EQ(lines.size(), 24u);
+    for (const auto& line : lines) {
+      EXPECT_LE(line.size(), 80u);
+      for (const char c : line) EXPECT_TRUE(c >= ' ' && c <= '~');
+    }
+    EXPECT_NE(lines[22].find("SPACE emergency stop"), std::string::npos) << "the most important key is always in view";
+  }
+}
+
+TEST(TeleopScreen, ShowsWhoHasAuthorityAndThePrompt) {
+  TeleopScreen s = full_screen();
+  EXPECT_NE(render(s)[1].find("operator teleop.host.1 (you)"), std::string::npos);
+  EXPECT_NE(render(s)[0].find("0.99x"), std::string::npos);
+  s.prompt = "rotate direction=";
+  EXPECT_EQ(render(s)[23], "task> rotate direction=_");
+  s.view.run->paused = true;
+  EXPECT_NE(render(s)[0].find("PAUSED"), std::string::npos);
+}
+
+TEST(TeleopScreen, ABarIsAsLongAsTheTorque) {
+  TeleopScreen s;
+  s.view.joints = msg::JointState{};
+  s.view.joints->joint_count = 23;
+  s.view.joints->torque_nm[0] = -3.0;  // half of a full bar
+  const std::string first = render(s)[6];
+  EXPECT_NE(first.find("|######      |"), std::string::npos) << first;
+}
+
+}  // namespace
+}  // namespace constrictor::cli
