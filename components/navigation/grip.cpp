@@ -73,12 +73,26 @@ Eigen::Vector2d GripSense::held_object_H(const std::vector<Pose2>& body, double 
   return p_HA + (radius_m + robot_.module_radius_m) * mouth.normalized();
 }
 
+double GripSense::held_aside_m(const Grip& grip) const {
+  msg::JointState posture{};
+  for (std::size_t k = 0; k < yaw_joints_.size(); ++k) posture.position_rad[yaw_joints_[k]] = grip.shape_rad[k];
+  return held_object_H(planar_body(robot_, posture), grip.radius_m).y();
+}
+
 std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, double side) const {
   std::array<double, msg::kMaxJoints> shape{};
+  double closed_rad = 0.0;
   for (int i = 0; i < config_.base_joints; ++i) {
     const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
     shape[k] = joints.position_rad[yaw_joints_[k]] + side * config_.hold_margin_rad;
+    closed_rad += shape[k] - side * config_.base_angle_rad;
   }
+  // The joints beside the base stay open by as much as the squeeze opened them, so that the arms are parallel.
+  const double beside_rad = 0.5 * config_.opening_share * closed_rad;
+  const auto first = static_cast<std::size_t>(config_.base_first_joint);
+  const std::size_t after = first + base_joints_.size();
+  if (first > 0) shape[first - 1] = -beside_rad;
+  if (after < yaw_joints_.size()) shape[after] = -beside_rad;
   return shape;
 }
 

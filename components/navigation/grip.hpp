@@ -55,6 +55,8 @@ class GripSense {
   [[nodiscard]] int touching_modules(const std::vector<Touch>& touches) const;
   /// Where an object of this radius sits against the base, in the head's frame.
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<Pose2>& body, double radius_m) const;
+  /// [m] how far the held object lies beside the head's course while the U goes straight, positive left.
+  [[nodiscard]] double held_aside_m(const Grip& grip) const;
   /// Posture by yaw joint as measured, the base closed further by the hold margin.
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, double side) const;
 

@@ -62,6 +62,7 @@ void read_grip(Configuration& root, GripConfig& grip) {
   grip.base_first_joint = read_int(section, "base_first_joint", 0, 60);
   grip.base_joints = read_int(section, "base_joints", 1, 8);
   grip.base_angle_rad = section.number("base_angle_rad", kAngle);
+  grip.opening_share = section.number("opening_share", {0.0, 1.0});
   grip.hold_margin_rad = section.number("hold_margin_rad", kAngle);
   grip.hold_torque_nm = section.number("hold_torque_nm", kTorque);
   grip.lost_torque_nm = section.number("lost_torque_nm", kTorque);
@@ -163,7 +164,6 @@ void read_drop(Configuration& root, DropConfig& drop) {
   Configuration section = root.section("drop");
   drop.steering = read_pid(section, "steering");
   drop.fix_course_m = section.number("fix_course_m", kLength);
-  drop.most_aside_m = section.number("most_aside_m", kLength);
   drop.brake_m = section.number("brake_m", kLength);
   drop.lookahead_m = section.number("lookahead_m", kLength);
   drop.open_angle_rad = section.number("open_angle_rad", kAngle);

@@ -21,6 +21,7 @@ struct GripConfig {
   int base_first_joint = 5;         ///< first yaw joint of the base
   int base_joints = 3;              ///< number of yaw joints of the base
   double base_angle_rad = 1.047;    ///< of each base joint in the open U
+  double opening_share = 0.5;       ///< of the closing, by which the joints beside the base open (as control's squeeze does)
   double hold_margin_rad = 0.03;    ///< by which the held base joints are asked to close further
   double hold_torque_nm = 1.5;      ///< cap of the base joints while carrying
   // loss of the grasp, watched from the grasp to the drop
@@ -116,8 +117,7 @@ struct GraspConfig {
 
 struct DropConfig {
   PidGains steering{5.0, 0.0, 0.0, 1.0, 0.2};  ///< distance to the course [m] to curvature [1/m]
-  double fix_course_m = 0.6;          ///< distance of the zone's centre at which the course over it is fixed
-  double most_aside_m = 0.25;         ///< bound of the held object's lateral place
+  double fix_course_m = 0.35;         ///< distance of the object from the zone's centre at which the course is fixed
   double brake_m = 0.08;              ///< run-out of the object after the wave stops
   double lookahead_m = 0.5;
   double open_angle_rad = 0.873;      ///< of each base joint when it lets go
@@ -130,7 +130,7 @@ struct DropConfig {
 
 struct NavigationConfig {
   Gait travel{0.7, 0.5, 1.07};
-  Gait carry{1.0, 0.5, 1.07};
+  Gait carry{1.1, 0.6, 1.07};
   Gait creep{0.4, 0.35, 1.07};
   std::int64_t stale_after_ticks = 25;  ///< age of joints or pose at which navigation holds
   LineWatchLimits line;

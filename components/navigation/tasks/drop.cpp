@@ -16,7 +16,6 @@ struct DropState {
   double phase_s = 0.0;
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;    ///< of the straight way over the zone, in M
-  double aside_m = 0.0;       ///< of the held object from the head's course, positive left
   bool course_fixed = false;
   SteeringState steering;
   SteeringState object_x;     ///< averages of the held object's place in the head's frame over a gait period
@@ -24,7 +23,7 @@ struct DropState {
   Pose2 from;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, aside_m, course_fixed, steering, object_x, object_y, from);
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object_x, object_y, from);
   }
 };
 
@@ -83,18 +82,15 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, p_now.x(), period_s, state_.object_x);
     steering.observe(now_s, p_now.y(), period_s, state_.object_y);
     const Eigen::Vector2d p_HO{Steering::mean_error(state_.object_x), Steering::mean_error(state_.object_y)};
-    // The head drives along a straight course beside the zone's centre, so that the object behind it goes over the centre. The
-    // course is turned towards the zone while that is far enough ahead.
-    const Eigen::Vector2d d = state_.p_MZ - input.X_MH.p;
-    const bool far = d.norm() > config.fix_course_m && input.X_MH.to_local(state_.p_MZ).x() > 0.0;
-    if (far || !state_.course_fixed) {
-      state_.aside_m = std::clamp(p_HO.y(), -config.most_aside_m, config.most_aside_m);
-      const double share = std::clamp(state_.aside_m / std::max(0.3, d.norm()), -0.8, 0.8);
-      state_.course_rad = std::atan2(d.y(), d.x()) - std::asin(share);
+    // The object trails behind the head and cuts corners, so the course is the straight line from the object through the zone's
+    // centre, and the head drives along it, beside it by as much as the object lies beside the head.
+    const Eigen::Vector2d d = state_.p_MZ - input.X_MH.to_parent(p_HO);
+    if (d.norm() > config.fix_course_m || !state_.course_fixed) {
+      state_.course_rad = std::atan2(d.y(), d.x());
       state_.course_fixed = true;
     }
     const Pose2 X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
-    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -state_.aside_m});
+    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -input.grip_sense.held_aside_m(grip)});
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
     undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);

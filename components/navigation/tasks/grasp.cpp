@@ -141,9 +141,9 @@ class Grasp : public StatefulTask<GraspState> {
     undulate_on(input.config.carry, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     touched(input);
-    if (state_.phase_s < config.check_s) return;
-    const double torque_nm = input.grip_sense.mean_closing_nm(input.joints, grip.side);
-    if (state_.touching >= config.touching_modules && torque_nm >= input.config.grip.lost_torque_nm) {
+    const bool lost = input.grip_sense.lost(input.joints, input.touches, input.tick.dt_s(), grip);
+    if (state_.phase_s < config.check_s && !lost) return;
+    if (state_.touching >= config.touching_modules && !lost) {
       grip.carrying = true;
       output.emit(msg::kEventObjectGrasped, grip.colour, grip.handle);
       output.succeed();
