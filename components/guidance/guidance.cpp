@@ -120,6 +120,9 @@ void Guidance::step(const Tick& tick) {
   if (body) {
     const guidance::BodyChain chain = planar_module_poses(model_, {joints_->position_rad, joint_count});
     dead_reckon(tick, chain);
+    double sum_rad = 0.0;
+    for (const auto& module : chain) sum_rad += module.yaw_rad;
+    state_.body_turn_rad = sum_rad / static_cast<double>(chain.size());
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
     if (line_ && line_.fresh()) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
@@ -132,6 +135,7 @@ void Guidance::step(const Tick& tick) {
   pose.x_m = estimate.x_m;
   pose.y_m = estimate.y_m;
   pose.yaw_rad = estimate.yaw_rad;
+  pose.body_yaw_rad = guidance::wrapped(estimate.yaw_rad + state_.body_turn_rad);
   pose.speed_m_s = speed_m_s(tick.period_s());
   const Eigen::Matrix3d covariance = filter.pose_covariance();
   for (int i = 0; i < 3; ++i) {

@@ -17,9 +17,10 @@ struct GuidanceState {
   std::vector<std::int64_t> track_tick;
   std::vector<double> track_x_m, track_y_m, track_yaw_rad;
   guidance::FieldState field;
+  double body_turn_rad = 0.0;          ///< mean heading of the modules relative to the head's
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field);
+    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad);
   }
 };
 

@@ -89,6 +89,8 @@ void read_line_and_search(Configuration& root, NavigationConfig& config) {
   Configuration search = root.section("search_object");
   config.search.head_turn_rad = search.number("head_turn_rad", kAngle);
   config.search.head_rate_rad_s = search.number("head_rate_rad_s", kSpeed);
+  config.search.near_m = search.number("near_m", kLength);
+  config.search.remembered_m = search.number("remembered_m", kLength);
   config.search.advance_m = search.number("advance_m", kLength);
   config.search.turn_rad = search.number("turn_rad", kAngle);
   config.search.turn_curvature_1_m = search.number("turn_curvature_1_m", kCurvature);
@@ -129,6 +131,7 @@ void read_pregrasp(Configuration& root, PregraspConfig& pregrasp) {
   pregrasp.settle_s = section.number("settle_s", kTime);
   pregrasp.touch_rate_rad_s = section.number("touch_rate_rad_s", kSpeed);
   pregrasp.touch_limit_rad = section.number("touch_limit_rad", kAngle);
+  pregrasp.touch_further_rad = section.number("touch_further_rad", kAngle);
   pregrasp.touch_force_n = section.number("touch_force_n", kForce);
   pregrasp.deep_min_m = section.number("deep_min_m", {-2.0, 1.0});
   pregrasp.deep_max_m = section.number("deep_max_m", {-1.0, 1.0});

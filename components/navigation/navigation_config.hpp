@@ -49,6 +49,8 @@ struct FollowPathConfig {
 struct SearchConfig {
   double head_turn_rad = 0.9;      ///< how far the head looks to each side, over its three joints
   double head_rate_rad_s = 0.25;   ///< of each of the three joints
+  double near_m = 1.0;                ///< a remembered object nearer than this is left before the body turns
+  double remembered_m = 3.0;          ///< a remembered object farther off is not looked for where it was
   double advance_m = 0.5;          ///< between looks
   double turn_rad = 1.6;           ///< turn on the spot after every second look
   double turn_curvature_1_m = 2.3;
@@ -73,7 +75,7 @@ struct RotateConfig {
 struct ExploreConfig {
   double head_turn_rad = 0.9;
   double head_rate_rad_s = 0.25;
-  double step_m = 0.3;
+  double step_m = 0.5;
   double carry_turn_rad = 0.3;
 };
 
@@ -87,6 +89,7 @@ struct PregraspConfig {
   double settle_s = 1.5;
   double touch_rate_rad_s = 0.12;     ///< of each of the three joints near the head
   double touch_limit_rad = 0.3;       ///< of each of them
+  double touch_further_rad = 0.1;     ///< more, after each attempt that felt nothing
   double touch_force_n = 0.4;
   double deep_min_m = -0.4;           ///< accepted place of the object's centre along the body, from the head (behind is negative)
   double deep_max_m = 0.02;

@@ -41,13 +41,16 @@ std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool 
   return wrapped(crumb->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
 }
 
-std::optional<double> LineTrail::bearing_rad(const msg::RobotPose& pose, bool outbound, double ahead_m) const {
+std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound) const {
+  constexpr double kBeside_m = 0.5;
+  constexpr double kJoinAhead_m = 0.6;
   const Crumb* crumb = nearest(pose.x_m, pose.y_m);
   if (!crumb) return std::nullopt;
-  const double way = outbound ? ahead_m : -ahead_m;
+  if (std::hypot(crumb->x_m - pose.x_m, crumb->y_m - pose.y_m) < kBeside_m) return direction_rad(pose, outbound);
+  const double way = outbound ? kJoinAhead_m : -kJoinAhead_m;
   const double x_m = crumb->x_m + way * std::cos(crumb->outbound_rad);
   const double y_m = crumb->y_m + way * std::sin(crumb->outbound_rad);
-  return wrapped(std::atan2(y_m - pose.y_m, x_m - pose.x_m) - pose.yaw_rad);
+  return std::atan2(y_m - pose.y_m, x_m - pose.x_m);
 }
 
 void LineTrail::reverse() {

@@ -29,9 +29,9 @@ class LineTrail {
   void record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound);
   /// [rad] in M, direction along the line next to the pose that leads to the objects (or back); empty: no line known yet.
   [[nodiscard]] std::optional<double> direction_rad(const msg::RobotPose& pose, bool outbound) const;
-  /// [rad] bearing from the head, positive left, of the place where the line is best joined in that direction: `ahead_m` along it
-  /// from its point nearest to the pose.
-  [[nodiscard]] std::optional<double> bearing_rad(const msg::RobotPose& pose, bool outbound, double ahead_m) const;
+  /// [rad] heading in M that leads along the line in that direction; from beside it, towards a place a little further along, where
+  /// it is best joined.
+  [[nodiscard]] std::optional<double> heading_rad(const msg::RobotPose& pose, bool outbound) const;
   /// It was the wrong way: every direction is the opposite.
   void reverse();
   [[nodiscard]] bool empty() const { return crumbs_.empty(); }

@@ -75,45 +75,41 @@ bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& in
 
 std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
-  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
-  if (!direction_rad) return std::nullopt;
-  return wrapped(*direction_rad - inputs.pose->yaw_rad);
-}
-
-bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
-  const auto turn_rad = to_turn_rad(inputs);
-  return !turn_rad || std::abs(*turn_rad) < config_.aligned_rad;
-}
-
-std::optional<double> MissionPlanner::turned_past_rad(const PlannerInputs& inputs) const {
-  const auto turn_rad = to_turn_rad(inputs);
-  if (!turn_rad) return std::nullopt;
-  return memory_.turning_left ? -*turn_rad : *turn_rad;
-}
-
-// While an empty body turns on the spot it is curled up: its course is still where the tail points, behind the head's turn.
-bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
-  if (!leads_right(inputs)) return false;
-  const bool curled = !holding() && (memory_.state == kTurnRound || memory_.searching == msg::kTaskRotate);
-  if (!curled) return true;
-  const auto past_rad = turned_past_rad(inputs);
-  return !past_rad || *past_rad > config_.turn_beyond_rad;
-}
-
-std::optional<double> MissionPlanner::remembered_bearing_rad(const PlannerInputs& inputs) const {
-  if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (inputs.map) {
+  if (inputs.map && searches()) {
     const auto* thing = nearest_in_map(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
     if (thing) {
       const double dx_m = thing->x_m - pose.x_m;
       const double dy_m = thing->y_m - pose.y_m;
       const double distance_m = std::hypot(dx_m, dy_m);
-      if (distance_m > 0.3 && distance_m < config_.remembered_range_m) return wrapped(std::atan2(dy_m, dx_m) - pose.yaw_rad);
+      if (distance_m > 0.3 && distance_m < config_.remembered_range_m) return wrapped(std::atan2(dy_m, dx_m) - course_rad(pose));
     }
   }
-  constexpr double kJoinAhead_m = 0.6;
-  return memory_.trail.bearing_rad(pose, !holding(), kJoinAhead_m);
+  const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
+  if (!heading_rad) return std::nullopt;
+  return wrapped(*heading_rad - course_rad(pose));
+}
+
+bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
+  if (!inputs.pose) return true;
+  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
+  return !direction_rad || std::abs(wrapped(*direction_rad - inputs.pose->yaw_rad)) < config_.aligned_rad;
+}
+
+bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
+  const auto turn_rad = to_turn_rad(inputs);
+  if (!turn_rad) return false;
+  const bool past = memory_.direction == msg::kDirectionLeft ? *turn_rad < 0.0 : *turn_rad > 0.0;
+  return std::abs(*turn_rad) < 0.2 || (past && std::abs(*turn_rad) < config_.aligned_rad);
+}
+
+// While an empty body turns on the spot it is curled up: its course lags behind the head's turn.
+bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
+  if (!leads_right(inputs)) return false;
+  const bool curled = !holding() && (memory_.state == MissionState::kTurnRound || memory_.searching == msg::kTaskRotate);
+  if (!curled || !inputs.pose) return true;
+  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, true);
+  return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.straight_rad;
 }
 
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
@@ -126,10 +122,9 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     case msg::kTaskFollowLine: parameters.line_colour = config_.line_colour; break;
     case msg::kTaskDrop: parameters.drop_zone_colour = colour(); break;
     case msg::kTaskRotate: {
-      const double turn_rad = to_turn_rad(inputs).value_or(1.0);
       parameters.line_colour = config_.line_colour;
-      memory_.turning_left = turn_rad >= 0.0;
-      parameters.direction = memory_.turning_left ? msg::kDirectionLeft : msg::kDirectionRight;
+      memory_.direction = to_turn_rad(inputs).value_or(1.0) >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+      parameters.direction = memory_.direction;
       parameters.timeout_s = scaled_s(config_.turn_round_s);
       break;
     }
@@ -139,23 +134,31 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
   return wanted;
 }
 
-// By memory at first: face what is remembered, go there. Where that did not help, left, right and forwards in turn.
+Move MissionPlanner::move_for(double turn_rad) {
+  constexpr double kAhead_rad = 0.25;
+  constexpr double kBend_rad = 0.7;  // beyond it a turn on the spot is the shorter way
+  const std::uint8_t side = turn_rad > 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+  if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
+  return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
+}
+
+// By memory at first: turn towards what is remembered, go there. Where that did not help, left, right, forwards and back in turn.
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
-  auto& parameters = wanted.parameters;
-  parameters.line_colour = config_.line_colour;
   const unsigned attempt = memory_.searches++;
-  const auto bearing_rad = remembered_bearing_rad(inputs);
-  memory_.guided = bearing_rad.has_value() && attempt % 8 < 4;
-  if (memory_.guided ? std::abs(*bearing_rad) < 0.6 : attempt % 2 == 0) {
-    memory_.searching = msg::kTaskExplore;
-    parameters.direction = !memory_.guided && attempt % 8 == 6 ? msg::kDirectionBackwards : msg::kDirectionForwards;
-  } else {
-    memory_.searching = msg::kTaskRotate;
-    memory_.turning_left = memory_.guided ? *bearing_rad > 0.0 : attempt % 4 == 1;
-    parameters.direction = memory_.turning_left ? msg::kDirectionLeft : msg::kDirectionRight;
-    parameters.timeout_s = scaled_s(config_.rotate_s);
+  const auto turn_rad = to_turn_rad(inputs);
+  memory_.guided = turn_rad.has_value() && attempt % 16 < 12;
+  Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
+  if (memory_.guided) {
+    move = move_for(*turn_rad);
+  } else if (attempt % 2 == 1) {
+    move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
   }
-  wanted.task = memory_.searching;
+  memory_.searching = move.task;
+  memory_.direction = move.direction;
+  wanted.task = move.task;
+  wanted.parameters.line_colour = config_.line_colour;
+  wanted.parameters.direction = move.direction;
+  if (move.task == msg::kTaskRotate) wanted.parameters.timeout_s = scaled_s(config_.rotate_s);
 }
 
 }  // namespace constrictor

@@ -13,7 +13,6 @@ constexpr std::uint64_t kGoalBase = static_cast<std::uint64_t>(msg::kAuthorityPl
 /// [s] for which navigation may still show an older goal, or a contradiction about what is held may last.
 constexpr double kPatience_s = 2.0;
 
-bool searches_line(MissionState state) { return state == kSearchLineOrObject || state == kSearchLine; }
 bool turns(MissionState state) { return state == kTurnRound || state == kTurnBack; }
 
 }  // namespace
@@ -209,9 +208,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     case kTurnBack: {
       if (zone && holding()) return kDrop;
       if (line && may_follow(inputs)) return holding() ? kTransport : kFollowLine;
-      const auto past_rad = turned_past_rad(inputs);
-      const bool there = past_rad && *past_rad > config_.turn_beyond_rad && *past_rad < config_.aligned_rad;
-      return there && !line ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
+      return has_turned(inputs) && !line ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
     }
     default: return std::nullopt;
   }
@@ -222,7 +219,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     return fail("the mission's time is over in state " + std::string(name_of(memory_.state)));
   }
   const double in_state_s = memory_.active_s - memory_.entered_s;
-  if (searches_line(memory_.state)) {
+  if (searches()) {
     if (in_state_s > scaled_s(config_.search_timeout_s)) {
       memory_.entered_s = memory_.active_s;
       return recover(memory_.state);
@@ -230,8 +227,11 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     const bool exploring = memory_.searching == msg::kTaskExplore;
     const double asked_for_s = memory_.active_s - memory_.asked_s;
     if (asked_for_s > scaled_s(exploring ? config_.explore_s : config_.rotate_s)) return memory_.state;
-    const auto bearing_rad = memory_.guided && !exploring ? remembered_bearing_rad(inputs) : std::nullopt;
-    return bearing_rad && std::abs(*bearing_rad) < 0.3 ? std::optional(memory_.state) : std::nullopt;
+    if (!memory_.guided) return std::nullopt;
+    if (!exploring) return has_turned(inputs) ? std::optional(memory_.state) : std::nullopt;
+    const auto turn_rad = to_turn_rad(inputs);
+    const bool astray = turn_rad && asked_for_s > kPatience_s && std::abs(*turn_rad) > config_.aligned_rad;
+    return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);
   if (turns(memory_.state)) return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;

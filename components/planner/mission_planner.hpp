@@ -36,6 +36,12 @@ struct WantedTask {
   msg::TaskParameters parameters{};
 };
 
+/// A search's move.
+struct Move {
+  std::uint8_t task = msg::kTaskNone;            ///< kTaskRotate or kTaskExplore
+  std::uint8_t direction = msg::kDirectionNone;
+};
+
 /// Everything the planner remembers.
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
@@ -59,14 +65,15 @@ struct MissionMemory {
   std::uint16_t searches = 0;       ///< requests of the two searches so far: alternates what is tried
   std::uint8_t searching = msg::kTaskNone;  ///< what the present search does: explore or rotate
   bool guided = false;              ///< it does so by memory
-  bool turning_left = false;        ///< direction of the last rotate asked for
+  std::uint8_t direction = msg::kDirectionNone;  ///< of the last rotate or explore asked for
   LineTrail trail;
   std::string reason;               ///< why the mission failed
 
   template <class Archive>
   void serialize(Archive& archive) {
     archive(state, asked, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s, goals,
-            object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, turning_left, trail, reason);
+            object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, direction, trail,
+            reason);
   }
 };
 
@@ -104,17 +111,21 @@ class MissionPlanner {
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
   /// Whether the line leads the way the state wants: by the trail, if there is one.
   [[nodiscard]] bool leads_right(const PlannerInputs& inputs) const;
-  /// [rad] by which the head would have to turn left to face the wanted way along the line; empty: unknown.
+  /// [rad] heading in M in which the robot moves: of the straightened body, with an object in the U of the head.
+  [[nodiscard]] double course_rad(const msg::RobotPose& pose) const { return holding() ? pose.yaw_rad : pose.body_yaw_rad; }
+  /// [rad] by which the course would have to turn left to lead to what is searched for, or back to the line and along it the
+  /// wanted way, by memory; empty: nothing is remembered.
   [[nodiscard]] std::optional<double> to_turn_rad(const PlannerInputs& inputs) const;
-  /// [rad] by which a turn has gone beyond the wanted way along the line (negative: not there yet); empty: unknown.
-  [[nodiscard]] std::optional<double> turned_past_rad(const PlannerInputs& inputs) const;
-  /// Whether the line in view may be followed from here: it leads the right way and the body's own turn will not carry it off.
+  /// Whether a turn may end: the course leads where it shall, or has gone past that.
+  [[nodiscard]] bool has_turned(const PlannerInputs& inputs) const;
+  /// Whether the line in view may be followed from here: it leads the right way and the body, once straight, still points along it.
   [[nodiscard]] bool may_follow(const PlannerInputs& inputs) const;
-  /// [rad] bearing of what is searched for, by memory; empty: nothing is remembered.
-  [[nodiscard]] std::optional<double> remembered_bearing_rad(const PlannerInputs& inputs) const;
   // requests
   [[nodiscard]] WantedTask task_of_state(const PlannerInputs& inputs);
+  /// What the search does next by memory: the task and its direction.
+  [[nodiscard]] static Move move_for(double turn_rad);
   void choose_search(const PlannerInputs& inputs, WantedTask& wanted);
+  [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
   /// A duration given for the empty robot; with an object in the U everything takes longer.
   [[nodiscard]] double scaled_s(double empty_s) const { return holding() ? empty_s * config_.holding_factor : empty_s; }

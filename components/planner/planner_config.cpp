@@ -36,7 +36,7 @@ PlannerConfig load_planner_config(const std::filesystem::path& file) {
   config.on_zone_m = yaml.number("on_zone_m", {0, 5});
   config.remembered_range_m = yaml.number("remembered_range_m", {0.3, 100});
   config.aligned_rad = yaml.number("aligned_rad", {0.05, 1.5});
-  config.turn_beyond_rad = yaml.number("turn_beyond_rad", {0, 1});
+  config.straight_rad = yaml.number("straight_rad", {0.05, 1.5});
   config.explore_s = yaml.number("explore_s", {1, 600});
   config.rotate_s = yaml.number("rotate_s", {1, 600});
   config.after_end_s = yaml.number("after_end_s", {0, 600});

@@ -20,6 +20,7 @@ struct PregraspState {
   double radius_m = 0.085;
   double past_m = 0.0;        ///< how far the head shall pass the object's centre
   int attempts = 0;
+  int misses = 0;             ///< attempts that felt nothing
   bool felt = false;
   bool deep = false;
   Pose2 rest;                 ///< the head before it felt
@@ -27,7 +28,7 @@ struct PregraspState {
   double unseen_s = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, felt, deep, rest, steering, unseen_s);
+    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, misses, felt, deep, rest, steering, unseen_s);
   }
 };
 
@@ -157,7 +158,9 @@ class Pregrasp : public StatefulTask<PregraspState> {
   void touch(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
     output.phase = "touch";
-    bend_head(state_.side * config.touch_limit_rad, config.touch_rate_rad_s, grip, output);
+    // What was not felt lies farther off than it looked: each attempt reaches farther.
+    const double limit_rad = config.touch_limit_rad + config.touch_further_rad * state_.misses;
+    bend_head(state_.side * limit_rad, config.touch_rate_rad_s, grip, output);
     const Touch* best = nullptr;
     for (const Touch& t : input.touches) {
       const Pose2& module = input.body[t.module];
@@ -197,7 +200,10 @@ class Pregrasp : public StatefulTask<PregraspState> {
       return;
     }
     // Felt ahead or not at all: another step, a little farther than the last.
-    if (!state_.felt) state_.past_m = std::max(state_.past_m, past_m(input)) + 0.12;
+    if (!state_.felt) {
+      ++state_.misses;
+      state_.past_m = std::max(state_.past_m, past_m(input)) + 0.12;
+    }
     enter(kAdvance);
   }
 

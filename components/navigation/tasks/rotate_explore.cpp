@@ -1,5 +1,5 @@
 // Rotate (Tables XIII, XIV): turns on the spot, until the optional timeout. Explore (Table XV): the head looks left and right
-// while the body makes small steps. Both run until something else is started or they are cancelled.
+// between small steps of the body. Both run until something else is started or they are cancelled.
 #include <cmath>
 
 #include "navigation/motions.hpp"
@@ -42,7 +42,7 @@ class Rotate : public StatefulTask<RotateState> {
 enum Phase : int { kLookLeft, kLookRight, kStep };
 
 struct ExploreState {
-  int phase = kLookLeft;
+  int phase = kStep;
   double phase_s = 0.0;
   Pose2 from;
   template <class Archive>
@@ -56,7 +56,7 @@ class Explore : public StatefulTask<ExploreState> {
   std::string refusal(const TaskInput& input, const Grip&) const override {
     return input.parameters.direction == msg::kDirectionNone ? "explore needs a direction" : "";
   }
-  void start(const TaskInput& input, Grip&) override { enter(input, kLookLeft); }
+  void start(const TaskInput& input, Grip&) override { enter(input, kStep); }
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const ExploreConfig& config = input.config.explore;
     const double turn_rad = grip.carrying ? config.carry_turn_rad : config.head_turn_rad;

@@ -1,14 +1,15 @@
-// Search object (Tables III, IV): the head looks to both sides, the body advances and turns on the spot, until an object of the
+// Search object (Tables III, IV): where an object of the colour was known the body turns and goes there; otherwise, the head looks to both sides, the body advances and turns on the spot, until an object of the
 // colour is seen; it must stay in view for a moment.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "navigation/motions.hpp"
 
 namespace constrictor {
 namespace {
 
-enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm };
+enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm, kLeave, kFace, kApproach };
 
 struct SearchState {
   int phase = kLookLeft;
@@ -17,9 +18,11 @@ struct SearchState {
   double turned_rad = 0.0;
   double last_yaw_rad = 0.0;
   Pose2 from;                ///< where the phase began
+  int returns = 0;           ///< times it went to where the object was known to be
+  double side = 1.0;         ///< of the turn towards it, +1 left
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, looks, phase_s, turned_rad, last_yaw_rad, from);
+    archive(phase, looks, phase_s, turned_rad, last_yaw_rad, from, returns, side);
   }
 };
 
@@ -28,7 +31,7 @@ class SearchObject : public StatefulTask<SearchState> {
   std::string refusal(const TaskInput& input, const Grip&) const override {
     return input.parameters.object_colour == msg::kColourUnknown ? "search_object needs an object colour" : "";
   }
-  void start(const TaskInput& input, Grip&) override { enter(input, kLookAhead); }
+  void start(const TaskInput& input, Grip&) override { begin(input); }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const SearchConfig& config = input.config.search;
@@ -55,7 +58,11 @@ class SearchObject : public StatefulTask<SearchState> {
       output.phase = "drive";
       return;
     }
-    sweep(input, grip, config, output);
+    if (state_.phase >= kLeave) {
+      go_back(input, grip, output);
+    } else {
+      sweep(input, grip, config, output);
+    }
   }
 
  private:
@@ -67,12 +74,71 @@ class SearchObject : public StatefulTask<SearchState> {
     state_.from = input.X_MH;
   }
 
+  /// Where an object of the colour was known to be, in M; empty: nowhere near.
+  [[nodiscard]] static std::optional<Eigen::Vector2d> remembered(const TaskInput& input) {
+    const std::uint8_t colour = input.parameters.object_colour;
+    std::optional<Eigen::Vector2d> best;
+    if (input.things.objects[colour].known) best = input.things.objects[colour].p_M();
+    if (input.map) {  // it follows what was felt, too
+      for (std::size_t i = 0; i < std::min<std::size_t>(input.map->object_count, msg::kMaxMapObjects); ++i) {
+        const auto& thing = input.map->objects[i];
+        const bool meant = input.parameters.object_handle == 0 || input.parameters.object_handle == thing.handle;
+        if (thing.kind == msg::kBlobObject && thing.colour == colour && meant) best = Eigen::Vector2d(thing.x_m, thing.y_m);
+      }
+    }
+    const bool near = best && (*best - input.X_MH.p).norm() < input.config.search.remembered_m;
+    return near ? best : std::nullopt;
+  }
+
+  void begin(const TaskInput& input) {
+    constexpr int kReturns = 3;
+    const bool back = remembered(input) && state_.returns < kReturns;
+    if (back) ++state_.returns;
+    enter(input, back ? kLeave : kLookAhead);
+  }
+
+  /// First away from the object, not to push it along in the turn; then facing it; then towards it.
+  void go_back(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    constexpr double kTurn_s = 12.0;
+    const SearchConfig& config = input.config.search;
+    const auto p_MO = remembered(input);
+    if (!p_MO) {
+      enter(input, kLookAhead);
+      return;
+    }
+    const Eigen::Vector2d d = *p_MO - input.X_MH.p;
+    double body_rad = input.X_MH.yaw_rad;  // of the body once it is straight
+    for (const Pose2& module : input.body) body_rad += module.yaw_rad / static_cast<double>(input.body.size());
+    const double bearing_rad = angle_between(std::atan2(d.y(), d.x()), body_rad);
+    switch (state_.phase) {
+      case kLeave:
+        output.phase = "leave";
+        undulate(input.config.travel, 0.0, std::cos(bearing_rad) > 0.0 ? -1.0 : 1.0, grip, output);
+        if (d.norm() < config.near_m && state_.phase_s < kTurn_s) break;
+        state_.side = bearing_rad > 0.0 ? 1.0 : -1.0;
+        enter(input, kFace);
+        break;
+      case kFace:
+        output.phase = "face";
+        undulate(input.config.travel, state_.side * config.turn_curvature_1_m, 1.0, grip, output);
+        if (std::abs(bearing_rad) < 0.25 || (state_.side * bearing_rad < 0.0 && std::abs(bearing_rad) < 1.5) || state_.phase_s > kTurn_s) {
+          enter(input, kApproach);
+        }
+        break;
+      default:
+        output.phase = "approach";
+        undulate(input.config.travel, std::clamp(2.0 * bearing_rad, -1.2, 1.2), 1.0, grip, output);
+        if (d.norm() < 0.6 * config.near_m || state_.phase_s > kTurn_s) enter(input, kLookAhead);
+        break;
+    }
+  }
+
   void confirm(const TaskInput& input, Grip& grip, const Sighting& thing, TaskOutput& output) {
     stand(grip, output);
     output.phase = "confirm";
     if (!thing.visible) {
       output.emit(msg::kEventObjectLost, input.parameters.object_colour);
-      enter(input, kLookAhead);
+      begin(input);
     } else if (state_.phase_s >= input.config.search.confirm_s) {
       output.succeed();
     }

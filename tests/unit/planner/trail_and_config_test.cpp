@@ -38,9 +38,15 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
     pose.y_m = 2.0 - 2.0 * std::cos(angle);
     EXPECT_NEAR(*trail.direction_rad(pose, true), angle, 0.1);
     EXPECT_NEAR(std::abs(wrapped(*trail.direction_rad(pose, false) - angle)), std::numbers::pi, 0.1);
-    pose.yaw_rad = angle;
-    EXPECT_NEAR(*trail.bearing_rad(pose, true, 0.6), 0.0, 0.35);
-    EXPECT_GT(std::abs(*trail.bearing_rad(pose, false, 0.6)), 2.6);
+    EXPECT_EQ(trail.heading_rad(pose, true), trail.direction_rad(pose, true));
+    // From a metre beside the line it leads to a place 0.6 m further along the tangent.
+    for (const double beside_m : {1.0, -1.0}) {
+      msg::RobotPose beside = pose;
+      beside.x_m -= beside_m * std::sin(angle);
+      beside.y_m += beside_m * std::cos(angle);
+      const double across = std::remainder(*trail.heading_rad(beside, true) - angle, 2.0 * std::numbers::pi);
+      EXPECT_NEAR(across, beside_m > 0.0 ? -1.03 : 1.03, 0.35) << angle;  // atan(1 m / 0.6 m) to the tangent
+    }
   }
 }
 
@@ -48,7 +54,7 @@ TEST(LineTrail, ReversedLeadsTheOtherWayAndUnknownIsSaid) {
   LineTrail trail;
   msg::RobotPose pose{};
   EXPECT_FALSE(trail.direction_rad(pose, true));
-  EXPECT_FALSE(trail.bearing_rad(pose, true, 0.5));
+  EXPECT_FALSE(trail.heading_rad(pose, true));
   msg::LinePercept line{};
   line.visible = true;
   line.lookahead_m = 0.35;
