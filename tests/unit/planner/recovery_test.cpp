@@ -173,10 +173,10 @@ TEST_F(PlannerTest, AfterADropTheLineIsTakenOnlyTowardsTheObjectsAndWhenTheBodyH
   steps(20);
   EXPECT_EQ(memory_.state, kTurnRound);
   const bool left = last_.parameters.direction == msg::kDirectionLeft;
-  face(left ? -0.5 : 0.5);  // nearly there
+  face(0.0, left ? -1.2 : 1.2);  // the head is there, the body not
   steps(20);
   EXPECT_EQ(memory_.state, kTurnRound);
-  face(left ? 0.4 : -0.4);  // a little beyond
+  face(left ? 0.6 : -0.6, left ? -0.3 : 0.3);
   steps(4);
   EXPECT_EQ(memory_.state, kFollowLine);
 }

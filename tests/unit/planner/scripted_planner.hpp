@@ -96,7 +96,12 @@ class PlannerTest : public ::testing::Test {
     objects_ = {};
     see_line(false);
   }
-  void face(double yaw_rad) { pose_.yaw_rad = wrapped(yaw_rad); }
+  /// The straight body points there; or it is curled up and points elsewhere than the head.
+  void face(double yaw_rad) { face(yaw_rad, yaw_rad); }
+  void face(double yaw_rad, double body_yaw_rad) {
+    pose_.yaw_rad = wrapped(yaw_rad);
+    pose_.body_yaw_rad = wrapped(body_yaw_rad);
+  }
   /// The line runs along x; drives `metres` along the head's direction with the line in view.
   void drive(double metres) {
     see_line(true);
