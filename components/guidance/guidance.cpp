@@ -48,7 +48,10 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   input.yaw_rad = yaw_of(imu_->orientation);
   if (!std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
-  if (contacts_ && contacts_->module_count >= model_.module_count) {
+  // Rolled over, it cannot tell the ground from a wall: nothing but the body's own motion counts then.
+  const auto& q = imu_->orientation;
+  const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
+  if (upright && contacts_ && contacts_->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
     for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
     // what pushes from the side; touches of the robot's own modules cancel in the sum

@@ -93,7 +93,7 @@ std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) c
 bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
   if (!inputs.pose) return true;
   const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
-  return !direction_rad || std::abs(wrapped(*direction_rad - inputs.pose->yaw_rad)) < config_.aligned_rad;
+  return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
 }
 
 bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {

@@ -196,8 +196,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
   switch (memory_.state) {
     case kSearchLineOrObject:
       if (object) return kTrackObject;
-      if (!line || may_follow(inputs)) return line ? std::optional(kFollowLine) : std::nullopt;
-      return leads_right(inputs) ? std::nullopt : std::optional(recover(kTurnRound));
+      return line && may_follow(inputs) ? std::optional(kFollowLine) : std::nullopt;  // else the search turns towards its wanted way
     case kFollowLine: return object ? std::optional(kTrackObject) : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
@@ -208,7 +207,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     case kTurnBack: {
       if (zone && holding()) return kDrop;
       if (line && may_follow(inputs)) return holding() ? kTransport : kFollowLine;
-      return has_turned(inputs) && !line ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
+      return has_turned(inputs) ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
     }
     default: return std::nullopt;
   }

@@ -66,6 +66,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.module_count = static_cast<std::size_t>(module.integer("count", 2, kMostModules));
   robot.module_length_m = module.number("length_m", {0.02, 1.0});
   robot.module_radius_m = module.number("radius_m", {0.005, 0.5});
+  robot.module_belly_half_width_m = module.number("belly_half_width_m", {0.0, robot.module_radius_m});
   robot.module_mass_kg = module.number("mass_kg", {0.01, 20.0});
   module.finish();
 

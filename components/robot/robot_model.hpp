@@ -39,6 +39,7 @@ struct RobotModel {
   std::size_t module_count = 0;
   double module_length_m = 0.0;  ///< joint to joint
   double module_radius_m = 0.0;
+  double module_belly_half_width_m = 0.0;  ///< of the flat underside on which a module stands against rolling; 0: round
   double module_mass_kg = 0.0;
   std::vector<JointModel> joints;  ///< module_count - 1, head to tail
   double friction_along = 0.05;    ///< anisotropic skin: Coulomb coefficient along the module's axis

@@ -162,11 +162,31 @@ void World::advance(double duration_s) {
   extend_hash();
 }
 
+// A flat underside of half-width w resists rolling with up to weight times w. Its edge is softened over a small angle; tipped by
+// more than half a right angle a module rests on its round flank.
+void World::stand_on_bellies() {
+  constexpr double kSoft_rad = 0.05;
+  constexpr double kTipped_rad = 0.8;
+  constexpr double kDamping_s = 0.01;
+  constexpr double kNear_m = 0.01;
+  const double most_nm = robot_.module_mass_kg * kGravity_m_s2 * robot_.module_belly_half_width_m;
+  if (most_nm == 0.0) return;
+  for (const dBodyID body : modules_) {
+    const dReal* R = dBodyGetRotation(body);
+    const double roll_rad = std::atan2(R[9], R[10]);
+    if (std::abs(roll_rad) > kTipped_rad || dBodyGetPosition(body)[2] > robot_.module_radius_m + kNear_m) continue;
+    const double rate_rad_s = vector_of(dBodyGetAngularVel(body)).dot(Vector3d(R[0], R[4], R[8]));
+    const double share = std::clamp((roll_rad + kDamping_s * rate_rad_s) / kSoft_rad, -1.0, 1.0);
+    dBodyAddRelTorque(body, -most_nm * share, 0.0, 0.0);
+  }
+}
+
 void World::step() {
   for (const auto& drive : drives_) drive->drive(settings_.step_s);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     dBodyAddForce(objects_[i], forces_n_[i].x(), forces_n_[i].y(), forces_n_[i].z());
   }
+  stand_on_bellies();
   contacts_.begin_step();
   collide();
   // QuickStep reorders constraints by a generator that all worlds of the process share: each continues its own sequence.

@@ -86,6 +86,7 @@ class World {
   [[nodiscard]] Capsule capsule_of(std::size_t module) const;
   [[nodiscard]] ConvexSolid solid_of(std::size_t object) const;
   void step();
+  void stand_on_bellies();
   void extend_hash();
 
   RobotModel robot_;
