@@ -71,6 +71,19 @@ double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_ra
 
 double gait_period_s(const Gait& gait) { return 1.0 / std::max(0.1, std::abs(gait.frequency_hz)); }
 
+double body_course_rad(const TaskInput& input) {
+  double turn_rad = 0.0;
+  for (const Pose2& module : input.body) turn_rad += module.yaw_rad / static_cast<double>(input.body.size());
+  return input.X_MH.yaw_rad + turn_rad;
+}
+
+double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M) {
+  const Eigen::Vector2d p_H = input.X_MH.to_local(p_M);
+  double nearest_m = p_H.norm();
+  for (const Pose2& module : input.body) nearest_m = std::min(nearest_m, (module.p - p_H).norm());
+  return nearest_m;
+}
+
 double angle_between(double to_rad, double from_rad) { return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi); }
 
 }  // namespace constrictor

@@ -24,6 +24,11 @@ double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_ra
 /// [s] length of a gait period, in which the head sways once.
 double gait_period_s(const Gait& gait);
 
+/// [rad] heading in M of the body once it is straight: the mean of its modules'.
+double body_course_rad(const TaskInput& input);
+/// [m] from a place in M to the middle line of the nearest module.
+double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M);
+
 /// Difference of two angles within (-pi, pi].
 double angle_between(double to_rad, double from_rad);
 

@@ -101,7 +101,10 @@ void read_line_and_search(Configuration& root, NavigationConfig& config) {
   config.track.reach_m = track.number("reach_m", kLength);
   config.track.reach_bearing_rad = track.number("reach_bearing_rad", kAngle);
   config.track.too_near_m = track.number("too_near_m", kLength);
-  config.track.back_off_m = track.number("back_off_m", kLength);
+  config.track.straight_rad = track.number("straight_rad", kAngle);
+  config.track.away_m = track.number("away_m", kLength);
+  config.track.turn_rad = track.number("turn_rad", kAngle);
+  config.track.turn_curvature_1_m = track.number("turn_curvature_1_m", kCurvature);
   config.track.memory_s = track.number("memory_s", kTime);
   config.track.half_view_rad = track.number("half_view_rad", kAngle);
   track.finish();

@@ -49,7 +49,7 @@ struct FollowPathConfig {
 struct SearchConfig {
   double head_turn_rad = 0.9;      ///< how far the head looks to each side, over its three joints
   double head_rate_rad_s = 0.25;   ///< of each of the three joints
-  double near_m = 1.0;                ///< a remembered object nearer than this is left before the body turns
+  double near_m = 0.7;                ///< a remembered object nearer to the body than this is left before the body turns
   double remembered_m = 3.0;          ///< a remembered object farther off is not looked for where it was
   double advance_m = 0.5;          ///< between looks
   double turn_rad = 1.6;           ///< turn on the spot after every second look
@@ -61,9 +61,12 @@ struct TrackConfig {
   PidGains steering{2.5, 0.2, 0.0, 1.3, 0.2};  ///< bearing [rad] to curvature [1/m]
   double reach_m = 0.9;            ///< distance from the head to the object's surface at which it is reached
   double reach_bearing_rad = 0.3;
-  double too_near_m = 0.45;        ///< nearer than this and not in front: back off
-  double back_off_m = 0.6;
-  double memory_s = 10.0;          ///< for which it is steered towards an object that is out of the field of view
+  double straight_rad = 0.5;       ///< within which the body must point to the object, too
+  double too_near_m = 0.45;        ///< nearer than this, or near and not in front of a straight body: go away
+  double away_m = 1.3;             ///< so far, measured from the head
+  double turn_rad = 1.0;           ///< an object farther round than this is turned to on the spot
+  double turn_curvature_1_m = 2.3;
+  double memory_s = 20.0;          ///< for which it is steered towards an object that is out of the field of view
   double half_view_rad = 0.7;      ///< an object within this bearing should be seen
 };
 

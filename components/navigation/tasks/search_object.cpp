@@ -107,14 +107,12 @@ class SearchObject : public StatefulTask<SearchState> {
       return;
     }
     const Eigen::Vector2d d = *p_MO - input.X_MH.p;
-    double body_rad = input.X_MH.yaw_rad;  // of the body once it is straight
-    for (const Pose2& module : input.body) body_rad += module.yaw_rad / static_cast<double>(input.body.size());
-    const double bearing_rad = angle_between(std::atan2(d.y(), d.x()), body_rad);
+    const double bearing_rad = angle_between(std::atan2(d.y(), d.x()), body_course_rad(input));
     switch (state_.phase) {
       case kLeave:
         output.phase = "leave";
         undulate(input.config.travel, 0.0, std::cos(bearing_rad) > 0.0 ? -1.0 : 1.0, grip, output);
-        if (d.norm() < config.near_m && state_.phase_s < kTurn_s) break;
+        if (nearest_module_m(input, *p_MO) < config.near_m && state_.phase_s < kTurn_s) break;
         state_.side = bearing_rad > 0.0 ? 1.0 : -1.0;
         enter(input, kFace);
         break;
@@ -128,7 +126,7 @@ class SearchObject : public StatefulTask<SearchState> {
       default:
         output.phase = "approach";
         undulate(input.config.travel, std::clamp(2.0 * bearing_rad, -1.2, 1.2), 1.0, grip, output);
-        if (d.norm() < 0.6 * config.near_m || state_.phase_s > kTurn_s) enter(input, kLookAhead);
+        if (d.norm() < config.near_m || state_.phase_s > kTurn_s) enter(input, kLookAhead);
         break;
     }
   }

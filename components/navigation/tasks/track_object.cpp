@@ -1,4 +1,5 @@
-// Track object (Tables V, VI): a PID on the object's bearing steers the undulation at constant speed until it is directly in front.
+// Track object (Tables V, VI): a PID on the object's bearing steers the undulation at constant speed until it is directly in front
+// of a straight body. Where there is no room to get there the body goes away first and turns to the object on the spot.
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +11,15 @@ namespace {
 
 struct TrackState {
   SteeringState steering;
-  bool backing = false;
-  Pose2 back_from;
+  bool leaving = false;
+  double leaving_s = 0.0;
+  bool turning = false;
   double first_distance_m = 0.0;
   double progress = 0.0;
   int missed = 0;             ///< images in a row in which it should have been seen and was not
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(steering, backing, back_from, first_distance_m, progress, missed);
+    archive(steering, leaving, leaving_s, turning, first_distance_m, progress, missed);
   }
 };
 
@@ -63,28 +65,39 @@ class TrackObject : public StatefulTask<TrackState> {
     }
     output.progress = state_.progress;
 
-    if (state_.backing) {
-      back_off(input, grip, config, output);
+    const Eigen::Vector2d d = thing.p_M() - input.X_MH.p;
+    const double turn_rad = angle_between(std::atan2(d.y(), d.x()), body_course_rad(input));
+    if (state_.leaving) {
+      leave(input, grip, thing, turn_rad, output);
       return;
     }
-    const double curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
+    double curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
+    state_.turning = std::abs(turn_rad) > (state_.turning ? 0.3 : config.turn_rad);
+    if (state_.turning) curvature_1_m = std::copysign(config.turn_curvature_1_m, turn_rad);
     undulate(gait, curvature_1_m, 1.0, grip, output);
-    output.phase = in_view ? "track" : "turn to";
-    if (range_m <= config.reach_m && std::abs(mean_rad) <= config.reach_bearing_rad && thing.missed == 0) {
+    output.phase = in_view && !state_.turning ? "track" : "turn to";
+    const bool straight = std::abs(turn_rad) <= config.straight_rad;
+    const bool reached = range_m <= config.reach_m && std::abs(mean_rad) <= config.reach_bearing_rad && thing.missed == 0;
+    if (reached && straight && range_m > config.too_near_m) {
       output.emit(msg::kEventObjectReached, colour);
       output.succeed();
-    } else if (range_m <= config.too_near_m) {
-      state_.backing = true;
-      state_.back_from = input.X_MH;
+    } else if (range_m <= config.too_near_m || (range_m <= config.reach_m && state_.turning)) {
+      state_.leaving = true;
+      state_.leaving_s = 0.0;
     }
   }
 
  private:
-  void back_off(const TaskInput& input, Grip& grip, const TrackConfig& config, TaskOutput& output) {
-    undulate(input.config.travel, 0.0, -1.0, grip, output);
-    output.phase = "back off";
-    if ((input.X_MH.p - state_.back_from.p).norm() < config.back_off_m) return;
-    state_.backing = false;
+  void leave(const TaskInput& input, Grip& grip, const Sighting& thing, double turn_rad, TaskOutput& output) {
+    constexpr double kLeave_s = 12.0;
+    state_.leaving_s += input.tick.dt_s();
+    const bool backwards = std::cos(turn_rad) > 0.0;
+    undulate(input.config.travel, 0.0, backwards ? -1.0 : 1.0, grip, output);
+    output.phase = backwards ? "back off" : "leave";
+    const bool away = (thing.p_M() - input.X_MH.p).norm() >= input.config.track.away_m &&
+                      nearest_module_m(input, thing.p_M()) >= input.config.search.near_m;
+    if (!away && state_.leaving_s < kLeave_s) return;
+    state_.leaving = false;
     state_.steering = {};
   }
 };
