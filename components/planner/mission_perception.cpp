@@ -106,10 +106,8 @@ bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
 // While an empty body turns on the spot it is curled up: its course lags behind the head's turn.
 bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   if (!leads_right(inputs)) return false;
-  const bool curled = !holding() && (memory_.state == MissionState::kTurnRound || memory_.searching == msg::kTaskRotate);
-  if (!curled || !inputs.pose) return true;
-  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, true);
-  return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.straight_rad;
+  const bool curled = !holding() && inputs.pose && std::abs(wrapped(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
+  return !curled;
 }
 
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {

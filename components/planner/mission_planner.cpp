@@ -55,6 +55,7 @@ void MissionPlanner::enter(MissionState state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
   }
+  if (state == kGrasp) memory_.way_known = true;
   memory_.state = state;
   memory_.asked = false;
   memory_.unlike_s = 0.0;
@@ -154,12 +155,14 @@ std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& 
   return std::nullopt;
 }
 
-// Zones lie where the mission began: an end of the line with zones about is the wrong one for an empty robot.
+// Zones lie where the mission began: an end of the line with zones about is the wrong one for an empty robot. Once an object was
+// found the way is known, and what ends is the stump behind which the search turned.
 std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inputs) {
   if (memory_.state != kFollowLine && memory_.state != kTransport) return std::nullopt;
+  const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
+  if (zones_about && memory_.way_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
   memory_.line_ended_s = memory_.active_s;
   if (memory_.state == kTransport) return recover(kSearchLine);
-  const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
   if (!zones_about) return kSearchObject;
   if (leads_right(inputs)) memory_.trail.reverse();
   return recover(kTurnRound);

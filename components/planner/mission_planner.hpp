@@ -46,6 +46,7 @@ struct Move {
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
   bool asked = false;               ///< the state's task was requested
+  bool way_known = false;           ///< along the line objects were found, so its trail leads the right way
   bool suspended = false;           ///< somebody else has authority
   bool stopped = false;             ///< after an emergency stop, until an operator or external planner hands over
   double last_s = 0.0;              ///< time of the previous step
@@ -71,9 +72,9 @@ struct MissionMemory {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(state, asked, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s, goals,
-            object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, direction, trail,
-            reason);
+    archive(state, asked, way_known, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s,
+            goals, object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, direction,
+            trail, reason);
   }
 };
 
@@ -118,7 +119,8 @@ class MissionPlanner {
   [[nodiscard]] std::optional<double> to_turn_rad(const PlannerInputs& inputs) const;
   /// Whether a turn may end: the course leads where it shall, or has gone past that.
   [[nodiscard]] bool has_turned(const PlannerInputs& inputs) const;
-  /// Whether the line in view may be followed from here: it leads the right way and the body, once straight, still points along it.
+  /// Whether the line in view may be followed from here: the robot's course leads the right way along it, and an empty body is not
+  /// curled up.
   [[nodiscard]] bool may_follow(const PlannerInputs& inputs) const;
   // requests
   [[nodiscard]] WantedTask task_of_state(const PlannerInputs& inputs);

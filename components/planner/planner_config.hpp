@@ -16,7 +16,7 @@ struct PlannerConfig {
   double on_zone_m = 0.6;                 ///< an object nearer than this to the zone on which one of its colour was dropped is left alone
   double remembered_range_m = 2.5;        ///< an object or zone of the map nearer than this is searched for where it was
   double aligned_rad = 1.0;               ///< the head faces the wanted way along the line within this angle
-  double straight_rad = 0.7;              ///< a curled body must point along the line within this angle to follow it
+  double straight_rad = 0.6;              ///< of head against body, beyond which the body is too curled to follow a line
   double explore_s = 12.0;                ///< [s] exploring before something else is tried
   double rotate_s = 10.0;                 ///< [s] turning before something else is tried
   double after_end_s = 8.0;               ///< [s] for which the line is not taken again after its end

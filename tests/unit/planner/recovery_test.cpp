@@ -176,7 +176,7 @@ TEST_F(PlannerTest, AfterADropTheLineIsTakenOnlyTowardsTheObjectsAndWhenTheBodyH
   face(0.0, left ? -1.2 : 1.2);  // the head is there, the body not
   steps(20);
   EXPECT_EQ(memory_.state, kTurnRound);
-  face(left ? 0.6 : -0.6, left ? -0.3 : 0.3);
+  face(left ? 0.3 : -0.3, left ? -0.2 : 0.2);  // both, and the body is nearly straight
   steps(4);
   EXPECT_EQ(memory_.state, kFollowLine);
 }
