@@ -165,6 +165,7 @@ class Teleop {
     } else if (key == '\r' || key == '\n') {
       std::uint8_t task = msg::kTaskNone;
       msg::TaskParameters parameters = no_parameters();
+      number_ = 0;
       screen_.notice = parse_task(*screen_.prompt, task, parameters);
       screen_.prompt.reset();
       if (!screen_.notice.empty()) return;
@@ -179,13 +180,14 @@ class Teleop {
 
   void asked(const std::string& what, std::uint64_t number) {
     screen_.notice = "asked: " + what;
+    wish_ = what;
     number_ = number;
   }
   void note_refusal() {
     if (number_ == 0) return;
     const auto answer = client_.wait_for_answer(number_, 0ms);
     if (answer == OperatorClient::Answer::kRefused) screen_.notice = "REFUSED: " + client_.refusal();
-    if (answer == OperatorClient::Answer::kGranted) screen_.notice = "granted" + screen_.notice.substr(std::min<std::size_t>(5, screen_.notice.size()));
+    if (answer == OperatorClient::Answer::kGranted) screen_.notice = "granted: " + wish_;
     if (answer != OperatorClient::Answer::kNone) number_ = 0;
   }
 
@@ -194,6 +196,7 @@ class Teleop {
   TeleopObserver observer_;
   TeleopScreen screen_;
   std::uint64_t number_ = 0;   ///< request whose answer is awaited
+  std::string wish_;           ///< what it asks for
 };
 
 int teleop(const Options& options) {

@@ -66,7 +66,7 @@ Terminal::Terminal() {
   termios raw = before_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | IEXTEN);
   raw.c_iflag &= ~static_cast<tcflag_t>(IXON | ICRNL);
-  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VMIN] = 1;  // 0 would be the end of input to a shell that reads before the guardian has restored it
   raw.c_cc[VTIME] = 0;
   ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
   put(kEnter);

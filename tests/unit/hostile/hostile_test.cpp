@@ -1,0 +1,216 @@
+// Absurd messages into every input of every component class: each step is done, every output is finite and within its range and
+// the robot's limits, and memory stays flat.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <vector>
+
+#include "constrictor/messages.hpp"
+#include "control/control.hpp"
+#include "guidance/guidance.hpp"
+#include "hostile_filler.hpp"
+#include "input/input.hpp"
+#include "navigation/navigation.hpp"
+#include "perception/perception.hpp"
+#include "planner/planner.hpp"
+#include "robot/robot_model.hpp"
+#include "runtime/barrier/member.hpp"
+#include "runtime/barrier/topic_ops.hpp"
+#include "runtime/share.hpp"
+#include "sim/physics/physics.hpp"
+
+namespace constrictor::test {
+namespace {
+
+constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;  // in all, over the component classes
+constexpr int kBurst = 8;                                           // for each input and tick
+
+double resident_mib() {
+  std::ifstream file("/proc/self/statm");
+  long size = 0;
+  long resident = 0;
+  file >> size >> resident;
+  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+/// Judges what a component writes.
+class Judge : public MemberSink {
+ public:
+  explicit Judge(const RobotModel& robot) : robot_(robot) {}
+  void publish(const TopicInfo& topic, const Sample& sample) override {
+    ++outputs;
+    const auto violation = topic_ops(topic.id).validate(sample.message.get());
+    EXPECT_FALSE(violation) << topic.name << "." << *violation;
+    if (topic.id != topics::kJointCommand.id) return;
+    const auto& command = *static_cast<const msg::JointCommand*>(sample.message.get());
+    ASSERT_EQ(command.joint_count, robot_.joints.size());
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+      const JointModel& joint = robot_.joints[j];
+      ASSERT_TRUE(command.position_rad[j] >= joint.min_rad && command.position_rad[j] <= joint.max_rad) << command.position_rad[j];
+      ASSERT_TRUE(std::abs(command.velocity_rad_s[j]) <= joint.max_speed_rad_s) << command.velocity_rad_s[j];
+      ASSERT_TRUE(command.torque_limit_nm[j] >= 0.0 && command.torque_limit_nm[j] <= joint.max_torque_nm) << command.torque_limit_nm[j];
+    }
+  }
+  void done(const StepDone& step) override { largest_state = std::max(largest_state, step.state.size()); }
+
+  std::uint64_t outputs = 0;
+  std::size_t largest_state = 0;
+
+ private:
+  const RobotModel& robot_;
+};
+
+/// What makes a message worth a component's while: now and then the counts and names it expects.
+void tempt(msg::JointState& m, HostileFiller& f) {
+  if (f.roll(4) != 0) m.joint_count = 23;
+}
+void tempt(msg::JointCommand& m, HostileFiller& f) {
+  if (f.roll(4) != 0) m.joint_count = 23;
+  for (double& position : m.position_rad) {
+    if (f.roll(2) == 0) position = std::remainder(position, 1.5);
+    if (!std::isfinite(position) && f.roll(4) != 0) position = 0.3;
+  }
+}
+void tempt(msg::DesiredTrajectory& m, HostileFiller& f) {
+  static constexpr const char* kMethods[] = {"hold", "relax", "undulation", "bend", "wrap", "squeeze"};
+  if (f.roll(4) != 0) std::snprintf(m.method, sizeof m.method, "%s", kMethods[f.roll(6)]);
+  if (f.roll(3) != 0) m.shape_count = static_cast<std::uint16_t>(f.roll(13));
+  if (f.roll(3) != 0) m.motion_id = f.roll(3);
+}
+void tempt(msg::TaskEvent& m, HostileFiller& f) {
+  if (f.roll(2) == 0) m.goal_id = (std::uint64_t{1} << 48) + f.roll(20);
+}
+void tempt(msg::TaskStatus& m, HostileFiller& f) {
+  if (f.roll(2) == 0) m.goal_id = (std::uint64_t{1} << 48) + f.roll(20);
+}
+void tempt(msg::Request& m, HostileFiller& f) {
+  static constexpr const char* kSources[] = {"planner", "pilot", "machine", "script"};
+  if (f.roll(4) != 0) std::snprintf(m.source, sizeof m.source, "%s", kSources[f.roll(4)]);
+  if (f.roll(4) != 0) m.goal_id = f.roll(1000);
+}
+template <class T>
+void tempt(T&, HostileFiller&) {}
+
+std::vector<std::uint8_t> g_pixels(48 * 32 * 3);
+
+void tempt(msg::CameraInfo& m, HostileFiller& f) {
+  if (f.roll(8) == 0) return;
+  m.width = 48;
+  m.height = 32;
+  if (f.roll(4) == 0) return;
+  m.fx = m.fy = 24.0;
+  m.cx = 24.0;
+  m.cy = 16.0;
+  m.X_HC = {{0.06, 0.0, 0.05}, {0.5, -0.5, 0.5, -0.5}};
+  m.frame_period_s = 0.1;
+}
+
+void tempt(msg::CameraImage& m, HostileFiller& f) {
+  if (f.roll(4) == 0) return;  // sizes and data that do not agree
+  const bool expected = f.roll(4) != 0;
+  m.width = expected ? std::uint16_t{48} : static_cast<std::uint16_t>(1 + f.roll(48));
+  m.height = expected ? std::uint16_t{32} : static_cast<std::uint16_t>(1 + f.roll(32));
+  for (auto& pixel : g_pixels) pixel = static_cast<std::uint8_t>(f.roll(256));
+  const auto length = static_cast<std::uint32_t>(m.width * m.height * 3);
+  m.data = {length, length, g_pixels.data(), false};
+}
+
+/// A hostile message of a topic, with the header that the barrier expects.
+template <class T>
+Sample hostile(const Topic<T>& topic, const msg::Header& header, HostileFiller& filler) {
+  static T message{};
+  message = T{};
+  filler.begin_message();
+  Description<T>::visit(message, filler);
+  tempt(message, filler);
+  return topic_ops(topic.id).stamp(&message, header, 1);
+}
+
+Sample hostile(std::size_t id, const msg::Header& header, HostileFiller& filler) {
+  Sample sample;
+  std::apply([&](const auto&... topic) { ((topic.id == id ? (sample = hostile(topic, header, filler), 0) : 0), ...); }, topics::kAll);
+  return sample;
+}
+
+class Hostile : public testing::TestWithParam<std::function<ComponentFactory()>> {};
+
+TEST_P(Hostile, MessagesChangeNothingThatMatters) {
+  constexpr std::uint64_t kSeed = 20261121;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  constrictor::Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  setup.scenario_file = share_path("sim/scenarios/case_study.yaml");
+  const RobotModel robot = load_robot(setup.robot_file);
+  Judge judge(robot);
+  const ComponentFactory factory = GetParam()();
+  const bool plant = factory.name == "physics";
+  Member member(factory, setup, 1, /*checkpoints=*/!plant, judge);
+  const EpochId epoch{7, 1};
+  member.on_epoch(epoch, 1);
+  HostileFiller filler(kSeed);
+  std::vector<std::size_t> inputs;
+  for (const auto& topic : topics::kInfos) {
+    if (member.reads() >> topic.id & 1) inputs.push_back(topic.id);
+  }
+  ASSERT_FALSE(inputs.empty());
+  const std::uint64_t budget = kMessages / 7;
+  std::array<std::uint64_t, topics::kCount> counts{};
+  std::uint64_t sent = 0;
+  double early_mib = 0.0;
+  std::int64_t tick = 0;
+  for (; sent < budget; ++tick) {
+    msg::Tick message{};
+    message.run_id = epoch.run_id;
+    message.epoch = epoch.epoch;
+    message.index = tick;
+    message.time_ns = tick * 20'000'000;
+    message.period_ns = 20'000'000;
+    for (const std::size_t id : inputs) {
+      for (int i = 0; i < kBurst; ++i, ++sent) {
+        const msg::Header header{epoch.run_id, epoch.epoch, 1, tick, message.time_ns, ++counts[id]};
+        member.on_sample(id, hostile(id, header, filler));
+      }
+      message.visible[id] = counts[id];
+      message.incarnations[id] = 1;
+    }
+    if (member.outside()) {
+      for (int i = 0; i < kBurst; ++i, ++sent) {
+        msg::Header header{};
+        header.sequence_number = static_cast<std::uint64_t>(tick) * 10 + static_cast<std::uint64_t>(i);
+        member.outside()->add(*static_cast<const msg::Request*>(hostile(topics::kPlannerRequest, header, filler).message.get()));
+        if (i == 0) member.outside()->add_death("pilot");
+      }
+    }
+    if (plant) member.sample_plant(tick, message.time_ns, message.period_ns);
+    member.on_tick(message);
+    const bool due = tick % member.timing().period == 0;
+    // An input whose samples were all refused keeps a component waiting only before its first valid one.
+    const bool stepped = member.try_step();
+    if (tick > 50) { ASSERT_EQ(stepped, due) << "tick " << tick; }
+    if (testing::Test::HasFailure()) break;
+    if (sent < budget / 3) early_mib = resident_mib();
+  }
+  const double late_mib = resident_mib();
+  if (std::getenv("HOSTILE_DEBUG")) std::printf("last refusal %s\n", member.counters().last_refusal.c_str());
+  std::printf("%s: %llu messages in %lld ticks, %llu outputs, %llu refused, state %zu bytes, memory %.1f to %.1f MiB\n", factory.name.c_str(),
+              static_cast<unsigned long long>(sent), static_cast<long long>(tick), static_cast<unsigned long long>(judge.outputs),
+              static_cast<unsigned long long>(member.counters().refused), judge.largest_state, early_mib, late_mib);
+  EXPECT_GT(judge.outputs, 0u);
+  EXPECT_GT(member.counters().refused, 0u);
+  EXPECT_LT(judge.largest_state, 300'000u);
+  EXPECT_LT(late_mib - early_mib, 16.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryClass, Hostile,
+                         testing::Values([] { return make_control_factory(); }, [] { return make_navigation_factory(); },
+                                         [] { return make_guidance_factory(); }, [] { return make_planner_factory(); },
+                                         [] { return make_input_factory(); }, [] { return make_perception_factory(); },
+                                         [] { return make_physics_factory(); }),
+                         [](const auto& made) { return made.param().name; });
+
+}  // namespace
+}  // namespace constrictor::test
