@@ -108,6 +108,7 @@ void Bridge::ask(std::uint8_t kind, const Drive& drive) {
   request.kind = kind;
   request.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
   request.motion = drive == Drive{} ? msg::kMotionStand : msg::kMotionDrive;
+  request.motion = drive == Drive{} ? msg::kMotionStand : msg::kMotionDrive;
   request.frequency_hz = drive.frequency_hz;
   request.curvature_1_m = drive.curvature_1_m;
   request_.write(request);

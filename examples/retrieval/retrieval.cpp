@@ -9,9 +9,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kSure = 3;               // images in a row until something counts as seen
 constexpr double kObjectNear_m = 1.6;  // an object this near is worth an approach
-constexpr double kZoneNear_m = 1.2;    // a zone this near is where to put down
-constexpr double kAligned_rad = 1.0;   // the head faces the wanted way
-constexpr double kPastIt_rad = 0.3;    // a curled body's course lags behind its head: turn on so far
+constexpr double kZoneNear_m = 1.7;    // a zone this near is where to put down
+constexpr double kAligned_rad = 1.0;   // the course is the wanted way
+constexpr double kStraight_rad = 0.7;  // the same for a body that is curled up from turning
 constexpr double kAfterEnd_s = 8.0;    // just after the line's end only its stump can be in view
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * kPi); }
@@ -44,13 +44,29 @@ void Retrieval::see(const std::vector<Thing>& things) {
   for (const Thing& thing : things) {
     if (!std::isfinite(thing.range_m) || !std::isfinite(thing.bearing_rad)) continue;
     const double heading_rad = pose_.yaw_rad + thing.bearing_rad;
-    places_[{thing.colour, thing.zone}] = {pose_.x_m + thing.range_m * std::cos(heading_rad), pose_.y_m + thing.range_m * std::sin(heading_rad)};
+    const double x_m = pose_.x_m + thing.range_m * std::cos(heading_rad);
+    const double y_m = pose_.y_m + thing.range_m * std::sin(heading_rad);
+    // What lies on the zone of its colour is delivered, or is that zone seen askew.
+    const auto zone_place = places_.find({thing.colour, true});
+    if (!thing.zone && zone_place != places_.end() && std::hypot(zone_place->second.first - x_m, zone_place->second.second - y_m) < 0.7) continue;
+    places_[{thing.colour, thing.zone}] = {x_m, y_m};
     if (thing.colour != colour()) continue;
     object = object || (!thing.zone && thing.range_m < kObjectNear_m);
     zone = zone || (thing.zone && thing.range_m < kZoneNear_m);
   }
   objects_ = object ? objects_ + 1 : 0;
   zones_ = zone ? zones_ + 1 : 0;
+}
+
+void Retrieval::feel(const double* angles_rad, std::size_t count) {
+  // A joint's angle is that of its head side relative to its tail side.
+  double heading_rad = 0;
+  double sum_rad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 2 == 0) heading_rad -= angles_rad[i];
+    sum_rad += heading_rad;
+  }
+  body_turn_rad_ = sum_rad / static_cast<double>(count + 1);
 }
 
 void Retrieval::hear(const Happening& happening) {
@@ -134,13 +150,12 @@ void Retrieval::follow_senses() {
   const bool line = lines_ >= kSure && now_s_ - line_end_s_ > kAfterEnd_s;
   const bool object = objects_ >= kSure;
   const bool zone = zones_ >= kSure;
-  const auto turn_rad = turn_left_rad();
-  const bool right_way = !turn_rad || std::abs(*turn_rad) < kAligned_rad;
+  const auto off_rad = off_line_rad();
+  const bool right_way = !off_rad || std::abs(*off_rad) < kAligned_rad;
   switch (stage_) {
     case kLook:
       if (object) return enter(kTrack);
-      if (line && !right_way) return set_back(kTurn);
-      if (line && may_follow()) return enter(kFollow);
+      if (line && may_follow()) return enter(kFollow);  // else the look round turns towards the wanted way
       break;
     case kFollow:
       if (object) return enter(kTrack);
@@ -156,6 +171,7 @@ void Retrieval::follow_senses() {
     case kTurnBack:
       if (zone && loaded()) return enter(kPutDown);
       if (line && may_follow()) return enter(loaded() ? kCarry : kFollow);
+      if (has_turned()) return enter(loaded() ? kFindLine : kLook);
       break;
     default: break;
   }
@@ -173,10 +189,8 @@ void Retrieval::follow_time() {
   switch (stage_) {
     case kLook:
     case kFindLine: {
-      const double limit_s = looking_ == kExplore ? 12.0 : looking_ == kRotate ? 10.0 : 30.0;
-      if (asked_for_s > slow * limit_s) return enter(stage_);
-      const auto there_rad = looking_ == kRotate ? remembered_rad() : std::nullopt;
-      if (there_rad && std::abs(*there_rad) < 0.3) enter(stage_);
+      const double limit_s = looking_ == kExplore ? 8.0 : looking_ == kRotate ? 10.0 : 30.0;
+      if (asked_for_s > slow * limit_s || (by_memory_ && looking_ == kRotate && has_turned())) enter(stage_);
       return;
     }
     case kTurn:
@@ -185,6 +199,7 @@ void Retrieval::follow_time() {
       return;
     case kFollow: if (in_stage_s > 120.0) set_back(kLook); return;
     case kCarry: if (in_stage_s > 480.0) set_back(kFindLine); return;
+    case kTrack: if (in_stage_s > 60.0) set_back(kSearch); return;
     case kSearch: if (in_stage_s > 60.0) set_back(kLook); return;  // look where it was seen last
     default: if (in_stage_s > 240.0) set_back(loaded() ? kFindLine : kSearch); return;
   }
@@ -196,32 +211,38 @@ const Retrieval::Crumb* Retrieval::nearest_crumb(double x_m, double y_m) const {
   return best == trail_.end() ? nullptr : &*best;
 }
 
-std::optional<double> Retrieval::turn_left_rad() const {
+std::optional<double> Retrieval::off_line_rad() const {
   const Crumb* crumb = nearest_crumb(pose_.x_m, pose_.y_m);
   if (!crumb) return std::nullopt;
-  return wrapped(crumb->outbound_rad + (loaded() ? kPi : 0.0) - pose_.yaw_rad);
+  return wrapped(crumb->outbound_rad + (loaded() ? kPi : 0.0) - course_rad());
 }
 
 bool Retrieval::may_follow() const {
-  const auto turn_rad = turn_left_rad();
-  if (!turn_rad) return true;
-  if (std::abs(*turn_rad) > kAligned_rad) return false;
+  const auto off_rad = off_line_rad();
   const bool curled = !loaded() && (stage_ == kTurn || looking_ == kRotate);
-  return !curled || (turning_left_ ? -*turn_rad : *turn_rad) > kPastIt_rad;
+  return !off_rad || std::abs(*off_rad) < (curled ? kStraight_rad : kAligned_rad);
 }
 
-std::optional<double> Retrieval::remembered_rad() const {
-  const auto bearing = [&](double x_m, double y_m) { return wrapped(std::atan2(y_m - pose_.y_m, x_m - pose_.x_m) - pose_.yaw_rad); };
+std::optional<double> Retrieval::to_turn_rad() const {
+  const auto towards = [&](double x_m, double y_m) { return wrapped(std::atan2(y_m - pose_.y_m, x_m - pose_.x_m) - course_rad()); };
+  const auto distance_m = [&](double x_m, double y_m) { return std::hypot(x_m - pose_.x_m, y_m - pose_.y_m); };
+  const bool looks = stage_ == kLook || stage_ == kFindLine;
   const auto place = places_.find({colour(), loaded()});
-  if (place != places_.end()) {
+  if (looks && place != places_.end()) {
     const auto [x_m, y_m] = place->second;
-    const double distance_m = std::hypot(x_m - pose_.x_m, y_m - pose_.y_m);
-    if (distance_m > 0.3 && distance_m < 2.5) return bearing(x_m, y_m);
+    if (distance_m(x_m, y_m) > 0.3 && distance_m(x_m, y_m) < 2.5) return towards(x_m, y_m);
   }
   const Crumb* crumb = nearest_crumb(pose_.x_m, pose_.y_m);
-  if (!crumb) return std::nullopt;
-  const double ahead_m = loaded() ? -0.6 : 0.6;
-  return bearing(crumb->x_m + ahead_m * std::cos(crumb->outbound_rad), crumb->y_m + ahead_m * std::sin(crumb->outbound_rad));
+  if (!crumb || distance_m(crumb->x_m, crumb->y_m) < 0.5) return off_line_rad();
+  const double ahead_m = loaded() ? -0.6 : 0.6;  // beside the line: to where it is joined best
+  return towards(crumb->x_m + ahead_m * std::cos(crumb->outbound_rad), crumb->y_m + ahead_m * std::sin(crumb->outbound_rad));
+}
+
+bool Retrieval::has_turned() const {
+  const auto turn_rad = to_turn_rad();
+  if (!turn_rad) return false;
+  const bool past = turning_left_ ? *turn_rad < 0 : *turn_rad > 0;
+  return std::abs(*turn_rad) < 0.2 || (past && std::abs(*turn_rad) < kAligned_rad);
 }
 
 Order Retrieval::order_of_stage() {
@@ -239,7 +260,7 @@ Order Retrieval::order_of_stage() {
     case kTurnBack:
       order.task = kRotate;
       order.line_colour = line_colour_;
-      turning_left_ = turn_left_rad().value_or(1.0) >= 0;
+      turning_left_ = to_turn_rad().value_or(1.0) >= 0;
       order.direction = turning_left_ ? kLeft : kRight;
       order.timeout_s = loaded() ? 80.0 : 20.0;
       break;
@@ -249,26 +270,25 @@ Order Retrieval::order_of_stage() {
   return order;
 }
 
-// Towards what is remembered first; then back to the line by waypoints; where that did not help, forwards, left, right and back.
+// Towards what is remembered; now and then back to the line by waypoints; without a memory forwards, left, right and back in turn.
 void Retrieval::look_round(Order& order) {
   order.line_colour = line_colour_;
   const unsigned look = looks_++ % 8;
-  order.path = look == 2 || look == 5 ? way_back() : std::vector<std::pair<double, double>>{};
+  by_memory_ = false;
+  order.path = look == 3 || look == 6 ? way_back() : std::vector<std::pair<double, double>>{};
   if (order.path.size() >= 2) {
     order.task = looking_ = kFollowPath;
     return;
   }
-  const auto bearing_rad = remembered_rad();
-  const bool by_memory = bearing_rad && look < 4;
-  const bool ahead = by_memory ? std::abs(*bearing_rad) < 0.6 : look % 2 == 0;
-  order.task = looking_ = ahead ? kExplore : kRotate;
-  if (ahead) {
-    order.direction = !by_memory && look == 6 ? kBackwards : kForwards;
-  } else {
-    turning_left_ = by_memory ? *bearing_rad > 0 : look % 4 == 1;
-    order.direction = turning_left_ ? kLeft : kRight;
-    order.timeout_s = loaded() ? 40.0 : 10.0;
-  }
+  const auto turn_rad = to_turn_rad();
+  by_memory_ = turn_rad && look != 7;
+  const double wanted_rad = by_memory_ ? *turn_rad : look % 2 == 0 ? 0.0 : look % 4 == 1 ? 2.0 : -2.0;
+  const bool on_the_spot = std::abs(wanted_rad) > 0.7;  // beyond that a turn on the spot is the shorter way
+  turning_left_ = wanted_rad > 0;
+  const Direction side = turning_left_ ? kLeft : kRight;
+  order.task = looking_ = on_the_spot ? kRotate : kExplore;
+  order.direction = on_the_spot || std::abs(wanted_rad) > 0.25 ? side : look == 6 && !by_memory_ ? kBackwards : kForwards;
+  if (on_the_spot) order.timeout_s = loaded() ? 40.0 : 10.0;
 }
 
 std::vector<std::pair<double, double>> Retrieval::way_back() const {

@@ -3,6 +3,7 @@
 // It has no clock: time comes with every call, from the messages' headers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -61,6 +62,8 @@ class Retrieval {
   void see(const Line& line);
   void see(const std::vector<Thing>& things);
   void locate(const Pose& pose) { pose_ = pose; }
+  /// Joint angles [rad] from the head; every second one is a yaw joint, the first among them (JointState).
+  void feel(const double* angles_rad, std::size_t count);
   void know(const Doing& doing) { doing_ = doing; }
   void hear(const Happening& happening);
 
@@ -86,10 +89,13 @@ class Retrieval {
   void follow_senses();
   void follow_time();
   [[nodiscard]] const Crumb* nearest_crumb(double x_m, double y_m) const;
-  /// [rad] to turn left until the head faces the wanted way along the line; empty: the way is not known.
-  [[nodiscard]] std::optional<double> turn_left_rad() const;
-  /// [rad] bearing of what is looked for, by memory.
-  [[nodiscard]] std::optional<double> remembered_rad() const;
+  /// [rad] Where the robot drives to when it drives on. A body that is curled up from turning points elsewhere than its head.
+  [[nodiscard]] double course_rad() const { return loaded() ? pose_.yaw_rad : pose_.yaw_rad + body_turn_rad_; }
+  /// [rad] between the course and the wanted way along the line here, positive left; empty: the way is not known.
+  [[nodiscard]] std::optional<double> off_line_rad() const;
+  /// [rad] to turn left towards what is looked for, by memory: the thing, else the line.
+  [[nodiscard]] std::optional<double> to_turn_rad() const;
+  [[nodiscard]] bool has_turned() const;
   [[nodiscard]] bool may_follow() const;
   Order order_of_stage();
   void look_round(Order& order);
@@ -99,6 +105,7 @@ class Retrieval {
   std::vector<std::uint8_t> remaining_;
   std::uint8_t line_colour_;
   Pose pose_;
+  double body_turn_rad_ = 0;  ///< mean heading of all modules relative to the head's
   Doing doing_;
   Line line_;
   std::vector<Crumb> trail_;  ///< the line, with the way that leads to the objects
@@ -113,6 +120,7 @@ class Retrieval {
   int lines_ = 0, objects_ = 0, zones_ = 0;  ///< images in a row in which each was seen
   unsigned looks_ = 0;
   std::uint8_t looking_ = kNoTask;
+  bool by_memory_ = false;     ///< the present look round goes where something is remembered
   bool turning_left_ = false;
   int setbacks_ = 0;
 };

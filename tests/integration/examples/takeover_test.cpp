@@ -1,0 +1,56 @@
+// The examples beside a real run from the installed prefix: they take over, their tasks run, they give back. Whole missions are in
+// mission_long_test.cpp.
+#include <signal.h>
+
+#include "example_run.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Takeover : public ExampleRun {
+ protected:
+  void takes_over(const std::string& name) {
+    Process launcher = run("short", {"--pace", "2x"});
+    const unsigned domain = domain_of(launcher);
+    ASSERT_GT(domain, 0u) << launcher.output() << launcher.errors();
+    Witness witness(domain);
+    Process planner({example(name), "--domain", std::to_string(domain), "--order", "green", "--at", "2"});
+    ASSERT_TRUE(witness.until([&] { return witness.holds(name); }, 30s)) << planner.output() << planner.errors() << launcher.output();
+    // Its own follow_line goal runs and finds the line; the built-in planner's goal has ended.
+    EXPECT_TRUE(witness.until([&] { return witness.happened(msg::kTaskFollowLine, msg::kEventLineFound); }, 30s)) << planner.output();
+    EXPECT_TRUE(planner.wait_for("event 1 of task 1", 10s)) << planner.output();
+    EXPECT_EQ(witness.authority.refused_count, 0u) << witness.authority.refusal;
+    // Its death gives authority back to nobody.
+    planner.signal(SIGKILL);
+    EXPECT_TRUE(witness.until([&] { return !witness.holds(name); }, 15s));
+    launcher.signal(SIGTERM);
+    EXPECT_TRUE(launcher.wait(15s));
+  }
+};
+
+TEST_F(Takeover, APlannerOnTheInstalledPackageTakesOverAndItsDeathGivesBack) { takes_over("red_first"); }
+
+#ifdef CONSTRICTOR_HAS_FAST_DDS
+TEST_F(Takeover, APlannerOnFastDdsTakesOverAndItsDeathGivesBack) { takes_over("fastdds_planner"); }
+#endif
+
+TEST_F(ExampleRun, AClosePathOfWaypointsIsFollowedAndTheErrorReported) {
+  Process launcher = run("line", {"--pace", "4x"});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_GT(domain, 0u) << launcher.output() << launcher.errors();
+  Process planner({example("waypoints"), "--domain", std::to_string(domain)});
+  ASSERT_EQ(planner.wait(90s), 0) << planner.output() << planner.errors();
+  const std::string output = planner.output();
+  const auto at = output.find("cross-track error: ");
+  ASSERT_NE(at, std::string::npos) << output;
+  const double rms_m = std::stod(output.substr(at + 19));
+  EXPECT_GT(rms_m, 0.0);
+  EXPECT_LT(rms_m, 0.12);
+  launcher.signal(SIGTERM);
+  EXPECT_TRUE(launcher.wait(15s));
+}
+
+}  // namespace
+}  // namespace constrictor::testing
