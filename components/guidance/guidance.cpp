@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "guidance/planar.hpp"
+#include "guidance/plausible.hpp"
 #include "runtime/share.hpp"
 
 namespace constrictor {
@@ -21,10 +22,6 @@ guidance::GuidanceConfig configuration_of(const Setup& setup) {
 
 double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
-}
-
-bool all_finite(const double* values, std::size_t count) {
-  return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
 }
 
 }  // namespace
@@ -51,7 +48,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   // Rolled over, it cannot tell the ground from a wall: nothing but the body's own motion counts then.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
-  if (upright && contacts_ && contacts_->module_count >= model_.module_count) {
+  if (upright && contacts_ && guidance::plausible(*contacts_) && contacts_->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
     for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
     // what pushes from the side; touches of the robot's own modules cancel in the sum
@@ -118,8 +115,8 @@ double Guidance::speed_m_s(double period_s) const {
 void Guidance::step(const Tick& tick) {
   guidance::PoseFilter filter(state_.filter);
   const std::size_t joint_count = model_.joints.size();
-  const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && joints_->joint_count == joint_count &&
-                    all_finite(joints_->position_rad, joint_count) && all_finite(joints_->velocity_rad_s, joint_count);
+  const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && guidance::plausible(*joints_, joint_count) &&
+                    guidance::plausible(*imu_);
   if (body) {
     const guidance::BodyChain chain = planar_module_poses(model_, {joints_->position_rad, joint_count});
     dead_reckon(tick, chain);
@@ -128,9 +125,9 @@ void Guidance::step(const Tick& tick) {
     state_.body_turn_rad = sum_rad / static_cast<double>(chain.size());
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
-    if (line_ && line_.fresh()) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
-    if (objects_ && objects_.fresh()) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
-    if (contacts_ && contacts_.fresh()) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
+    if (line_ && line_.fresh() && guidance::plausible(*line_)) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
+    if (objects_ && objects_.fresh() && guidance::plausible(*objects_)) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
+    if (contacts_ && contacts_.fresh() && guidance::plausible(*contacts_)) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
   }
 
   const Pose2 estimate = filter.pose();

@@ -26,7 +26,7 @@ struct GuidanceState {
 
 /// Estimates the head's pose in M from the body's motion (odometry on a skin that does not slip sideways), the IMU's
 /// yaw and recognised landmarks; keeps the map. Writes the pose every tick, from the first: before joints and IMU were
-/// seen it is the start, with zero covariance. While no new finite joint or IMU sample comes the pose stays; the next one is
+/// seen it is the start, with zero covariance. While no new plausible joint or IMU sample comes the pose stays; the next one is
 /// taken over the whole time since.
 class Guidance : public StatefulComponent<GuidanceState> {
  public:
