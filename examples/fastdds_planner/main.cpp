@@ -14,7 +14,6 @@
 #include "missionPubSubTypes.h"
 #include "participant.hpp"
 #include "perceptionPubSubTypes.h"
-#include "plantPubSubTypes.h"
 #include "retrieval.hpp"
 #include "taskPubSubTypes.h"
 
@@ -82,10 +81,7 @@ class Planner {
     requests_ = participant_.write<msg::RequestPubSubType>("request", 32);
     pose_ = participant_.read<msg::RobotPosePubSubType>("guidance/pose", false, 1, [this](const msg::RobotPose& pose) {
       now_s_ = static_cast<double>(pose.header().time_ns()) * 1e-9;
-      logic_.locate({pose.x_m(), pose.y_m(), pose.yaw_rad()});
-    });
-    participant_.read<msg::JointStatePubSubType>("joint_state", false, 1, [this](const msg::JointState& joints) {
-      logic_.feel(joints.position_rad().data(), std::min<std::size_t>(joints.joint_count(), joints.position_rad().size()));
+      logic_.locate({pose.x_m(), pose.y_m(), pose.yaw_rad(), pose.body_yaw_rad()});
     });
     participant_.read<msg::LinePerceptPubSubType>("perception/line", false, 8, [this](const msg::LinePercept& line) {
       logic_.see({line.visible() && line.colour() == msg::kColourBlue, line.lookahead_m(), line.offset_m(), line.heading_rad()});

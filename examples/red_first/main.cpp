@@ -33,7 +33,6 @@ class Planner {
     const dds_entity_t participant = domain_.participant();
     requests_ = {participant, "request", 32};
     pose_ = Reader<msg::RobotPose>::observer(participant, "guidance/pose");
-    joints_ = Reader<msg::JointState>::observer(participant, "joint_state");
     line_ = Reader<msg::LinePercept>::observer(participant, "perception/line", 8);
     objects_ = Reader<msg::ObjectPercepts>::observer(participant, "perception/objects", 8);
     status_ = Reader<msg::TaskStatus>::observer(participant, "task/status");
@@ -78,9 +77,8 @@ class Planner {
     wait_set_.wait(std::chrono::milliseconds(200));
     pose_.take([this](const msg::RobotPose& pose) {
       now_s_ = static_cast<double>(pose.header.time_ns) * 1e-9;
-      logic_.locate({pose.x_m, pose.y_m, pose.yaw_rad});
+      logic_.locate({pose.x_m, pose.y_m, pose.yaw_rad, pose.body_yaw_rad});
     });
-    joints_.take([this](const msg::JointState& joints) { logic_.feel(joints.position_rad, joints.joint_count); });
     authority_.take([this](const msg::Authority& authority) {
       mine_ = authority.level == msg::kAuthorityExternal && std::string(authority.source) == kName;
       if (authority.refused_count > refused_ && mine_) std::printf("refused: %s\n", authority.refusal);
@@ -152,7 +150,6 @@ class Planner {
   retrieval::Retrieval logic_;
   constrictor::dds::Writer<msg::Request> requests_;
   Reader<msg::RobotPose> pose_;
-  Reader<msg::JointState> joints_;
   Reader<msg::LinePercept> line_;
   Reader<msg::ObjectPercepts> objects_;
   Reader<msg::Authority> authority_;

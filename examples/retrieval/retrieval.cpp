@@ -58,17 +58,6 @@ void Retrieval::see(const std::vector<Thing>& things) {
   zones_ = zone ? zones_ + 1 : 0;
 }
 
-void Retrieval::feel(const double* angles_rad, std::size_t count) {
-  // A joint's angle is that of its head side relative to its tail side.
-  double heading_rad = 0;
-  double sum_rad = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % 2 == 0) heading_rad -= angles_rad[i];
-    sum_rad += heading_rad;
-  }
-  body_turn_rad_ = sum_rad / static_cast<double>(count + 1);
-}
-
 void Retrieval::hear(const Happening& happening) {
   if (happening.event == kObjectGrasped) held_ = happening.colour;
   if (happening.event == kObjectGraspLost) held_ = 0;

@@ -3,7 +3,6 @@
 // It has no clock: time comes with every call, from the messages' headers.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -30,9 +29,9 @@ struct Thing {
   bool zone = false;
   double range_m = 0, bearing_rad = 0;
 };
-/// The head in the map (RobotPose).
+/// The head in the map, and where the body points once it is straight (RobotPose).
 struct Pose {
-  double x_m = 0, y_m = 0, yaw_rad = 0;
+  double x_m = 0, y_m = 0, yaw_rad = 0, body_yaw_rad = 0;
 };
 /// What navigation does now (TaskStatus).
 struct Doing {
@@ -62,8 +61,6 @@ class Retrieval {
   void see(const Line& line);
   void see(const std::vector<Thing>& things);
   void locate(const Pose& pose) { pose_ = pose; }
-  /// Joint angles [rad] from the head; every second one is a yaw joint, the first among them (JointState).
-  void feel(const double* angles_rad, std::size_t count);
   void know(const Doing& doing) { doing_ = doing; }
   void hear(const Happening& happening);
 
@@ -90,7 +87,7 @@ class Retrieval {
   void follow_time();
   [[nodiscard]] const Crumb* nearest_crumb(double x_m, double y_m) const;
   /// [rad] Where the robot drives to when it drives on. A body that is curled up from turning points elsewhere than its head.
-  [[nodiscard]] double course_rad() const { return loaded() ? pose_.yaw_rad : pose_.yaw_rad + body_turn_rad_; }
+  [[nodiscard]] double course_rad() const { return loaded() ? pose_.yaw_rad : pose_.body_yaw_rad; }
   /// [rad] between the course and the wanted way along the line here, positive left; empty: the way is not known.
   [[nodiscard]] std::optional<double> off_line_rad() const;
   /// [rad] to turn left towards what is looked for, by memory: the thing, else the line.
@@ -105,7 +102,6 @@ class Retrieval {
   std::vector<std::uint8_t> remaining_;
   std::uint8_t line_colour_;
   Pose pose_;
-  double body_turn_rad_ = 0;  ///< mean heading of all modules relative to the head's
   Doing doing_;
   Line line_;
   std::vector<Crumb> trail_;  ///< the line, with the way that leads to the objects

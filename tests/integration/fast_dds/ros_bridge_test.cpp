@@ -116,5 +116,42 @@ TEST_F(Outside, RosSeesTheRobotAndTheRunDoesNotSeeTheBridge) {
   EXPECT_EQ(diff.output(), "equal\n");  // every message of every member, the state hash among them
 }
 
+TEST_F(Outside, AVelocityFromRosGoesThroughInputAndIsGivenBackWhenItsWriterGoes) {
+  Process launcher = run("driven", "line", {"--pace", "1x"});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_GT(domain, 0u) << launcher.output();
+  const std::string ros_domain = std::to_string(100 + domain);
+  Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain}, {{"ROS_LOCALHOST_ONLY", "1"}});
+  const dds::Domain here(domain);
+  const auto authorities = dds::Reader<msg::Authority>::member(here.participant(), "authority");
+  const auto trajectories = dds::Reader<msg::DesiredTrajectory>::observer(here.participant(), "desired_trajectory");
+  dds::WaitSet wait_set(here.participant());
+  wait_set.attach(authorities.get());
+  wait_set.attach(trajectories.get());
+  msg::Authority authority{};
+  msg::DesiredTrajectory desired{};
+  const auto until = [&](auto condition, std::chrono::seconds bound) {
+    for (const auto end = std::chrono::steady_clock::now() + bound; !condition();) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      wait_set.wait(50ms);
+      authorities.take([&](const msg::Authority& now) { authority = now; });
+      trajectories.take([&](const msg::DesiredTrajectory& now) { desired = now; });
+    }
+    return true;
+  };
+  ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s));
+  Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "150", "--drive", "-0.45,0.2"});
+  ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityOperator && std::string(authority.source) == "ros_bridge"; }, 60s));
+  // Backwards at 0.45 m/s with 0.9 m a wave; turning left backwards is a curvature to the right.
+  EXPECT_TRUE(until([&] { return std::abs(desired.frequency_hz + 0.5) < 1e-9; }, 30s)) << desired.method << " " << desired.frequency_hz;
+  EXPECT_NEAR(desired.curvature_1_m, 0.2 / -0.45, 1e-9);
+  EXPECT_EQ(authority.refused_count, 0u) << authority.refusal;
+  probe.signal(SIGTERM);
+  ASSERT_EQ(probe.wait(20s), 0);
+  EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s)) << "level " << int{authority.level};
+  launcher.signal(SIGTERM);
+  EXPECT_TRUE(launcher.wait(15s));
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -2,6 +2,7 @@
 // with --drive it steers, as teleop_twist_keyboard would.
 //   ros_probe --domain N --for SECONDS [--drive SPEED,TURN]
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +13,8 @@
 
 namespace {
 
+volatile std::sig_atomic_t g_stop = 0;
+
 template <class Stamp>
 long long ns(const Stamp& stamp) {
   return stamp.sec() * 1'000'000'000LL + stamp.nanosec();
@@ -20,6 +23,7 @@ long long ns(const Stamp& stamp) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
   unsigned domain = 0;
   double seconds = 5, speed_m_s = 0, turn_rad_s = 0;
   bool drive = false;
@@ -64,7 +68,7 @@ int main(int argc, char** argv) {
 
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  for (auto next = Clock::now(); Clock::now() < end;) {
+  for (auto next = Clock::now(); !g_stop && Clock::now() < end;) {
     node.wait(0.05);
     std::fflush(stdout);
     if (!velocity || Clock::now() < next) continue;

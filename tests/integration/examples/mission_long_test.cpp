@@ -1,0 +1,54 @@
+// Whole missions flown by outsiders: they take over in mid-mission and complete it; ground truth is the judge.
+#include "example_run.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Colours of the objects that were dropped by an external planner's goals, in order.
+std::vector<int> dropped(const Witness& witness) {
+  std::vector<int> colours;
+  for (const auto& event : witness.events) {
+    if (event.event == msg::kEventDroppingDone && event.goal_id >> 48 == msg::kAuthorityExternal) colours.push_back(event.colour);
+  }
+  return colours;
+}
+
+class Mission : public ExampleRun {
+ protected:
+  /// Runs to the end beside `planner` and expects that ground truth finds every object on its zone.
+  void completes(Process& launcher, Process& planner, Witness& witness) {
+    EXPECT_TRUE(witness.until([&] { return !planner.running(); }, 1200s));
+    EXPECT_EQ(planner.wait(1s), 0) << planner.output() << planner.errors();
+    EXPECT_EQ(launcher.wait(120s), 0) << planner.output() << launcher.output();
+    const auto json = report();
+    EXPECT_EQ(json["success"], true) << planner.output();
+    for (const auto& object : json["objects"]) EXPECT_EQ(object["in_zone"], true) << object.dump();
+  }
+};
+
+TEST_F(Mission, OnTheInstalledPackageRedIsRetrievedBeforeGreen) {
+  Process launcher = run("case_study", {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: ", "max_sim_time_s: 1")});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_GT(domain, 0u) << launcher.output();
+  Witness witness(domain);
+  Process planner({example("red_first"), "--domain", std::to_string(domain), "--at", "5"});
+  completes(launcher, planner, witness);
+  EXPECT_EQ(dropped(witness), (std::vector<int>{msg::kColourRed, msg::kColourGreen}));
+}
+
+#ifdef CONSTRICTOR_HAS_FAST_DDS
+TEST_F(Mission, OnFastDdsTheSecondObjectIsRetrievedAfterTheBuiltInPlannerRetrievedTheFirst) {
+  Process launcher = run("case_study", {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: ", "max_sim_time_s: 1")});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_GT(domain, 0u) << launcher.output();
+  Witness witness(domain);
+  Process planner({example("fastdds_planner"), "--domain", std::to_string(domain), "--after", "1"});
+  completes(launcher, planner, witness);
+  EXPECT_EQ(dropped(witness), (std::vector<int>{msg::kColourRed}));
+}
+#endif
+
+}  // namespace
+}  // namespace constrictor::testing
