@@ -5,6 +5,8 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/introspection/node_command.hpp"
+#include "cli/introspection/topic_command.hpp"
 #include "cli/run_command.hpp"
 #include "cli/run_control.hpp"
 #include "cli/task_command.hpp"
@@ -58,6 +60,8 @@ int dispatch(int argc, char** argv) {
   cli::add_run_control(app, action);
   cli::add_teleop(app, action);
   cli::add_task(app, action);
+  cli::add_topic(app, action);
+  cli::add_node(app, action);
 
   try {
     app.parse(argc, argv);
