@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/run_difference.hpp"
-#include "cli/run_observer.hpp"
 #include "cli/run_registry.hpp"
 #include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
@@ -24,45 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPoll = 20ms;
 
-void print_component(const std::string& name, const RunView& view) {
-  const auto found = view.components.find(name);
-  if (found == view.components.end()) {
-    fmt::print("{:<14} not heard of\n", name);
-    return;
-  }
-  const msg::ComponentStatus& status = found->second;
-  fmt::print("{:<14} {:<9} {:>9} {:>5} {:>10.0f} {:>10.0f} {:>8.1f} {:>9} {:>8} {:>8}  {}\n", name,
-             component_state_name(status.state), status.tick, status.incarnation, status.step_time_p50_us,
-             status.step_time_p99_us, status.cpu_s, view.overruns.at(name), view.refused.at(name), status.pid, status.host);
-  if (*status.last_refusal) fmt::print("{:<14} last refusal: {}\n", "", status.last_refusal);
-}
-
 }  // namespace
-
-int status_command(std::optional<std::uint32_t> domain) {
-  const auto runs = live_runs();
-  for (const auto& run : runs) {
-    fmt::print("run {}: {} seed {}, pid {}, report in {}\n", run.domain, run.scenario, run.seed, run.pid, run.report_dir.string());
-  }
-  if (runs.size() > 1 && !domain) {
-    fmt::print("choose one with --run for its components\n");
-    return exit_status::kOk;
-  }
-  const RunNote run = find_run(domain);
-  RunObserver observer(run.domain);
-  // Statuses are kept for late readers: they come as soon as the writers are found.
-  const auto end = Clock::now() + 1500ms;
-  while (observer.view().components.size() < run.roster.size() && Clock::now() < end) {
-    for (const auto& line : observer.poll()) fmt::print("{}\n", line);
-    std::this_thread::sleep_for(kPoll);
-  }
-  observer.poll();
-  fmt::print("{}\n\n", progress_line(observer.view(), 0).substr(0, progress_line(observer.view(), 0).rfind(',')));
-  fmt::print("{:<14} {:<9} {:>9} {:>5} {:>10} {:>10} {:>8} {:>9} {:>8} {:>8}  {}\n", "component", "state", "tick", "inc.",
-             "p50 [us]", "p99 [us]", "cpu [s]", "overruns", "refused", "pid", "host");
-  for (const auto& name : run.roster) print_component(name, observer.view());
-  return exit_status::kOk;
-}
 
 int end_command(std::optional<std::uint32_t> domain) {
   const RunNote run = find_run(domain);

@@ -7,9 +7,6 @@
 
 namespace constrictor::cli {
 
-/// Lists the runs of this host and, for the chosen or only one, the state of its components. 0 if there is a run.
-int status_command(std::optional<std::uint32_t> domain);
-
 /// Asks a run's launcher to end it and waits until it did. Throws RegistryError if the run cannot be told.
 int end_command(std::optional<std::uint32_t> domain);
 

@@ -5,7 +5,10 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/introspection/completion.hpp"
+#include "cli/introspection/doctor_command.hpp"
 #include "cli/introspection/node_command.hpp"
+#include "cli/introspection/status_command.hpp"
 #include "cli/introspection/topic_command.hpp"
 #include "cli/run_command.hpp"
 #include "cli/run_control.hpp"
@@ -46,8 +49,6 @@ int dispatch(int argc, char** argv) {
   const auto choose_run = [&domain](CLI::App* sub) {
     sub->add_option("--run", domain, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
   };
-  auto* status_app = app.add_subcommand("status", "the runs on this host, and the health of one's components");
-  choose_run(status_app);
   auto* end_app = app.add_subcommand("end", "end a run and all of its processes");
   choose_run(end_app);
   std::string a;
@@ -62,13 +63,15 @@ int dispatch(int argc, char** argv) {
   cli::add_task(app, action);
   cli::add_topic(app, action);
   cli::add_node(app, action);
+  cli::add_status(app, action);
+  cli::add_doctor(app, action);
+  cli::add_completion(app, action);
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
   }
-  if (*status_app) return cli::status_command(domain);
   if (*end_app) return cli::end_command(domain);
   if (action) return action();
   if (*diff_app) return cli::diff_command(a, b);

@@ -29,13 +29,17 @@ struct RunObserver::Readers {
         waiting(dds::Reader<msg::Waiting>::member(domain.participant(), wire::kWaiting)),
         tick(dds::Reader<msg::Tick>::observer(domain.participant(), wire::kTick)),
         mission(dds::Reader<msg::MissionStatus>::observer(domain.participant(), std::string(topics::kMissionStatus.name))),
-        task(dds::Reader<msg::TaskStatus>::observer(domain.participant(), std::string(topics::kTaskStatus.name))) {}
+        task(dds::Reader<msg::TaskStatus>::observer(domain.participant(), std::string(topics::kTaskStatus.name))),
+        authority(dds::Reader<msg::Authority>::observer(domain.participant(), std::string(topics::kAuthority.name))),
+        run_state(dds::Reader<msg::RunState>::observer(domain.participant(), wire::kRunState)) {}
   dds::Domain domain;
   dds::Reader<msg::ComponentStatus> status;
   dds::Reader<msg::Waiting> waiting;
   dds::Reader<msg::Tick> tick;  ///< only until the period is known: ticks are many
   dds::Reader<msg::MissionStatus> mission;
   dds::Reader<msg::TaskStatus> task;
+  dds::Reader<msg::Authority> authority;
+  dds::Reader<msg::RunState> run_state;
 };
 
 bool RunView::ended(const std::string& component) const {
@@ -78,6 +82,8 @@ std::vector<std::string> RunObserver::poll() {
     view_.tick = std::max(view_.tick, mission.header.tick);
   });
   readers_->task.take([&](const msg::TaskStatus& task) { view_.task = task; });
+  readers_->authority.take([&](const msg::Authority& authority) { view_.authority = authority; });
+  readers_->run_state.take([&](const msg::RunState& state) { view_.run_state = state; });
   std::vector<std::string> waiting;
   std::vector<std::string> waiting_for_tick;
   readers_->waiting.take([&](const msg::Waiting& message) {

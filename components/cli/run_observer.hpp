@@ -19,6 +19,8 @@ struct RunView {
   double period_s = 0.02;                         ///< [s] control period
   std::optional<msg::MissionStatus> mission;
   std::optional<msg::TaskStatus> task;
+  std::optional<msg::Authority> authority;
+  std::optional<msg::RunState> run_state;
   std::map<std::string, msg::ComponentStatus> components;
   std::map<std::string, std::uint64_t> overruns;  ///< by component, all of its incarnations
   std::map<std::string, std::uint64_t> refused;

@@ -68,8 +68,8 @@ ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsr
   return &data->base;
 }
 
-ddsi_serdata* untyped(const ddsi_serdata*) {
-  RawData* data = make_data(nullptr, SDK_KEY);
+ddsi_serdata* untyped(const ddsi_serdata* sample) {
+  RawData* data = make_data(sample->type, SDK_KEY);
   data->base.type = nullptr;
   return &data->base;
 }

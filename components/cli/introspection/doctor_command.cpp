@@ -1,0 +1,123 @@
+#include "cli/introspection/doctor_command.hpp"
+
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/introspection/diagnosis.hpp"
+#include "cli/introspection/domain_view.hpp"
+#include "cli/run_registry.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wire.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kFaults = 1;
+
+std::vector<NetworkInterface> interfaces() {
+  std::vector<NetworkInterface> list;
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) return list;
+  for (const ifaddrs* at = first; at; at = at->ifa_next) {
+    const bool known = std::any_of(list.begin(), list.end(), [&](const auto& interface) { return interface.name == at->ifa_name; });
+    if (!known) list.push_back({at->ifa_name, (at->ifa_flags & IFF_UP) != 0, (at->ifa_flags & IFF_MULTICAST) != 0});
+  }
+  ::freeifaddrs(first);
+  return list;
+}
+
+/// The XML that CYCLONEDDS_URI holds or names.
+void read_configuration(Facts& facts) {
+  const char* uri = std::getenv("CYCLONEDDS_URI");
+  if (!uri || !*uri) return;
+  std::string text = uri;
+  if (text.find('<') == std::string::npos) {
+    const std::string path = text.rfind("file://", 0) == 0 ? text.substr(7) : text;
+    std::ifstream file(path);
+    if (!file) {
+      facts.dds_configuration_error = "cannot read " + path;
+      return;
+    }
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  facts.dds_configuration = text;
+}
+
+std::uint64_t receive_buffer_max() {
+  std::ifstream file("/proc/sys/net/core/rmem_max");
+  std::uint64_t bytes = 0;
+  file >> bytes;
+  return bytes;
+}
+
+void look(const DomainView& view, Facts& facts) {
+  view.settle(2500ms);
+  facts.participants = view.discovery().participants();
+  facts.endpoints = view.discovery().endpoints();
+  const auto hellos = dds::Reader<msg::Hello>::member(view.participant(), dds::barrier_topics::kHello);
+  for (int i = 0; i < 20; ++i) {
+    hellos.take([&](const msg::Hello& hello) { facts.hellos.push_back(hello); });
+    if (!facts.hellos.empty() && i > 10) break;
+    std::this_thread::sleep_for(20ms);
+  }
+}
+
+int doctor(const ViewOptions& options) {
+  Facts facts;
+  for (const auto& run : live_runs()) facts.runs.push_back(run.domain);
+  facts.domain = options.domain.value_or(facts.runs.empty() ? 0 : facts.runs.front());
+  facts.interfaces = interfaces();
+  facts.receive_buffer_max_bytes = receive_buffer_max();
+  facts.idl_hash = msg::kIdlHash;
+  read_configuration(facts);
+  std::string error;
+  try {
+    ViewOptions chosen = options;
+    chosen.domain = facts.domain;
+    look(DomainView(chosen), facts);
+  } catch (const dds::Error& failed) {
+    error = failed.what();  // with a wrong configuration Cyclone does not even start: the findings say why
+  }
+  auto findings = diagnose(facts);
+  if (!error.empty()) {
+    // Nobody was asked who is there, so nothing is known of that.
+    std::erase_if(findings, [](const Finding& finding) { return finding.fault == "nobody there" || finding.fault == "wrong domain"; });
+    findings.push_back({"no DDS", error, findings.empty() ? "unset CYCLONEDDS_URI, or correct it (deploy/README.md)" : "cure what stands above first"});
+  }
+  if (options.json) {
+    nlohmann::ordered_json json = {{"domain", facts.domain}, {"participants", facts.participants.size()}};
+    auto& list = json["findings"] = nlohmann::ordered_json::array();
+    for (const auto& finding : findings) list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("domain {}: {} processes, {} readers and writers\n", facts.domain, facts.participants.size(), facts.endpoints.size());
+    for (const auto& finding : findings) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+    if (findings.empty()) fmt::print("nothing is wrong that can be seen from here\n");
+  }
+  return findings.empty() ? exit_status::kOk : kFaults;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<ViewOptions>();
+  auto* sub = app.add_subcommand("doctor", "find what keeps processes from working together, and name the cure");
+  add_view_options(*sub, *options);
+  sub->footer("Looks for: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two members of one\n"
+              "name, small socket buffers.\n\nEXAMPLES\n  constrictor doctor\n  constrictor doctor --run 7 --json\n\n"
+              "EXIT STATUS\n  0 nothing found; 1 something is wrong; 64 wrong usage\n\nENVIRONMENT\n"
+              "  CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      is examined, too");
+  sub->callback([&action, options] { action = [options] { return doctor(*options); }; });
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,195 @@
+#include "cli/introspection/status_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/introspection/domain_view.hpp"
+#include "cli/run_observer.hpp"
+#include "cli/run_registry.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr auto kPoll = 20ms;
+constexpr auto kRateWindow = 2s;
+
+struct Options {
+  ViewOptions view;
+  bool watch = false;
+};
+
+/// Ticks per second of each component, from two of its statuses.
+class RateMeter {
+ public:
+  void add(const RunView& view) {
+    const auto now = Clock::now();
+    for (const auto& [name, status] : view.components) {
+      auto& mark = marks_[name];
+      if (status.tick == mark.tick) continue;
+      if (mark.tick < 0 || status.tick < mark.tick) {
+        mark = {now, status.tick, mark.rate_hz};
+      } else if (now - mark.at > 200ms) {
+        mark.rate_hz = static_cast<double>(status.tick - mark.tick) / std::chrono::duration<double>(now - mark.at).count();
+        mark.at = now;
+        mark.tick = status.tick;
+      }
+    }
+  }
+  /// NaN: not known yet.
+  [[nodiscard]] double rate_hz(const std::string& name) const {
+    const auto found = marks_.find(name);
+    return found == marks_.end() ? std::nan("") : found->second.rate_hz;
+  }
+
+ private:
+  struct Mark {
+    Clock::time_point at{};
+    std::int64_t tick = -1;
+    double rate_hz = std::nan("");
+  };
+  std::map<std::string, Mark> marks_;
+};
+
+const char* level_name(std::uint8_t level) {
+  static constexpr std::array<const char*, 5> kNames = {"nobody", "planner", "external planner", "operator", "emergency stop"};
+  return level < kNames.size() ? kNames[level] : "?";
+}
+
+std::string run_line(const RunView& view) {
+  std::string line = progress_line(view, 0);
+  line = line.substr(0, line.rfind(','));
+  if (view.run_state) {
+    const auto& state = *view.run_state;
+    if (std::isfinite(state.real_time_factor)) line += fmt::format(", {:.1f}x real time", state.real_time_factor);
+    if (state.paused) line += ", paused";
+    if (state.realtime) line += ", on the wall clock";
+    else if (state.pace > 0) line += fmt::format(", at most {:g}x{}", state.pace, state.operator_cap ? " while an operator has authority" : "");
+  }
+  if (view.authority) {
+    const auto& authority = *view.authority;
+    line += fmt::format("\nauthority: {}{}{}", level_name(authority.level), *authority.source ? " " : "", authority.source);
+    if (authority.refused_count > 0) line += fmt::format("; {} requests refused, the last: {}", authority.refused_count, authority.refusal);
+  }
+  return line;
+}
+
+std::string number(double value, const char* format) { return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-"; }
+
+std::string table(const RunNote& run, const RunView& view, const RateMeter& rates) {
+  std::string text = fmt::format("{:<12} {:<8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>7} {:>4} {:>7}  {}\n", "component", "state", "tick", "[Hz]",
+                                 "p50[us]", "p99[us]", "overruns", "refused", "inc.", "pid", "host");
+  for (const auto& name : run.roster) {
+    const auto found = view.components.find(name);
+    if (found == view.components.end()) {
+      text += fmt::format("{:<12} not heard of\n", name);
+      continue;
+    }
+    const auto& status = found->second;
+    text += fmt::format("{:<12} {:<8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>7} {:>4} {:>7}  {}\n", name, component_state_name(status.state),
+                        status.tick, number(rates.rate_hz(name), "{:.1f}"), number(status.step_time_p50_us, "{:.0f}"),
+                        number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name), status.incarnation,
+                        status.pid, status.host);
+    if (*status.last_refusal) text += fmt::format("{:<12} last refusal: {}\n", "", status.last_refusal);
+  }
+  return text;
+}
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
+  Json json = {{"run", run.domain}, {"pid", run.pid}, {"scenario", run.scenario}, {"seed", run.seed},
+               {"report", run.report_dir.string()}, {"tick", view.tick}, {"sim_time_s", view.sim_time_s()}};
+  json["real_time_factor"] = view.run_state ? finite(view.run_state->real_time_factor) : Json(nullptr);
+  json["paused"] = view.run_state ? Json(view.run_state->paused) : Json(nullptr);
+  json["pace"] = view.run_state ? finite(view.run_state->pace) : Json(nullptr);
+  json["mission"] = view.mission ? Json(std::string(view.mission->state)) : Json(nullptr);
+  json["task"] = view.task ? Json(task_name(view.task->task)) : Json(nullptr);
+  if (view.authority) {
+    json["authority"] = {{"level", level_name(view.authority->level)}, {"source", std::string(view.authority->source)},
+                         {"refused", view.authority->refused_count}, {"refusal", std::string(view.authority->refusal)}};
+  }
+  auto& list = json["components"] = Json::array();
+  for (const auto& name : run.roster) {
+    const auto found = view.components.find(name);
+    if (found == view.components.end()) {
+      list.push_back({{"component", name}, {"state", nullptr}});
+      continue;
+    }
+    const auto& status = found->second;
+    list.push_back({{"component", name}, {"state", component_state_name(status.state)}, {"tick", status.tick},
+                    {"rate_hz", finite(rates.rate_hz(name))}, {"step_time_p50_us", finite(status.step_time_p50_us)},
+                    {"step_time_p99_us", finite(status.step_time_p99_us)}, {"overruns", view.overruns.at(name)},
+                    {"refused", view.refused.at(name)}, {"last_refusal", std::string(status.last_refusal)},
+                    {"incarnation", status.incarnation}, {"cpu_s", finite(status.cpu_s)}, {"version", std::string(status.version)},
+                    {"pid", status.pid}, {"host", std::string(status.host)}});
+  }
+  return json;
+}
+
+int status(const Options& options) {
+  const auto runs = live_runs();
+  if (!options.view.json) {
+    for (const auto& run : runs) {
+      fmt::print("run {}: {} seed {}, pid {}, report in {}\n", run.domain, run.scenario, run.seed, run.pid, run.report_dir.string());
+    }
+    if (runs.size() > 1 && !options.view.domain) {
+      fmt::print("choose one with --run for its components\n");
+      return exit_status::kOk;
+    }
+  }
+  const RunNote run = find_run(options.view.domain);
+  RunObserver observer(run.domain);
+  RateMeter rates;
+  // Statuses are kept for late readers; a rate needs two of each component, and the run's own state comes once a second.
+  const auto start = Clock::now();
+  auto shown = start;
+  const bool screen = options.watch && !options.view.json && ::isatty(STDOUT_FILENO) != 0;
+  while (!interrupted()) {
+    for (const auto& line : observer.poll()) {
+      if (!options.view.json) fmt::print("{}\n", line);
+    }
+    rates.add(observer.view());
+    const auto now = Clock::now();
+    const bool complete = observer.view().components.size() >= run.roster.size() && observer.view().run_state &&
+                          std::all_of(run.roster.begin(), run.roster.end(), [&](const auto& name) { return std::isfinite(rates.rate_hz(name)); });
+    const bool paused = observer.view().run_state && observer.view().run_state->paused && now - start > 500ms;
+    if (!options.watch && (complete || paused || now - start > kRateWindow)) break;
+    if (options.watch && now - shown > 1s) {
+      shown = now;
+      if (options.view.json) fmt::print("{}\n", json_of(run, observer.view(), rates).dump());
+      else fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()), table(run, observer.view(), rates));
+      std::fflush(stdout);
+      if (observer.view().ended(run.roster.front())) return exit_status::kOk;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+  if (options.watch) return exit_status::kOk;
+  if (options.view.json) fmt::print("{}\n", json_of(run, observer.view(), rates).dump(2));
+  else fmt::print("{}\n\n{}", run_line(observer.view()), table(run, observer.view(), rates));
+  return exit_status::kOk;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* sub = app.add_subcommand("status", "the runs on this host, and the health of one's components");
+  add_view_options(*sub, options->view);
+  sub->add_flag("--watch,-w", options->watch, "a live table, once a second, until Ctrl-C or the run's end");
+  sub->footer("Step times are those since a component's previous status (every 50 ticks); a rate is in ticks per second of wall time.\n\n"
+              "EXAMPLES\n  constrictor status\n  constrictor status --watch\n  constrictor status --json | jq '.components[].rate_hz'\n\n"
+              "EXIT STATUS\n  0 done; 64 wrong usage; 70 no run, or several and none chosen with --json\n\nENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
+  sub->callback([&action, options] { action = [options] { return status(*options); }; });
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,209 @@
+// topic, node, status, doctor and completion on real processes: a run of toys, and programs that are no part of the project.
+#include "cli_fixture.hpp"
+#include "runtime/domain_claim.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr const char* kManifest =
+    "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 30\nprocesses:\n"
+    "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n";
+
+class Introspection : public CliFixture {
+ protected:
+  [[nodiscard]] Process foreign(std::uint32_t domain, const std::string& mode) const {
+    Process process({program("foreign_talker"), std::to_string(domain), mode}, environment_);
+    EXPECT_TRUE(process.wait_for("talking", 20s)) << process.errors();
+    return process;
+  }
+  /// A run of toys at real-time pace: 50 ticks a second, and it lasts.
+  [[nodiscard]] Process toys() const {
+    write("toys.yaml", kManifest);
+    write("100000_ticks.yaml", "");
+    Process run = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--pace", "1x",
+                         "--report", (dir_ / "report").string()});
+    EXPECT_TRUE(eventually([&] { return domain() != 0; }));
+    return run;
+  }
+  /// Output of a command as JSON; it must end with `status`.
+  json json_of(std::vector<std::string> arguments, int status = 0) {
+    arguments.push_back("--json");
+    EXPECT_EQ(command(arguments), status) << output_;
+    return json::parse(output_, nullptr, false);
+  }
+  /// Names of what the doctor finds in a domain.
+  std::vector<std::string> faults(std::uint32_t domain) {
+    const json found = json_of({"doctor", "--run", std::to_string(domain)}, 1);
+    std::vector<std::string> names;
+    for (const auto& finding : found.value("findings", json::array())) {
+      names.push_back(finding["fault"]);
+      EXPECT_FALSE(finding["cure"].get<std::string>().empty());
+    }
+    return names;
+  }
+};
+
+TEST_F(Introspection, ShowsEveryFieldOfATypeThatThisProjectDoesNotDefine) {
+  const DomainClaim claim;
+  const std::string number = std::to_string(claim.domain());
+  const Process talker = foreign(claim.domain(), "final");
+  const json sample = json_of({"topic", "echo", "weather", "--count", "1", "--run", number});
+  ASSERT_TRUE(sample.is_object()) << output_;
+  EXPECT_EQ(sample["station"], "Trondheim");
+  EXPECT_EQ(sample["flag"], 7);
+  EXPECT_EQ(sample["temperature"], -3.5);
+  EXPECT_EQ(sample["grid"], json::parse("[[0.0,0.5,1.0],[1.5,2.0,2.5]]"));
+  EXPECT_EQ(sample["gusts"], json::parse(R"([{"speed":12.5,"strength":3},{"speed":20.25,"strength":5}])"));
+  EXPECT_EQ(sample["remarks"], json::parse(R"(["windy",""])"));
+  EXPECT_EQ(sample["sky"], "RAIN");
+  EXPECT_EQ(sample["reading"]["text"], "drizzle");
+  EXPECT_EQ(sample["night"], true);
+  EXPECT_EQ(sample["when"], -1234567890123);
+  EXPECT_EQ(command({"topic", "echo", "weather", "--count", "1", "--field", "gusts.1.speed", "--run", number}), 0);
+  EXPECT_EQ(output_, "20.25\n");
+  EXPECT_EQ(command({"topic", "info", "weather", "--run", number}), 0);
+  EXPECT_NE(output_.find("double temperature"), std::string::npos) << output_;
+}
+
+TEST_F(Introspection, ReadsAppendableTypesInTheirNewerEncoding) {
+  const DomainClaim claim;
+  const Process talker = foreign(claim.domain(), "appendable");
+  const json sample = json_of({"topic", "echo", "tide", "--count", "1", "--run", std::to_string(claim.domain())});
+  ASSERT_TRUE(sample.is_object()) << output_;
+  EXPECT_EQ(sample["flag"], 9);
+  EXPECT_EQ(sample["level"], 2.75);
+  EXPECT_EQ(sample["gusts"], json::parse(R"([{"speed":1.5,"strength":2}])"));
+  EXPECT_GT(sample["count"], 0);
+}
+
+TEST_F(Introspection, ShowsTheBytesOfATypeThatNobodyDescribes) {
+  const DomainClaim claim;
+  const std::string number = std::to_string(claim.domain());
+  const Process talker = foreign(claim.domain(), "untyped");
+  const json sample = json_of({"topic", "echo", "weather", "--count", "1", "--run", number});
+  ASSERT_TRUE(sample.contains("cdr")) << output_;
+  const std::string bytes = sample["cdr"];
+  EXPECT_EQ(bytes.size(), 2 * sample["size"].get<std::size_t>());
+  EXPECT_EQ(bytes.substr(0, 4), "0001");                                 // CDR, little-endian
+  EXPECT_NE(bytes.find("54726f6e646865696d00"), std::string::npos);      // "Trondheim"
+  EXPECT_EQ(command({"topic", "echo", "weather", "--count", "1", "--run", number}), 0);
+  EXPECT_NE(output_.find("does not describe the type"), std::string::npos) << output_;
+}
+
+TEST_F(Introspection, MeasuresTheRateAndDelayOfAForeignTopic) {
+  const DomainClaim claim;
+  const std::string number = std::to_string(claim.domain());
+  const Process talker = foreign(claim.domain(), "untyped");
+  const json rate = json_of({"topic", "hz", "weather", "--for", "1", "--run", number});
+  EXPECT_GT(rate["rate_hz"], 20.0) << rate;   // one in 10 ms, on a busy machine fewer
+  EXPECT_LT(rate["rate_hz"], 105.0) << rate;
+  EXPECT_GT(rate["greatest_interval_s"], 0.008);
+  const json delay = json_of({"topic", "delay", "weather", "--for", "1", "--run", number});
+  EXPECT_GT(delay["least_s"], 0.0);
+  EXPECT_LT(delay["least_s"], 0.5);
+}
+
+TEST_F(Introspection, ASilentTopicEndsWithStatusOne) {
+  const DomainClaim claim;
+  EXPECT_EQ(command({"topic", "echo", "nothing", "--timeout", "0.5", "--run", std::to_string(claim.domain())}), 1);
+  EXPECT_NE(output_.find("nobody writes"), std::string::npos) << output_;
+}
+
+TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
+  Process run = toys();
+  json topics;
+  ASSERT_TRUE(eventually([&] {
+    topics = json_of({"topic", "list"});
+    return topics.dump().find("joint_state") != std::string::npos;
+  })) << topics;
+  const json sample = json_of({"topic", "echo", "joint_state", "--count", "1"});
+  EXPECT_GT(sample["header"]["tick"], 0) << output_;
+  EXPECT_EQ(sample["robot_id"], 1);
+
+  const json nodes = json_of({"node", "list"});
+  std::map<std::string, json> by_name;
+  for (const auto& node : nodes) by_name[node["node"]] = node;
+  ASSERT_TRUE(by_name.contains("navigation,control")) << nodes;
+  EXPECT_EQ(by_name["navigation,control"]["process"], "toy_host");
+  EXPECT_EQ(::kill(by_name["navigation,control"]["pid"].get<pid_t>(), 0), 0);
+  EXPECT_EQ(by_name["navigation,control"]["components"][1]["component"], "control");
+  EXPECT_EQ(by_name["navigation,control"]["components"][1]["idl_hash"].get<std::string>().size(), 64u);
+  const json node = json_of({"node", "info", "control"});
+  EXPECT_EQ(node[0]["node"], "navigation,control");
+
+  const json status = json_of({"status"});
+  EXPECT_EQ(status["components"].size(), 3u);
+  for (const auto& component : status["components"]) {
+    EXPECT_EQ(component["state"], "running") << component;
+    if (!component["rate_hz"].is_null()) EXPECT_LT(component["rate_hz"], 60.0);
+    EXPECT_GE(component["step_time_p99_us"], component["step_time_p50_us"]);
+  }
+  EXPECT_EQ(command({"doctor"}), 0) << output_;
+  EXPECT_NE(output_.find("nothing is wrong"), std::string::npos);
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+// A running conductor refuses a second member at once; before the run has begun both are there and wait.
+TEST_F(Introspection, TheDoctorFindsASecondMember) {
+  const DomainClaim claim;
+  const std::vector<std::string> arguments = {program("toy_host"), "navigation", "--domain", std::to_string(claim.domain()),
+                                              "--roster", "physics,navigation,control"};
+  const Process first(arguments, environment_);
+  const Process second(arguments, environment_);
+  EXPECT_TRUE(eventually([&] {
+    command({"doctor", "--run", std::to_string(claim.domain()), "--json"});
+    return output_.find("two members of one name") != std::string::npos;
+  })) << output_;
+  EXPECT_NE(output_.find(std::to_string(first.pid())), std::string::npos) << output_;
+  EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
+}
+
+TEST_F(Introspection, TheDoctorFindsASecondPlant) {
+  const DomainClaim claim;
+  const std::vector<std::string> arguments = {program("toy_host"), "physics", "--domain", std::to_string(claim.domain()),
+                                              "--roster", "physics,navigation,control"};
+  const Process first(arguments, environment_);
+  const Process second(arguments, environment_);
+  EXPECT_TRUE(eventually([&] {
+    command({"doctor", "--run", std::to_string(claim.domain()), "--json"});
+    return output_.find("two plants") != std::string::npos;
+  })) << output_ << first.errors() << second.errors();
+}
+
+TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
+  const DomainClaim claim;
+  const Process deaf = foreign(claim.domain(), "silent_qos");
+  const Process other = foreign(claim.domain(), "other_idl");
+  const auto found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "differing QoS"), 1) << output_;
+  EXPECT_EQ(std::count(found.begin(), found.end(), "differing IDL hash"), 1) << output_;
+}
+
+TEST_F(Introspection, TheDoctorFindsAWrongDomainAndAWrongInterface) {
+  const DomainClaim claim;
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"});
+  environment_["CYCLONEDDS_URI"] =
+      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nowhere7\"/></Interfaces></General></Domain></CycloneDDS>";
+  const auto found = faults(claim.domain());
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front(), "wrong interface") << output_;
+}
+
+TEST_F(Introspection, BashCompletesByTheTreeOfOptions) {
+  ASSERT_EQ(command({"completion", "bash"}), 0);
+  write("completion.sh", output_ + "\ncomplete_words() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _constrictor; echo \"${COMPREPLY[@]}\"; }\n"
+                                   "complete_words constrictor topic ''\ncomplete_words constrictor topic echo --ti\ncomplete_words constrictor sta\n");
+  Process bash({"/bin/bash", (dir_ / "completion.sh").string()});
+  ASSERT_EQ(bash.wait(20s), 0) << bash.errors();
+  const std::string out = bash.output();
+  EXPECT_EQ(out.substr(0, out.find('\n')).find("list info echo hz delay"), 0u) << out;
+  EXPECT_NE(out.find("\n--timeout\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("\nstatus"), std::string::npos) << out;
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,140 @@
+// Each fault that `constrictor doctor` names, seeded in the facts; processes that have them: tests/integration/introspection_test.
+#include <gtest/gtest.h>
+
+#include "cli/introspection/diagnosis.hpp"
+#include "runtime/dds/endpoint.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+dds::Guid guid(std::uint8_t number) {
+  dds::Guid made{};
+  made[0] = number;
+  return made;
+}
+
+dds::Endpoint endpoint(std::uint8_t participant, bool writer, const std::string& topic, const std::string& user_data) {
+  dds::Endpoint made;
+  made.participant = guid(participant);
+  made.writer = writer;
+  made.topic = topic;
+  made.type = "T";
+  made.user_data = user_data;
+  made.qos.reliable = made.qos.transient_local = true;
+  return made;
+}
+
+/// A run in which everything is as it should be.
+Facts sound() {
+  Facts facts;
+  facts.domain = 7;
+  facts.runs = {7};
+  facts.interfaces = {{"lo", true, false}, {"eth0", true, true}, {"eth1", false, true}, {"tun0", true, false}};
+  facts.receive_buffer_max_bytes = 8'000'000;
+  facts.participants = {{guid(1), "here", 11, "physics"}, {guid(2), "here", 12, "control"}};
+  facts.endpoints = {endpoint(1, true, "barrier/tick", "physics"), endpoint(2, false, "barrier/tick", "control"),
+                     endpoint(2, true, "joint_command", "control")};
+  facts.idl_hash = "aaa";
+  msg::Hello hello{};
+  dds::set_text(hello.component, "control");
+  dds::set_text(hello.idl_hash, "aaa");
+  facts.hellos = {hello};
+  return facts;
+}
+
+/// Names of the faults found.
+std::vector<std::string> faults(const Facts& facts) {
+  std::vector<std::string> names;
+  for (const auto& finding : diagnose(facts)) {
+    names.push_back(finding.fault);
+    EXPECT_FALSE(finding.cure.empty());
+  }
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+std::string on_interface(const std::string& attributes, const std::string& more = "") {
+  return "<CycloneDDS><Domain><General><Interfaces><NetworkInterface " + attributes + "/></Interfaces>" + more + "</General></Domain></CycloneDDS>";
+}
+
+TEST(Diagnosis, FindsNothingInASoundRun) { EXPECT_EQ(faults(sound()), Names{}); }
+
+TEST(Diagnosis, NamesTheDomainInWhichTheRunIs) {
+  Facts facts = sound();
+  facts.domain = 8;
+  facts.participants.clear();
+  facts.endpoints.clear();
+  ASSERT_EQ(faults(facts), Names{"wrong domain"});
+  EXPECT_NE(diagnose(facts).front().cure.find("--run 7"), std::string::npos);
+  facts.runs.clear();
+  EXPECT_EQ(faults(facts), Names{"nobody there"});
+}
+
+TEST(Diagnosis, KnowsInterfacesThatAreMissingOrDown) {
+  Facts facts = sound();
+  facts.dds_configuration = on_interface("name=\"eth0\"");
+  EXPECT_EQ(faults(facts), Names{});
+  facts.dds_configuration = on_interface("name=\"eth7\"");
+  EXPECT_EQ(faults(facts), Names{"wrong interface"});
+  facts.dds_configuration = on_interface("name=\"eth1\"");
+  EXPECT_EQ(faults(facts), Names{"wrong interface"});
+}
+
+TEST(Diagnosis, MissesMulticastOnlyWhereNoPeersAreNamed) {
+  Facts facts = sound();
+  facts.dds_configuration = on_interface("name=\"tun0\"");
+  EXPECT_EQ(faults(facts), Names{"missing multicast"});
+  facts.dds_configuration = on_interface("name=\"eth0\" multicast=\"false\"");
+  EXPECT_EQ(faults(facts), Names{"missing multicast"});
+  facts.dds_configuration = on_interface("name=\"eth0\"", "<AllowMulticast>false</AllowMulticast>");
+  EXPECT_EQ(faults(facts), Names{"missing multicast"});
+  facts.dds_configuration += "<Peer Address=\"10.0.0.2\"/>";
+  EXPECT_EQ(faults(facts), Names{});
+}
+
+TEST(Diagnosis, FindsTwoPlantsAndTwoMembersOfOneName) {
+  Facts facts = sound();
+  facts.endpoints.push_back(endpoint(2, true, "barrier/tick", ""));
+  EXPECT_EQ(faults(facts), Names{"two plants"});
+  facts = sound();
+  facts.endpoints.push_back(endpoint(1, true, "other", "physics,control"));
+  EXPECT_EQ(faults(facts), Names{"two members of one name"});
+}
+
+TEST(Diagnosis, FindsAnotherVersionsMessages) {
+  Facts facts = sound();
+  dds::set_text(facts.hellos[0].idl_hash, "bbb");
+  EXPECT_EQ(faults(facts), Names{"differing IDL hash"});
+}
+
+TEST(Diagnosis, FindsReadersThatCannotHear) {
+  Facts facts = sound();
+  facts.endpoints[0].qos.reliable = false;
+  EXPECT_EQ(faults(facts), Names{"differing QoS"});
+  facts = sound();
+  facts.endpoints[0].qos.transient_local = false;
+  EXPECT_EQ(faults(facts), Names{"differing QoS"});
+  facts = sound();
+  facts.endpoints[0].qos.representations = {2};  // XCDR2
+  EXPECT_EQ(faults(facts), Names{"differing QoS"});
+  facts = sound();
+  facts.endpoints[0].qos.partitions = {"north"};
+  EXPECT_EQ(faults(facts), Names{"differing QoS"});
+  facts = sound();
+  facts.endpoints[0].type = "Other";
+  EXPECT_EQ(faults(facts), Names{"differing type"});
+  facts = sound();
+  facts.endpoints[1].qos.reliable = facts.endpoints[1].qos.transient_local = false;  // asks for less: fine
+  EXPECT_EQ(faults(facts), Names{});
+}
+
+TEST(Diagnosis, FindsSmallSocketBuffersBetweenHosts) {
+  Facts facts = sound();
+  facts.receive_buffer_max_bytes = 212'992;  // Linux's default
+  facts.dds_configuration = on_interface("name=\"eth0\"");
+  EXPECT_EQ(faults(facts), Names{"small socket buffers"});
+}
+
+}  // namespace
+}  // namespace constrictor::cli
