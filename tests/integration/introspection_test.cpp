@@ -162,18 +162,6 @@ TEST_F(Introspection, TheDoctorFindsASecondMember) {
   EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
 }
 
-TEST_F(Introspection, TheDoctorFindsASecondPlant) {
-  const DomainClaim claim;
-  const std::vector<std::string> arguments = {program("toy_host"), "physics", "--domain", std::to_string(claim.domain()),
-                                              "--roster", "physics,navigation,control"};
-  const Process first(arguments, environment_);
-  const Process second(arguments, environment_);
-  EXPECT_TRUE(eventually([&] {
-    command({"doctor", "--run", std::to_string(claim.domain()), "--json"});
-    return output_.find("two plants") != std::string::npos;
-  })) << output_ << first.errors() << second.errors();
-}
-
 TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
   const DomainClaim claim;
   const Process deaf = foreign(claim.domain(), "silent_qos");
@@ -181,16 +169,6 @@ TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
   const auto found = faults(claim.domain());
   EXPECT_EQ(std::count(found.begin(), found.end(), "differing QoS"), 1) << output_;
   EXPECT_EQ(std::count(found.begin(), found.end(), "differing IDL hash"), 1) << output_;
-}
-
-TEST_F(Introspection, TheDoctorFindsAWrongDomainAndAWrongInterface) {
-  const DomainClaim claim;
-  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"});
-  environment_["CYCLONEDDS_URI"] =
-      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nowhere7\"/></Interfaces></General></Domain></CycloneDDS>";
-  const auto found = faults(claim.domain());
-  ASSERT_FALSE(found.empty());
-  EXPECT_EQ(found.front(), "wrong interface") << output_;
 }
 
 TEST_F(Introspection, BashCompletesByTheTreeOfOptions) {
