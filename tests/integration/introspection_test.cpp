@@ -138,7 +138,7 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   EXPECT_EQ(status["components"].size(), 3u);
   for (const auto& component : status["components"]) {
     EXPECT_EQ(component["state"], "running") << component;
-    if (!component["rate_hz"].is_null()) EXPECT_LT(component["rate_hz"], 60.0);
+    if (!component["rate_hz"].is_null()) { EXPECT_LT(component["rate_hz"], 60.0); }
     EXPECT_GE(component["step_time_p99_us"], component["step_time_p50_us"]);
   }
   EXPECT_EQ(command({"doctor"}), 0) << output_;
