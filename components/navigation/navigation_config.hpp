@@ -87,7 +87,7 @@ struct PregraspConfig {
   double clearance_m = 0.05;          ///< between body and object while passing it
   PidGains steering{5.0, 0.0, 0.0, 1.3, 0.2};  ///< distance to the passing line [m] to curvature [1/m]
   double lookahead_m = 0.3;
-  double past_m = 0.12;               ///< how far the head passes the object's centre before it feels for it
+  double past_m = 0.2;                ///< how far the head passes the object's centre before it feels for it
   double brake_m = 0.12;              ///< run-out after the wave stops
   double settle_s = 1.5;
   double touch_rate_rad_s = 0.12;     ///< of each of the three joints near the head
@@ -95,7 +95,7 @@ struct PregraspConfig {
   double touch_further_rad = 0.1;     ///< more, after each attempt that felt nothing
   double touch_force_n = 0.4;
   double deep_min_m = -0.4;           ///< accepted place of the object's centre along the body, from the head (behind is negative)
-  double deep_max_m = 0.02;
+  double deep_max_m = -0.12;
   int attempts = 4;
   double other_clearance_m = 0.3;     ///< wanted between the manoeuvre's path and other objects
 };

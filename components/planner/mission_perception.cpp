@@ -121,7 +121,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     case msg::kTaskDrop: parameters.drop_zone_colour = colour(); break;
     case msg::kTaskRotate: {
       parameters.line_colour = config_.line_colour;
-      memory_.direction = to_turn_rad(inputs).value_or(1.0) >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+      memory_.direction = side_for(to_turn_rad(inputs).value_or(1.0), inputs);
       parameters.direction = memory_.direction;
       parameters.timeout_s = scaled_s(config_.turn_round_s);
       break;
@@ -132,10 +132,30 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
   return wanted;
 }
 
-Move MissionPlanner::move_for(double turn_rad) {
+std::uint8_t MissionPlanner::side_for(double turn_rad, const PlannerInputs& inputs) const {
+  constexpr double kEitherWay_rad = 2.0;
+  constexpr double kBeside_m = 1.5;
+  double aside_m = 0.0;  // of the nearest zone, positive left
+  double nearest_m = kBeside_m;
+  if (!holding() && inputs.map && inputs.pose && std::abs(turn_rad) > kEitherWay_rad) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(inputs.map->object_count, msg::kMaxMapObjects); ++i) {
+      const auto& thing = inputs.map->objects[i];
+      const double dx_m = thing.x_m - inputs.pose->x_m;
+      const double dy_m = thing.y_m - inputs.pose->y_m;
+      const double distance_m = std::hypot(dx_m, dy_m);
+      if (thing.kind != msg::kBlobZone || distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      aside_m = -std::sin(inputs.pose->body_yaw_rad) * dx_m + std::cos(inputs.pose->body_yaw_rad) * dy_m;
+    }
+  }
+  if (aside_m != 0.0) return aside_m > 0.0 ? msg::kDirectionRight : msg::kDirectionLeft;
+  return turn_rad >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+}
+
+Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) const {
   constexpr double kAhead_rad = 0.25;
   constexpr double kBend_rad = 0.7;  // beyond it a turn on the spot is the shorter way
-  const std::uint8_t side = turn_rad > 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
+  const std::uint8_t side = side_for(turn_rad, inputs);
   if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
   return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
 }
@@ -147,7 +167,7 @@ void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& want
   memory_.guided = turn_rad.has_value() && attempt % 16 < 12;
   Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
   if (memory_.guided) {
-    move = move_for(*turn_rad);
+    move = move_for(*turn_rad, inputs);
   } else if (attempt % 2 == 1) {
     move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
   }

@@ -125,7 +125,10 @@ class MissionPlanner {
   // requests
   [[nodiscard]] WantedTask task_of_state(const PlannerInputs& inputs);
   /// What the search does next by memory: the task and its direction.
-  [[nodiscard]] static Move move_for(double turn_rad);
+  [[nodiscard]] Move move_for(double turn_rad, const PlannerInputs& inputs) const;
+  /// The side to which to turn by so much: the shorter way, or if there is little between them the one away from a drop zone, so that
+  /// the turning body leaves alone what stands there.
+  [[nodiscard]] std::uint8_t side_for(double turn_rad, const PlannerInputs& inputs) const;
   void choose_search(const PlannerInputs& inputs, WantedTask& wanted);
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }

@@ -1,0 +1,72 @@
+// Missions of the real components in a world of a test's own: the launcher, its processes, and what the report tells of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "runtime/host.hpp"
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+
+class MissionRun : public ::testing::Test {
+ protected:
+  MissionRun() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-mission-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+  }
+  ~MissionRun() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+
+  /// Runs a scenario to its end; its exit status, -1 if it hangs. Afterwards `report_` has what it reported.
+  int run(const std::string& scenario, double most_s, std::vector<std::string> more = {}) {
+    write("planner.yaml", planner_for_green());
+    std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / "out").string(), "--config",
+                                          "planner=" + (dir_ / "planner.yaml").string(), "--max-sim-time", std::to_string(most_s)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Process process(std::move(arguments));
+    const int status = process.wait(std::chrono::seconds(560)).value_or(-1);
+    output_ = process.output() + process.errors();
+    report_ = nlohmann::json::parse(std::ifstream(dir_ / "out" / "report.json"), nullptr, false);
+    return status;
+  }
+  std::string scenario(const std::string& text) {
+    write("scenario.yaml", text);
+    return (dir_ / "scenario.yaml").string();
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
+
+  /// Time of the first event of this name at or after `from_s`; NaN if there is none.
+  [[nodiscard]] double event_s(const std::string& name, double from_s = 0.0) const {
+    return first(report_["events"], "event", name, from_s);
+  }
+  [[nodiscard]] double state_s(const std::string& name, double from_s = 0.0) const {
+    return first(report_["states"], "state", name, from_s);
+  }
+
+  std::filesystem::path dir_;
+  std::string output_;
+  nlohmann::json report_;
+
+ private:
+  static double first(const nlohmann::json& list, const char* key, const std::string& name, double from_s) {
+    for (const auto& entry : list) {
+      if (entry[key] == name && entry["sim_time_s"] >= from_s) return entry["sim_time_s"];
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  /// The planner's own configuration, for a mission of one object.
+  static std::string planner_for_green() {
+    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
+    std::string text;
+    for (std::string line; std::getline(file, line);) text += (line.starts_with("sequence:") ? "sequence: [green]" : line) + "\n";
+    return text;
+  }
+};
+
+}  // namespace constrictor::testing
