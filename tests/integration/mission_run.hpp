@@ -26,8 +26,10 @@ class MissionRun : public ::testing::Test {
   /// Runs a scenario to its end; its exit status, -1 if it hangs. Afterwards `report_` has what it reported.
   int run(const std::string& scenario, double most_s, std::vector<std::string> more = {}) {
     write("planner.yaml", planner_for_green());
+    write("report.yaml", "max_sim_time_s: " + std::to_string(most_s) + "\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
     std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / "out").string(), "--config",
-                                          "planner=" + (dir_ / "planner.yaml").string(), "--max-sim-time", std::to_string(most_s)};
+                                          "planner=" + (dir_ / "planner.yaml").string(), "--config",
+                                          "report=" + (dir_ / "report.yaml").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Process process(std::move(arguments));
     const int status = process.wait(std::chrono::seconds(560)).value_or(-1);
