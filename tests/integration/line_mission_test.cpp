@@ -1,4 +1,4 @@
-// Line following and its recovery, in ten processes over DDS: what the camera sees is all that the robot is told.
+// Line following in ten processes over DDS: what the camera sees is all that the robot is told.
 #include "mission_run.hpp"
 
 namespace constrictor::testing {
@@ -12,28 +12,12 @@ TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByTheirCamera) {
   EXPECT_LT(event_s("end_of_line"), 20.0);  // 5.6 m
   EXPECT_GT(event_s("end_of_line"), 5.6 / 1.0);
   EXPECT_FALSE(std::isfinite(event_s("line_lost")));
-  EXPECT_EQ(state_s("search object"), event_s("end_of_line"));
+  EXPECT_NEAR(state_s("search object"), event_s("end_of_line"), 0.05);
   // Against the line's true geometry, the head's sway of the gait included.
   EXPECT_LT(report_["line"]["rms_cross_track_m"], 0.12);
   EXPECT_LT(report_["line"]["max_cross_track_m"], 0.35);
   EXPECT_LT(report_["pose_error"]["rms_m"], 0.25);
   for (const auto& process : report_["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
-}
-
-// The bend's radius of 0.2 m is a quarter of what the snake can drive: it leaves the line, notices and comes back to it.
-TEST_F(MissionRun, LineLostInASharpBendIsFoundAgain) {
-  const std::string bend = scenario(
-      "name: sharp_bend\nline:\n  colour: blue\n  width_m: 0.05\n  begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: 2.0}\n"
-      "    - {length_m: 0.45, curvature_1_m: 5.0}\n    - {length_m: 2.5}\n"
-      "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n");
-  EXPECT_EQ(run(bend, 60.0), exit_status::kMissionFailed) << output_;
-  ASSERT_TRUE(report_.is_object()) << output_;
-  const double lost_s = event_s("line_lost");
-  ASSERT_TRUE(std::isfinite(lost_s)) << report_["events"];
-  EXPECT_EQ(state_s("search line or object", lost_s), lost_s);
-  const double found_s = event_s("line_found", lost_s);
-  ASSERT_TRUE(std::isfinite(found_s)) << report_["events"];
-  EXPECT_TRUE(std::isfinite(event_s("end_of_line", found_s))) << report_["events"];
 }
 
 }  // namespace
