@@ -21,14 +21,14 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr auto kPoll = 20ms;
-constexpr auto kRateWindow = 2s;
+constexpr auto kRateWindow = 3500ms;
 
 struct Options {
   ViewOptions view;
   bool watch = false;
 };
 
-/// Ticks per second of each component, from two of its statuses.
+/// Ticks per second of each component, from two of its statuses that came while this program watched.
 class RateMeter {
  public:
   void add(const RunView& view) {
@@ -37,7 +37,10 @@ class RateMeter {
       auto& mark = marks_[name];
       if (status.tick == mark.tick) continue;
       if (mark.tick < 0 || status.tick < mark.tick) {
-        mark = {now, status.tick, mark.rate_hz};
+        mark = {now, status.tick, mark.rate_hz, false};
+      } else if (!mark.live) {
+        // The first one was kept for late readers: when it was written is not known, so time begins with the second.
+        mark = {now, status.tick, mark.rate_hz, true};
       } else if (now - mark.at > 200ms) {
         mark.rate_hz = static_cast<double>(status.tick - mark.tick) / std::chrono::duration<double>(now - mark.at).count();
         mark.at = now;
@@ -56,6 +59,7 @@ class RateMeter {
     Clock::time_point at{};
     std::int64_t tick = -1;
     double rate_hz = std::nan("");
+    bool live = false;  ///< came while this program watched
   };
   std::map<std::string, Mark> marks_;
 };
