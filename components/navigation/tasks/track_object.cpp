@@ -13,13 +13,14 @@ struct TrackState {
   SteeringState steering;
   bool leaving = false;
   double leaving_s = 0.0;
+  int leaves = 0;             ///< times it went away
   bool turning = false;
   double first_distance_m = 0.0;
   double progress = 0.0;
   int missed = 0;             ///< images in a row in which it should have been seen and was not
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(steering, leaving, leaving_s, turning, first_distance_m, progress, missed);
+    archive(steering, leaving, leaving_s, leaves, turning, first_distance_m, progress, missed);
   }
 };
 
@@ -84,19 +85,25 @@ class TrackObject : public StatefulTask<TrackState> {
     } else if (range_m <= config.too_near_m || (range_m <= config.reach_m && state_.turning)) {
       state_.leaving = true;
       state_.leaving_s = 0.0;
+      ++state_.leaves;
     }
   }
 
  private:
+  // Each time farther: a body that turns to an object abeam too near to it only circles it.
   void leave(const TaskInput& input, Grip& grip, const Sighting& thing, double turn_rad, TaskOutput& output) {
     constexpr double kLeave_s = 12.0;
+    constexpr double kFarther_m = 0.35;
+    constexpr double kLonger_s = 4.0;
+    constexpr int kMostFarther = 3;
+    const int farther = std::min(state_.leaves - 1, kMostFarther);
     state_.leaving_s += input.tick.dt_s();
     const bool backwards = std::cos(turn_rad) > 0.0;
     undulate(input.config.travel, 0.0, backwards ? -1.0 : 1.0, grip, output);
     output.phase = backwards ? "back off" : "leave";
-    const bool away = (thing.p_M() - input.X_MH.p).norm() >= input.config.track.away_m &&
+    const bool away = (thing.p_M() - input.X_MH.p).norm() >= input.config.track.away_m + kFarther_m * farther &&
                       nearest_module_m(input, thing.p_M()) >= input.config.search.near_m;
-    if (!away && state_.leaving_s < kLeave_s) return;
+    if (!away && state_.leaving_s < kLeave_s + kLonger_s * farther) return;
     state_.leaving = false;
     state_.steering = {};
   }
