@@ -81,13 +81,23 @@ inline constexpr Topic<msg::MissionStatus> kMissionStatus{
     {22, "mission_status", "MissionStatus", "planner", 1, 8, false, "every tick", "state machine of Fig. 3"}};
 inline constexpr Topic<msg::MotionCommand> kMotionCommand{
     {23, "motion/command", "MotionCommand", "input", 1, 8, false, "on demand", "direct motion"}};
+inline constexpr Topic<msg::ParameterChange> kParameterChange{
+    {24, "parameter/change", "ParameterChange", "input", 8, 64, false, "on demand", "a parameter's new value"}};
+inline constexpr Topic<msg::ParameterList> kNavigationParameters{
+    {25, "parameter/navigation", "ParameterList", "navigation", 1, 8, false, "at the start, on change", "run-time parameters of navigation"}};
+inline constexpr Topic<msg::ParameterList> kControlParameters{
+    {26, "parameter/control", "ParameterList", "control", 1, 8, false, "at the start, on change", "run-time parameters of control"}};
+inline constexpr Topic<msg::ParameterList> kPerceptionParameters{
+    {27, "parameter/perception", "ParameterList", "perception", 1, 8, false, "at the start, on change", "run-time parameters of perception"}};
+inline constexpr Topic<msg::ParameterList> kGuidanceParameters{
+    {28, "parameter/guidance", "ParameterList", "guidance", 1, 8, false, "at the start, on change", "run-time parameters of guidance"}};
 
 /// Every member topic, by id.
 inline constexpr auto kAll = std::make_tuple(
     kJointState, kContactState, kImuState, kSceneDescription, kWorldState, kTouchedState, kCameraInfo, kCameraImage,
     kOverviewImage, kLinePercept, kObjectPercepts, kProcessedImage, kRobotPose, kFieldMap, kTaskCommand, kAuthority,
     kTaskStatus, kTaskEvent, kDesiredTrajectory, kMotionStatus, kJointCommand, kPlannerRequest, kMissionStatus,
-    kMotionCommand);
+    kMotionCommand, kParameterChange, kNavigationParameters, kControlParameters, kPerceptionParameters, kGuidanceParameters);
 inline constexpr std::size_t kCount = std::tuple_size_v<decltype(kAll)>;
 static_assert(kCount <= msg::kMaxTopics);
 

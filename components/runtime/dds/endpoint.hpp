@@ -53,6 +53,8 @@ CONSTRICTOR_DESCRIPTOR(ComponentStatus)
 CONSTRICTOR_DESCRIPTOR(RunControl)
 CONSTRICTOR_DESCRIPTOR(RunState)
 CONSTRICTOR_DESCRIPTOR(MotionCommand)
+CONSTRICTOR_DESCRIPTOR(ParameterChange)
+CONSTRICTOR_DESCRIPTOR(ParameterList)
 #undef CONSTRICTOR_DESCRIPTOR
 
 /// A writer that keeps its last `depth` samples for readers that come late or again. It never blocks: keep-last.

@@ -79,7 +79,7 @@ std::string idl_text(const std::string& name) {
 }
 
 const char* const kFiles[] = {"common", "plant", "simulation", "camera", "perception",
-                              "guidance", "task", "motion", "mission", "barrier"};
+                              "guidance", "task", "motion", "mission", "parameter", "barrier"};
 
 /// Counts over all fields of all types.
 struct Counter {
