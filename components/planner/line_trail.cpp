@@ -1,12 +1,31 @@
 #include "planner/line_trail.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace constrictor {
 namespace {
 constexpr double kSpacing_m = 0.3;
+constexpr double kNewGround_m = 0.45;
+constexpr double kFrontier_m = 1.5;
 constexpr std::size_t kMostCrumbs = 400;  // 120 m of line
+
+/// A point of frame G at a pose, in M.
+LinePoint in_map(const msg::RobotPose& pose, double x_m, double y_m) {
+  const double c = std::cos(pose.yaw_rad);
+  const double s = std::sin(pose.yaw_rad);
+  return {pose.x_m + c * x_m - s * y_m, pose.y_m + s * x_m + c * y_m, true};
+}
+/// The farthest point of the line in view, in M.
+LinePoint farthest(const msg::LinePercept& line, const msg::RobotPose& pose) {
+  const std::size_t count = std::min<std::size_t>(line.point_count, msg::kMaxPerceptPoints);
+  if (!line.visible || count == 0) return {};
+  const double x_m = line.x_m[count - 1];
+  const double y_m = line.y_m[count - 1];
+  return std::isfinite(x_m) && std::isfinite(y_m) ? in_map(pose, x_m, y_m) : LinePoint{};
+}
+
 }  // namespace
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
@@ -25,14 +44,28 @@ const Crumb* LineTrail::nearest(double x_m, double y_m) const {
 
 void LineTrail::record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound) {
   if (!line.visible || !std::isfinite(line.offset_m) || !std::isfinite(line.heading_rad) || !std::isfinite(line.lookahead_m)) return;
-  const double c = std::cos(pose.yaw_rad);
-  const double s = std::sin(pose.yaw_rad);
-  const double x_m = pose.x_m + c * line.lookahead_m - s * line.offset_m;
-  const double y_m = pose.y_m + s * line.lookahead_m + c * line.offset_m;
+  const auto [x_m, y_m, at_all] = in_map(pose, line.lookahead_m, line.offset_m);
   const Crumb* known = nearest(x_m, y_m);
   if (known && std::hypot(known->x_m - x_m, known->y_m - y_m) < kSpacing_m) return;
   if (crumbs_.size() >= kMostCrumbs) crumbs_.erase(crumbs_.begin());
   crumbs_.push_back({x_m, y_m, wrapped(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
+  if (outbound) frontier_ = {x_m, y_m, true};
+}
+
+bool LineTrail::at_frontier(double x_m, double y_m) const {
+  return frontier_.known && std::hypot(frontier_.x_m - x_m, frontier_.y_m - y_m) < kFrontier_m;
+}
+
+void LineTrail::note_beyond(const msg::LinePercept& line, const msg::RobotPose& pose) {
+  const LinePoint point = farthest(line, pose);
+  if (point.known && at_frontier(point.x_m, point.y_m)) beyond_ = point;
+}
+
+bool LineTrail::leads_on(const msg::LinePercept& line, const msg::RobotPose& pose) const {
+  const LinePoint point = farthest(line, pose);
+  if (!point.known || !at_frontier(point.x_m, point.y_m)) return false;
+  const Crumb* known = nearest(point.x_m, point.y_m);
+  return std::hypot(known->x_m - point.x_m, known->y_m - point.y_m) > kNewGround_m;
 }
 
 std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool outbound) const {
@@ -44,8 +77,12 @@ std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool 
 std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound) const {
   constexpr double kBeside_m = 0.5;
   constexpr double kJoinAhead_m = 0.6;
+  constexpr double kArrived_m = 0.3;
   const Crumb* crumb = nearest(pose.x_m, pose.y_m);
   if (!crumb) return std::nullopt;
+  if (outbound && beyond_.known && at_frontier(pose.x_m, pose.y_m) && std::hypot(beyond_.x_m - pose.x_m, beyond_.y_m - pose.y_m) > kArrived_m) {
+    return std::atan2(beyond_.y_m - pose.y_m, beyond_.x_m - pose.x_m);
+  }
   if (std::hypot(crumb->x_m - pose.x_m, crumb->y_m - pose.y_m) < kBeside_m) return direction_rad(pose, outbound);
   const double way = outbound ? kJoinAhead_m : -kJoinAhead_m;
   const double x_m = crumb->x_m + way * std::cos(crumb->outbound_rad);
@@ -55,6 +92,7 @@ std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool ou
 
 void LineTrail::reverse() {
   for (Crumb& crumb : crumbs_) crumb.outbound_rad = wrapped(crumb.outbound_rad + std::numbers::pi);
+  frontier_.known = beyond_.known = false;
 }
 
 }  // namespace constrictor

@@ -54,6 +54,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
   count(memory_.line_images, inputs.line->visible && inputs.line->colour == config_.line_colour);
   if (any_zone && any_zone->range_m < 2.0) memory_.zone_seen_s = memory_.active_s;
+  if (inputs.pose && !holding() && inputs.line->colour == config_.line_colour) memory_.trail.note_beyond(*inputs.line, *inputs.pose);
   // The head looks along the course only once the line has been followed for a moment.
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
   if (follows && inputs.pose && memory_.line_images >= config_.confirm_images && memory_.active_s - memory_.entered_s > 1.0) {
@@ -92,8 +93,13 @@ std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) c
 
 bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
   if (!inputs.pose) return true;
+  if (leads_on(inputs)) return true;
   const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
   return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
+}
+
+bool MissionPlanner::leads_on(const PlannerInputs& inputs) const {
+  return !holding() && inputs.line && inputs.pose && memory_.trail.leads_on(*inputs.line, *inputs.pose);
 }
 
 bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
@@ -106,6 +112,7 @@ bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
 // While an empty body turns on the spot it is curled up: its course lags behind the head's turn.
 bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   if (!leads_right(inputs)) return false;
+  if (leads_on(inputs)) return true;
   const bool curled = !holding() && inputs.pose && std::abs(wrapped(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
   return !curled;
 }

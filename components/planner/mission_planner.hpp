@@ -112,6 +112,8 @@ class MissionPlanner {
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
   /// Whether the line leads the way the state wants: by the trail, if there is one.
   [[nodiscard]] bool leads_right(const PlannerInputs& inputs) const;
+  /// Whether the line in view leads the empty robot on to where it has not been.
+  [[nodiscard]] bool leads_on(const PlannerInputs& inputs) const;
   /// [rad] heading in M in which the robot moves: of the straightened body, with an object in the U of the head.
   [[nodiscard]] double course_rad(const msg::RobotPose& pose) const { return holding() ? pose.yaw_rad : pose.body_yaw_rad; }
   /// [rad] by which the course would have to turn left to lead to what is searched for, or back to the line and along it the

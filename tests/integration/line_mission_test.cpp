@@ -20,5 +20,24 @@ TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByTheirCamera) {
   for (const auto& process : report_["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
 }
 
+// A bend sharper than the snake can follow: 0.2 m of radius, through 109 degrees.
+TEST_F(MissionRun, ALineLostBehindASharpBendIsFoundAgainAndFollowedToItsEnd) {
+  const std::string bend = scenario(
+      "name: sharp_bend\nline:\n  colour: blue\n  width_m: 0.05\n  begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: 2.0}\n"
+      "    - {length_m: 0.38, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
+      "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n");
+  EXPECT_EQ(run(bend, 40.0), exit_status::kMissionFailed) << output_;  // there is no object to fetch
+  ASSERT_TRUE(report_.is_object()) << output_;
+  const double lost_s = event_s("line_lost");
+  ASSERT_TRUE(std::isfinite(lost_s)) << report_["events"];
+  EXPECT_NEAR(state_s("search line or object", lost_s - 0.05), lost_s, 0.05);
+  const double found_s = event_s("line_found", lost_s);
+  EXPECT_LT(found_s, lost_s + 20.0) << report_["events"];
+  // 3 m on: it was not the part that it came from.
+  const double ended_s = event_s("end_of_line", found_s);
+  EXPECT_GT(ended_s, found_s + 2.5) << report_["events"];
+  EXPECT_LT(report_["pose_error"]["rms_m"], 0.25);
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -50,6 +50,38 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
   }
 }
 
+TEST(LineTrail, LeadsToWhereABendWasSeenLastAndOnOverNewGroundOnly) {
+  // Along x for 2 m, then a corner of 110 degrees to the left.
+  LineTrail trail;
+  msg::LinePercept line{};
+  line.visible = true;
+  line.lookahead_m = 0.35;
+  line.point_count = 1;
+  msg::RobotPose pose{};
+  const auto see = [&](double x_m, double y_m) {  // a point of M, from the pose
+    line.x_m[0] = std::cos(pose.yaw_rad) * (x_m - pose.x_m) + std::sin(pose.yaw_rad) * (y_m - pose.y_m);
+    line.y_m[0] = -std::sin(pose.yaw_rad) * (x_m - pose.x_m) + std::cos(pose.yaw_rad) * (y_m - pose.y_m);
+  };
+  for (pose.x_m = 0.0; pose.x_m < 1.65; pose.x_m += 0.05) {
+    see(std::min(2.0, pose.x_m + 0.8), pose.x_m > 1.5 ? 0.3 : 0.0);
+    trail.note_beyond(line, pose);
+    trail.record(line, pose, true);
+  }
+  pose.x_m = 2.3;  // lost, and run past the corner
+  pose.yaw_rad = 0.3;
+  EXPECT_NEAR(*trail.heading_rad(pose, true), std::atan2(0.3, -0.3), 1e-9);
+  EXPECT_NEAR(std::abs(wrapped(*trail.heading_rad(pose, false))), std::numbers::pi, 0.3);  // the way back is not concerned
+  const double corner_rad = 110.0 / 180.0 * std::numbers::pi;
+  see(2.0 + 0.9 * std::cos(corner_rad), 0.9 * std::sin(corner_rad));
+  EXPECT_TRUE(trail.leads_on(line, pose));
+  see(1.0, 0.0);  // where it came from
+  EXPECT_FALSE(trail.leads_on(line, pose));
+  see(0.3, 0.8);  // new ground, but not where the line was followed last
+  EXPECT_FALSE(trail.leads_on(line, pose));
+  line.x_m[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(trail.leads_on(line, pose));
+}
+
 TEST(LineTrail, ReversedLeadsTheOtherWayAndUnknownIsSaid) {
   LineTrail trail;
   msg::RobotPose pose{};
