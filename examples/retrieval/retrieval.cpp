@@ -11,7 +11,7 @@ constexpr int kSure = 3;               // images in a row until something counts
 constexpr double kObjectNear_m = 1.6;  // an object this near is worth an approach
 constexpr double kZoneNear_m = 1.7;    // a zone this near is where to put down
 constexpr double kAligned_rad = 1.0;   // the course is the wanted way
-constexpr double kStraight_rad = 0.7;  // the same for a body that is curled up from turning
+constexpr double kStraight_rad = 0.6;  // of head against body: beyond it an empty body is too curled up from turning to follow a line
 constexpr double kAfterEnd_s = 8.0;    // just after the line's end only its stump can be in view
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * kPi); }
@@ -208,8 +208,8 @@ std::optional<double> Retrieval::off_line_rad() const {
 
 bool Retrieval::may_follow() const {
   const auto off_rad = off_line_rad();
-  const bool curled = !loaded() && (stage_ == kTurn || looking_ == kRotate);
-  return !off_rad || std::abs(*off_rad) < (curled ? kStraight_rad : kAligned_rad);
+  const bool curled = !loaded() && std::abs(wrapped(pose_.yaw_rad - pose_.body_yaw_rad)) > kStraight_rad;
+  return !curled && (!off_rad || std::abs(*off_rad) < kAligned_rad);
 }
 
 std::optional<double> Retrieval::to_turn_rad() const {

@@ -29,7 +29,7 @@ class Mission : public ExampleRun {
 };
 
 TEST_F(Mission, OnTheInstalledPackageRedIsRetrievedBeforeGreen) {
-  Process launcher = run("case_study", {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: ", "max_sim_time_s: 1")});
+  Process launcher = run("red_near", {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: ", "max_sim_time_s: 1")});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output();
   Witness witness(domain);
