@@ -1,0 +1,200 @@
+// A robot that is given tasks and nothing else, in a world of the test's own: physics, rendered camera, perception, guidance,
+// navigation and control in one process. What navigation says is compared with the ground truth that only the test sees.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/camera/camera.hpp"
+#include "control/control.hpp"
+#include "guidance/guidance.hpp"
+#include "navigation/navigation.hpp"
+#include "perception/perception.hpp"
+#include "runtime/local_run.hpp"
+#include "runtime/share.hpp"
+#include "sim/physics/physics.hpp"
+
+namespace constrictor::testing {
+
+/// A place on the ground with a direction, in W.
+struct Place {
+  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
+  [[nodiscard]] double distance_m(const Place& other) const { return std::hypot(other.x_m - x_m, other.y_m - y_m); }
+  /// [rad] of another place as seen from here, positive left.
+  [[nodiscard]] double bearing_rad(const Place& other) const {
+    return std::remainder(std::atan2(other.y_m - y_m, other.x_m - x_m) - yaw_rad, 2.0 * M_PI);
+  }
+};
+
+inline Place place_of(const msg::Pose3& pose) {
+  const auto& q = pose.orientation;
+  return {pose.position_m.x, pose.position_m.y, std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
+}
+
+/// Writes the task commands that the test puts into its queue, in the place of the component `input`.
+class TaskQueue : public StatefulComponent<int> {
+ public:
+  TaskQueue(Wiring& wiring, std::shared_ptr<std::deque<msg::TaskCommand>> queue)
+      : out_(wiring.output(topics::kTaskCommand)), queue_(std::move(queue)) {}
+  void step(const Tick&) override {
+    for (; !queue_->empty(); queue_->pop_front()) out_.write(queue_->front());
+  }
+
+ private:
+  Output<msg::TaskCommand> out_;
+  std::shared_ptr<std::deque<msg::TaskCommand>> queue_;
+};
+
+class Behaviour : public ::testing::Test {
+ protected:
+  Behaviour() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-behaviour-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+  }
+  ~Behaviour() override {
+    run_.reset();
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+
+  /// What happened, with the truth at that moment.
+  struct Happened {
+    double time_s = 0.0;
+    msg::TaskEvent event{};
+    Place head, object;
+  };
+
+  /// Begins a run in this world (the text of a scenario file); with another configuration of navigation where the default's
+  /// `from` is replaced by `to`.
+  void begin(const std::string& world, const std::string& from = "", const std::string& to = "") {
+    constrictor::Setup setup;
+    setup.robot_file = share_path("components/robot/mamba.yaml");
+    setup.scenario_file = dir_ / "scenario.yaml";
+    setup.seed = 1;
+    std::ofstream(setup.scenario_file) << world;
+    std::map<std::string, std::filesystem::path> config_files;
+    if (!from.empty()) {
+      std::ifstream file(share_path("components/navigation/navigation.yaml"));
+      std::string text{std::istreambuf_iterator<char>(file), {}};
+      ASSERT_NE(text.find(from), std::string::npos) << from;
+      std::ofstream(dir_ / "navigation.yaml") << text.replace(text.find(from), from.size(), to);
+      config_files["navigation"] = dir_ / "navigation.yaml";
+    }
+    run_ = std::make_unique<LocalRun>(
+        std::vector<ComponentFactory>{make_physics_factory(), make_camera_factory(), make_perception_factory(), make_guidance_factory(),
+                                      make_navigation_factory(), make_control_factory(),
+                                      {"input", [queue = queue_](Wiring& wiring, const constrictor::Setup&) {
+                                         return std::make_unique<TaskQueue>(wiring, queue);
+                                       }}},
+        setup, config_files);
+    run_->subscribe<msg::TaskEvent>(topics::kTaskEvent, [this](const msg::TaskEvent& event) {
+      happened.push_back({run_->time_s(), event, head(), object_count() > 0 ? object() : Place{}});
+      std::printf("%7.2f s  task %u event %u goal state %u %s\n", run_->time_s(), event.task, event.event, event.goal_state, event.detail);
+    });
+    run_->subscribe<msg::TouchedState>(topics::kTouchedState, [this](const msg::TouchedState& touched) {
+      for (int i = 0; i < touched.contact_count; ++i) {
+        if (touched.kind[i] == msg::kTouchedObject) object_touched_s = run_->time_s();
+      }
+    });
+    run_->advance(2);  // for the first messages
+  }
+
+  /// Starts a task; its goal id.
+  std::uint64_t start(std::uint8_t task, const std::function<void(msg::TaskParameters&)>& parameters) {
+    msg::TaskCommand command{};
+    command.goal_id = ++goal_;
+    command.task = task;
+    command.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+    parameters(command.parameters);
+    queue_->push_back(command);
+    return goal_;
+  }
+  std::uint64_t start(std::uint8_t task, std::uint8_t msg::TaskParameters::*parameter, std::uint8_t value) {
+    return start(task, [&](msg::TaskParameters& p) { p.*parameter = value; });
+  }
+
+  /// Goes on until `condition` holds; false if it does not within so much simulated time.
+  bool until(const std::function<bool()>& condition, double bound_s) {
+    for (const double end_s = run_->time_s() + bound_s; run_->time_s() < end_s; run_->advance(1)) {
+      if (condition()) return true;
+    }
+    return condition();
+  }
+  bool until_event(std::uint8_t event, double bound_s) {
+    const std::size_t from = happened.size();
+    return until([&] { return first(event, from) != nullptr; }, bound_s);
+  }
+  /// Until the newest goal has ended; how.
+  std::uint8_t until_end(double bound_s) {
+    const auto ended = [&]() -> std::uint8_t {
+      for (const auto& h : happened) {
+        if (h.event.goal_id == goal_ && h.event.event == msg::kEventNone && h.event.goal_state > msg::kGoalRunning) return h.event.goal_state;
+      }
+      return msg::kGoalIdle;
+    };
+    until([&] { return ended() != msg::kGoalIdle; }, bound_s);
+    return ended();
+  }
+  /// First event of this kind among those from index `from` on; null if there is none.
+  [[nodiscard]] const Happened* first(std::uint8_t event, std::size_t from = 0) const {
+    for (std::size_t i = from; i < happened.size(); ++i) {
+      if (happened[i].event.event == event) return &happened[i];
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] const msg::WorldState& world() const { return *run_->latest(topics::kWorldState); }
+  [[nodiscard]] Place head() const { return place_of(world().module_poses[0]); }
+  [[nodiscard]] Place module(std::size_t index) const { return place_of(world().module_poses[index]); }
+  [[nodiscard]] int object_count() const { return world().object_count; }
+  [[nodiscard]] Place object() const { return place_of(world().object_poses[0]); }
+  /// [m] between the object's centre and that of the module nearest to it, on the ground plan.
+  [[nodiscard]] double nearest_module_m() const {
+    double nearest_m = 1e9;
+    for (std::size_t m = 0; m < world().module_count; ++m) nearest_m = std::min(nearest_m, module(m).distance_m(object()));
+    return nearest_m;
+  }
+  /// Whether a point on the ground lies in the camera's picture: a lens of 90 degrees that looks ahead from over the nose.
+  static bool in_view(const Place& head, const Place& point, double most_m) {
+    constexpr double kCameraAhead_m = 0.06;
+    const Place camera{head.x_m + kCameraAhead_m * std::cos(head.yaw_rad), head.y_m + kCameraAhead_m * std::sin(head.yaw_rad), head.yaw_rad};
+    return std::abs(camera.bearing_rad(point)) < 0.25 * M_PI && camera.distance_m(point) < most_m;
+  }
+  /// [m] the nearest point of the line in the camera's picture; infinite if there is none.
+  [[nodiscard]] double line_in_view_m() const {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const Place& point : line()) {
+      if (in_view(head(), point, 100.0)) nearest_m = std::min(nearest_m, head().distance_m(point));
+    }
+    return nearest_m;
+  }
+  [[nodiscard]] std::vector<Place> line() const {
+    const auto& scene = *run_->latest(topics::kSceneDescription);
+    std::vector<Place> points;
+    for (int i = 0; i < scene.line_point_count; ++i) points.push_back({scene.line_x_m[i], scene.line_y_m[i], 0.0});
+    return points;
+  }
+  [[nodiscard]] double time_s() const { return run_->time_s(); }
+
+  std::vector<Happened> happened;
+  double object_touched_s = 0.0;  ///< when the robot, or anything else, last touched the object
+  std::unique_ptr<LocalRun> run_;
+
+ private:
+  std::filesystem::path dir_;
+  std::shared_ptr<std::deque<msg::TaskCommand>> queue_ = std::make_shared<std::deque<msg::TaskCommand>>();
+  std::uint64_t goal_ = 0;
+};
+
+}  // namespace constrictor::testing

@@ -1,0 +1,102 @@
+// Tables III to VIII (search, track, pregrasp): objects are found, reached and lost by what the camera sees of them; who loses them
+// is a scripted force that throws them away.
+#include "behaviour_run.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+constexpr double kRadius_m = 0.085;
+
+std::string scene(const std::string& at, const std::string& more = "") {
+  return "name: one\nobjects: [{colour: green, frame: world, position_m: " + at +
+         ", shape: cylinder, radius_m: 0.085, height_m: 0.15, mass_kg: 0.4}]\n"
+         "start: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n" + more;
+}
+/// The object is thrown away at this time: 40 N for 0.2 s make 20 m/s.
+std::string thrown(double at_s) {
+  return "perturbations: [{object: 0, at_s: " + std::to_string(at_s) + ", duration_s: 0.2, force_n: [10, 40, 15]}]\n";
+}
+
+class ObjectEvents : public Behaviour {
+ protected:
+  void start_green(std::uint8_t task) { start(task, &msg::TaskParameters::object_colour, msg::kColourGreen); }
+  void find() {
+    start_green(msg::kTaskSearchObject);
+    ASSERT_EQ(until_end(20.0), msg::kGoalSucceeded);
+  }
+};
+
+TEST_F(ObjectEvents, SearchingFindsAnObjectOnceTheHeadHasTurnedToIt) {
+  begin(scene("[0.5, 1.3]"));
+  ASSERT_FALSE(in_view(head(), object(), 10.0));
+  start_green(msg::kTaskSearchObject);
+  ASSERT_TRUE(until_event(msg::kEventObjectFound, 20.0));
+  const Happened& found = *first(msg::kEventObjectFound);
+  EXPECT_EQ(found.event.colour, msg::kColourGreen);
+  // In the picture, its edge at least: it is 0.085 m wide to each side.
+  EXPECT_LT(std::abs(found.head.bearing_rad(found.object)), 0.25 * M_PI + kRadius_m / found.head.distance_m(found.object));
+  EXPECT_GT(found.head.yaw_rad, 0.2) << "the head had to turn left";
+  EXPECT_EQ(until_end(3.0), msg::kGoalSucceeded);
+}
+
+TEST_F(ObjectEvents, SearchingDoesNotTakeAnObjectOfAnotherColour) {
+  begin(scene("[1.2, 0.1]"));
+  start(msg::kTaskSearchObject, &msg::TaskParameters::object_colour, msg::kColourRed);
+  EXPECT_FALSE(until_event(msg::kEventObjectFound, 4.0));
+  EXPECT_TRUE(in_view(head(), object(), 3.0) || std::abs(head().yaw_rad) > 0.3);
+}
+
+// With more time to confirm than the default, which is as long as it takes to notice that something is gone.
+TEST_F(ObjectEvents, SearchingLosesAnObjectThatVanishesAfterItWasFound) {
+  begin(scene("[1.2, 0.1]", thrown(0.6)), "confirm_s: 1.0", "confirm_s: 3.0");
+  start_green(msg::kTaskSearchObject);
+  ASSERT_TRUE(until_event(msg::kEventObjectFound, 3.0));
+  EXPECT_LT(first(msg::kEventObjectFound)->time_s, 0.6);
+  ASSERT_TRUE(until_event(msg::kEventObjectLost, 3.0));
+  const Happened& lost = *first(msg::kEventObjectLost);
+  EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
+  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // ten images without it
+  EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "it goes on searching";
+}
+
+TEST_F(ObjectEvents, TrackingReachesAnObject) {
+  begin(scene("[2.2, 0.4]"));
+  find();
+  start_green(msg::kTaskTrackObject);
+  ASSERT_TRUE(until_event(msg::kEventObjectReached, 20.0));
+  const Happened& reached = *first(msg::kEventObjectReached);
+  const double range_m = reached.head.distance_m(reached.object) - kRadius_m;
+  std::printf("reached at %.2f m, %.2f rad\n", range_m, reached.head.bearing_rad(reached.object));
+  EXPECT_NEAR(range_m, 0.9, 0.15);  // navigation's `reach_m`
+  EXPECT_LT(std::abs(reached.head.bearing_rad(reached.object)), 0.45);  // `reach_bearing_rad` is 0.3, of the mean of a swaying head
+  EXPECT_EQ(until_end(1.0), msg::kGoalSucceeded);
+}
+
+TEST_F(ObjectEvents, TrackingLosesAnObjectThatVanishes) {
+  begin(scene("[2.6, 0.2]", thrown(3.0)));
+  find();
+  start_green(msg::kTaskTrackObject);
+  ASSERT_TRUE(until_event(msg::kEventObjectLost, 8.0));
+  const Happened& lost = *first(msg::kEventObjectLost);
+  EXPECT_FALSE(first(msg::kEventObjectReached));
+  EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
+  EXPECT_NEAR(lost.time_s, 3.0 + 1.0, 0.6);
+  EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
+}
+
+TEST_F(ObjectEvents, PregraspIsLostWhenTheObjectVanishes) {
+  begin(scene("[1.9, 0.1]", thrown(2.5)));
+  find();
+  start_green(msg::kTaskPregrasp);
+  ASSERT_TRUE(until_event(msg::kEventObjectPregraspLost, 90.0));
+  const Happened& lost = *first(msg::kEventObjectPregraspLost);
+  EXPECT_GT(lost.time_s, 2.5);
+  EXPECT_GT(lost.head.distance_m(lost.object), 2.0);
+  EXPECT_FALSE(first(msg::kEventObjectPregrasped));
+  EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
+  start(msg::kTaskGrasp, [](msg::TaskParameters&) {});
+  EXPECT_EQ(until_end(1.0), msg::kGoalRefused);
+}
+
+}  // namespace
+}  // namespace constrictor::testing
