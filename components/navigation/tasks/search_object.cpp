@@ -1,5 +1,5 @@
-// Search object (Tables III, IV): where an object of the colour was known the body turns and goes there; otherwise, the head looks to both sides, the body advances and turns on the spot, until an object of the
-// colour is seen; it must stay in view for a moment.
+// Search object (Tables III, IV): where an object of the colour was known the body turns and goes there; otherwise, the head looks to
+// both sides, the body advances and turns on the spot, until an object of the colour is seen; it must stay in view for a moment.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -16,13 +16,13 @@ struct SearchState {
   int looks = 0;             ///< completed looks to both sides
   double phase_s = 0.0;
   double turned_rad = 0.0;
-  double last_yaw_rad = 0.0;
+  double last_course_rad = 0.0;
   Pose2 from;                ///< where the phase began
   int returns = 0;           ///< times it went to where the object was known to be
   double side = 1.0;         ///< of the turn towards it, +1 left
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, looks, phase_s, turned_rad, last_yaw_rad, from, returns, side);
+    archive(phase, looks, phase_s, turned_rad, last_course_rad, from, returns, side);
   }
 };
 
@@ -38,8 +38,9 @@ class SearchObject : public StatefulTask<SearchState> {
     const std::uint8_t colour = input.parameters.object_colour;
     const Sighting& thing = input.things.objects[colour];
     state_.phase_s += input.tick.dt_s();
-    state_.turned_rad += angle_between(input.X_MH.yaw_rad, state_.last_yaw_rad);
-    state_.last_yaw_rad = input.X_MH.yaw_rad;
+    const double course_rad = body_course_rad(input);  // the head may just have looked aside
+    state_.turned_rad += angle_between(course_rad, state_.last_course_rad);
+    state_.last_course_rad = course_rad;
     output.progress = 1.0 - 1.0 / (1.0 + 0.25 * state_.looks);
 
     if (state_.phase == kConfirm) {
@@ -70,7 +71,7 @@ class SearchObject : public StatefulTask<SearchState> {
     state_.phase = phase;
     state_.phase_s = 0.0;
     state_.turned_rad = 0.0;
-    state_.last_yaw_rad = input.X_MH.yaw_rad;
+    state_.last_course_rad = body_course_rad(input);
     state_.from = input.X_MH;
   }
 
