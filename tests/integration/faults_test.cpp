@@ -1,0 +1,204 @@
+// What must not be obeyed, between real processes: commands that are no numbers, of another robot's size, of another run or of long ago,
+// silence, and files that say nonsense.
+#include <cmath>
+
+#include "integration/cli_fixture.hpp"
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/host.hpp"
+#include "runtime/topics.hpp"
+#include "support/swaying_control.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kMaxSpeed_rad_s = 4.0;  // of Mamba's joints (components/robot/mamba.yaml)
+constexpr std::int64_t kTicks = 400;
+
+/// Joints, truth and the members' health, as an observer that misses nothing.
+class Watcher {
+ public:
+  explicit Watcher(std::uint32_t domain)
+      : domain_(domain), joints_(reader<msg::JointState>(std::string(topics::kJointState.name))),
+        world_(reader<msg::WorldState>(std::string(topics::kWorldState.name))),
+        commands_(reader<msg::JointCommand>(std::string(topics::kJointCommand.name))),
+        status_(dds::Reader<msg::ComponentStatus>::observer(domain_.participant(), "component_status", 16)) {}
+  void poll() {
+    joints_.take([this](const msg::JointState& m) { joints[m.header.tick] = m; });
+    world_.take([this](const msg::WorldState& m) { hashes[m.header.tick].assign(m.state_hash, m.state_hash + 32); });
+    commands_.take([this](const msg::JointCommand& m) { command = m; });
+    status_.take([this](const msg::ComponentStatus& m) { status[m.component] = m; });
+  }
+  [[nodiscard]] std::int64_t tick() const { return joints.empty() ? -1 : joints.rbegin()->first; }
+  [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
+
+  std::map<std::int64_t, msg::JointState> joints;
+  std::map<std::int64_t, std::vector<std::uint8_t>> hashes;
+  std::map<std::string, msg::ComponentStatus> status;
+  msg::JointCommand command{};
+
+ private:
+  template <class T>
+  [[nodiscard]] dds::Reader<T> reader(const std::string& topic) const {
+    return dds::Reader<T>::member(domain_.participant(), topic);
+  }
+  dds::Domain domain_;
+  dds::Reader<msg::JointState> joints_;
+  dds::Reader<msg::WorldState> world_;
+  dds::Reader<msg::JointCommand> commands_;
+  dds::Reader<msg::ComponentStatus> status_;
+};
+
+class Faults : public CliFixture {
+ protected:
+  /// A robot whose control moves one joint, and is faulty for a while; until its end, watched. `meanwhile` is called again and again.
+  void run(const std::string& fault, const std::function<void(Watcher&)>& meanwhile = [](Watcher&) {}) {
+    write("sway.yaml", "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/line.yaml\npatience_s: 20\nprocesses:\n"
+                       "  - {components: [physics]}\n  - {components: [control], program: swaying_control, environment: ['CONSTRICTOR_FAULT=" +
+                           fault + "']}\n");
+    Process launcher = start({"run", "--manifest", (dir_ / "sway.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "2x",
+                              "--max-sim-time", std::to_string(0.02 * kTicks)});
+    ASSERT_TRUE(eventually([&] { return domain() != 0 || !launcher.running(); }));
+    watcher_ = std::make_unique<Watcher>(domain());
+    ASSERT_TRUE(eventually([&] { watcher_->poll(); meanwhile(*watcher_); return !launcher.running(); }, 60s));
+    watcher_->poll();
+    EXPECT_EQ(launcher.wait(1s), exit_status::kMissionFailed) << launcher.output() << launcher.errors();
+    ASSERT_GE(watcher_->tick(), kTicks - 2) << launcher.output() << launcher.errors();
+    ASSERT_LT(watcher_->joints.begin()->first, kFaultFrom - 20) << "met the run too late";
+  }
+  [[nodiscard]] double angle_rad(std::int64_t tick) const { return watcher_->joints.at(tick).position_rad[kSwayingJoint]; }
+  /// [rad] by how much the joint moved within these ticks.
+  [[nodiscard]] double range_rad(std::int64_t from, std::int64_t to) const {
+    double least = 1e9, most = -1e9;
+    for (std::int64_t k = from; k < to; ++k) {
+      least = std::min(least, angle_rad(k));
+      most = std::max(most, angle_rad(k));
+    }
+    return most - least;
+  }
+  /// Messages refused by a component, by the report of the whole run.
+  [[nodiscard]] long refused(const std::string& name) const {
+    const nlohmann::json told = report("r");
+    for (const auto& process : told["processes"]) {
+      if (process["name"] == name) return process["refused"];
+    }
+    return -1;
+  }
+  /// Nothing obeyed in the time of the fault, and nothing jerked, then or when it was over.
+  void expect_held() const {
+    // A command older than five ticks is not obeyed (sim/physics/physics.yaml); a third of a second until the joint has come to rest.
+    EXPECT_LT(range_rad(kFaultFrom + 20, kFaultTo), 0.02);
+    const double asked_rad = std::abs(sway_rad(kFaultTo) - sway_rad(kFaultFrom + 20));
+    EXPECT_GT(asked_rad, 0.1) << "the joint would have moved";
+    EXPECT_GT(range_rad(kFaultTo + 40, kTicks - 2), 1.5 * kSwayHalf_rad) << "obeyed again";
+    double fastest_rad_s = 0.0;
+    for (const auto& [tick, state] : watcher_->joints) {
+      for (int j = 0; j < state.joint_count; ++j) {
+        ASSERT_TRUE(std::isfinite(state.position_rad[j]) && std::isfinite(state.torque_nm[j])) << "tick " << tick;
+        fastest_rad_s = std::max(fastest_rad_s, std::abs(state.velocity_rad_s[j]));
+      }
+    }
+    EXPECT_LE(fastest_rad_s, kMaxSpeed_rad_s);
+  }
+  [[nodiscard]] std::string last_refusal(const std::string& component) const {
+    const auto found = watcher_->status.find(component);
+    return found == watcher_->status.end() ? "(not heard of)" : found->second.last_refusal;
+  }
+
+  std::unique_ptr<Watcher> watcher_;
+};
+
+TEST_F(Faults, ACommandThatIsNoNumberIsRefusedWholeAndThePostureHeld) {
+  run("nan");
+  ASSERT_FALSE(HasFatalFailure());
+  expect_held();
+  EXPECT_EQ(refused("control"), kFaultTo - kFaultFrom) << "it does not even leave its writer";
+  EXPECT_EQ(refused("physics"), 0);
+  EXPECT_NE(last_refusal("control").find("joint_command.position_rad"), std::string::npos) << last_refusal("control");
+}
+
+TEST_F(Faults, ACommandOfAnotherSizeIsRefusedWholeAndThePostureHeld) {
+  run("count");
+  ASSERT_FALSE(HasFatalFailure());
+  expect_held();
+  EXPECT_EQ(refused("physics"), kFaultTo - kFaultFrom);
+  EXPECT_NE(last_refusal("physics").find("joint_command: "), std::string::npos) << last_refusal("physics");
+}
+
+TEST_F(Faults, AStaleCommandIsNotObeyedAnyMoreAndThePostureHeld) {
+  run("silence");
+  ASSERT_FALSE(HasFatalFailure());
+  expect_held();
+  EXPECT_EQ(refused("control") + refused("physics"), 0) << "silence is no message";
+}
+
+// Somebody else writes on the same topic: commands of another epoch, and this run's own ones of long ago, again.
+TEST_F(Faults, CommandsOfAnotherEpochAndOldOnesAgainChangeNothing) {
+  run("");
+  ASSERT_FALSE(HasFatalFailure());
+  ASSERT_EQ(range_rad(kFaultFrom, kFaultTo) > 0.1, true) << "without a fault the joint moves";
+  const std::vector<std::uint8_t> expected = watcher_->hashes.at(kTicks - 2);
+  watcher_.reset();  // one observer of a domain at a time
+  std::optional<dds::Writer<msg::JointCommand>> intruder;
+  msg::JointCommand old{};
+  std::int64_t written_at = 0;
+  int written = 0;
+  run("", [&](Watcher& watcher) {
+    if (watcher.tick() < 20) return;
+    if (!intruder) {
+      intruder.emplace(watcher.participant(), std::string(topics::kJointCommand.name), 8);
+      old = watcher.command;
+      old.position_rad[kSwayingJoint] = -1.0;
+    }
+    if (watcher.tick() < written_at + 10 || intruder->readers() < 1) return;
+    written_at = watcher.tick();
+    msg::JointCommand other = watcher.command;
+    other.header.epoch += 1;
+    other.position_rad[kSwayingJoint] = -1.0;
+    intruder->write(other);
+    intruder->write(old);
+    ++written;
+  });
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_EQ(watcher_->hashes.at(kTicks - 2), expected);
+  EXPECT_GT(written, 5);
+  EXPECT_GT(refused("physics"), 5);
+  EXPECT_NE(last_refusal("physics").find("of another epoch"), std::string::npos) << last_refusal("physics");
+}
+
+// The process that reads the file says what is wrong, the launcher passes it on, and everything ends.
+TEST_F(Faults, AComponentsBadConfigurationEndsTheRunWithFileLineKeyFoundAndAccepted) {
+  struct Case {
+    const char *component, *line, *wrong;
+    std::vector<std::string> said;
+    long lines_on = 0;
+  };
+  const std::vector<Case> cases = {
+      {"navigation", "  seat_time_s: 1.0", "  seat_time_s: 1.0\n  seat_tme_s: 1.0", {"seat_tme_s", "seat_time_s"}, 1},
+      {"navigation", "  found_after_images: 3", "  found_after: 3", {"line_watch.found_after_images", "found nothing"}},
+      {"navigation", "found_after_images: 3", "found_after_images: three", {"found_after_images", "three"}},
+      {"navigation", "seat_timeout_s: 20.0", "seat_timeout_s: -20.0", {"seat_timeout_s", "-20"}},
+      {"planner", "sequence: ", "sequence: [mauve] # ", {"sequence", "mauve", "green"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.wrong);
+    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/" + c.component + "/" + c.component + ".yaml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto at = text.find(c.line);
+    ASSERT_NE(at, std::string::npos) << c.line;
+    const auto number = c.lines_on + 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    write("bad.yaml", text.replace(at, std::string(c.line).size(), c.wrong));
+    EXPECT_EQ(command({"run", "short", "--config", std::string(c.component) + "=" + (dir_ / "bad.yaml").string(), "--report",
+                       (dir_ / "r").string()}),
+              exit_status::kConfiguration);
+    EXPECT_NE(output_.find(std::string(c.component) + ": configuration: "), std::string::npos) << output_;
+    EXPECT_NE(output_.find("bad.yaml:" + std::to_string(number)), std::string::npos) << output_;
+    for (const std::string& word : c.said) EXPECT_NE(output_.find(word), std::string::npos) << word << " in: " << output_;
+    EXPECT_NE(output_.find("accepted"), std::string::npos) << output_;
+  }
+}
+
+}  // namespace
+}  // namespace constrictor::testing
