@@ -32,10 +32,11 @@ function(constrictor_component name)
   target_link_libraries(${name} PRIVATE constrictor_${name} constrictor_runtime)
 endfunction()
 
-# constrictor_test(NAME [SERIAL] SOURCES ... LINK ... LABELS label [TIMEOUT s] [FIXTURE f]): a GoogleTest program, its cases discovered by
-# ctest. One label: gtest_discover_tests takes no list. FIXTURE: what must have been set up. SERIAL: nothing else runs beside it (tests of several processes, whose bounds are in wall time).
+# constrictor_test(NAME [SERIAL] [WHOLE] SOURCES ... LINK ... LABELS label [TIMEOUT s] [FIXTURE f]): a GoogleTest program, its cases discovered by
+# ctest. One label: gtest_discover_tests takes no list. FIXTURE: what must have been set up. SERIAL: nothing else runs beside it (tests of
+# several processes, whose bounds are in wall time). WHOLE: one ctest of all cases, which share what is dear to make.
 function(constrictor_test name)
-  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT;FIXTURE" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;WHOLE" "TIMEOUT;FIXTURE" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -44,6 +45,11 @@ function(constrictor_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE constrictor_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  if(ARG_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_SERIAL})
+    return()
+  endif()
   include(GoogleTest)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
                          RUN_SERIAL ${ARG_SERIAL} FIXTURES_REQUIRED "${ARG_FIXTURE}")

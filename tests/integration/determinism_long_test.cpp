@@ -1,0 +1,109 @@
+// The whole case study: the same state hash however it is spread, paced, loaded, stopped, killed or reset; another one for another seed
+// and for one ulp in one command.
+#include <cstdlib>
+#include <random>
+
+#include "integration/determinism_run.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class WholeCaseStudy : public DeterminismRun {
+ protected:
+  WholeCaseStudy() : DeterminismRun("case_study", 900s) {}
+
+  /// The hash of the run that all others are compared with: every component in a process of its own. Made once.
+  const std::string& reference() {
+    static const std::string hash = [this] {
+      Process process = start("reference");
+      const std::string found = hash_of("reference", process);
+      EXPECT_TRUE(report("reference")["success"]) << report("reference")["objects"];
+      std::printf("reference: %s, %d ticks, %.1f s of wall time\n", found.c_str(), report("reference")["ticks"].get<int>(),
+                  report("reference")["wall_time_s"].get<double>());
+      return found;
+    }();
+    return hash;
+  }
+  /// Total of the restarts that a run reports.
+  [[nodiscard]] int restarts(const std::string& name) const {
+    int sum = 0;
+    const nlohmann::json told = report(name);
+    for (const auto& process : told["processes"]) sum += process["restarts"].get<int>();
+    return sum;
+  }
+};
+
+TEST_F(WholeCaseStudy, Again) { EXPECT_EQ(run("again"), reference()); }
+
+TEST_F(WholeCaseStudy, AllInOneProcess) { EXPECT_EQ(run("one", {"--in-process"}), reference()); }
+
+TEST_F(WholeCaseStudy, TwoGroupings) {
+  EXPECT_EQ(run("two", {"--group", "physics,control,navigation"}), reference());
+  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}), reference());
+}
+
+TEST_F(WholeCaseStudy, CappedAtTwiceRealTime) { EXPECT_EQ(run("capped", {"--pace", "2x"}), reference()); }
+
+TEST_F(WholeCaseStudy, BothCoresLoadedByOthers) {
+  const std::vector<std::string> spin = {"/bin/sh", "-c", "while :; do :; done"};
+  Process first(spin), second(spin);
+  EXPECT_EQ(run("loaded"), reference());
+  EXPECT_TRUE(first.running() && second.running());
+}
+
+TEST_F(WholeCaseStudy, OtherFeaturesOfTheCpuMaskedForOneProcess) {
+  write_manifest("masked.yaml",
+                 {{"guidance", "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
+  EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), reference());
+}
+
+TEST_F(WholeCaseStudy, EachProcessStoppedInTurnOneOfThemForFifteenSeconds) { EXPECT_EQ(run_with_stops("perception", 15s), reference()); }
+
+// Between their first output and their TickDone, at ticks drawn anew each time.
+TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
+  constexpr int kDeaths = 20;
+  const std::string expected = reference();
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  fs::create_directory(dir_ / "deaths");
+  std::map<std::string, std::string> lines;
+  for (const auto& member : kRestartable) {
+    std::set<int> ticks;
+    while (ticks.size() < kDeaths) ticks.insert(10 + static_cast<int>(random() % 9000));
+    std::string list;
+    for (const int tick : ticks) list += (list.empty() ? "" : ",") + std::to_string(tick);
+    lines[member] = "    program: mortal_host\n    environment: ['CONSTRICTOR_DEATHS=" + list + "', 'CONSTRICTOR_DEATHS_DIR=" +
+                    (dir_ / "deaths").string() + "']\n";
+  }
+  write_manifest("mortal.yaml", lines);
+  EXPECT_EQ(run("killed", {"--manifest", (dir_ / "mortal.yaml").string()}), expected);
+  EXPECT_EQ(restarts("killed"), kDeaths * static_cast<int>(kRestartable.size()));
+}
+
+TEST_F(WholeCaseStudy, ResetOnTheWay) {
+  const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+  Process launcher = start("reset", {"--seed", "2"}, registry);
+  ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
+  Process reset({program("constrictor"), "reset", "1"}, registry);
+  ASSERT_EQ(reset.wait(60s), exit_status::kOk) << reset.output() << reset.errors();
+  EXPECT_EQ(hash_of("reset", launcher), reference());
+}
+
+TEST_F(WholeCaseStudy, AnotherSeedAndOneUlpAtTickThousandAreOtherRuns) {
+  EXPECT_NE(run("other", {"--in-process", "--seed", "2"}), reference());
+  write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
+  const std::map<std::string, std::string> at = {{"CONSTRICTOR_NUDGE_TICK", "1000"}};
+  const std::string nudged = run("nudged", {"--manifest", (dir_ / "nudged.yaml").string(), "--max-sim-time", "40"}, at);
+  const std::string plain = run("plain", {"--max-sim-time", "40"});
+  EXPECT_NE(nudged, plain);
+  Process diff({program("constrictor"), "diff", (dir_ / "plain").string(), (dir_ / "nudged").string()});
+  EXPECT_EQ(diff.wait(60s), 1);
+  EXPECT_NE(diff.output().find("tick 1000, component control"), std::string::npos) << diff.output();
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,126 @@
+// Runs of the real components and their state hashes, for tests that compare them.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "runtime/host.hpp"
+#include "support/process.hpp"
+
+namespace constrictor::testing {
+
+/// Every member of the case study but the plant.
+inline const std::vector<std::string> kRestartable = {"camera", "overview", "perception", "guidance", "navigation",
+                                                      "control", "input", "planner", "report"};
+
+class DeterminismRun : public ::testing::Test {
+ protected:
+  /// Runs of `scenario`, each with `arguments` and done within `bound`.
+  DeterminismRun(std::string scenario, std::chrono::seconds bound) : scenario_(std::move(scenario)), bound_(bound) {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-determinism-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+  }
+  ~DeterminismRun() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+
+  /// Cuts the runs to come short by the report's own limit.
+  void limit_sim_time(double seconds) {
+    std::ofstream(dir_ / "report.yaml") << "max_sim_time_s: " << seconds
+                                        << "\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n";
+    always_ = {"--config", "report=" + (dir_ / "report.yaml").string()};
+  }
+  [[nodiscard]] Process start(const std::string& name, const std::vector<std::string>& more = {},
+                              const std::map<std::string, std::string>& environment = {}) const {
+    std::vector<std::string> arguments = {program("constrictor"), "run", scenario_, "--report", (dir_ / name).string()};
+    arguments.insert(arguments.end(), always_.begin(), always_.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(std::move(arguments), environment);
+  }
+  /// The state hash of a run that has ended; a run that was cut short by time is a mission without success.
+  [[nodiscard]] std::string hash_of(const std::string& name, Process& process) const {
+    const auto status = process.wait(bound_);
+    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
+        << name << " ended with " << status.value_or(-1) << ": " << process.output() << process.errors();
+    const nlohmann::json told = report(name);
+    if (!told.contains("state_hash") || !told["state_hash"].is_string()) {
+      ADD_FAILURE() << name << ": no state hash in the report";
+      return "none of " + name;
+    }
+    return told["state_hash"];
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
+  }
+  [[nodiscard]] std::string run(const std::string& name, const std::vector<std::string>& more = {},
+                                const std::map<std::string, std::string>& environment = {}) const {
+    Process process = start(name, more, environment);
+    return hash_of(name, process);
+  }
+  /// The case study's manifest with more lines, indented by four, for each process of one component.
+  void write_manifest(const std::string& name, const std::map<std::string, std::string>& lines) const {
+    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/case_study.yaml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (const auto& [component, line] : lines) {
+      const std::string plain = "components: [" + component + "]\n";
+      const auto at = text.find(plain);
+      ASSERT_NE(at, std::string::npos) << component;
+      text.replace(at, plain.size(), plain + line);
+    }
+    std::ofstream(dir_ / name) << text;
+  }
+  /// Pid of the process of this test's run whose program is `name`; -1 if there is none.
+  [[nodiscard]] pid_t pid_of(const std::string& name) const {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const std::string pid = entry.path().filename();
+      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::ifstream file(entry.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(file), {}};
+      const std::string executable = std::filesystem::path(line.substr(0, line.find('\0'))).filename();
+      if (executable == name && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
+    }
+    return -1;
+  }
+  /// Waits until `name` runs.
+  [[nodiscard]] pid_t running(const std::string& name) const {
+    for (int i = 0; i < 5000; ++i) {
+      if (const pid_t pid = pid_of(name); pid > 0) return pid;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return -1;
+  }
+  /// Stops each process in turn, the launcher last, for 2 s and one of them for `longest`; the hash of what became of the run.
+  [[nodiscard]] std::string run_with_stops(const std::string& longest_stopped, std::chrono::seconds longest) {
+    Process launcher = start("stopped", {"--pace", "2x"});
+    EXPECT_GT(running("report"), 0);
+    std::vector<std::string> all = kRestartable;
+    all.insert(all.begin(), "physics");
+    for (const auto& name : all) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      const pid_t pid = running(name);
+      EXPECT_GT(pid, 0) << name << ": " << launcher.output();
+      if (pid <= 0) break;
+      ::kill(pid, SIGSTOP);
+      std::this_thread::sleep_for(name == longest_stopped ? longest : std::chrono::seconds(2));
+      EXPECT_TRUE(launcher.running()) << "over before " << name << " was stopped";
+      ::kill(pid, SIGCONT);
+    }
+    launcher.signal(SIGSTOP);  // last: nobody waits for it, the run goes on
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    launcher.signal(SIGCONT);
+    return hash_of("stopped", launcher);
+  }
+
+  std::string scenario_;
+  std::chrono::seconds bound_;
+  std::vector<std::string> always_;
+  std::filesystem::path dir_;
+};
+
+}  // namespace constrictor::testing
