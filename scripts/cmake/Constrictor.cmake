@@ -35,8 +35,17 @@ endfunction()
 # constrictor_test(NAME [SERIAL] [WHOLE] SOURCES ... LINK ... LABELS label [TIMEOUT s] [FIXTURE f]): a GoogleTest program, its cases discovered by
 # ctest. One label: gtest_discover_tests takes no list. FIXTURE: what must have been set up. SERIAL: nothing else runs beside it (tests of
 # several processes, whose bounds are in wall time). WHOLE: one ctest of all cases, which share what is dear to make.
+# Names of `long` cases begin with `Long.`: of a quick and a long test of one name ctest would give each the labels of both.
 function(constrictor_test name)
   cmake_parse_arguments(ARG "SERIAL;WHOLE" "TIMEOUT;FIXTURE" "SOURCES;LINK;LABELS" ${ARGN})
+  list(LENGTH ARG_LABELS labels)
+  if(labels GREATER 1)
+    message(FATAL_ERROR "${name}: one label, not '${ARG_LABELS}'")
+  endif()
+  set(prefix "")
+  if(ARG_LABELS STREQUAL long)
+    set(prefix "Long.")
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -51,6 +60,6 @@ function(constrictor_test name)
     return()
   endif()
   include(GoogleTest)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
+  gtest_discover_tests(${name} TEST_PREFIX "${prefix}" DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
                          RUN_SERIAL ${ARG_SERIAL} FIXTURES_REQUIRED "${ARG_FIXTURE}")
 endfunction()
