@@ -108,7 +108,15 @@ void Report::step(const Tick& tick) {
   journal_torques(tick);
   const auto settle_ticks = static_cast<std::int64_t>(std::llround(configuration_.settle_s / tick.period_s()));
   const bool settled = state_.mission_end_tick >= 0 && tick.index >= state_.mission_end_tick + settle_ticks;
-  if (settled || tick.time_s() >= configuration_.max_sim_time_s) finish(tick);
+  if (settled || tick.time_s() >= configuration_.max_sim_time_s) {
+    write_files(tick);
+    state_.finished = true;
+    wiring_.request_end_of_run();
+  }
+}
+
+void Report::conclude(const Tick& last) {
+  if (!state_.finished && world_ && scene_) write_files(last);
 }
 
 void Report::follow_truth() {
@@ -260,13 +268,10 @@ void Report::draw(const Tick& tick) const {
   report::replace_file(folder_ / "figure.png", std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
 }
 
-void Report::finish(const Tick& tick) {
-  if (!folder_.empty()) {
-    draw(tick);
-    report::replace_file(folder_ / "mission.json", mission_json(tick));  // last: whoever finds it finds everything
-  }
-  state_.finished = true;
-  wiring_.request_end_of_run();
+void Report::write_files(const Tick& tick) const {
+  if (folder_.empty()) return;
+  draw(tick);
+  report::replace_file(folder_ / "mission.json", mission_json(tick));  // last: whoever finds it finds everything
 }
 
 ComponentFactory make_report_factory() {

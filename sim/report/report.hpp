@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/component.hpp"
+#include "runtime/concluding.hpp"
 #include "sim/report/files.hpp"
 #include "sim/report/ledger.hpp"
 #include "sim/report/moments.hpp"
@@ -55,11 +55,12 @@ struct ReportState {
 
 /// Component `report`. Long series go to journals in Setup::output_dir whose lengths are in the state, pictures to files named
 /// by tick: a restarted process leaves the same files. With no output_dir it judges and ends the run but writes nothing.
-/// It ends the run `settle_s` after the mission's end, or at `max_sim_time_s`.
-class Report : public StatefulComponent<ReportState> {
+/// It ends the run `settle_s` after the mission's end, or at `max_sim_time_s`; if something else ends it, it tells what there is.
+class Report : public StatefulComponent<ReportState>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
+  void conclude(const Tick& last) override;
 
  private:
   void follow_truth();
@@ -68,7 +69,7 @@ class Report : public StatefulComponent<ReportState> {
   void follow_images();
   void journal_torques(const Tick& tick);
   void add_moment(std::int64_t tick, double time_s, std::uint8_t event, std::uint8_t colour);
-  void finish(const Tick& tick);
+  void write_files(const Tick& tick) const;
   /// The planner believes it, and ground truth agrees.
   [[nodiscard]] bool success() const;
   [[nodiscard]] std::string mission_json(const Tick& tick) const;

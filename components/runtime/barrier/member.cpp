@@ -8,6 +8,7 @@
 
 #include "constrictor/reflect.hpp"
 #include "runtime/barrier/topic_ops.hpp"
+#include "runtime/concluding.hpp"
 
 namespace constrictor {
 namespace {
@@ -153,9 +154,17 @@ void Member::on_tick(const msg::Tick& tick) {
   }
   if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch) return refuse("tick: of another epoch");
   if (tick.index <= last_done_ && !tick.final_tick) return;  // history, after a rejoin
-  if (tick.final_tick) ended_ = true;
+  if (tick.final_tick && !ended_) conclude(tick);
   newest_tick_ = std::max(newest_tick_, tick.index);
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
+}
+
+void Member::conclude(const msg::Tick& final_tick) {
+  ended_ = true;
+  auto* concluding = dynamic_cast<Concluding*>(component_.get());
+  if (!concluding || last_done_ < 0) return;
+  const std::int64_t time_ns = final_tick.time_ns - (final_tick.index - last_done_) * final_tick.period_ns;
+  concluding->conclude(Tick{last_done_, time_ns, final_tick.period_ns, 1, final_tick.run_id, final_tick.epoch});
 }
 
 void Member::on_sample(std::size_t topic_id, const Sample& sample) {

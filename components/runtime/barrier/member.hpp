@@ -91,6 +91,7 @@ class Member {
   class MemberWiring;
   void build(std::uint64_t seed);
   void replay_early();
+  void conclude(const msg::Tick& final_tick);
   [[nodiscard]] const msg::Tick* due() const;
   [[nodiscard]] bool complete(const Input& input, const msg::Tick& tick) const;
   void present(Input& input, const msg::Tick& tick);
