@@ -44,12 +44,15 @@ class Determinism : public ::testing::Test {
     const auto status = process.wait(120s);
     EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
         << name << " ended with " << status.value_or(-1) << ": " << process.output() << process.errors();
-    const auto report = nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
-    if (!report.contains("state_hash")) {
+    const nlohmann::json told = report(name);
+    if (!told.contains("state_hash") || !told["state_hash"].is_string()) {
       ADD_FAILURE() << name << ": no state hash in the report";
       return "none of " + name;
     }
-    return report["state_hash"];
+    return told["state_hash"];
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }
   [[nodiscard]] std::string run(const std::string& name, std::vector<std::string> more = {},
                                 const std::map<std::string, std::string>& environment = {}) const {
@@ -139,17 +142,60 @@ TEST_F(Determinism, KilledMembersLeaveNoTrace) {
   EXPECT_GE(kills, 7);
 }
 
-TEST_F(Determinism, AStoppedProcessLeavesNoTrace) {
+TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnLeavesNoTrace) {
   const std::string expected = run("reference");
-  for (const std::string stopped : {"physics", "perception"}) {
-    Process process = start("stopped_" + stopped);
-    const pid_t pid = running(stopped);
-    ASSERT_GT(pid, 0);
-    std::this_thread::sleep_for(1s);
+  Process launcher = start("stopped", {"--pace", "2x"});
+  ASSERT_GT(running("report"), 0);
+  std::vector<std::string> all = kRestartable;
+  all.insert(all.begin(), "physics");
+  for (const auto& name : all) {
+    std::this_thread::sleep_for(200ms);
+    const pid_t pid = running(name);
+    ASSERT_GT(pid, 0) << name << ": " << launcher.output();
     ::kill(pid, SIGSTOP);
     std::this_thread::sleep_for(2s);
+    ASSERT_TRUE(launcher.running()) << "over before " << name << " was stopped";
     ::kill(pid, SIGCONT);
-    EXPECT_EQ(hash_of("stopped_" + stopped, process), expected);
+  }
+  launcher.signal(SIGSTOP);  // last: nobody waits for it, the run goes on
+  std::this_thread::sleep_for(2s);
+  launcher.signal(SIGCONT);
+  EXPECT_EQ(hash_of("stopped", launcher), expected);
+}
+
+TEST_F(Determinism, ARunThatWasResetOnItsWayEqualsAFreshOneOfThatSeed) {
+  const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+  const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
+  Process launcher = start("reset", {"--pace", "2x", "--seed", "3"}, registry);
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"reset", "5"}, {"pace", "lockstep"}}) {
+    std::vector<std::string> arguments = {program("constrictor")};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    Process command(arguments, registry);
+    ASSERT_EQ(command.wait(30s), exit_status::kOk) << command.output() << command.errors();
+  }
+  EXPECT_EQ(hash_of("reset", launcher), expected);
+  // Members, journals and pictures began anew too.
+  const nlohmann::json fresh = report("fresh"), reset = report("reset");
+  for (const char* key : {"seed", "ticks", "events", "states", "objects", "line", "pose_error"}) EXPECT_EQ(reset[key], fresh[key]) << key;
+  Process diff({program("constrictor"), "diff", (dir_ / "fresh").string(), (dir_ / "reset").string()});
+  EXPECT_EQ(diff.wait(20s), 0) << diff.output();
+}
+
+// The final tick is not stepped: one tick later than the report's own limit ends the run after the same step.
+TEST_F(Determinism, ARunEndedByTheLaunchersLimitIsToldLikeOneEndedByTheReportsOwn) {
+  run("own", {"--in-process"});
+  for (const std::vector<std::string>& spread : {std::vector<std::string>{"--in-process"}, {}}) {
+    std::ofstream(dir_ / "report.yaml") << "max_sim_time_s: 900\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n";
+    std::vector<std::string> more = {"--max-sim-time", std::to_string(kSimTime_s + 0.02)};
+    more.insert(more.end(), spread.begin(), spread.end());
+    run("limited", more);
+    const nlohmann::json own = report("own"), limited = report("limited");
+    ASSERT_TRUE(own["events"].is_array() && !own["events"].empty());
+    for (const char* key : {"success", "mission", "ticks", "state_hash", "events", "states", "objects", "line", "pose_error"}) {
+      EXPECT_EQ(limited[key], own[key]) << key;
+    }
+    EXPECT_TRUE(fs::exists(dir_ / "limited/figure.png"));
   }
 }
 
