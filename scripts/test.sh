@@ -28,6 +28,6 @@ export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrac
 for sanitizer in asan tsan; do
   echo "test: building with $sanitizer"
   cmake --preset "$sanitizer" >/dev/null
-  cmake --build "build/$sanitizer"
-  ctest --test-dir "build/$sanitizer" "${options[@]}" -LE 'long|integration' "$@"
+  cmake --build "build/$sanitizer" --target unit_tests
+  ctest --test-dir "build/$sanitizer" "${options[@]}" -L unit "$@"
 done

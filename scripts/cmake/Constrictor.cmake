@@ -32,6 +32,9 @@ function(constrictor_component name)
   target_link_libraries(${name} PRIVATE constrictor_${name} constrictor_runtime)
 endfunction()
 
+# What `ctest -L unit` runs, without the programs: for builds under the sanitizers.
+add_custom_target(unit_tests)
+
 # constrictor_test(NAME [SERIAL] [WHOLE] SOURCES ... LINK ... LABELS label [TIMEOUT s] [FIXTURE f]): a GoogleTest program, its cases discovered by
 # ctest. One label: gtest_discover_tests takes no list. FIXTURE: what must have been set up. SERIAL: nothing else runs beside it (tests of
 # several processes, whose bounds are in wall time). WHOLE: one ctest of all cases, which share what is dear to make.
@@ -54,6 +57,9 @@ function(constrictor_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE constrictor_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  if(ARG_LABELS STREQUAL unit)
+    add_dependencies(unit_tests ${name})
+  endif()
   if(ARG_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_SERIAL})

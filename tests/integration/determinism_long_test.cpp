@@ -97,8 +97,9 @@ TEST_F(WholeCaseStudy, AnotherSeedAndOneUlpAtTickThousandAreOtherRuns) {
   EXPECT_NE(run("other", {"--in-process", "--seed", "2"}), reference());
   write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
   const std::map<std::string, std::string> at = {{"CONSTRICTOR_NUDGE_TICK", "1000"}};
-  const std::string nudged = run("nudged", {"--manifest", (dir_ / "nudged.yaml").string(), "--max-sim-time", "40"}, at);
-  const std::string plain = run("plain", {"--max-sim-time", "40"});
+  limit_sim_time(40.0);
+  const std::string nudged = run("nudged", {"--manifest", (dir_ / "nudged.yaml").string()}, at);
+  const std::string plain = run("plain");
   EXPECT_NE(nudged, plain);
   Process diff({program("constrictor"), "diff", (dir_ / "plain").string(), (dir_ / "nudged").string()});
   EXPECT_EQ(diff.wait(60s), 1);

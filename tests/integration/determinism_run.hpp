@@ -58,7 +58,7 @@ class DeterminismRun : public ::testing::Test {
   [[nodiscard]] nlohmann::json report(const std::string& name) const {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }
-  [[nodiscard]] std::string run(const std::string& name, const std::vector<std::string>& more = {},
+  std::string run(const std::string& name, const std::vector<std::string>& more = {},
                                 const std::map<std::string, std::string>& environment = {}) const {
     Process process = start(name, more, environment);
     return hash_of(name, process);

@@ -1,16 +1,8 @@
 // The real components in a real mission, cut short: the same state hash however they are spread, stopped, killed or paced; another
 // one for another seed and for one ulp in one command.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
-#include <thread>
 
-#include "runtime/host.hpp"
-#include "support/process.hpp"
+#include "integration/determinism_run.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -18,78 +10,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-const std::vector<std::string> kRestartable = {"camera", "overview", "perception", "guidance", "navigation",
-                                               "control", "input", "planner", "report"};
-
-class Determinism : public ::testing::Test {
+class Determinism : public DeterminismRun {
  protected:
-  Determinism() {
-    std::string pattern = (fs::temp_directory_path() / "constrictor-determinism-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-    std::ofstream(dir_ / "report.yaml") << "max_sim_time_s: " << kSimTime_s
-                                        << "\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n";
-  }
-  ~Determinism() override { fs::remove_all(dir_); }
-
-  [[nodiscard]] Process start(const std::string& name, std::vector<std::string> more = {},
-                              const std::map<std::string, std::string>& environment = {}) const {
-    std::vector<std::string> arguments = {program("constrictor"), "run",      "short",
-                                          "--report",             (dir_ / name).string(), "--config",
-                                          "report=" + (dir_ / "report.yaml").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return Process(std::move(arguments), environment);
-  }
-  /// The state hash of a run that has ended; a run that was cut short by time is a mission without success.
-  [[nodiscard]] std::string hash_of(const std::string& name, Process& process) const {
-    const auto status = process.wait(120s);
-    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
-        << name << " ended with " << status.value_or(-1) << ": " << process.output() << process.errors();
-    const nlohmann::json told = report(name);
-    if (!told.contains("state_hash") || !told["state_hash"].is_string()) {
-      ADD_FAILURE() << name << ": no state hash in the report";
-      return "none of " + name;
-    }
-    return told["state_hash"];
-  }
-  [[nodiscard]] nlohmann::json report(const std::string& name) const {
-    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
-  }
-  [[nodiscard]] std::string run(const std::string& name, std::vector<std::string> more = {},
-                                const std::map<std::string, std::string>& environment = {}) const {
-    Process process = start(name, std::move(more), environment);
-    return hash_of(name, process);
-  }
-  /// The case study's manifest with one more line for one of its processes.
-  void write_manifest(const std::string& name, const std::string& component, const std::string& line) const {
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/case_study.yaml");
-    std::string text{std::istreambuf_iterator<char>(file), {}};
-    const std::string plain = "components: [" + component + "]\n";
-    ASSERT_NE(text.find(plain), std::string::npos);
-    std::ofstream(dir_ / name) << text.replace(text.find(plain), plain.size(), plain + "    " + line + "\n");
-  }
-  /// Pid of the process of this test's run whose program is `name`; -1 if there is none.
-  [[nodiscard]] pid_t pid_of(const std::string& name) const {
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string pid = entry.path().filename();
-      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::ifstream file(entry.path() / "cmdline");
-      const std::string line{std::istreambuf_iterator<char>(file), {}};
-      const std::string executable = fs::path(line.substr(0, line.find('\0'))).filename();
-      if (executable == name && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
-    }
-    return -1;
-  }
-  /// Waits until `name` runs.
-  [[nodiscard]] pid_t running(const std::string& name) const {
-    for (int i = 0; i < 5000; ++i) {
-      if (const pid_t pid = pid_of(name); pid > 0) return pid;
-      std::this_thread::sleep_for(1ms);
-    }
-    return -1;
-  }
-
+  Determinism() : DeterminismRun("short", 120s) { limit_sim_time(kSimTime_s); }
   static constexpr double kSimTime_s = 12.0;
-  fs::path dir_;
 };
 
 TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
@@ -100,7 +24,8 @@ TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}), expected);
   EXPECT_EQ(run("capped", {"--pace", "2x"}), expected);
   // Guidance, which computes much, without what the others use of the CPU, as on an older host.
-  write_manifest("masked.yaml", "guidance", "environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']");
+  write_manifest("masked.yaml",
+                 {{"guidance", "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), expected);
 }
 
@@ -112,7 +37,7 @@ TEST_F(Determinism, AnotherSeedIsAnotherRunAndDiffNamesWhereTheyPart) {
 }
 
 TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
-  write_manifest("nudged.yaml", "control", "program: nudged_control");
+  write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
   const std::string expected = run("plain");
   const std::string nudged = run("nudged", {"--manifest", (dir_ / "nudged.yaml").string()}, {{"CONSTRICTOR_NUDGE_TICK", "200"}});
   EXPECT_NE(nudged, expected);
@@ -144,23 +69,7 @@ TEST_F(Determinism, KilledMembersLeaveNoTrace) {
 
 TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnLeavesNoTrace) {
   const std::string expected = run("reference");
-  Process launcher = start("stopped", {"--pace", "2x"});
-  ASSERT_GT(running("report"), 0);
-  std::vector<std::string> all = kRestartable;
-  all.insert(all.begin(), "physics");
-  for (const auto& name : all) {
-    std::this_thread::sleep_for(200ms);
-    const pid_t pid = running(name);
-    ASSERT_GT(pid, 0) << name << ": " << launcher.output();
-    ::kill(pid, SIGSTOP);
-    std::this_thread::sleep_for(2s);
-    ASSERT_TRUE(launcher.running()) << "over before " << name << " was stopped";
-    ::kill(pid, SIGCONT);
-  }
-  launcher.signal(SIGSTOP);  // last: nobody waits for it, the run goes on
-  std::this_thread::sleep_for(2s);
-  launcher.signal(SIGCONT);
-  EXPECT_EQ(hash_of("stopped", launcher), expected);
+  EXPECT_EQ(run_with_stops("physics", 2s), expected);
 }
 
 TEST_F(Determinism, ARunThatWasResetOnItsWayEqualsAFreshOneOfThatSeed) {
@@ -186,7 +95,7 @@ TEST_F(Determinism, ARunThatWasResetOnItsWayEqualsAFreshOneOfThatSeed) {
 TEST_F(Determinism, ARunEndedByTheLaunchersLimitIsToldLikeOneEndedByTheReportsOwn) {
   run("own", {"--in-process"});
   for (const std::vector<std::string>& spread : {std::vector<std::string>{"--in-process"}, {}}) {
-    std::ofstream(dir_ / "report.yaml") << "max_sim_time_s: 900\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n";
+    limit_sim_time(900.0);
     std::vector<std::string> more = {"--max-sim-time", std::to_string(kSimTime_s + 0.02)};
     more.insert(more.end(), spread.begin(), spread.end());
     run("limited", more);
