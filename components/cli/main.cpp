@@ -10,6 +10,7 @@
 #include "cli/introspection/node_command.hpp"
 #include "cli/introspection/status_command.hpp"
 #include "cli/introspection/topic_command.hpp"
+#include "cli/param_command.hpp"
 #include "cli/run_command.hpp"
 #include "cli/run_control.hpp"
 #include "cli/task_command.hpp"
@@ -61,6 +62,7 @@ int dispatch(int argc, char** argv) {
   cli::add_run_control(app, action);
   cli::add_teleop(app, action);
   cli::add_task(app, action);
+  cli::add_param(app, action);
   cli::add_topic(app, action);
   cli::add_node(app, action);
   cli::add_status(app, action);

@@ -37,7 +37,7 @@ bool write_report(const std::filesystem::path& report_dir, const RunOutcome& out
   ordered["wall_time_s"] = outcome.wall_time_s;
   ordered["real_time_factor"] = outcome.wall_time_s > 0 ? sim_time_s / outcome.wall_time_s : 0.0;
   ordered["ticks"] = report.value("ticks", view.tick + 1);
-  for (const char* key : {"state_hash", "objects", "line", "pose_error", "events", "states"}) {
+  for (const char* key : {"state_hash", "objects", "line", "pose_error", "events", "states", "parameters"}) {
     ordered[key] = report.contains(key) ? report[key] : Json(nullptr);
   }
   Json list = Json::array();

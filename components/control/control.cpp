@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "control/control_parameters.hpp"
 #include "runtime/share.hpp"
 
 namespace constrictor {
@@ -13,10 +14,12 @@ namespace constrictor {
 Control::Control(Wiring& wiring, const Setup& setup)
     : robot_(load_robot(setup.robot_file)),
       config_(load_control_config(setup.config_file.empty() ? share_path("components/control/control.yaml") : setup.config_file)),
-      chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
+      parameters_(wiring, topics::kControlParameters), chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
       trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
       authority_in_(wiring.latest(topics::kAuthority)), command_out_(wiring.output(topics::kJointCommand)),
-      status_out_(wiring.output(topics::kMotionStatus)) {}
+      status_out_(wiring.output(topics::kMotionStatus)) {
+  add_parameters(config_, parameters_);
+}
 
 msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
   msg::DesiredTrajectory desired{};
@@ -36,6 +39,7 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
 }
 
 void Control::step(const Tick& tick) {
+  parameters_.step(tick, state_.parameters);
   if (!joints_in_ || joints_in_->joint_count != robot_.joints.size()) return;
   JointArray measured_rad{};
   JointArray torque_nm{};

@@ -7,6 +7,7 @@
 #include "control/control_method.hpp"
 #include "robot/safety_gate.hpp"
 #include "runtime/component.hpp"
+#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
@@ -16,9 +17,10 @@ struct ControlState {
   GateState gate;
   std::string method;         ///< of the present motion; empty before the first
   std::uint64_t motion_id = 0;
+  ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(body, limiter, gate, method, motion_id);
+    archive(body, limiter, gate, method, motion_id, parameters);
   }
 };
 
@@ -39,6 +41,7 @@ class Control : public StatefulComponent<ControlState> {
 
   RobotModel robot_;
   ControlConfig config_;
+  Parameters parameters_;  ///< of config_
   YawChain chain_;
   JointLimiter limiter_;
   SafetyGate gate_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guidance/guidance_parameters.hpp"
 #include "guidance/planar.hpp"
 #include "guidance/plausible.hpp"
 #include "runtime/share.hpp"
@@ -29,6 +30,7 @@ double yaw_of(const msg::Quaternion& q) {
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
     : model_(load_robot(setup.robot_file)),
       config_(configuration_of(setup)),
+      parameters_(wiring, topics::kGuidanceParameters),
       joints_(wiring.latest(topics::kJointState)),
       imu_(wiring.latest(topics::kImuState)),
       contacts_(wiring.latest(topics::kContactState)),
@@ -36,7 +38,9 @@ Guidance::Guidance(Wiring& wiring, const Setup& setup)
       objects_(wiring.latest(topics::kObjectPercepts)),
       task_(wiring.latest(topics::kTaskStatus)),
       pose_(wiring.output(topics::kRobotPose)),
-      map_(wiring.output(topics::kFieldMap)) {}
+      map_(wiring.output(topics::kFieldMap)) {
+  guidance::add_parameters(config_, parameters_);
+}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   guidance::OdometryInput input;
@@ -113,6 +117,7 @@ double Guidance::speed_m_s(double period_s) const {
 }
 
 void Guidance::step(const Tick& tick) {
+  parameters_.step(tick, state_.parameters);
   guidance::PoseFilter filter(state_.filter);
   const std::size_t joint_count = model_.joints.size();
   const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && guidance::plausible(*joints_, joint_count) &&

@@ -6,6 +6,7 @@
 
 #include "guidance/field_mapper.hpp"
 #include "runtime/component.hpp"
+#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
@@ -18,9 +19,10 @@ struct GuidanceState {
   std::vector<double> track_x_m, track_y_m, track_yaw_rad;
   guidance::FieldState field;
   double body_turn_rad = 0.0;          ///< mean heading of the modules relative to the head's
+  ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad);
+    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
   }
 };
 
@@ -44,6 +46,7 @@ class Guidance : public StatefulComponent<GuidanceState> {
 
   RobotModel model_;
   guidance::GuidanceConfig config_;
+  Parameters parameters_;  ///< of config_
   Latest<msg::JointState> joints_;
   Latest<msg::ImuState> imu_;
   Latest<msg::ContactState> contacts_;

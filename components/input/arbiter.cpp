@@ -83,7 +83,10 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
     case msg::kRequestTake:
     case msg::kRequestRelease:
     case msg::kRequestMotion: break;
-    default: return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 5");
+    case msg::kRequestParameter:
+      if (request.level < state_.level) return refuse(name + ": authority is with " + state_.holder + ", of a higher level");
+      return {Ruling::kSet};
+    default: return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 6");
   }
   if (state_.stopped) return refuse(name + ": the emergency stop of " + state_.stopper + " is latched");
   if (request.kind == msg::kRequestRelease) return release(request);

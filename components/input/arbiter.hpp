@@ -49,6 +49,7 @@ struct Ruling {
     kRefused,
     kForward,    ///< pass the task command on with `goal_id`
     kMove,       ///< pass the direct motion on
+    kSet,        ///< a parameter may be changed
     kCancelAll,  ///< whatever runs must end
     kNothing,
   };
@@ -59,6 +60,7 @@ struct Ruling {
 /// Emergency stop over operator over external planner over built-in planner. A request for a task, a motion or authority itself by
 /// a source of higher level than the holder's takes authority; one of the same or a lower level is refused until the holder
 /// releases it or dies. A detached holder does not die; sources of its own level may take over from it, or release for it.
+/// Parameters may be set without authority, but by nobody of a lower level than who has it.
 /// An emergency stop is obeyed from anybody, whatever else the request says.
 class Arbiter {
  public:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/share.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -16,21 +18,27 @@ void set_text(char (&field)[N], const std::string& text) {
 
 }  // namespace
 
-Input::Input(Wiring& wiring, const Setup&, std::shared_ptr<OutsideRequests> outside)
+Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests> outside)
     : planner_requests_(wiring.events(topics::kPlannerRequest)),
       command_(wiring.output(topics::kTaskCommand)),
       authority_(wiring.output(topics::kAuthority)),
       motion_out_(wiring.output(topics::kMotionCommand)),
+      parameter_out_(wiring.output(topics::kParameterChange)),
+      parameters_in_{wiring.latest(topics::kNavigationParameters), wiring.latest(topics::kControlParameters),
+                     wiring.latest(topics::kPerceptionParameters), wiring.latest(topics::kGuidanceParameters)},
+      planned_(load_planned_changes(setup.config_file.empty() ? share_path("components/input/input.yaml") : setup.config_file)),
       outside_(outside ? std::move(outside) : wiring.outside_requests()) {}
 
 void Input::step(const Tick& tick) {
   commands_left_ = topics::kTaskCommand.max_per_tick;
+  changes_left_ = topics::kParameterChange.max_per_tick;
+  now_ = tick.index;
   motion_.reset();
   Arbiter arbiter(state_.arbiter);
   const std::uint8_t level_before = state_.arbiter.level;
   const std::string holder_before = state_.arbiter.holder;
   const bool stopped_before = state_.arbiter.stopped;
-  bool changed = false;
+  bool changed = set_planned_parameters(tick);
   if (outside_) {
     for (const auto& item : outside_->latch()) {
       const Ruling ruling = item.died ? arbiter.on_death(item.source) : arbiter.decide_outside(item.request);
@@ -58,6 +66,7 @@ bool Input::obey(const Ruling& ruling, const msg::Request& request) {
     case Ruling::kRefused: return true;
     case Ruling::kCancelAll: cancel_running(); return true;
     case Ruling::kMove: forward_motion(request); return true;
+    case Ruling::kSet: set_parameter(request); return true;
     case Ruling::kForward: break;
   }
   return forward_task(ruling, request);
@@ -98,6 +107,38 @@ void Input::forward_motion(const msg::Request& request) {
   motion_ = motion;
   state_.moving = true;
   state_.running_goal = 0;  // the motion ends it
+}
+
+void Input::set_parameter(const msg::Request& request) {
+  if (changes_left_ == 0) {
+    Arbiter(state_.arbiter).refuse(request, "more than " + std::to_string(topics::kParameterChange.max_per_tick) + " changes of parameters in a tick");
+    return;
+  }
+  std::vector<const msg::ParameterList*> lists;
+  for (const auto& list : parameters_in_) lists.push_back(list ? &*list : nullptr);
+  const auto ruling = ParameterDesk(state_.desk).rule(request, lists, now_);
+  if (const auto* refusal = std::get_if<std::string>(&ruling)) {
+    Arbiter(state_.arbiter).refuse(request, *refusal);
+    return;
+  }
+  --changes_left_;
+  parameter_out_.write(std::get<msg::ParameterChange>(ruling));
+}
+
+/// They are asked for at the last moment, so that the tick at which they are written is the same in every run.
+bool Input::set_planned_parameters(const Tick& tick) {
+  bool any = false;
+  for (const auto& change : planned_) {
+    if (change.tick <= tick.index + 1 - tick.elapsed || change.tick > tick.index + 1) continue;
+    msg::Request request{};
+    set_text(request.source, "input.yaml");
+    set_text(request.parameter, change.name);
+    request.parameter_value = change.value;
+    request.effective_tick = tick.index + 1;
+    set_parameter(request);
+    any = true;
+  }
+  return any;
 }
 
 void Input::cancel_running() {

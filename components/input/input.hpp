@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "input/arbiter.hpp"
+#include "input/parameter_desk.hpp"
 #include "runtime/component.hpp"
 #include "runtime/outside_requests.hpp"
 
@@ -17,13 +18,15 @@ struct InputState {
   std::uint8_t running_task = msg::kTaskNone;
   bool moving = false;              ///< a direct motion is in force
   std::int64_t last_authority_tick = -1;
+  ParameterDeskState desk;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick);
+    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick, desk);
   }
 };
 
-/// Reads planner/request and what came from outside; writes task/command, motion/command and authority. Outside requests are ruled
+/// Reads planner/request and what came from outside; writes task/command, motion/command, parameter/change and
+/// authority. Outside requests are ruled
 /// on first, in the order of OutsideRequests::latch, then the planner's in the order of their sequence numbers. At most three
 /// task commands a tick are forwarded, so that a cancel always finds room; the rest is refused and counted. Of direct motions the
 /// last of a tick counts. A planner request older than a second is refused as stale.
@@ -37,6 +40,9 @@ class Input : public StatefulComponent<InputState> {
   bool obey(const Ruling& ruling, const msg::Request& request);
   bool forward_task(const Ruling& ruling, const msg::Request& request);
   void forward_motion(const msg::Request& request);
+  void set_parameter(const msg::Request& request);
+  /// Those of input.yaml whose tick comes next; true if there were any.
+  bool set_planned_parameters(const Tick& tick);
   void cancel_running();
   void publish_authority(const Tick& tick);
 
@@ -44,8 +50,13 @@ class Input : public StatefulComponent<InputState> {
   Output<msg::TaskCommand> command_;
   Output<msg::Authority> authority_;
   Output<msg::MotionCommand> motion_out_;
+  Output<msg::ParameterChange> parameter_out_;
+  std::vector<Latest<msg::ParameterList>> parameters_in_;
+  std::vector<PlannedChange> planned_;
   std::shared_ptr<OutsideRequests> outside_;
   int commands_left_ = 0;
+  int changes_left_ = 0;
+  std::int64_t now_ = 0;  ///< tick of the present step
   std::optional<msg::MotionCommand> motion_;  ///< of the present step
 };
 

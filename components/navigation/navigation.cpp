@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "navigation/motions.hpp"
+#include "navigation/navigation_parameters.hpp"
 #include "runtime/share.hpp"
 
 namespace constrictor {
@@ -41,12 +42,14 @@ Navigation::Navigation(Wiring& wiring, const Setup& setup)
     : robot_(load_robot(setup.robot_file)),
       config_(load_navigation_config(setup.config_file.empty() ? share_path("components/navigation/navigation.yaml")
                                                                : setup.config_file)),
-      grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
+      parameters_(wiring, topics::kNavigationParameters), grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
       line_in_(wiring.latest(topics::kLinePercept)), objects_in_(wiring.latest(topics::kObjectPercepts)),
       pose_in_(wiring.latest(topics::kRobotPose)), map_in_(wiring.latest(topics::kFieldMap)),
       joints_in_(wiring.latest(topics::kJointState)), contacts_in_(wiring.latest(topics::kContactState)),
       motion_in_(wiring.latest(topics::kMotionStatus)), direct_in_(wiring.events(topics::kMotionCommand)), trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
-      status_out_(wiring.output(topics::kTaskStatus)), event_out_(wiring.output(topics::kTaskEvent)) {}
+      status_out_(wiring.output(topics::kTaskStatus)), event_out_(wiring.output(topics::kTaskEvent)) {
+  add_parameters(config_, parameters_);
+}
 
 bool Navigation::senses_ready() const {
   return joints_in_ && pose_in_ && contacts_in_ && joints_in_.age_ticks() <= config_.stale_after_ticks &&
@@ -55,6 +58,7 @@ bool Navigation::senses_ready() const {
 }
 
 void Navigation::step(const Tick& tick) {
+  parameters_.step(tick, state_.parameters);
   TaskOutput output;
   stand(state_.grip, output);
   if (!senses_ready()) {

@@ -7,6 +7,7 @@
 
 #include "navigation/direct_motion.hpp"
 #include "navigation/task.hpp"
+#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
@@ -42,17 +43,18 @@ struct NavigationState {
   std::uint64_t motion_id = 0;
   std::string method;           ///< of the motion asked for last
   DirectMotionState direct;
+  ParameterState parameters;
 
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, things, motion_id, method, direct, task != nullptr, bytes);
+    archive(goal, grip, things, motion_id, method, direct, parameters, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, things, motion_id, method, direct, has_task, bytes);
+    archive(goal, grip, things, motion_id, method, direct, parameters, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }
@@ -80,6 +82,7 @@ class Navigation : public StatefulComponent<NavigationState> {
 
   RobotModel robot_;
   NavigationConfig config_;
+  Parameters parameters_;  ///< of config_
   GripSense grip_sense_;
   Events<msg::TaskCommand> commands_in_;
   Latest<msg::LinePercept> line_in_;

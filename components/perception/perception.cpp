@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "perception/perception_parameters.hpp"
 #include "robot/robot_model.hpp"
 #include "runtime/share.hpp"
 
@@ -19,7 +20,9 @@ perception::PerceptionConfig configuration_of(const Setup& setup) {
 }  // namespace
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
-    : detector_(configuration_of(setup)),
+    : config_(configuration_of(setup)),
+      parameters_(wiring, topics::kPerceptionParameters),
+      detector_(config_),
       image_(wiring.latest(topics::kCameraImage)),
       info_(wiring.latest(topics::kCameraInfo)),
       imu_(wiring.latest(topics::kImuState)),
@@ -27,6 +30,7 @@ Perception::Perception(Wiring& wiring, const Setup& setup)
       line_(wiring.output(topics::kLinePercept)),
       objects_(wiring.output(topics::kObjectPercepts)),
       processed_(wiring.output(topics::kProcessedImage)) {
+  perception::add_parameters(config_, parameters_);
   const RobotModel robot = load_robot(setup.robot_file);
   // the robot lies on its modules: the head's centre is one radius above the ground
   head_height_m_ = robot.module_radius_m;
@@ -41,7 +45,8 @@ msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
   return nearest ? msg::Quaternion{nearest->w, nearest->x, nearest->y, nearest->z} : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
 }
 
-void Perception::step(const Tick&) {
+void Perception::step(const Tick& tick) {
+  if (parameters_.step(tick, state_.parameters)) detector_ = perception::LineAndBlobDetector(config_);
   if (imu_ && imu_.fresh()) {
     const auto& q = imu_->orientation;
     state_.attitudes.push_back({imu_->header.tick, q.w, q.x, q.y, q.z});

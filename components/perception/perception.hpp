@@ -7,6 +7,7 @@
 
 #include "perception/line_and_blob_detector.hpp"
 #include "runtime/component.hpp"
+#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
@@ -25,9 +26,10 @@ struct PerceptionState {
   std::uint8_t line_colour = 0;     ///< in use; 0: the configured one
   std::uint64_t images = 0;         ///< worked on
   std::uint64_t refused_images = 0; ///< whose size or camera model made no sense
+  ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, refused_images);
+    archive(attitudes, line_colour, images, refused_images, parameters);
   }
 };
 
@@ -43,6 +45,8 @@ class Perception : public StatefulComponent<PerceptionState> {
  private:
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
+  perception::PerceptionConfig config_;
+  Parameters parameters_;  ///< of config_
   perception::LineAndBlobDetector detector_;
   double head_height_m_ = 0.0;
   perception::HeadShape head_;

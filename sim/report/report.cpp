@@ -84,11 +84,13 @@ Report::Report(Wiring& wiring, const Setup& setup)
       torques_(in_folder(folder_, "joint_torques.csv")),
       events_(in_folder(folder_, "events.jsonl")),
       states_(in_folder(folder_, "states.jsonl")),
+      parameters_(in_folder(folder_, "parameters.jsonl")),
       world_(wiring.latest(topics::kWorldState)),
       scene_(wiring.latest(topics::kSceneDescription)),
       pose_(wiring.latest(topics::kRobotPose)),
       task_(wiring.latest(topics::kTaskStatus)),
       task_events_(wiring.events(topics::kTaskEvent)),
+      parameter_changes_(wiring.events(topics::kParameterChange)),
       mission_(wiring.latest(topics::kMissionStatus)),
       joints_(wiring.latest(topics::kJointState)),
       line_(wiring.latest(topics::kLinePercept)),
@@ -104,6 +106,7 @@ void Report::step(const Tick& tick) {
   follow_truth();
   follow_mission(tick);
   follow_events();
+  follow_parameters(tick);
   follow_images();
   journal_torques(tick);
   const auto settle_ticks = static_cast<std::int64_t>(std::llround(configuration_.settle_s / tick.period_s()));
@@ -181,6 +184,17 @@ void Report::follow_events() {
   }
 }
 
+void Report::follow_parameters(const Tick& tick) {
+  for (const msg::ParameterChange& change : parameter_changes_) {
+    const ordered_json line{{"sim_time_s", static_cast<double>(change.effective_tick) * tick.period_s()},
+                            {"tick", change.effective_tick},
+                            {"name", change.name},
+                            {"value", change.value},
+                            {"source", change.source}};
+    parameters_.append(line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n", state_.parameters_length);
+  }
+}
+
 void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, std::uint8_t colour) {
   if (folder_.empty()) return;
   report::Moment moment;
@@ -245,6 +259,7 @@ std::string Report::mission_json(const Tick& tick) const {
   json["pose_error"] = {{"rms_m", state_.pose_error_m.rms()}, {"rms_rad", state_.pose_error_rad.rms()}, {"max_m", state_.pose_error_m.max()}};
   json["events"] = lines_of(events_.read(state_.events_length));
   json["states"] = lines_of(states_.read(state_.states_length));
+  json["parameters"] = lines_of(parameters_.read(state_.parameters_length));
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -39,6 +39,7 @@ struct ReportState {
   std::uint64_t torques_length = 0;          ///< [byte] of the journals
   std::uint64_t events_length = 0;
   std::uint64_t states_length = 0;
+  std::uint64_t parameters_length = 0;
   std::string mission_state;                 ///< last one journaled
   std::uint8_t mission = msg::kMissionRunning;
   std::string mission_reason;
@@ -49,7 +50,7 @@ struct ReportState {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(cross_track, pose_error_m, pose_error_rad, percepts_following, percepts_visible, start, heads, ledger, album,
-            torques_length, events_length, states_length, mission_state, mission, mission_reason, recoveries, mission_end_tick, finished);
+            torques_length, events_length, states_length, parameters_length, mission_state, mission, mission_reason, recoveries, mission_end_tick, finished);
   }
 };
 
@@ -65,6 +66,7 @@ class Report : public StatefulComponent<ReportState>, public Concluding {
  private:
   void follow_truth();
   void follow_events();
+  void follow_parameters(const Tick& tick);
   void follow_mission(const Tick& tick);
   void follow_images();
   void journal_torques(const Tick& tick);
@@ -79,13 +81,14 @@ class Report : public StatefulComponent<ReportState>, public Concluding {
   ReportConfiguration configuration_;
   std::filesystem::path folder_;
   std::vector<std::size_t> yaw_joints_;
-  report::Journal torques_, events_, states_;
+  report::Journal torques_, events_, states_, parameters_;
   std::vector<Eigen::Vector2d> line_m_;  // from the scene
   Latest<msg::WorldState> world_;
   Latest<msg::SceneDescription> scene_;
   Latest<msg::RobotPose> pose_;
   Latest<msg::TaskStatus> task_;
   Events<msg::TaskEvent> task_events_;
+  Events<msg::ParameterChange> parameter_changes_;
   Latest<msg::MissionStatus> mission_;
   Latest<msg::JointState> joints_;
   Latest<msg::LinePercept> line_;

@@ -87,10 +87,26 @@ void tempt(msg::TaskEvent& m, HostileFiller& f) {
 void tempt(msg::TaskStatus& m, HostileFiller& f) {
   if (f.roll(2) == 0) m.goal_id = (std::uint64_t{1} << 48) + f.roll(20);
 }
+constexpr const char* kParameters[] = {"navigation.travel.frequency_hz", "control.squeeze.opening_share", "perception.colour.min_chroma",
+                                       "guidance.landmarks.confirm"};
 void tempt(msg::Request& m, HostileFiller& f) {
   static constexpr const char* kSources[] = {"planner", "pilot", "machine", "script"};
   if (f.roll(4) != 0) std::snprintf(m.source, sizeof m.source, "%s", kSources[f.roll(4)]);
   if (f.roll(4) != 0) m.goal_id = f.roll(1000);
+  if (f.roll(2) == 0) std::snprintf(m.parameter, sizeof m.parameter, "%s", kParameters[f.roll(4)]);
+  if (f.roll(2) == 0) m.parameter_value = f.roll(3);
+  if (f.roll(2) == 0) m.effective_tick = f.roll(2) == 0 ? 0 : f.roll(100'000);
+}
+void tempt(msg::ParameterChange& m, HostileFiller& f) {
+  if (f.roll(4) != 0) std::snprintf(m.name, sizeof m.name, "%s", kParameters[f.roll(4)]);
+  if (f.roll(4) != 0) m.value = f.roll(3) == 0 ? 0.7 : f.roll(100);
+  if (f.roll(4) != 0) m.effective_tick = f.roll(100'000);
+}
+void tempt(msg::ParameterList& m, HostileFiller& f) {
+  if (f.roll(4) == 0 || m.count == 0) return;
+  std::snprintf(m.parameters[0].name, sizeof m.parameters[0].name, "%s", kParameters[f.roll(4)]);
+  m.parameters[0].minimum = 0.0;
+  m.parameters[0].maximum = 1.0;
 }
 template <class T>
 void tempt(T&, HostileFiller&) {}

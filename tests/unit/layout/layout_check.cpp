@@ -33,7 +33,8 @@ std::vector<std::string> allowed_of(const std::string& folder, bool is_main) {
   // Programs on top of the runtime, outside the barrier.
   if (folder == "components/cli" || folder == "components/ros_bridge") return {"constrictor/", "configuration/", "robot/", "runtime/"};
   std::vector<std::string> allowed = {"constrictor/", "configuration/", "robot/", "runtime/component.hpp",
-                                      "runtime/concluding.hpp", "runtime/ports.hpp", "runtime/outside_requests.hpp", "runtime/topics.hpp", "runtime/share.hpp"};
+                                      "runtime/concluding.hpp", "runtime/ports.hpp", "runtime/outside_requests.hpp", "runtime/topics.hpp",
+                                      "runtime/share.hpp", "runtime/parameters.hpp"};
   if (is_main) allowed.emplace_back("runtime/component_main.hpp");
   if (folder.rfind("sim/", 0) == 0) allowed.emplace_back("sim/");
   return allowed;

@@ -1,0 +1,140 @@
+#include "runtime/parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace constrictor {
+namespace {
+
+/// Of changes that `input` let wait; those for the very next tick come on top of them.
+constexpr std::size_t kMostWaiting = std::size_t{2} * msg::kMaxParameterChanges;
+
+template <std::size_t N>
+std::string text_of(const char (&field)[N]) {
+  return {field, ::strnlen(field, N)};
+}
+
+template <std::size_t N>
+void set_text(char (&field)[N], const std::string& text) {
+  if (text.size() >= N) throw std::logic_error("parameter " + text + ": more than " + std::to_string(N - 1) + " characters");
+  std::copy(text.begin(), text.end(), field);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace
+
+std::string parameter_refusal(const msg::Parameter& parameter, double value) {
+  const bool whole = !parameter.is_integer || value == std::trunc(value);
+  if (std::isfinite(value) && whole && value >= parameter.minimum && value <= parameter.maximum) return {};
+  const std::string unit = text_of(parameter.unit);
+  return text_of(parameter.name) + ": found " + number(value) + ", accepted " + (parameter.is_integer ? "whole numbers from " : "") +
+         number(parameter.minimum) + " to " + number(parameter.maximum) + (unit.empty() ? "" : " " + unit);
+}
+
+Parameters::Parameters(Wiring& wiring, const Topic<msg::ParameterList>& topic)
+    : wiring_(wiring), owner_(topic.writer), changes_(wiring.events(topics::kParameterChange)), list_(wiring.output(topic)) {}
+
+void Parameters::add(double& field, std::string_view key, std::string_view unit, ParameterBounds bounds, std::string_view doc) {
+  Row row;
+  row.real = &field;
+  row.facts.default_value = field;
+  add(row, key, unit, bounds, doc);
+}
+
+void Parameters::add(int& field, std::string_view key, std::string_view unit, ParameterBounds bounds, std::string_view doc) {
+  Row row;
+  row.whole = &field;
+  row.facts.default_value = field;
+  row.facts.is_integer = true;
+  add(row, key, unit, bounds, doc);
+}
+
+void Parameters::add(Row row, std::string_view key, std::string_view unit, ParameterBounds bounds, std::string_view doc) {
+  const std::string name = owner_ + "." + std::string(key);
+  set_text(row.facts.name, name);
+  set_text(row.facts.unit, std::string(unit));
+  set_text(row.facts.doc, std::string(doc));
+  row.facts.minimum = bounds.min;
+  row.facts.maximum = bounds.max;
+  if (const auto refusal = parameter_refusal(row.facts, row.facts.default_value); !refusal.empty()) throw std::logic_error(refusal);
+  const auto at = std::lower_bound(rows_.begin(), rows_.end(), name, [](const Row& r, const std::string& n) { return r.facts.name < n; });
+  if (at != rows_.end() && name == at->facts.name) throw std::logic_error("parameter " + name + ": there are two");
+  if (rows_.size() >= msg::kMaxParameters) throw std::logic_error("parameter " + name + ": one too many");
+  rows_.insert(at, row);
+}
+
+bool Parameters::take_in(const msg::ParameterChange& change, ParameterState& state) {
+  const std::string name = text_of(change.name);
+  if (name.rfind(owner_ + ".", 0) != 0) return false;
+  const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return name == r.facts.name; });
+  const std::string refusal = row == rows_.end() ? "no such parameter" : parameter_refusal(row->facts, change.value);
+  if (!refusal.empty() || state.waiting.size() >= kMostWaiting) {
+    wiring_.count_refusal("parameter/change: " + (refusal.empty() ? "too many wait for their tick" : refusal));
+    return false;
+  }
+  auto& waiting = state.waiting;
+  std::erase_if(waiting, [&](const auto& w) { return w.tick == change.effective_tick && w.name == name; });
+  const auto at = std::upper_bound(waiting.begin(), waiting.end(), change.effective_tick, [](std::int64_t tick, const auto& w) { return tick < w.tick; });
+  waiting.insert(at, {name, change.value, change.effective_tick});
+  return true;
+}
+
+bool Parameters::set_fields(const ParameterState& state) {
+  bool changed = false;
+  for (auto& row : rows_) {
+    const auto found = std::find_if(state.in_force.begin(), state.in_force.end(), [&](const auto& c) { return c.name == row.facts.name; });
+    const double value = found == state.in_force.end() ? row.facts.default_value : found->value;
+    const double before = row.whole ? *row.whole : *row.real;
+    if (row.whole) *row.whole = static_cast<int>(value);
+    if (row.real) *row.real = value;
+    changed = changed || value != before;
+  }
+  fields_set_ = true;
+  return changed;
+}
+
+bool Parameters::step(const Tick& tick, ParameterState& state) {
+  bool tell = !state.announced;
+  for (const auto& change : changes_) tell = take_in(change, state) || tell;
+  while (!state.waiting.empty() && state.waiting.front().tick <= tick.index) {
+    auto due = state.waiting.front();
+    state.waiting.erase(state.waiting.begin());
+    due.tick = tick.index;
+    std::erase_if(state.in_force, [&](const auto& old) { return old.name == due.name; });
+    state.in_force.push_back(std::move(due));
+    fields_set_ = false;
+    tell = true;
+  }
+  const bool changed = !fields_set_ && set_fields(state);
+  if (tell) {
+    state.announced = true;
+    list_.write(list(state));
+  }
+  return changed;
+}
+
+msg::ParameterList Parameters::list(const ParameterState& state) const {
+  msg::ParameterList list{};
+  for (const auto& row : rows_) {
+    msg::Parameter& parameter = list.parameters[list.count++];
+    parameter = row.facts;
+    parameter.value = row.whole ? *row.whole : *row.real;
+    const auto of_row = [&](const auto& change) { return change.name == row.facts.name; };
+    const auto changed = std::find_if(state.in_force.begin(), state.in_force.end(), of_row);
+    parameter.changed_tick = changed == state.in_force.end() ? -1 : changed->tick;
+    const auto next = std::find_if(state.waiting.begin(), state.waiting.end(), of_row);
+    parameter.pending_value = next == state.waiting.end() ? std::nan("") : next->value;
+    parameter.pending_tick = next == state.waiting.end() ? -1 : next->tick;
+  }
+  return list;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,169 @@
+// Run-time parameters over real processes: a change takes effect at the tick that was named, whenever it was asked for, however the
+// components are spread, and although the process that obeys it is killed.
+#include <signal.h>
+
+#include "cli_fixture.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr const char* kFrequency = "navigation.travel.frequency_hz";
+constexpr const char* kRate = "control.wave.curvature_rate_1_ms";
+constexpr int kTick = 300;
+
+class RunTimeParameters : public CliFixture {
+ protected:
+  RunTimeParameters() {
+    write("report.yaml", "max_sim_time_s: 10\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
+    write("planned.yaml",
+          "parameter_changes:\n  - {tick: 300, name: navigation.travel.frequency_hz, value: 0.9}\n"
+          "  - {tick: 300, name: control.wave.curvature_rate_1_ms, value: 0.7}\n");
+  }
+  [[nodiscard]] Process begin(const std::string& name, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"run", "short", "--report", (dir_ / name).string(), "--config", "report=" + (dir_ / "report.yaml").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start(std::move(arguments));
+  }
+  [[nodiscard]] std::string planned() const { return "input=" + (dir_ / "planned.yaml").string(); }
+  /// The report of a run that was cut short by time.
+  [[nodiscard]] json end(const std::string& name, Process& run) const {
+    const auto status = run.wait(120s);
+    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
+        << name << " ended with " << status.value_or(-1) << ": " << run.output() << run.errors();
+    json told = report(name);
+    EXPECT_TRUE(told.contains("state_hash")) << name;
+    return told;
+  }
+  /// What `constrictor ARGUMENTS --json` says; it must end with `status`.
+  json ask(std::vector<std::string> arguments, int status = 0) {
+    arguments.push_back("--json");
+    Process process = start(std::move(arguments));
+    EXPECT_EQ(process.wait(30s), status) << process.output() << process.errors();
+    return json::parse(process.output(), nullptr, false);
+  }
+  [[nodiscard]] bool is_there() {
+    return eventually([&] { return domain() != 0 && command({"param", "get", kFrequency}) == 0; });
+  }
+  /// Pid of this run's process of a component.
+  [[nodiscard]] pid_t pid_of(const std::string& name) const {
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string pid = entry.path().filename();
+      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::ifstream file(entry.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(file), {}};
+      if (fs::path(line.substr(0, line.find('\0'))).filename() == name && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
+    }
+    return -1;
+  }
+};
+
+TEST_F(RunTimeParameters, TheSameChangesAtTheSameTicksAreTheSameRunHoweverTheyAreAskedForSpreadOrKilled) {
+  Process plain = begin("plain", {"--in-process"});
+  const json without = end("plain", plain);
+  EXPECT_EQ(without["parameters"], json::array());
+
+  Process one = begin("one", {"--in-process", "--config", planned()});
+  const json reference = end("one", one);
+  const std::string expected = reference["state_hash"];
+  EXPECT_NE(expected, without["state_hash"]);
+  ASSERT_EQ(reference["parameters"].size(), 2u);
+  EXPECT_EQ(reference["parameters"][0],
+            json::parse(R"({"sim_time_s": 6.0, "tick": 300, "name": "navigation.travel.frequency_hz", "value": 0.9, "source": "input.yaml"})"));
+
+  Process ten = begin("ten", {"--config", planned()});
+  EXPECT_EQ(end("ten", ten)["state_hash"], expected);
+
+  // The same changes, asked for from the command line well before their tick, and control killed after it.
+  Process asked = begin("asked", {"--pace", "1x"});
+  ASSERT_TRUE(is_there()) << output_;
+  const json answer = ask({"param", "set", kFrequency, "0.9", kRate, "0.7", "--at-tick", std::to_string(kTick)});
+  ASSERT_EQ(answer.size(), 2u) << answer;
+  EXPECT_EQ(answer[0]["effective_tick"], kTick);
+  EXPECT_LT(answer[1]["accepted_tick"], kTick);
+  const json waiting = ask({"param", "get", kRate});
+  EXPECT_EQ(waiting["value"], waiting["default"]);
+  EXPECT_EQ(waiting["pending"], (json{{"tick", kTick}, {"value", 0.7}}));
+  json in_force;
+  ASSERT_TRUE(eventually([&] { return !(in_force = ask({"param", "get", kRate}))["changed_tick"].is_null(); })) << in_force;
+  const pid_t control = pid_of("control");
+  ASSERT_GT(control, 0);
+  ASSERT_EQ(::kill(control, SIGKILL), 0);
+  EXPECT_EQ(in_force["value"], 0.7);
+  EXPECT_EQ(in_force["changed_tick"], kTick);
+  EXPECT_EQ(ask({"param", "get", kFrequency})["changed_tick"], kTick);
+  const json told = end("asked", asked);
+  EXPECT_EQ(told["state_hash"], expected);
+  for (const auto& process : told["processes"]) EXPECT_EQ(process["restarts"], process["name"] == "control" ? 1 : 0) << process;
+  ASSERT_EQ(told["parameters"].size(), 2u);
+  EXPECT_EQ(told["parameters"][1]["name"], kRate);
+  EXPECT_EQ(told["parameters"][1]["tick"], kTick);
+}
+
+TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
+  write("long.yaml", "max_sim_time_s: 600\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
+  Process run = start({"run", "short", "--in-process", "--pace", "1x", "--report", (dir_ / "run").string(), "--config", "report=" + (dir_ / "long.yaml").string()});
+  ASSERT_TRUE(is_there()) << output_;
+  EXPECT_NE(output_.find("0.7 Hz"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("accepted: 0.05 to 2 Hz; default: 0.7 Hz"), std::string::npos) << output_;
+
+  const json all = ask({"param", "list"});
+  std::map<std::string, int> owners;
+  for (const auto& p : all) {
+    ++owners[p["owner"]];
+    EXPECT_EQ(p["name"].get<std::string>().rfind(p["owner"].get<std::string>() + ".", 0), 0u);
+    EXPECT_EQ(p["value"], p["default"]) << p;
+    EXPECT_FALSE(p["doc"].get<std::string>().empty());
+  }
+  EXPECT_EQ(owners.size(), 4u) << all;
+  EXPECT_EQ(ask({"param", "list", "perception.blob."}).size(), 2u);
+  EXPECT_EQ(ask({"param", "list", "--changed"}), json::array());
+  EXPECT_EQ(command({"param", "list", "--names", "control.squeeze"}), 0);
+  EXPECT_EQ(output_, "control.squeeze.opening_share\ncontrol.squeeze.rate_rad_s\n");
+
+  EXPECT_EQ(command({"param", "set", kFrequency, "0.9"}), 0) << output_;
+  EXPECT_NE(output_.find("navigation.travel.frequency_hz: 0.9 from tick "), std::string::npos) << output_;
+  ASSERT_TRUE(eventually([&] { return ask({"param", "get", kFrequency})["value"] == 0.9; }));
+  EXPECT_EQ(ask({"param", "list", "--changed"}).size(), 1u);
+  EXPECT_EQ(command({"param", "list"}), 0);
+  EXPECT_NE(output_.find("* navigation.travel.frequency_hz"), std::string::npos) << output_;
+
+  // Refused, with the reason and status 1; nothing after it is asked for.
+  EXPECT_EQ(command({"param", "set", kFrequency, "2.5", kRate, "3"}), 1);
+  EXPECT_NE(output_.find("refused: navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz"), std::string::npos) << output_;
+  EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find("parameter: found 'navigation.nothing'"), 0u);
+  EXPECT_EQ(command({"param", "set", kFrequency, "0.8", "--at-tick", "1"}), 1);
+  EXPECT_NE(output_.find("found 1, accepted "), std::string::npos) << output_;
+  EXPECT_EQ(command({"param", "set", "navigation.line_watch.lost_after_images", "3.5"}), 1);
+  EXPECT_NE(output_.find("accepted whole numbers from 1 to 100"), std::string::npos) << output_;
+  EXPECT_EQ(ask({"param", "list", "--changed"}).size(), 1u);
+
+  // Wrong usage.
+  EXPECT_EQ(command({"param", "set", kFrequency}), exit_status::kUsage);
+  EXPECT_EQ(command({"param", "set", kFrequency, "fast"}), exit_status::kUsage);
+  EXPECT_EQ(command({"param", "set", kFrequency, "0.9", kRate}), exit_status::kUsage);
+  EXPECT_EQ(command({"param", "get", "navigation.nothing"}), 1);
+  EXPECT_EQ(command({"param"}), exit_status::kUsage);
+  EXPECT_EQ(command({"param", "list", "--names", "--json"}), exit_status::kUsage);
+
+  // Defaults return with a reset.
+  EXPECT_EQ(command({"reset", "1"}), 0) << output_;
+  EXPECT_TRUE(eventually([&] { return ask({"param", "get", kFrequency})["changed_tick"].is_null(); }));
+  EXPECT_EQ(ask({"param", "get", kFrequency})["value"], 0.7);
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(RunTimeParameters, WithoutARunTheStatusSaysSo) {
+  EXPECT_EQ(command({"param", "list"}), exit_status::kSoftware);
+  EXPECT_EQ(command({"param", "set", kFrequency, "0.9"}), exit_status::kSoftware);
+  EXPECT_EQ(command({"param", "--help"}), 0);
+  EXPECT_NE(output_.find("EXAMPLES"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace constrictor::testing
