@@ -46,18 +46,55 @@ int dispatch(int argc, char** argv) {
   run_app->add_option("--domain", run.domain, "DDS domain (default: the first free of 1 to 100)")
       ->envname("CONSTRICTOR_DOMAIN")->check(CLI::Range(0, 229));
 
+  run_app->footer(
+      "Starts every component of a launch manifest in a DDS domain of its own, shows what happens, restarts what dies, and ends with the\n"
+      "mission. The report directory then has report.json, figure.png, hashes.bin (for `constrictor diff`) and logs/.\n"
+      "The result depends on scenario, seed, configurations and robot only: not on grouping, pace, load, kills or hosts.\n\n"
+      "EXAMPLES\n"
+      "  constrictor run\n"
+      "  constrictor run short --seed 7 --report /tmp/seven\n"
+      "  constrictor run --in-process --pace realtime\n"
+      "  constrictor run --group physics,camera --group navigation,control\n"
+      "  constrictor run --manifest manual                       # no planner: for teleop and planners of your own\n"
+      "  constrictor run --config navigation=mine.yaml --config input=changes.yaml\n\n"
+      "EXIT STATUS\n"
+      "  0 the mission succeeded; 1 it failed; 64 wrong usage; 70 a process failed; 75 one waited too long for another;\n"
+      "  76 one was refused; 78 bad configuration; 128 + N ended by signal N (Ctrl-C: 130)\n\n"
+      "FILES\n"
+      "  runs/                       reports, unless --report says otherwise\n"
+      "  $XDG_RUNTIME_DIR/constrictor/  notes by which other commands find the run\n\n"
+      "ENVIRONMENT\n"
+      "  CONSTRICTOR_DOMAIN  the domain, like --domain\n"
+      "  CONSTRICTOR_SHARE   where default files are, instead of the source tree or the install prefix\n"
+      "  CYCLONEDDS_URI      how DDS reaches other hosts (deploy/cyclonedds)");
+
   std::optional<std::uint32_t> domain;
   const auto choose_run = [&domain](CLI::App* sub) {
     sub->add_option("--run", domain, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
   };
   auto* end_app = app.add_subcommand("end", "end a run and all of its processes");
   choose_run(end_app);
+  end_app->footer("Asks the run's launcher to end and waits until the last process is gone; the report is written.\n\n"
+                  "EXAMPLES\n  constrictor end\n  constrictor end --run 3\n\n"
+                  "EXIT STATUS\n  0 it has ended; 64 wrong usage; 70 no run, or several and none chosen; 75 it did not end within 20 s\n\n"
+                  "ENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
   std::string a;
   std::string b;
   auto* diff_app = app.add_subcommand("diff", "name the first tick, component, topic and field in which two runs differ");
   diff_app->add_option("RUN_A", a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
   diff_app->add_option("RUN_B", b, "report directory of another")->required()->check(CLI::ExistingDirectory);
-  app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]");
+  diff_app->footer("Compares what was written at every tick by its hash; of runs made with `constrictor run --record` it names the field and both\n"
+                   "values, too. Equal runs are equal in every bit of every message.\n\n"
+                   "EXAMPLES\n  constrictor run --seed 1 --report a && constrictor run --seed 1 --in-process --report b\n  constrictor diff a b\n\n"
+                   "EXIT STATUS\n  0 equal; 1 different; 64 wrong usage; 70 a directory without hashes.bin, or a damaged one");
+  app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
+      ->footer("The process becomes `constrictor_host`: queues between the components inside, DDS to those elsewhere. One that hosts only a part\n"
+               "of a run names the others by --roster. `constrictor run --group` does it for you.\n\n"
+               "EXAMPLES\n  constrictor host navigation control guidance --domain 5 --roster physics,navigation,control,guidance\n"
+               "  constrictor host navigation --help      # all options\n\n"
+               "EXIT STATUS\n  0 the run is over, or SIGTERM; 64 wrong usage; 70 it failed; 75 it waited too long for a peer; 76 it was refused;\n"
+               "  78 bad configuration\n\n"
+               "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI");
   std::function<int()> action;
   cli::add_run_control(app, action);
   cli::add_teleop(app, action);
@@ -86,7 +123,9 @@ int dispatch(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     // The options after `host NAME...` are those of the process it becomes.
-    if (argc > 1 && std::string(argv[1]) == "host") return cli::host_command(argc - 2, argv + 2);
+    const std::string first = argc > 1 ? argv[1] : "";
+    const std::string second = argc == 3 ? argv[2] : "";
+    if (first == "host" && second != "--help" && second != "-h") return cli::host_command(argc - 2, argv + 2);
     return dispatch(argc, argv);
   } catch (const ConfigurationError& error) {
     std::fprintf(stderr, "constrictor: configuration: %s\n", error.what());

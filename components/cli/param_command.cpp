@@ -107,6 +107,10 @@ Answer ask(OperatorClient& client, const dds::Reader<msg::ParameterChange>& chan
 }
 
 int set(const Options& options) {
+  if (options.changes.size() % 2 != 0) {
+    std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
+    return exit_status::kUsage;
+  }
   const std::size_t count = options.changes.size() / 2;
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
@@ -189,9 +193,6 @@ void add_param(CLI::App& app, std::function<int()>& action) {
       ->required()->expected(2, 64)->option_text("NAME VALUE...");
   set_app->add_option("--at-tick", options->at_tick, "take effect at this tick, which is still to come (default: as soon as possible)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{9'000'000'000'000'000}));
-  set_app->final_callback([options] {
-    if (options->changes.size() % 2 != 0) throw CLI::ValidationError("NAME VALUE", options->changes.back() + " has no value");
-  });
 }
 
 }  // namespace constrictor::cli

@@ -132,6 +132,13 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
   EXPECT_EQ(command({"param", "list"}), 0);
   EXPECT_NE(output_.find("* navigation.travel.frequency_hz"), std::string::npos) << output_;
 
+  ASSERT_EQ(command({"completion", "bash"}), 0);
+  write("completion.sh", output_ + "\nconstrictor() { \"" + program("constrictor") + "\" \"$@\"; }\n" +
+                             "COMP_WORDS=(constrictor param get control.squeeze.r) COMP_CWORD=3\n_constrictor\necho \"${COMPREPLY[@]}\"\n");
+  Process bash({"/bin/bash", (dir_ / "completion.sh").string()}, environment_);
+  EXPECT_EQ(bash.wait(30s), 0) << bash.errors();
+  EXPECT_EQ(bash.output(), "control.squeeze.rate_rad_s\n") << bash.errors();
+
   // Refused, with the reason and status 1; nothing after it is asked for.
   EXPECT_EQ(command({"param", "set", kFrequency, "2.5", kRate, "3"}), 1);
   EXPECT_NE(output_.find("refused: navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz"), std::string::npos) << output_;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <vector>
 
 #include "runtime/host.hpp"
@@ -42,13 +42,18 @@ std::string words_of(const Node& node) {
   return words;
 }
 
+/// Subcommands after which the names of the run's own parameters may follow.
+const std::vector<std::string> kAfterThemParameters{"param get", "param set", "param list"};
+
 /// Bash, and zsh by its bash-compatible completion.
 std::string bash_script(const std::string& name, const std::vector<Node>& nodes) {
   std::string cases;
   std::string known;
   std::string valued;
   for (const auto& node : nodes) {
-    cases += fmt::format("    '{}') words='{}' ;;\n", node.path, words_of(node));
+    const bool parameters = std::count(kAfterThemParameters.begin(), kAfterThemParameters.end(), node.path) > 0;
+    cases += parameters ? fmt::format("    '{}') words=\"{} $({} param list --names 2>/dev/null)\" ;;\n", node.path, words_of(node), name)
+                        : fmt::format("    '{}') words='{}' ;;\n", node.path, words_of(node));
     for (const auto& option : node.with_value) valued += fmt::format("    '{} {}') COMPREPLY=(); return ;;\n", node.path, option);
     if (!node.path.empty()) known += fmt::format("{}'{}'", known.empty() ? "" : "|", node.path);
   }
@@ -81,6 +86,9 @@ std::string fish_script(const std::string& name, const std::vector<Node>& nodes)
       const bool option = word.rfind("--", 0) == 0;
       script += fmt::format("complete -c {0} -n '__{0}_at {1}' {2} {3} -d '{4}'\n", name, node.path, option ? "-l" : "-f -a",
                             option ? word.substr(2) : word, text);
+    }
+    if (std::count(kAfterThemParameters.begin(), kAfterThemParameters.end(), node.path) > 0) {
+      script += fmt::format("complete -c {0} -n '__{0}_at {1}' -f -a '({0} param list --names 2>/dev/null)'\n", name, node.path);
     }
   }
   return script;

@@ -94,13 +94,13 @@ void tempt(msg::Request& m, HostileFiller& f) {
   if (f.roll(4) != 0) std::snprintf(m.source, sizeof m.source, "%s", kSources[f.roll(4)]);
   if (f.roll(4) != 0) m.goal_id = f.roll(1000);
   if (f.roll(2) == 0) std::snprintf(m.parameter, sizeof m.parameter, "%s", kParameters[f.roll(4)]);
-  if (f.roll(2) == 0) m.parameter_value = f.roll(3);
-  if (f.roll(2) == 0) m.effective_tick = f.roll(2) == 0 ? 0 : f.roll(100'000);
+  if (f.roll(2) == 0) m.parameter_value = static_cast<double>(f.roll(3));
+  if (f.roll(2) == 0) m.effective_tick = f.roll(2) == 0 ? 0 : static_cast<std::int64_t>(f.roll(100'000));
 }
 void tempt(msg::ParameterChange& m, HostileFiller& f) {
   if (f.roll(4) != 0) std::snprintf(m.name, sizeof m.name, "%s", kParameters[f.roll(4)]);
-  if (f.roll(4) != 0) m.value = f.roll(3) == 0 ? 0.7 : f.roll(100);
-  if (f.roll(4) != 0) m.effective_tick = f.roll(100'000);
+  if (f.roll(4) != 0) m.value = f.roll(3) == 0 ? 0.7 : static_cast<double>(f.roll(100));
+  if (f.roll(4) != 0) m.effective_tick = static_cast<std::int64_t>(f.roll(100'000));
 }
 void tempt(msg::ParameterList& m, HostileFiller& f) {
   if (f.roll(4) == 0 || m.count == 0) return;
