@@ -49,7 +49,7 @@ int dispatch(int argc, char** argv) {
   run_app->footer(
       "Starts every component of a launch manifest in a DDS domain of its own, shows what happens, restarts what dies, and ends with the\n"
       "mission. The report directory then has report.json, figure.png, hashes.bin (for `constrictor diff`) and logs/.\n"
-      "The result depends on scenario, seed, configurations and robot only: not on grouping, pace, load, kills or hosts.\n\n"
+      "In lock-step the result depends on scenario, seed, configurations and robot only: not on grouping, pace, load, kills or hosts.\n\n"
       "EXAMPLES\n"
       "  constrictor run\n"
       "  constrictor run short --seed 7 --report /tmp/seven\n"
