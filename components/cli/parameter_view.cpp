@@ -16,6 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+/// Writers keep several lists for late readers, which come one after the other: the last one counts.
+constexpr auto kQuiet = 300ms;
 
 }  // namespace
 
@@ -37,15 +39,19 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
     return std::any_of(endpoints.begin(), endpoints.end(), [&](const auto& e) { return e.writer && e.topic == source.topic->name; });
   };
   const auto start = Clock::now();
+  auto heard = start;
   for (;;) {
     for (auto& source : sources) {
-      source.reader.take([&](const msg::ParameterList& list) { source.newest = list; });
+      source.reader.take([&](const msg::ParameterList& list) {
+        source.newest = list;
+        heard = Clock::now();
+      });
     }
     const auto waited = Clock::now() - start;
     const bool all = std::all_of(sources.begin(), sources.end(), [](const auto& s) { return s.newest.has_value(); });
     // Whoever has no writer after a moment is no part of this run.
     const bool rest = waited > 700ms && std::none_of(sources.begin(), sources.end(), [&](const auto& s) { return !s.newest && has_writer(s); });
-    if (all || rest || waited > bound) break;
+    if (((all || rest) && Clock::now() - heard > kQuiet) || waited > bound) break;
     std::this_thread::sleep_for(10ms);
   }
   ParameterView view;

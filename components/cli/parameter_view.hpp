@@ -23,7 +23,8 @@ struct ParameterView {
   std::vector<std::string> silent;                   ///< components that have such a list but have not written it yet
 };
 
-/// Reads what the owners keep for late readers, over a DDS participant; waits for it at most `bound`.
+/// Reads what the owners keep for late readers, over a DDS participant; waits until nothing
+/// new comes, at most `bound`.
 ParameterView read_parameters(std::int32_t participant, std::chrono::milliseconds bound = std::chrono::milliseconds(2000));
 
 /// For people: "0.05 to 2 Hz".

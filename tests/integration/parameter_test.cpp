@@ -159,8 +159,9 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
 
   // Defaults return with a reset.
   EXPECT_EQ(command({"reset", "1"}), 0) << output_;
-  EXPECT_TRUE(eventually([&] { return ask({"param", "get", kFrequency})["changed_tick"].is_null(); }));
-  EXPECT_EQ(ask({"param", "get", kFrequency})["value"], 0.7);
+  json after;
+  EXPECT_TRUE(eventually([&] { return (after = ask({"param", "get", kFrequency}))["changed_tick"].is_null(); }));
+  EXPECT_EQ(after["value"], 0.7) << after;
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
 }
