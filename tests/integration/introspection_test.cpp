@@ -28,11 +28,14 @@ class Introspection : public CliFixture {
     EXPECT_TRUE(eventually([&] { return domain() != 0; }));
     return run;
   }
-  /// Output of a command as JSON; it must end with `status`.
+  /// Output of a command as JSON; it must end with `status`. What it says to people stays in `output_`.
   json json_of(std::vector<std::string> arguments, int status = 0) {
     arguments.push_back("--json");
-    EXPECT_EQ(command(arguments), status) << output_;
-    return json::parse(output_, nullptr, false);
+    Process process = start(std::move(arguments));
+    const auto ended = process.wait(30s);
+    output_ = process.output() + process.errors();
+    EXPECT_EQ(ended, status) << output_;
+    return json::parse(process.output(), nullptr, false);
   }
   /// Names of what the doctor finds in a domain.
   std::vector<std::string> faults(std::uint32_t domain) {
@@ -160,6 +163,47 @@ TEST_F(Introspection, TheDoctorFindsASecondMember) {
   })) << output_;
   EXPECT_NE(output_.find(std::to_string(first.pid())), std::string::npos) << output_;
   EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
+}
+
+// Constrictor's own plants refuse each other; a driver of somebody's may not.
+TEST_F(Introspection, TheDoctorFindsASecondPlant) {
+  Process run = toys();
+  const Process second = foreign(domain(), "plant");
+  std::vector<std::string> found;
+  EXPECT_TRUE(eventually([&] {
+    found = faults(domain());
+    return std::count(found.begin(), found.end(), "two plants") == 1;
+  })) << output_;
+  EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(Introspection, TheDoctorFindsThatTheRunIsInAnotherDomain) {
+  Process run = toys();
+  const DomainClaim empty;
+  EXPECT_EQ(faults(empty.domain()), std::vector<std::string>{"wrong domain"}) << output_;
+  EXPECT_NE(output_.find("--run " + std::to_string(domain())), std::string::npos) << output_;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(Introspection, TheDoctorFindsInterfacesThatCannotWorkAndBuffersThatAreSmall) {
+  const DomainClaim claim;
+  const auto with = [this](const std::string& general) {
+    environment_["CYCLONEDDS_URI"] = "<CycloneDDS><Domain><General>" + general + "</General></Domain></CycloneDDS>";
+  };
+  with("<Interfaces><NetworkInterface name=\"nosuch0\"/></Interfaces>");
+  auto found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "wrong interface"), 1) << output_;
+  EXPECT_NE(output_.find("name one of"), std::string::npos) << output_;
+  with("<Interfaces><NetworkInterface name=\"lo\"/></Interfaces><AllowMulticast>false</AllowMulticast>");
+  found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "missing multicast"), 1) << output_;
+  // By this host's own limit, which is not for a test to change.
+  std::uint64_t limit_bytes = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> limit_bytes;
+  EXPECT_EQ(std::count(found.begin(), found.end(), "small socket buffers"), limit_bytes < 1024 * 1024 ? 1 : 0) << limit_bytes << output_;
 }
 
 TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {

@@ -1,5 +1,5 @@
 // A program that is no part of the run: publishes types of its own, or seeds one of the faults that `constrictor doctor` finds.
-//   foreign_talker DOMAIN final|appendable|untyped|silent_qos|other_idl
+//   foreign_talker DOMAIN final|appendable|untyped|silent_qos|other_idl|plant
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -98,6 +98,14 @@ void other_idl(dds_entity_t participant) {
   while (!g_stop) std::this_thread::sleep_for(10ms);
 }
 
+/// A plant that asks nobody whether there is one already.
+void plant(dds_entity_t participant) {
+  const dds::Writer<msg::Tick> writer(participant, dds::barrier_topics::kTick, dds::barrier_topics::kTickDepth);
+  std::puts("talking");
+  std::fflush(stdout);
+  while (!g_stop) std::this_thread::sleep_for(10ms);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -110,6 +118,7 @@ int main(int argc, char** argv) {
   else if (mode == "appendable") talk(domain.participant(), foreign_Tide_desc, "tide", tide);
   else if (mode == "silent_qos") silent_qos(domain.participant());
   else if (mode == "other_idl") other_idl(domain.participant());
+  else if (mode == "plant") plant(domain.participant());
   else return 64;
   return 0;
 }
