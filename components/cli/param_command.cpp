@@ -14,6 +14,7 @@
 #include "cli/operator_client.hpp"
 #include "cli/parameter_view.hpp"
 #include "cli/run_registry.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
 #include "runtime/host.hpp"
@@ -60,7 +61,7 @@ int list(const Options& options) {
       fmt::print("{} {:<38} {:>9g} {:>9g} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, p.value, p.default_value, p.unit,
                  fmt::format("{:g} to {:g}", p.minimum, p.maximum), p.doc, pending_text(p));
   }
-  if (options.view.json) fmt::print("{}\n", json.dump(2));
+  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
   tell_silent(view);
   return view.parameters.empty() ? exit_status::kMissionFailed : exit_status::kOk;
 }
@@ -76,7 +77,7 @@ int get(const Options& options) {
   }
   const msg::Parameter& p = found->second.parameter;
   if (options.view.json) {
-    fmt::print("{}\n", to_json(found->second).dump(2));
+    fmt::print("{}\n", json_text(to_json(found->second), 2));
     return exit_status::kOk;
   }
   fmt::print("{}: {}{}\n  {}, of {}\n  accepted: {}; default: {}{}\n", p.name, value_text(p, p.value), pending_text(p), p.doc, found->second.owner,
@@ -150,7 +151,7 @@ int set(const Options& options) {
       status = exit_status::kWaitedTooLong;
     }
   }
-  if (options.view.json) fmt::print("{}\n", json.dump(2));
+  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
   return status;
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "constrictor/json.hpp"
 #include "runtime/domain_claim.hpp"
 
 namespace constrictor::cli {
@@ -36,7 +37,7 @@ PublishedNote::PublishedNote(const RunNote& note) : file_(note_file(note.domain)
   const nlohmann::json json = {{"pid", note.pid},   {"domain", note.domain}, {"scenario", note.scenario},
                                {"seed", note.seed}, {"roster", note.roster}, {"report_dir", note.report_dir.string()}};
   const fs::path unfinished = file_.string() + ".new";
-  std::ofstream(unfinished) << json.dump(1) << "\n";
+  std::ofstream(unfinished) << json_text(json, 1) << "\n";
   fs::rename(unfinished, file_);
 }
 

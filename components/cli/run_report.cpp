@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "constrictor/json.hpp"
+
 namespace constrictor::cli {
 namespace {
 
@@ -55,7 +57,7 @@ bool write_report(const std::filesystem::path& report_dir, const RunOutcome& out
     if (!ordered.contains(key)) ordered[key] = value;
   }
   std::ofstream file(report_dir / "report.json");
-  file << ordered.dump(1) << "\n";
+  file << json_text(ordered, 1) << "\n";
   if (!file.flush()) throw std::runtime_error("cannot write " + (report_dir / "report.json").string());
   return success;
 }

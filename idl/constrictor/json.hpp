@@ -9,6 +9,12 @@
 
 namespace constrictor {
 
+/// JSON as text. What is not UTF-8 in a string (a message may hold any bytes) becomes U+FFFD; dump() alone would throw.
+template <class Json>
+std::string json_text(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 namespace reflect {
 
 struct JsonWriter {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "configuration/configuration.hpp"
+#include "constrictor/json.hpp"
 #include "robot/robot_model.hpp"
 #include "runtime/share.hpp"
 #include "sim/report/figure.hpp"
@@ -157,7 +158,7 @@ void Report::follow_mission(const Tick& tick) {
   if (state_.mission_state != mission_->state) {
     state_.mission_state = mission_->state;
     const ordered_json line{{"sim_time_s", seconds(mission_->header)}, {"state", state_.mission_state}};
-    states_.append(line.dump() + "\n", state_.states_length);
+    states_.append(json_text(line) + "\n", state_.states_length);
   }
   if (mission_->mission == msg::kMissionRunning) return;
   state_.mission = mission_->mission;
@@ -179,7 +180,7 @@ void Report::follow_events() {
                               {"colour", report::colour_name(event.colour)},
                               {"object_handle", event.object_handle},
                               {"detail", event.detail}}}};
-    events_.append(line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n", state_.events_length);
+    events_.append(json_text(line) + "\n", state_.events_length);
     if (report::is_key_event(event.event)) add_moment(event.header.tick, seconds(event.header), event.event, event.colour);
   }
 }
@@ -191,7 +192,7 @@ void Report::follow_parameters(const Tick& tick) {
                             {"name", change.name},
                             {"value", change.value},
                             {"source", change.source}};
-    parameters_.append(line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n", state_.parameters_length);
+    parameters_.append(json_text(line) + "\n", state_.parameters_length);
   }
 }
 

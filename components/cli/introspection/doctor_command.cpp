@@ -13,6 +13,7 @@
 #include "cli/introspection/diagnosis.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/run_registry.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/dds/endpoint.hpp"
 #include "runtime/dds/wire.hpp"
 #include "runtime/host.hpp"
@@ -98,7 +99,7 @@ int doctor(const ViewOptions& options) {
     nlohmann::ordered_json json = {{"domain", facts.domain}, {"participants", facts.participants.size()}};
     auto& list = json["findings"] = nlohmann::ordered_json::array();
     for (const auto& finding : findings) list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("domain {}: {} processes, {} readers and writers\n", facts.domain, facts.participants.size(), facts.endpoints.size());
     for (const auto& finding : findings) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);

@@ -8,6 +8,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/run_observer.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -76,7 +77,7 @@ int list(const Options& options) {
   const DomainView view(options.view);
   const auto found = nodes(view);
   if (options.view.json) {
-    fmt::print("{}\n", Json(found).dump(2));
+    fmt::print("{}\n", json_text(Json(found), 2));
     return exit_status::kOk;
   }
   fmt::print("{:<28} {:<18} {:>8} {:<18} {:<10} {:<12} {:>6} {:>6}\n", "node", "host", "pid", "process", "version", "IDL hash", "writes", "reads");
@@ -103,7 +104,7 @@ int info(const Options& options) {
     return exit_status::kSoftware;
   }
   if (options.view.json) {
-    fmt::print("{}\n", chosen.dump(2));
+    fmt::print("{}\n", json_text(chosen, 2));
     return exit_status::kOk;
   }
   for (const auto& node : chosen) {
@@ -111,7 +112,7 @@ int info(const Options& options) {
                node["pid"].get<std::int64_t>(), node["host"].get<std::string>(), node["participant"].get<std::string>());
     for (const auto& component : node["components"]) {
       fmt::print("\n");
-      for (const auto& [key, value] : component.items()) fmt::print("  {:<16} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+      for (const auto& [key, value] : component.items()) fmt::print("  {:<16} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value));
     }
     for (const char* side : {"writes", "reads"}) {
       fmt::print("\n  {}:\n", side);

@@ -11,6 +11,7 @@
 #include "cli/introspection/domain_view.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/run_registry.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -170,7 +171,7 @@ int status(const Options& options) {
     if (!options.watch && (complete || paused || now - start > kRateWindow)) break;
     if (options.watch && now - shown > 1s) {
       shown = now;
-      if (options.view.json) fmt::print("{}\n", json_of(run, observer.view(), rates).dump());
+      if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
       else fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()), table(run, observer.view(), rates));
       std::fflush(stdout);
       if (observer.view().ended(run.roster.front())) return exit_status::kOk;
@@ -178,7 +179,7 @@ int status(const Options& options) {
     std::this_thread::sleep_for(kPoll);
   }
   if (options.watch) return exit_status::kOk;
-  if (options.view.json) fmt::print("{}\n", json_of(run, observer.view(), rates).dump(2));
+  if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates), 2));
   else fmt::print("{}\n\n{}", run_line(observer.view()), table(run, observer.view(), rates));
   return exit_status::kOk;
 }

@@ -7,6 +7,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/introspection/topic_watch.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/dds/type_tree.hpp"
 #include "runtime/host.hpp"
 #include "runtime/topics.hpp"
@@ -48,7 +49,7 @@ int list(const Options& options) {
       json.push_back({{"topic", name}, {"type", row.type}, {"writers", row.writers}, {"readers", row.readers},
                       {"what", info ? Json(std::string(info->doc)) : Json(nullptr)}});
     }
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
     return exit_status::kOk;
   }
   fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "what");
@@ -93,7 +94,7 @@ int info(const Options& options) {
     }
   }
   if (options.view.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
     return exit_status::kOk;
   }
   fmt::print("{}  ({}, {})\n", options.watch.topic, here.front().type, here.front().keyed ? "keyed" : "without a key");

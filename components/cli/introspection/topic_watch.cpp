@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "constrictor/json.hpp"
 #include "constrictor/reflect.hpp"
 #include "runtime/dds/raw_reader.hpp"
 #include "runtime/dds/type_tree.hpp"
@@ -28,7 +29,7 @@ void print_fields(const Json& value, int depth) {
   for (const auto& [name, field] : value.items()) {
     const bool nested = field.is_object() || (field.is_array() && !field.empty() && field.front().is_object());
     if (!nested) {
-      fmt::print("{}{}: {}\n", indent, name, field.is_string() ? field.get<std::string>() : field.dump());
+      fmt::print("{}{}: {}\n", indent, name, field.is_string() ? field.get<std::string>() : json_text(field));
     } else {
       fmt::print("{}{}:\n", indent, name);
       print_fields(field, depth + 1);
@@ -142,7 +143,7 @@ int echo_command(const ViewOptions& view, const WatchOptions& options) {
       print_fields(json, 0);
       fmt::print("---\n");
     } else {
-      fmt::print("{}\n", json.is_string() ? json.get<std::string>() : json.dump());
+      fmt::print("{}\n", json.is_string() ? json.get<std::string>() : json_text(json));
     }
     std::fflush(stdout);
     return options.count == 0 || ++seen < options.count;
@@ -176,7 +177,7 @@ int hz_command(const ViewOptions& view, const WatchOptions& options) {
     const Json json = {{"topic", options.topic}, {"samples", count}, {"rate_hz", rate()}, {"least_interval_s", interval.least},
                        {"greatest_interval_s", interval.greatest}, {"deviation_s", interval.deviation()},
                        {"bytes_per_s", count > 1 && last_s > first_s ? static_cast<double>(bytes) / (last_s - first_s) : 0.0}};
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
   } else {
     fmt::print("{:.2f} Hz over {} samples\n", rate(), count);
   }
@@ -204,7 +205,7 @@ int delay_command(const ViewOptions& view, const WatchOptions& options) {
   if (view.json) {
     const Json json = {{"topic", options.topic}, {"samples", delay.count}, {"mean_s", delay.mean}, {"least_s", delay.least},
                        {"greatest_s", delay.greatest}, {"deviation_s", delay.deviation()}};
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
   } else {
     tell();
   }

@@ -21,7 +21,10 @@
 #include "runtime/barrier/member.hpp"
 #include "runtime/barrier/topic_ops.hpp"
 #include "runtime/share.hpp"
+#include "sim/camera/camera.hpp"
+#include "sim/camera/overview.hpp"
 #include "sim/physics/physics.hpp"
+#include "sim/report/report.hpp"
 
 namespace constrictor::test {
 namespace {
@@ -173,7 +176,7 @@ TEST_P(Hostile, MessagesChangeNothingThatMatters) {
     if (member.reads() >> topic.id & 1) inputs.push_back(topic.id);
   }
   ASSERT_FALSE(inputs.empty());
-  const std::uint64_t budget = kMessages / 7;
+  const std::uint64_t budget = kMessages / 10;
   std::array<std::uint64_t, topics::kCount> counts{};
   std::uint64_t sent = 0;
   double early_mib = 0.0;
@@ -216,7 +219,8 @@ TEST_P(Hostile, MessagesChangeNothingThatMatters) {
   std::printf("%s: %llu messages in %lld ticks, %llu outputs, %llu refused, state %zu bytes, memory %.1f to %.1f MiB\n", factory.name.c_str(),
               static_cast<unsigned long long>(sent), static_cast<long long>(tick), static_cast<unsigned long long>(judge.outputs),
               static_cast<unsigned long long>(member.counters().refused), judge.largest_state, early_mib, late_mib);
-  EXPECT_GT(judge.outputs, outputs_before) << "nothing absurd may silence a component for ever";
+  const bool silent = factory.name == "report";  // it only reads
+  EXPECT_TRUE(silent || judge.outputs > outputs_before) << "nothing absurd may silence a component for ever";
   EXPECT_GT(member.counters().refused, 0u);
   EXPECT_LT(judge.largest_state, 300'000u);
   EXPECT_LT(late_mib - early_mib, 16.0);
@@ -226,7 +230,8 @@ INSTANTIATE_TEST_SUITE_P(EveryClass, Hostile,
                          testing::Values([] { return make_control_factory(); }, [] { return make_navigation_factory(); },
                                          [] { return make_guidance_factory(); }, [] { return make_planner_factory(); },
                                          [] { return make_input_factory(); }, [] { return make_perception_factory(); },
-                                         [] { return make_physics_factory(); }),
+                                         [] { return make_physics_factory(); }, [] { return make_camera_factory(); },
+                                         [] { return make_overview_factory(); }, [] { return make_report_factory(); }),
                          [](const auto& made) { return made.param().name; });
 
 }  // namespace
