@@ -23,7 +23,7 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   tf_out_ = {ros_side, "rt/tf", 10};
   tf_static_out_ = {ros_side, "rt/tf_static", 1};
   image_out_ = {ros_side, "rt/camera/image_raw", 2};
-  camera_info_out_ = {ros_side, "rt/camera/camera_info", 2};
+  camera_info_out_ = {ros_side, "rt/camera/camera_info", 10};  // small, and of no use if it is lost to its image
   velocity_ = dds::Reader<Twist>::observer(ros_side, "rt/cmd_vel");
 
   tick_ = dds::Reader<msg::Tick>::observer(robot_side, "barrier/tick", 8);
@@ -72,10 +72,10 @@ void Bridge::pass_out() {
     last_info_ = info;
   });
   camera_image_.take([this](const msg::CameraImage& image) {
+    if (!last_info_) return;  // ROS pairs image and info by their stamps: an image that overtook the epoch's info has no partner
     const Image out = translator_.image(image);
     image_out_.write(out);
-    if (!last_info_) return;
-    CameraInfo info = translator_.camera_info(*last_info_);  // ROS pairs image and info by their stamps
+    CameraInfo info = translator_.camera_info(*last_info_);
     info.header.stamp = out.header.stamp;
     camera_info_out_.write(info);
   });

@@ -5,8 +5,10 @@
 #include <netinet/in.h>
 #include <sys/file.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -22,6 +24,21 @@ int try_lock(std::uint32_t domain) {
   const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
   if (lock < 0 || ::flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
   ::close(lock);
+  return -1;
+}
+
+/// A name in the network namespace, where the domain's ports are, held; negative if somebody else holds it. Runs that keep their
+/// notes in different directories (other users, tests) do not see each other's locks, but share the ports.
+int try_name(std::uint32_t domain) {
+  const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return -1;
+  const std::string name = "constrictor/domain/" + std::to_string(domain);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  name.copy(address.sun_path + 1, sizeof address.sun_path - 1);  // the leading zero: no file, the kernel drops it with its holder
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0) return socket;
+  ::close(socket);
   return -1;
 }
 
@@ -56,18 +73,22 @@ bool domain_claimed(std::uint32_t domain) {
 }
 
 DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
-  for (std::uint32_t domain = wanted.value_or(1); domain <= wanted.value_or(100) && lock_ < 0; ++domain) {
+  for (std::uint32_t domain = wanted.value_or(1); domain <= wanted.value_or(100); ++domain) {
     if (!wanted && somebody_talks_in(domain)) continue;
-    lock_ = try_lock(domain);
+    name_ = try_name(domain);
+    lock_ = name_ < 0 ? -1 : try_lock(domain);
     domain_ = domain;
+    if (lock_ >= 0) return;
+    if (name_ >= 0) ::close(name_);
   }
-  if (lock_ >= 0) return;
   throw std::runtime_error((wanted ? "DDS domain " + std::to_string(*wanted) + " is" : "no free DDS domain: 1 to 100 are") +
-                           " claimed by locks in " + run_directory().string());
+                           " claimed on this host, in " + run_directory().string() + " or another directory of notes");
 }
 
 DomainClaim::~DomainClaim() {
-  if (lock_ >= 0) ::close(lock_);
+  if (lock_ < 0) return;
+  ::close(name_);
+  ::close(lock_);  // last: others wait for it and then take the domain
 }
 
 }  // namespace constrictor

@@ -10,11 +10,11 @@ namespace constrictor {
 /// $XDG_RUNTIME_DIR/constrictor, or /tmp/constrictor-UID: locks and notes of the runs on this host. Created if missing.
 std::filesystem::path run_directory();
 
-/// True while some process holds a claim on the domain.
+/// True while some process that keeps its notes in this `run_directory` holds a claim on the domain.
 bool domain_claimed(std::uint32_t domain);
 
-/// Claims the first free domain of 1 to 100, or `wanted` and no other, by a file lock, which the kernel gives back however
-/// the process ends. A domain that somebody talks in without a claim is passed over. Throws std::runtime_error if there is none.
+/// Claims the first free domain of 1 to 100, or `wanted` and no other, by a file lock and a name in the network namespace, which the
+/// kernel gives back however the process ends. A domain that somebody talks in without a claim is passed over. Throws std::runtime_error if there is none.
 class DomainClaim {
  public:
   explicit DomainClaim(std::optional<std::uint32_t> wanted = std::nullopt);
@@ -25,7 +25,7 @@ class DomainClaim {
 
  private:
   std::uint32_t domain_ = 0;
-  int lock_ = -1;
+  int lock_ = -1, name_ = -1;
 };
 
 }  // namespace constrictor

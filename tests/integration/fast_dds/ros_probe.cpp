@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     for (const auto byte : m.data()) sum += byte;
     std::printf("image %lld %ux%u %s %zu %lu\n", ns(m.header().stamp()), m.width(), m.height(), m.encoding().c_str(), m.data().size(), sum);
   });
-  node.read<sensor::CameraInfo_PubSubType>("rt/camera/camera_info", false, 2, [](const auto& m) {
+  node.read<sensor::CameraInfo_PubSubType>("rt/camera/camera_info", true, 10, [](const auto& m) {
     std::printf("camera_info %lld %ux%u %s fx=%.6f\n", ns(m.header().stamp()), m.width(), m.height(), m.distortion_model().c_str(), m.k()[0]);
   });
   auto* velocity = drive ? node.write<geometry_msgs::msg::dds_::Twist_PubSubType>("rt/cmd_vel", 1, false) : nullptr;

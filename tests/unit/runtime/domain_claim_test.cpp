@@ -1,0 +1,52 @@
+// Two runs never share a domain, wherever they keep their notes.
+#include "runtime/domain_claim.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <optional>
+
+namespace constrictor {
+namespace {
+
+class DomainClaims : public ::testing::Test {
+ protected:
+  DomainClaims() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-claim-XXXXXX").string();
+    dir_ = ::mkdtemp(pattern.data());
+    keep_notes_in("a");
+  }
+  ~DomainClaims() override {
+    ::unsetenv("XDG_RUNTIME_DIR");
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+  void keep_notes_in(const char* name) const { ::setenv("XDG_RUNTIME_DIR", (dir_ / name).c_str(), 1); }
+
+  std::filesystem::path dir_;
+};
+
+TEST_F(DomainClaims, DifferAlsoBetweenDirectoriesOfNotes) {
+  const DomainClaim first;
+  const DomainClaim second;
+  EXPECT_NE(first.domain(), second.domain());
+  keep_notes_in("b");
+  const DomainClaim third;
+  EXPECT_NE(third.domain(), first.domain());
+  EXPECT_NE(third.domain(), second.domain());
+  EXPECT_FALSE(domain_claimed(first.domain()));  // no run of this directory
+  EXPECT_TRUE(domain_claimed(third.domain()));
+  EXPECT_THROW(DomainClaim(first.domain()), std::runtime_error);
+}
+
+TEST_F(DomainClaims, EndWithTheirHolder) {
+  constexpr std::uint32_t domain = 201;  // beyond those that runs choose, so that none takes it meanwhile
+  std::optional<DomainClaim> claim(domain);
+  EXPECT_THROW(DomainClaim{domain}, std::runtime_error);
+  claim.reset();
+  EXPECT_FALSE(domain_claimed(domain));
+  EXPECT_NO_THROW(claim.emplace(domain));
+}
+
+}  // namespace
+}  // namespace constrictor
