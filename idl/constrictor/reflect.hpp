@@ -108,7 +108,7 @@ struct ByteReader {
       ok = false;
       return;
     }
-    std::memcpy(data, bytes.data(), size);
+    if (size > 0) std::memcpy(data, bytes.data(), size);  // of nothing even the address may be none
     bytes = bytes.subspan(size);
   }
   template <class T>

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
@@ -25,15 +26,6 @@ bool eventually(Condition&& condition, std::chrono::milliseconds bound = std::ch
 
 class CliFixture : public ::testing::Test {
  protected:
-  CliFixture() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-cli-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-    environment_ = {{"XDG_RUNTIME_DIR", dir_.string()}};
-  }
-  ~CliFixture() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(dir_, ignored);
-  }
   void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
   [[nodiscard]] Process start(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), program("constrictor"));
@@ -58,8 +50,9 @@ class CliFixture : public ::testing::Test {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }
 
-  std::filesystem::path dir_;
-  std::map<std::string, std::string> environment_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
+  std::map<std::string, std::string> environment_{{"XDG_RUNTIME_DIR", dir_.string()}};
   std::string output_;
 };
 

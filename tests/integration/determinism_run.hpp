@@ -11,6 +11,7 @@
 
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
@@ -21,14 +22,7 @@ inline const std::vector<std::string> kRestartable = {"camera", "overview", "per
 class DeterminismRun : public ::testing::Test {
  protected:
   /// Runs of `scenario`, each with `arguments` and done within `bound`.
-  DeterminismRun(std::string scenario, std::chrono::seconds bound) : scenario_(std::move(scenario)), bound_(bound) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-determinism-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~DeterminismRun() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(dir_, ignored);
-  }
+  DeterminismRun(std::string scenario, std::chrono::seconds bound) : scenario_(std::move(scenario)), bound_(bound) {}
 
   /// Cuts the runs to come short by the report's own limit.
   void limit_sim_time(double seconds) {
@@ -120,7 +114,8 @@ class DeterminismRun : public ::testing::Test {
   std::string scenario_;
   std::chrono::seconds bound_;
   std::vector<std::string> always_;
-  std::filesystem::path dir_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
 };
 
 }  // namespace constrictor::testing

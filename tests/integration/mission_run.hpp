@@ -9,20 +9,12 @@
 
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
 class MissionRun : public ::testing::Test {
  protected:
-  MissionRun() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-mission-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~MissionRun() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(dir_, ignored);
-  }
-
   /// Runs a scenario to its end; its exit status, -1 if it hangs. Afterwards `report_` has what it reported.
   int run(const std::string& scenario, double most_s, std::vector<std::string> more = {}) {
     write("planner.yaml", planner_for_green());
@@ -51,7 +43,8 @@ class MissionRun : public ::testing::Test {
     return first(report_["states"], "state", name, from_s);
   }
 
-  std::filesystem::path dir_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
   std::string output_;
   nlohmann::json report_;
 

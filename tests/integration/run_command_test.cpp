@@ -9,6 +9,7 @@
 
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -35,12 +36,7 @@ bool eventually(Condition&& condition, std::chrono::seconds bound = 15s) {
 
 class RunCommand : public ::testing::Test {
  protected:
-  RunCommand() {
-    std::string pattern = (fs::temp_directory_path() / "constrictor-run-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-    write("toys.yaml", kManifest);
-  }
-  ~RunCommand() override { fs::remove_all(dir_); }
+  RunCommand() { write("toys.yaml", kManifest); }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
   [[nodiscard]] Process command(std::vector<std::string> arguments) const {
@@ -83,7 +79,8 @@ class RunCommand : public ::testing::Test {
   }
   [[nodiscard]] std::string state_hash(const std::string& name) const { return report(name).value("state_hash", "none"); }
 
-  fs::path dir_;
+  const TemporaryFolder folder_;
+  const fs::path dir_ = folder_.path();
   std::map<std::string, std::string> environment_;
 };
 

@@ -24,6 +24,7 @@
 #include "runtime/local_run.hpp"
 #include "runtime/share.hpp"
 #include "sim/physics/physics.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
@@ -58,16 +59,6 @@ class TaskQueue : public StatefulComponent<int> {
 
 class Behaviour : public ::testing::Test {
  protected:
-  Behaviour() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-behaviour-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~Behaviour() override {
-    run_.reset();
-    std::error_code ignored;
-    std::filesystem::remove_all(dir_, ignored);
-  }
-
   /// What happened, with the truth at that moment.
   struct Happened {
     double time_s = 0.0;
@@ -189,10 +180,11 @@ class Behaviour : public ::testing::Test {
 
   std::vector<Happened> happened;
   double object_touched_s = 0.0;  ///< when the robot, or anything else, last touched the object
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
   std::unique_ptr<LocalRun> run_;
 
  private:
-  std::filesystem::path dir_;
   std::shared_ptr<std::deque<msg::TaskCommand>> queue_ = std::make_shared<std::deque<msg::TaskCommand>>();
   std::uint64_t goal_ = 0;
 };

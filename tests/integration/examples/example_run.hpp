@@ -15,6 +15,7 @@
 #include "runtime/dds/endpoint.hpp"
 #include "runtime/dds/wait_set.hpp"
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
@@ -61,12 +62,6 @@ struct Witness {
 
 class ExampleRun : public ::testing::Test {
  protected:
-  ExampleRun() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-examples-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~ExampleRun() override { std::filesystem::remove_all(dir_); }
-
   void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
   /// A copy of an installed configuration with one text replaced.
   [[nodiscard]] std::string altered(const std::string& file, const std::string& what, const std::string& with) const {
@@ -92,7 +87,8 @@ class ExampleRun : public ::testing::Test {
   }
   [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(dir_ / "r/report.json"), nullptr, false); }
 
-  std::filesystem::path dir_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
 };
 
 }  // namespace constrictor::testing

@@ -10,17 +10,12 @@
 #include <vector>
 
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
 class Outside : public ::testing::Test {
  protected:
-  Outside() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-outside-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~Outside() override { std::filesystem::remove_all(dir_); }
-
   [[nodiscard]] Process run(const std::string& name, const std::string& scenario, std::vector<std::string> more) const {
     std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / name).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -36,7 +31,8 @@ class Outside : public ::testing::Test {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }
 
-  std::filesystem::path dir_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
 };
 
 }  // namespace constrictor::testing

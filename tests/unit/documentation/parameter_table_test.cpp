@@ -1,6 +1,5 @@
 // Every run-time parameter is what its configuration file says it is: the same key, the same field, the same bounds.
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "guidance/guidance_parameters.hpp"
 #include "navigation/navigation_parameters.hpp"
 #include "perception/perception_parameters.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
@@ -45,11 +45,8 @@ std::vector<msg::Parameter> table_of(const std::string& owner, const fs::path& f
 class ParameterTable : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "constrictor-parameters-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
     default_file_ = fs::path(CONSTRICTOR_SOURCE_DIR) / "components" / GetParam() / (std::string(GetParam()) + ".yaml");
   }
-  void TearDown() override { fs::remove_all(dir_); }
 
   /// The default file with one value replaced. Empty keys are an error of the test.
   [[nodiscard]] fs::path with(const std::string& name, const std::string& value) const {
@@ -83,7 +80,8 @@ class ParameterTable : public ::testing::TestWithParam<const char*> {
     return stream.str();
   }
 
-  fs::path dir_;
+  const testing::TemporaryFolder folder_;
+  const fs::path dir_ = folder_.path();
   fs::path default_file_;
 };
 

@@ -6,25 +6,16 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <functional>
+#include <string>
 #include <vector>
 
 #include "constrictor/messages.hpp"
-#include "control/control.hpp"
-#include "guidance/guidance.hpp"
+#include "known_components.hpp"
 #include "hostile_filler.hpp"
-#include "input/input.hpp"
-#include "navigation/navigation.hpp"
-#include "perception/perception.hpp"
-#include "planner/planner.hpp"
 #include "robot/robot_model.hpp"
 #include "runtime/barrier/member.hpp"
 #include "runtime/barrier/topic_ops.hpp"
 #include "runtime/share.hpp"
-#include "sim/camera/camera.hpp"
-#include "sim/camera/overview.hpp"
-#include "sim/physics/physics.hpp"
-#include "sim/report/report.hpp"
 
 namespace constrictor::test {
 namespace {
@@ -155,7 +146,7 @@ Sample hostile(std::size_t id, const msg::Header& header, HostileFiller& filler)
   return sample;
 }
 
-class Hostile : public testing::TestWithParam<std::function<ComponentFactory()>> {};
+class Hostile : public testing::TestWithParam<const char*> {};
 
 TEST_P(Hostile, MessagesChangeNothingThatMatters) {
   constexpr std::uint64_t kSeed = 20261121;
@@ -165,7 +156,7 @@ TEST_P(Hostile, MessagesChangeNothingThatMatters) {
   setup.scenario_file = share_path("sim/scenarios/case_study.yaml");
   const RobotModel robot = load_robot(setup.robot_file);
   Judge judge(robot);
-  const ComponentFactory factory = GetParam()();
+  const ComponentFactory factory = known_components().at(GetParam())();
   const bool plant = factory.name == "physics";
   Member member(factory, setup, 1, /*checkpoints=*/!plant, judge);
   const EpochId epoch{7, 1};
@@ -223,16 +214,17 @@ TEST_P(Hostile, MessagesChangeNothingThatMatters) {
   EXPECT_TRUE(silent || judge.outputs > outputs_before) << "nothing absurd may silence a component for ever";
   EXPECT_GT(member.counters().refused, 0u);
   EXPECT_LT(judge.largest_state, 300'000u);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what was freed
   EXPECT_LT(late_mib - early_mib, 16.0);
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryClass, Hostile,
-                         testing::Values([] { return make_control_factory(); }, [] { return make_navigation_factory(); },
-                                         [] { return make_guidance_factory(); }, [] { return make_planner_factory(); },
-                                         [] { return make_input_factory(); }, [] { return make_perception_factory(); },
-                                         [] { return make_physics_factory(); }, [] { return make_camera_factory(); },
-                                         [] { return make_overview_factory(); }, [] { return make_report_factory(); }),
-                         [](const auto& made) { return made.param().name; });
+                         testing::Values("control", "navigation", "guidance", "planner", "input", "perception", "physics", "camera",
+                                         "overview", "report"),
+                         [](const auto& made) { return std::string(made.param); });
+
+TEST(HostileTest, LeavesOutNoComponent) { EXPECT_EQ(known_components().size(), 10u); }
 
 }  // namespace
 }  // namespace constrictor::test

@@ -2,7 +2,6 @@
 #include "input/parameter_desk.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "configuration/configuration.hpp"
 #include "input/input.hpp"
 #include "runtime/local_run.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
@@ -109,11 +109,6 @@ class IdlePlant : public Plant {
 
 class InputParameters : public ::testing::Test {
  protected:
-  InputParameters() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-input-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~InputParameters() override { std::filesystem::remove_all(dir_); }
   [[nodiscard]] std::filesystem::path file(const std::string& text) const {
     std::ofstream(dir_ / "input.yaml") << text;
     return dir_ / "input.yaml";
@@ -132,7 +127,8 @@ class InputParameters : public ::testing::Test {
     authority_ = *local.latest(topics::kAuthority);
   }
 
-  std::filesystem::path dir_;
+  const testing::TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
   std::vector<msg::ParameterChange> changes_;
   msg::Authority authority_{};
 };

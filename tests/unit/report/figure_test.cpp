@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "sim/report/moments.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::report {
 namespace {
@@ -22,7 +22,7 @@ TEST(Figure, ParsesTheTorqueJournal) {
 }
 
 TEST(Figure, HasARowForEachMomentWithItsPictures) {
-  const test::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto file = folder.path() / "blue.png";
   cv::imwrite(file.string(), cv::Mat(90, 160, CV_8UC3, cv::Scalar(255, 0, 0)));
   FigureRow row;

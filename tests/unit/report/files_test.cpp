@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::report {
 namespace {
 
 TEST(Journal, RestartCutsOffWhatTheCheckpointDoesNotKnow) {
-  const test::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   std::uint64_t checkpoint = 0;
   {
     Journal journal(folder.path() / "deep" / "a.csv");
@@ -25,7 +25,7 @@ TEST(Journal, RestartCutsOffWhatTheCheckpointDoesNotKnow) {
 }
 
 TEST(Journal, AFreshRunEmptiesAnOldFile) {
-  const test::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   replace_file(folder.path() / "a.csv", "from yesterday");
   std::uint64_t length = 0;
   Journal(folder.path() / "a.csv").append("x", length);
@@ -33,7 +33,7 @@ TEST(Journal, AFreshRunEmptiesAnOldFile) {
 }
 
 TEST(Journal, SaysWhenItsFileWasCutOrRemoved) {
-  const test::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   std::uint64_t length = 10;
   Journal journal(folder.path() / "a.csv");
   EXPECT_THROW(journal.append("x", length), std::runtime_error);
@@ -49,7 +49,7 @@ TEST(Journal, WithoutAPathDiscards) {
 }
 
 TEST(ReplaceFile, LeavesNothingBesideIt) {
-  const test::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   replace_file(folder.path() / "b" / "c.json", "old");
   replace_file(folder.path() / "b" / "c.json", "new");
   const auto contents = folder.contents();

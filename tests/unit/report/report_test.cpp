@@ -10,14 +10,14 @@
 #include "runtime/local_run.hpp"
 #include "runtime/share.hpp"
 #include "synthetic_run.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
 
 using nlohmann::json;
 using test::Story;
-using test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 struct Told {
   json mission;

@@ -6,24 +6,18 @@
 
 #include <optional>
 
+#include "support/temporary_folder.hpp"
 namespace constrictor {
 namespace {
 
 class DomainClaims : public ::testing::Test {
  protected:
-  DomainClaims() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-claim-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-    keep_notes_in("a");
-  }
-  ~DomainClaims() override {
-    ::unsetenv("XDG_RUNTIME_DIR");
-    std::error_code ignored;
-    std::filesystem::remove_all(dir_, ignored);
-  }
+  DomainClaims() { keep_notes_in("a"); }
+  ~DomainClaims() override { ::unsetenv("XDG_RUNTIME_DIR"); }
   void keep_notes_in(const char* name) const { ::setenv("XDG_RUNTIME_DIR", (dir_ / name).c_str(), 1); }
 
-  std::filesystem::path dir_;
+  const testing::TemporaryFolder folder_;
+  const std::filesystem::path dir_ = folder_.path();
 };
 
 TEST_F(DomainClaims, DifferAlsoBetweenDirectoriesOfNotes) {
