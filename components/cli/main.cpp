@@ -15,6 +15,7 @@
 #include "cli/run_control.hpp"
 #include "cli/task_command.hpp"
 #include "cli/teleop_command.hpp"
+#include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
@@ -127,6 +128,9 @@ int main(int argc, char** argv) {
     const std::string second = argc == 3 ? argv[2] : "";
     if (first == "host" && second != "--help" && second != "-h") return cli::host_command(argc - 2, argv + 2);
     return dispatch(argc, argv);
+  } catch (const cli::UsageError& error) {
+    std::fprintf(stderr, "constrictor: %s\n", error.what());
+    return exit_status::kUsage;
   } catch (const ConfigurationError& error) {
     std::fprintf(stderr, "constrictor: configuration: %s\n", error.what());
     return exit_status::kConfiguration;

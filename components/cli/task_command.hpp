@@ -13,7 +13,7 @@ namespace constrictor::cli {
 
 void add_task(CLI::App& app, std::function<int()>& action);
 
-/// "5s", "500ms", "2m" or plain seconds. Throws ConfigurationError naming `option` otherwise, or if it is not positive.
+/// "5s", "500ms", "2m" or plain seconds. Throws UsageError naming `option` otherwise, or if it is not positive.
 std::chrono::milliseconds parse_duration(const std::string& option, const std::string& text);
 
 }  // namespace constrictor::cli

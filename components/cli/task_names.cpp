@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <cstdio>
 #include <sstream>
 
 namespace constrictor::cli {
@@ -38,8 +40,13 @@ const char* at(const std::array<const char*, N>& names, std::uint8_t index) {
 }
 
 template <std::size_t N>
+std::string all(const std::array<const char*, N>& names) {
+  return fmt::format("{}", fmt::join(names.begin() + 1, names.end(), ", "));
+}
+
+template <std::size_t N>
 std::string wrong(const std::string& key, const std::string& value, const std::array<const char*, N>& names) {
-  return fmt::format("{}: found '{}', accepted {}", key, value, fmt::join(names.begin() + 1, names.end(), ", "));
+  return fmt::format("{}: found '{}', accepted {}", key, value, all(names));
 }
 
 }  // namespace
@@ -48,6 +55,11 @@ const char* task_word(std::uint8_t task) { return at(kTasks, task); }
 const char* event_name(std::uint8_t event) { return at(kEvents, event); }
 const char* goal_state_name(std::uint8_t state) { return at(kGoalStates, state); }
 const char* authority_name(std::uint8_t level) { return at(kLevels, level); }
+
+std::string task_words() { return all(kTasks); }
+std::string event_words() { return all(kEvents); }
+std::string colour_words() { return all(kColours); }
+std::string direction_words() { return all(kDirections); }
 
 std::optional<std::uint8_t> task_by_name(const std::string& name) {
   const auto task = index_of(kTasks, name);
@@ -88,21 +100,54 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
     parameters.timeout_s = timeout_s;
     return {};
   }
-  return fmt::format("parameter: found '{}', accepted line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s", key);
+  return fmt::format("parameter: found '{}', accepted line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s, path", key);
 }
 
-std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskParameters& parameters) {
+std::string set_path(msg::Path& path, const std::vector<std::string>& points) {
+  path = {};
+  if (points.empty()) return {};
+  if (points.size() < 2 || points.size() > msg::kMaxPathPoints) {
+    return fmt::format("path: found {} point{}, accepted 2 to {}", points.size(), points.size() == 1 ? "" : "s", msg::kMaxPathPoints);
+  }
+  for (const auto& point : points) {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    char rest = 0;
+    if (std::sscanf(point.c_str(), "%lf,%lf%c", &x_m, &y_m, &rest) != 2 || !std::isfinite(x_m) || !std::isfinite(y_m)) {
+      return fmt::format("path: found '{}', accepted points X,Y in m, as 1.5,-0.2", point);
+    }
+    path.x_m[path.point_count] = x_m;
+    path.y_m[path.point_count] = y_m;
+    ++path.point_count;
+  }
+  return {};
+}
+
+std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskParameters& parameters, msg::Path& path) {
   std::istringstream words(line);
   std::string word;
   if (!(words >> word)) return wrong("task", "nothing", kTasks);
   const auto found = task_by_name(word);
   if (!found) return wrong("task", word, kTasks);
   task = *found;
+  path = {};
   while (words >> word) {
     const auto equals = word.find('=');
     if (equals == std::string::npos) return fmt::format("parameter: found '{}', accepted NAME=VALUE", word);
-    const std::string problem = set_task_parameter(parameters, word.substr(0, equals), word.substr(equals + 1));
+    const std::string key = word.substr(0, equals);
+    std::string problem;
+    if (plain(key) == "path") {
+      std::vector<std::string> points;
+      std::istringstream list(word.substr(equals + 1));
+      for (std::string point; std::getline(list, point, ';');) points.push_back(point);
+      problem = points.empty() ? "path: found nothing, accepted X,Y;X,Y" : set_path(path, points);
+    } else {
+      problem = set_task_parameter(parameters, key, word.substr(equals + 1));
+    }
     if (!problem.empty()) return problem;
+  }
+  if ((task == msg::kTaskFollowPath) != (path.point_count > 0)) {
+    return task == msg::kTaskFollowPath ? "follow_path: found no path, accepted path=X,Y;X,Y (2 to 64 points in m)" : "path: accepted with follow_path only";
   }
   return {};
 }

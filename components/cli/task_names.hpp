@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "constrictor/messages.hpp"
 
@@ -14,13 +15,21 @@ const char* event_name(std::uint8_t event);           ///< "line lost"
 const char* goal_state_name(std::uint8_t state);      ///< "succeeded"
 const char* authority_name(std::uint8_t level);       ///< "operator"
 
+/// All of a kind for people, joined by commas.
+std::string task_words();
+std::string event_words();
+std::string colour_words();
+std::string direction_words();
+
 /// Empty if there is none of that name.
 std::optional<std::uint8_t> task_by_name(const std::string& name);
 std::optional<std::uint8_t> event_by_name(const std::string& name);
 
 /// Sets one parameter, "line_colour" to "blue". Returns what is wrong, empty if nothing.
 std::string set_task_parameter(msg::TaskParameters& parameters, const std::string& key, const std::string& value);
-/// A whole task as one line: "follow_line line_colour=blue". Returns what is wrong, empty if nothing.
-std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskParameters& parameters);
+/// Sets a path from points "X,Y" [m]; none: no path. Returns what is wrong, empty if nothing.
+std::string set_path(msg::Path& path, const std::vector<std::string>& points);
+/// A whole task as one line: "follow_line line_colour=blue", "follow_path path=0,0;1,0.5". Returns what is wrong, empty if nothing.
+std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskParameters& parameters, msg::Path& path);
 
 }  // namespace constrictor::cli

@@ -163,14 +163,16 @@ class Teleop {
       rest = {};
       screen_.prompt.reset();
     } else if (key == '\r' || key == '\n') {
-      std::uint8_t task = msg::kTaskNone;
-      msg::TaskParameters parameters = no_parameters();
+      msg::Request request{};
+      request.kind = msg::kRequestTask;
+      request.command = msg::kCommandStart;  // goal_id 0: input numbers it
+      request.parameters = no_parameters();
       number_ = 0;
-      screen_.notice = parse_task(*screen_.prompt, task, parameters);
+      screen_.notice = parse_task(*screen_.prompt, request.task, request.parameters, request.path);
       screen_.prompt.reset();
       if (!screen_.notice.empty()) return;
       screen_.drive.forward = screen_.drive.turn = 0.0;
-      asked(task_word(task), client_.start(task, parameters));
+      asked(task_word(request.task), client_.ask(request));
     } else if (key == '\177' || key == '\b') {
       if (!screen_.prompt->empty()) screen_.prompt->pop_back();
     } else if (key >= ' ' && screen_.prompt->size() < 70) {

@@ -19,7 +19,7 @@ class MidMission : public CliFixture {
     return nlohmann::json::parse(output_, nullptr, false);
   }
   void wait_for_event(const std::string& event) {
-    ASSERT_EQ(command({"task", "wait", "--event", event, "--timeout", "150s"}, std::chrono::seconds(160)), exit_status::kOk) << event << output_;
+    ASSERT_EQ(command({"task", "wait", "--event", event, "--goal", "any", "--timeout", "150s"}, std::chrono::seconds(160)), exit_status::kOk) << event << output_;
   }
   void drive(const std::string& speed_turn) {
     ASSERT_EQ(command({"teleop", "--drive", speed_turn, "--for", "2s"}), exit_status::kOk) << output_;

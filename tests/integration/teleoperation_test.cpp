@@ -177,8 +177,40 @@ TEST_F(Teleoperation, AnEmergencyStopIsLatchedAndClearingItStartsNothing) {
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left", "--timeout-s", "2"}), exit_status::kOk) << output_;
   EXPECT_EQ(command({"task", "wait", "--event", "timeout", "--timeout", "30s"}), exit_status::kOk) << output_;
   EXPECT_EQ(command({"task", "wait", "--end", "--timeout", "30s"}), exit_status::kOk) << output_;
-  EXPECT_EQ(command({"task", "wait", "--event", "line lost", "--timeout", "300ms"}), exit_status::kWaitedTooLong);
-  EXPECT_EQ(command({"task", "start", "drop", "--drop-zone-colour", "pink"}), exit_status::kConfiguration);
+  EXPECT_EQ(command({"task", "wait", "--event", "line lost", "--timeout", "20s"}), exit_status::kMissionFailed) << "it has ended without";
+  end(launcher);
+}
+
+TEST_F(Teleoperation, ATaskIsAnsweredByNavigationAndAwaitedByItsOwnEventsOnly) {
+  EXPECT_EQ(command({"task", "start", "drop", "--drop-zone-colour", "pink"}), exit_status::kUsage) << "a wrong value before a missing run";
+  Process launcher = run_blind("4x");
+  ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), exit_status::kOk) << output_;
+  const auto at = output_.find("goal ");
+  ASSERT_NE(at, std::string::npos) << output_;
+  const std::string first = std::to_string(std::stoull(output_.substr(at + 5)));
+  ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left", "--timeout-s", "2"}), exit_status::kOk) << output_;
+  EXPECT_EQ(command({"task", "wait", "--end"}), exit_status::kOk) << "not the end of the goal before: " << output_;
+  EXPECT_EQ(command({"task", "wait", "--end", "--goal", first}), exit_status::kMissionFailed);
+  EXPECT_NE(output_.find("preempted"), std::string::npos) << output_;
+  EXPECT_EQ(command({"task", "wait", "--event", "timeout", "--goal", "any", "--timeout", "500ms"}), exit_status::kWaitedTooLong)
+      << "it was before: " << output_;
+
+  EXPECT_EQ(command({"task", "start", "explore"}), exit_status::kMissionFailed);
+  EXPECT_NE(output_.find("explore needs a direction"), std::string::npos) << output_;
+  EXPECT_EQ(command({"task", "wait", "--end"}), exit_status::kMissionFailed);
+  EXPECT_NE(output_.find("refused: explore needs a direction"), std::string::npos) << output_;
+  EXPECT_EQ(command({"task", "start", "follow_path"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("--path"), std::string::npos) << output_;
+  EXPECT_EQ(command({"task", "start", "follow_path", "--path", "50,0", "51,0"}), exit_status::kMissionFailed);
+  EXPECT_NE(output_.find("too far"), std::string::npos) << output_;
+  ASSERT_EQ(command({"topic", "echo", "guidance/pose", "--count", "1", "--json"}), exit_status::kOk) << output_;
+  const auto pose = nlohmann::json::parse(output_);  // it has turned, and wandered
+  const auto point = [&](double ahead_m) { return std::to_string(pose["x_m"].get<double>() + ahead_m) + "," + std::to_string(pose["y_m"].get<double>()); };
+  ASSERT_EQ(command({"task", "start", "follow_path", "--path", point(0.0), point(30.0)}), exit_status::kOk) << output_;
+  EXPECT_EQ(command({"task", "cancel"}), exit_status::kOk);
+  EXPECT_NE(output_.find("constrictor release"), std::string::npos) << output_;
+  EXPECT_EQ(command({"task", "wait", "--end"}), exit_status::kMissionFailed);
+  EXPECT_NE(output_.find("preempted"), std::string::npos) << output_;
   end(launcher);
 }
 

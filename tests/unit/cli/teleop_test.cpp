@@ -8,7 +8,7 @@
 #include "cli/task_names.hpp"
 #include "cli/teleop_keys.hpp"
 #include "cli/teleop_screen.hpp"
-#include "configuration/configuration.hpp"
+#include "cli/usage.hpp"
 #include "robot/drive_gait.hpp"
 
 namespace constrictor::cli {
@@ -76,24 +76,39 @@ TEST(TaskNames, EveryNameIsFoundAgainHoweverItsWordsAreJoined) {
 TEST(TaskNames, ATaskIsOneLineAndWhatIsWrongIsNamed) {
   std::uint8_t task = 0;
   msg::TaskParameters parameters{};
-  EXPECT_EQ(parse_task("rotate direction=left timeout_s=2.5", task, parameters), "");
+  msg::Path path{};
+  EXPECT_EQ(parse_task("rotate direction=left timeout_s=2.5", task, parameters, path), "");
   EXPECT_EQ(task, msg::kTaskRotate);
   EXPECT_EQ(parameters.direction, msg::kDirectionLeft);
   EXPECT_EQ(parameters.timeout_s, 2.5);
-  EXPECT_EQ(parse_task("drop drop-zone-colour=red object_handle=7", task, parameters), "");
+  EXPECT_EQ(parse_task("drop drop-zone-colour=red object_handle=7", task, parameters, path), "");
   EXPECT_EQ(parameters.drop_zone_colour, msg::kColourRed);
   EXPECT_EQ(parameters.object_handle, 7);
   for (const char* bad : {"", "fly", "rotate direction", "rotate direction=up", "rotate timeout_s=-1", "rotate timeout_s=2x",
-                          "rotate speed=1", "drop object_handle=70000", "follow_line line_colour=pink"}) {
-    EXPECT_NE(parse_task(bad, task, parameters), "") << bad;
+                          "rotate speed=1", "drop object_handle=70000", "follow_line line_colour=pink", "follow_path", "follow_path path=",
+                          "follow_path path=1,2", "follow_path path=1,2;3", "follow_path path=1,2;nan,0", "rotate direction=left path=0,0;1,0"}) {
+    EXPECT_NE(parse_task(bad, task, parameters, path), "") << bad;
   }
+  EXPECT_EQ(parse_task("follow_path path=0,0;1.5,-0.25;2,0", task, parameters, path), "");
+  EXPECT_EQ(path.point_count, 3);
+  EXPECT_EQ(path.x_m[1], 1.5);
+  EXPECT_EQ(path.y_m[1], -0.25);
+}
+
+TEST(TaskNames, APathHasTwoToSixtyFourPoints) {
+  msg::Path path{};
+  EXPECT_EQ(set_path(path, {}), "");
+  EXPECT_EQ(path.point_count, 0);
+  EXPECT_EQ(set_path(path, std::vector<std::string>(64, "1,2")), "");
+  EXPECT_EQ(path.point_count, 64);
+  EXPECT_NE(set_path(path, std::vector<std::string>(65, "1,2")), "");
 }
 
 TEST(Durations, TakeUnitsAndRefuseTheRest) {
   EXPECT_EQ(parse_duration("--for", "5s"), 5s);
   EXPECT_EQ(parse_duration("--for", "250ms"), 250ms);
   EXPECT_EQ(parse_duration("--for", "1.5m"), 90s);
-  for (const char* bad : {"", "s", "-1s", "0", "5 parsecs", "nan", "inf"}) EXPECT_THROW(parse_duration("--for", bad), ConfigurationError) << bad;
+  for (const char* bad : {"", "s", "-1s", "0", "5 parsecs", "nan", "inf"}) EXPECT_THROW(parse_duration("--for", bad), UsageError) << bad;
 }
 
 TeleopScreen full_screen() {
