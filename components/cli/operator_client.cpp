@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = 10ms;
+constexpr std::size_t kMostAnswers = 256;  // kept for those who ask late
 
 }  // namespace
 
@@ -24,9 +25,11 @@ struct OperatorClient::Endpoints {
   Endpoints(std::uint32_t number, std::chrono::nanoseconds lease)
       : domain(number),
         authority(dds::Reader<msg::Authority>::member(domain.participant(), std::string(topics::kAuthority.name))),
+        answer(dds::Reader<msg::RequestAnswer>::member(domain.participant(), std::string(topics::kRequestAnswer.name))),
         request(domain.participant(), lease.count()) {}
   dds::Domain domain;
-  dds::Reader<msg::Authority> authority;  // every word, so that no ruling is missed
+  dds::Reader<msg::Authority> authority;
+  dds::Reader<msg::RequestAnswer> answer;
   dds::RequestWriter request;
 };
 
@@ -55,6 +58,7 @@ std::uint64_t OperatorClient::ask(msg::Request request) {
   request.level = msg::kAuthorityOperator;
   request.detached = detached_;
   request.header.sequence_number = ++sequence_;
+  if (request.kind == msg::kRequestEmergencyStop) stop_ = sequence_;
   endpoints_->request.write(request);
   return sequence_;
 }
@@ -91,14 +95,17 @@ void OperatorClient::flush() const { endpoints_->request.flush(std::chrono::nano
 std::int32_t OperatorClient::participant() const { return endpoints_->domain.participant(); }
 
 void OperatorClient::poll() {
+  endpoints_->answer.take([this](const msg::RequestAnswer& answer) {
+    if (source_ != answer.source) return;
+    answers_.try_emplace(answer.request_sequence, answer);  // a request is answered once: what comes later under its number is a repetition
+    if (answers_.size() > kMostAnswers) answers_.erase(answers_.begin());
+  });
   endpoints_->authority.take([this](const msg::Authority& authority) {
     authority_ = authority;
-    if (source_ == authority.refused_source && authority.refused_sequence > refused_) {
-      refused_ = authority.refused_sequence;
-      refusal_ = authority.refusal;
-    }
-    if (source_ == authority.ruled_source) ruled_ = std::max(ruled_, authority.ruled_sequence);
-    ruled_ = std::max(ruled_, refused_);
+    if (stop_ == 0 || !authority.emergency_stop) return;
+    msg::RequestAnswer answer{};
+    answer.granted = true;  // whoever's word it was
+    answers_.try_emplace(std::exchange(stop_, 0), answer);
   });
 }
 
@@ -110,8 +117,11 @@ OperatorClient::Answer OperatorClient::wait_for_answer(std::uint64_t number, std
   const auto end = Clock::now() + bound;
   for (;;) {
     poll();
-    if (refused_ == number) return Answer::kRefused;
-    if (ruled_ >= number) return Answer::kGranted;
+    if (const auto answer = answers_.find(number); answer != answers_.end()) {
+      if (answer->second.granted) goal_ = answer->second.goal_id;
+      else refusal_ = answer->second.reason;
+      return answer->second.granted ? Answer::kGranted : Answer::kRefused;
+    }
     if (Clock::now() > end) return Answer::kNone;
     assert_alive();
     std::this_thread::sleep_for(kPoll);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,10 +35,13 @@ class OperatorClient {
   [[nodiscard]] bool holds_authority() const;
 
   enum class Answer { kGranted, kRefused, kNone };
-  /// Waits for the ruling on a request; kNone if there is none within `bound`. Keeps this source alive meanwhile.
+  /// Waits for the answer to a request; kNone if there is none within `bound`. Keeps this source alive meanwhile. An emergency stop
+  /// counts as granted also when `authority` says that one is latched.
   Answer wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound);
   /// Why the last request that wait_for_answer() saw refused was.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  /// Goal of the last task that wait_for_answer() saw granted, as on task/command.
+  [[nodiscard]] std::uint64_t goal() const { return goal_; }
   [[nodiscard]] const std::string& source() const { return source_; }
   /// The DDS participant, for other readers of this process (a process joins a domain once).
   [[nodiscard]] std::int32_t participant() const;
@@ -51,9 +55,10 @@ class OperatorClient {
   std::unique_ptr<Endpoints> endpoints_;
   std::uint64_t sequence_ = 0;
   std::optional<msg::Authority> authority_;
-  std::uint64_t ruled_ = 0;        ///< newest of our requests that was ruled on
-  std::uint64_t refused_ = 0;      ///< newest of them that was refused
+  std::uint64_t stop_ = 0;         ///< the last emergency stop that was asked for and not answered; 0: none
+  std::map<std::uint64_t, msg::RequestAnswer> answers_;  ///< to our requests, the newest of them, by number
   std::string refusal_;
+  std::uint64_t goal_ = 0;
 };
 
 /// The name under which one process may ask without being taken for another: "teleop.HOST.PID".

@@ -24,6 +24,7 @@ Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests
       authority_(wiring.output(topics::kAuthority)),
       motion_out_(wiring.output(topics::kMotionCommand)),
       parameter_out_(wiring.output(topics::kParameterChange)),
+      answer_out_(wiring.output(topics::kRequestAnswer)),
       parameters_in_{wiring.latest(topics::kNavigationParameters), wiring.latest(topics::kControlParameters),
                      wiring.latest(topics::kPerceptionParameters), wiring.latest(topics::kGuidanceParameters)},
       planned_(load_planned_changes(setup.config_file.empty() ? share_path("components/input/input.yaml") : setup.config_file)),
@@ -41,17 +42,18 @@ void Input::step(const Tick& tick) {
   bool changed = set_planned_parameters(tick);
   if (outside_) {
     for (const auto& item : outside_->latch()) {
-      const Ruling ruling = item.died ? arbiter.on_death(item.source) : arbiter.decide_outside(item.request);
-      changed = obey(ruling, item.request) || changed;
+      changed = true;
+      if (item.died) obey(arbiter.on_death(item.source), item.request);
+      else answer(item.request, [&] { return arbiter.decide_outside(item.request); });
     }
   }
   for (const auto& request : planner_requests_) {
     const std::int64_t age_ticks = tick.index - request.header.tick;
-    const Ruling ruling = age_ticks > kStale_ticks
-                              ? arbiter.refuse(request, "request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " +
-                                               std::to_string(kStale_ticks))
-                              : arbiter.decide_planner(request);
-    changed = obey(ruling, request) || changed;
+    changed = true;
+    answer(request, [&] {
+      if (age_ticks <= kStale_ticks) return arbiter.decide_planner(request);
+      return arbiter.refuse(request, "request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " + std::to_string(kStale_ticks));
+    });
   }
   if (motion_) motion_out_.write(*motion_);
   changed = changed || state_.arbiter.level != level_before || state_.arbiter.holder != holder_before ||
@@ -60,22 +62,35 @@ void Input::step(const Tick& tick) {
   if (changed || due) publish_authority(tick);
 }
 
-bool Input::obey(const Ruling& ruling, const msg::Request& request) {
-  switch (ruling.kind) {
-    case Ruling::kNothing: return true;  // ruled on: the source shall see it
-    case Ruling::kRefused: return true;
-    case Ruling::kCancelAll: cancel_running(); return true;
-    case Ruling::kMove: forward_motion(request); return true;
-    case Ruling::kSet: set_parameter(request); return true;
-    case Ruling::kForward: break;
-  }
-  return forward_task(ruling, request);
+template <class Decide>
+void Input::answer(const msg::Request& request, Decide&& decide) {
+  const std::uint64_t refused_before = state_.arbiter.refused;
+  const Ruling ruling = decide();
+  obey(ruling, request);  // may still refuse, for what the arbiter does not know
+  msg::RequestAnswer answer{};
+  set_text(answer.source, state_.arbiter.ruled_source);
+  answer.request_sequence = request.header.sequence_number;
+  answer.granted = state_.arbiter.refused == refused_before;
+  if (answer.granted) answer.goal_id = ruling.goal_id;
+  else set_text(answer.reason, state_.arbiter.refusal);
+  answer_out_.write(answer);
 }
 
-bool Input::forward_task(const Ruling& ruling, const msg::Request& request) {
+void Input::obey(const Ruling& ruling, const msg::Request& request) {
+  switch (ruling.kind) {
+    case Ruling::kNothing:
+    case Ruling::kRefused: break;
+    case Ruling::kCancelAll: cancel_running(); break;
+    case Ruling::kMove: forward_motion(request); break;
+    case Ruling::kSet: set_parameter(request); break;
+    case Ruling::kForward: forward_task(ruling, request); break;
+  }
+}
+
+void Input::forward_task(const Ruling& ruling, const msg::Request& request) {
   if (commands_left_ <= 1) {
     Arbiter(state_.arbiter).refuse(request, "more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
-    return true;
+    return;
   }
   --commands_left_;
   msg::TaskCommand command{};
@@ -93,7 +108,6 @@ bool Input::forward_task(const Ruling& ruling, const msg::Request& request) {
   } else if (ruling.goal_id == state_.running_goal) {
     state_.running_goal = 0;
   }
-  return true;
 }
 
 void Input::forward_motion(const msg::Request& request) {

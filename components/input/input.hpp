@@ -25,8 +25,8 @@ struct InputState {
   }
 };
 
-/// Reads planner/request and what came from outside; writes task/command, motion/command, parameter/change and
-/// authority. Outside requests are ruled
+/// Reads planner/request and what came from outside; writes task/command, motion/command, parameter/change, authority, and an answer
+/// to each request. Outside requests are ruled
 /// on first, in the order of OutsideRequests::latch, then the planner's in the order of their sequence numbers. At most three
 /// task commands a tick are forwarded, so that a cancel always finds room; the rest is refused and counted. Of direct motions the
 /// last of a tick counts. A planner request older than a second is refused as stale.
@@ -36,9 +36,11 @@ class Input : public StatefulComponent<InputState> {
   void step(const Tick& tick) override;
 
  private:
-  /// Carries out a ruling; true if authority changed, something was refused or forwarded.
-  bool obey(const Ruling& ruling, const msg::Request& request);
-  bool forward_task(const Ruling& ruling, const msg::Request& request);
+  /// Carries out the ruling that `decide()` makes, and answers the request.
+  template <class Decide>
+  void answer(const msg::Request& request, Decide&& decide);
+  void obey(const Ruling& ruling, const msg::Request& request);
+  void forward_task(const Ruling& ruling, const msg::Request& request);
   void forward_motion(const msg::Request& request);
   void set_parameter(const msg::Request& request);
   /// Those of input.yaml whose tick comes next; true if there were any.
@@ -51,6 +53,7 @@ class Input : public StatefulComponent<InputState> {
   Output<msg::Authority> authority_;
   Output<msg::MotionCommand> motion_out_;
   Output<msg::ParameterChange> parameter_out_;
+  Output<msg::RequestAnswer> answer_out_;
   std::vector<Latest<msg::ParameterList>> parameters_in_;
   std::vector<PlannedChange> planned_;
   std::shared_ptr<OutsideRequests> outside_;

@@ -91,13 +91,16 @@ inline constexpr Topic<msg::ParameterList> kPerceptionParameters{
     {27, "parameter/perception", "ParameterList", "perception", 1, 8, false, "at the start, on change", "run-time parameters of perception"}};
 inline constexpr Topic<msg::ParameterList> kGuidanceParameters{
     {28, "parameter/guidance", "ParameterList", "guidance", 1, 8, false, "at the start, on change", "run-time parameters of guidance"}};
+inline constexpr Topic<msg::RequestAnswer> kRequestAnswer{
+    {29, "request/answer", "RequestAnswer", "input", 96, 288, false, "on demand", "granted or refused, request by request"}};
 
 /// Every member topic, by id.
 inline constexpr auto kAll = std::make_tuple(
     kJointState, kContactState, kImuState, kSceneDescription, kWorldState, kTouchedState, kCameraInfo, kCameraImage,
     kOverviewImage, kLinePercept, kObjectPercepts, kProcessedImage, kRobotPose, kFieldMap, kTaskCommand, kAuthority,
     kTaskStatus, kTaskEvent, kDesiredTrajectory, kMotionStatus, kJointCommand, kPlannerRequest, kMissionStatus,
-    kMotionCommand, kParameterChange, kNavigationParameters, kControlParameters, kPerceptionParameters, kGuidanceParameters);
+    kMotionCommand, kParameterChange, kNavigationParameters, kControlParameters, kPerceptionParameters, kGuidanceParameters,
+    kRequestAnswer);
 inline constexpr std::size_t kCount = std::tuple_size_v<decltype(kAll)>;
 static_assert(kCount <= msg::kMaxTopics);
 

@@ -1,5 +1,7 @@
 // fastdds_planner: retrieves the objects as an external planner on Fast DDS. It knows Constrictor by its IDL files and idl/README.md
 // alone: no header and no library of it is used here.
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -23,7 +25,8 @@ namespace msg = constrictor::msg;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-constexpr const char* kName = "fastdds_planner";
+/// A name of this process's own: another process under the same name would count as another source, and this one as dead.
+const std::string kName = "fastdds_planner." + std::to_string(::getpid());
 
 struct Options {
   std::uint32_t domain = 0;
@@ -97,8 +100,10 @@ class Planner {
     });
     participant_.read<msg::AuthorityPubSubType>("authority", true, 8, [this](const msg::Authority& authority) {
       mine_ = authority.level() == msg::kAuthorityExternal && std::string(authority.source()) == kName;
-      if (authority.refused_count() > refused_ && mine_) std::printf("refused: %s\n", authority.refusal().c_str());
-      refused_ = authority.refused_count();
+    });
+    participant_.read<msg::RequestAnswerPubSubType>("request/answer", true, 288, [](const msg::RequestAnswer& answer) {
+      if (answer.granted() || std::string(answer.source()) != kName) return;
+      std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence()), answer.reason().c_str());
     });
     participant_.read<msg::TaskStatusPubSubType>("task/status", false, 1, [this](const msg::TaskStatus& status) {
       logic_.know({own(status.goal_id()), status.task(), status.state(), status.carrying()});
@@ -193,7 +198,7 @@ class Planner {
   retrieval::Retrieval logic_;
   eprosima::fastdds::dds::DataWriter* requests_ = nullptr;
   eprosima::fastdds::dds::DataReader* pose_ = nullptr;
-  std::uint64_t sequence_ = 0, refused_ = 0;
+  std::uint64_t sequence_ = 0;
   double now_s_ = -1;
   bool asked_ = false, mine_ = false, commanding_ = false, over_ = false;
 };

@@ -1,5 +1,7 @@
 // red_first: an external planner on the installed package that flies the case study its own way: red before green. It reads what any
 // observer may read, asks `input` for authority, and starts the task layer's tasks.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -24,7 +26,8 @@ using constrictor::dds::Reader;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-constexpr const char* kName = "red_first";
+/// A name of this process's own: another process under the same name would count as another source, and this one as dead.
+const std::string kName = "red_first." + std::to_string(::getpid());
 
 class Planner {
  public:
@@ -38,10 +41,11 @@ class Planner {
     status_ = Reader<msg::TaskStatus>::observer(participant, "task/status");
     // Nothing of these may be lost, and what was said before we came counts: a member's quality of service.
     authority_ = Reader<msg::Authority>::member(participant, "authority");
+    answers_ = Reader<msg::RequestAnswer>::member(participant, "request/answer");
     events_ = Reader<msg::TaskEvent>::member(participant, "task/event");
     ticks_ = Reader<msg::Tick>::member(participant, "barrier/tick");
     wait_set_ = constrictor::dds::WaitSet(participant);
-    for (const auto reader : {pose_.get(), authority_.get(), events_.get(), ticks_.get()}) wait_set_.attach(reader);
+    for (const auto reader : {pose_.get(), authority_.get(), answers_.get(), events_.get(), ticks_.get()}) wait_set_.attach(reader);
   }
 
   /// Until everything is delivered (0), the run ends without (1), or somebody sends SIGTERM (1).
@@ -81,8 +85,10 @@ class Planner {
     });
     authority_.take([this](const msg::Authority& authority) {
       mine_ = authority.level == msg::kAuthorityExternal && std::string(authority.source) == kName;
-      if (authority.refused_count > refused_ && mine_) std::printf("refused: %s\n", authority.refusal);
-      refused_ = authority.refused_count;
+    });
+    answers_.take([this](const msg::RequestAnswer& answer) {
+      if (answer.granted || std::string(answer.source) != kName) return;
+      std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence), answer.reason);
     });
     status_.take([this](const msg::TaskStatus& status) {
       logic_.know({own(status.goal_id), status.task, status.state, status.carrying});
@@ -153,11 +159,12 @@ class Planner {
   Reader<msg::LinePercept> line_;
   Reader<msg::ObjectPercepts> objects_;
   Reader<msg::Authority> authority_;
+  Reader<msg::RequestAnswer> answers_;
   Reader<msg::TaskStatus> status_;
   Reader<msg::TaskEvent> events_;
   Reader<msg::Tick> ticks_;
   constrictor::dds::WaitSet wait_set_;
-  std::uint64_t sequence_ = 0, refused_ = 0;
+  std::uint64_t sequence_ = 0;
   double now_s_ = -1;
   bool asked_ = false, mine_ = false, commanding_ = false, over_ = false;
 };

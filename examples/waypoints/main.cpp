@@ -1,6 +1,8 @@
 // waypoints: sends the robot along a path and watches how well it keeps to it. The smallest whole external planner: one request, one
 // goal, one answer.
 //   waypoints --domain 3 --path 0,0 1,0 2,0.5 3,0.5       metres in the map: x along the robot's first direction, y to its left
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "constrictor/messages.hpp"
@@ -21,7 +24,8 @@ using constrictor::dds::Reader;
 
 namespace {
 
-constexpr const char* kName = "waypoints";
+/// A name of this process's own: another process under the same name would count as another source, and this one as dead.
+const std::string kName = "waypoints." + std::to_string(::getpid());
 
 msg::Request request(std::uint8_t kind, std::uint64_t sequence_number) {
   msg::Request request{};
@@ -56,8 +60,9 @@ int follow(std::uint32_t domain, const std::vector<std::string>& points) {
   const auto status = Reader<msg::TaskStatus>::observer(here.participant(), "task/status", 8);
   const auto events = Reader<msg::TaskEvent>::member(here.participant(), "task/event");
   const auto authority = Reader<msg::Authority>::member(here.participant(), "authority");
+  const auto answers = Reader<msg::RequestAnswer>::member(here.participant(), "request/answer");
   const constrictor::dds::WaitSet wait_set(here.participant());
-  for (const auto reader : {status.get(), events.get(), authority.get()}) wait_set.attach(reader);
+  for (const auto reader : {status.get(), events.get(), authority.get(), answers.get()}) wait_set.attach(reader);
 
   // Nobody hears a request before both sides have met; a task request takes authority by itself.
   for (const auto end = std::chrono::steady_clock::now() + 10s; requests.readers() == 0 || status.writers() == 0;) {
@@ -67,27 +72,33 @@ int follow(std::uint32_t domain, const std::vector<std::string>& points) {
   }
   requests.write(along(points, 1));
 
-  const auto is_ours = [](std::uint64_t goal) { return goal >> 48 == msg::kAuthorityExternal && (goal & 0xffffffffu) == 1; };
   double squares = 0;
   double largest_m = 0;
   int count = 0;
   std::uint8_t state = msg::kGoalIdle;
   bool mine = false;
-  std::string refusal;
+  std::uint64_t goal = 0;  // as it is on task/status and task/event; 0: not answered yet
+  std::vector<msg::TaskEvent> heard;  // events may come before the answer
   for (const auto asked = std::chrono::steady_clock::now(); status.writers() > 0 && state <= msg::kGoalRunning;) {
     wait_set.wait(200ms);
-    authority.take([&](const msg::Authority& now) {
-      mine = now.level == msg::kAuthorityExternal && std::string(now.source) == kName;
-      refusal = now.refusal;
+    authority.take([&](const msg::Authority& now) { mine = std::string(now.source) == kName; });
+    answers.take([&](const msg::RequestAnswer& answer) {
+      if (std::string(answer.source) != kName) return;
+      if (!answer.granted) throw std::runtime_error("refused: " + std::string(answer.reason));
+      goal = answer.goal_id;
     });
-    if (!mine && std::chrono::steady_clock::now() - asked > 10s) throw std::runtime_error("authority was not given: " + refusal);
-    events.take([&](const msg::TaskEvent& event) {
-      if (!mine || !is_ours(event.goal_id)) return;
+    events.take([&](const msg::TaskEvent& event) { heard.push_back(event); });
+    if (goal == 0) {
+      if (std::chrono::steady_clock::now() - asked > 10s) throw std::runtime_error("no answer; is the run paused?");
+      continue;
+    }
+    for (const msg::TaskEvent& event : std::exchange(heard, {})) {
+      if (event.goal_id != goal) continue;
       state = event.goal_state;
       if (event.event == msg::kEventNone) std::printf("goal state %d: %s\n", event.goal_state, event.detail);
-    });
+    }
     status.take([&](const msg::TaskStatus& now) {
-      if (!mine || !is_ours(now.goal_id) || !std::isfinite(now.cross_track_m)) return;
+      if (now.goal_id != goal || !std::isfinite(now.cross_track_m)) return;
       squares += now.cross_track_m * now.cross_track_m;
       largest_m = std::max(largest_m, std::abs(now.cross_track_m));
       if (count++ % 50 == 0) std::printf("%3.0f %% of the path, %+.3f m from it\n", 100 * now.progress, now.cross_track_m);

@@ -42,8 +42,9 @@ struct Witness {
     }
     return true;
   }
-  [[nodiscard]] bool holds(const std::string& source) const {
-    return authority.level == msg::kAuthorityExternal && std::string(authority.source) == source;
+  /// Whether a process of this program (its source is PROGRAM.PID) has authority.
+  [[nodiscard]] bool holds(const std::string& program) const {
+    return authority.level == msg::kAuthorityExternal && std::string(authority.source).rfind(program + ".", 0) == 0;
   }
   /// Whether an external planner's goal of this task had this event.
   [[nodiscard]] bool happened(std::uint8_t task, std::uint8_t event) const {

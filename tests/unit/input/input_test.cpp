@@ -304,6 +304,7 @@ class InputMemberTest : public ::testing::Test {
     LocalRun local(members(outside_, script), constrictor::Setup{});
     local.subscribe(topics::kTaskCommand, std::function<void(const msg::TaskCommand&)>([&](const auto& m) { commands_.push_back(m); }));
     local.subscribe(topics::kAuthority, std::function<void(const msg::Authority&)>([&](const auto& m) { authority_.push_back(m); }));
+    local.subscribe(topics::kRequestAnswer, std::function<void(const msg::RequestAnswer&)>([&](const auto& m) { answers_.push_back(m); }));
     local.subscribe(topics::kMotionCommand, std::function<void(const msg::MotionCommand&)>([&](const auto& m) { motions_.push_back(m); }));
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       if (const auto entry = at.find(tick); entry != at.end()) entry->second();
@@ -316,7 +317,46 @@ class InputMemberTest : public ::testing::Test {
   std::vector<msg::TaskCommand> commands_;
   std::vector<msg::MotionCommand> motions_;
   std::vector<msg::Authority> authority_;
+  std::vector<msg::RequestAnswer> answers_;
 };
+
+TEST_F(InputMemberTest, EveryRequestOfATickIsAnsweredByItself) {
+  run({{4, {task(1)}}}, 20, {{5, [&] {
+        outside_->add(request("a", kExternal, msg::kRequestTask, 1, 7));
+        outside_->add(request("b", kExternal, msg::kRequestTake, 1));
+        outside_->add(request("z", kExternal, msg::kRequestEmergencyStop, 9));
+        outside_->add(request("pilot", kOperator, msg::kRequestTake, 3));
+      }}});
+  std::map<std::string, msg::RequestAnswer> by_source;
+  for (const auto& answer : answers_) EXPECT_TRUE(by_source.emplace(answer.source, answer).second) << answer.source;
+  ASSERT_EQ(by_source.size(), 5u);
+  EXPECT_TRUE(by_source["a"].granted == false && by_source["a"].request_sequence == 1);  // the pilot, ruled on first, has authority
+  EXPECT_NE(std::string(by_source["a"].reason).find("pilot"), std::string::npos);
+  EXPECT_FALSE(by_source["b"].granted);
+  EXPECT_TRUE(by_source["z"].granted && by_source["z"].request_sequence == 9);
+  EXPECT_TRUE(by_source["pilot"].granted && by_source["pilot"].request_sequence == 3);
+  EXPECT_FALSE(by_source["planner"].granted);
+  EXPECT_EQ(authority_.back().ruled_source, std::string("planner"));  // `authority` has room for the last alone
+}
+
+TEST_F(InputMemberTest, TheAnswerToATaskNamesItsGoalAndWhatInputItselfRefusesIsAnsweredToo) {
+  run({}, 20, {{5, [&] {
+        for (std::uint64_t i = 1; i <= 4; ++i) outside_->add(request("a", kExternal, msg::kRequestTask, i, i));
+        auto tune = request("a", kExternal, msg::kRequestParameter, 5);
+        std::copy_n("no.such", 8, tune.parameter);
+        outside_->add(tune);
+      }}});
+  ASSERT_EQ(answers_.size(), 5u);
+  ASSERT_EQ(commands_.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(answers_[i].granted);
+    EXPECT_EQ(answers_[i].goal_id, commands_[i].goal_id);
+  }
+  EXPECT_FALSE(answers_[3].granted);  // a fourth task in one tick
+  EXPECT_EQ(answers_[3].goal_id, 0u);
+  EXPECT_FALSE(answers_[4].granted);
+  EXPECT_NE(std::string(answers_[4].reason).find("no.such"), std::string::npos);
+}
 
 TEST_F(InputMemberTest, ForwardsThePlannersTasksInTheirOrderWithMappedIds) {
   run({{3, {task(1)}}, {10, {task(2), task(3)}}}, 20);
