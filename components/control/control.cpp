@@ -11,12 +11,15 @@
 
 namespace constrictor {
 
-Control::Control(Wiring& wiring, const Setup& setup)
+Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
     : robot_(load_robot(setup.robot_file)),
       config_(load_control_config(setup.config_file.empty() ? share_path("components/control/control.yaml") : setup.config_file)),
       parameters_(wiring, topics::kControlParameters), chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
-      trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
-      authority_in_(wiring.latest(topics::kAuthority)), command_out_(wiring.output(topics::kJointCommand)),
+      registry_(std::move(methods)), trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
+      authority_in_(wiring.latest(topics::kAuthority)), contacts_in_(wiring.latest(topics::kContactState)),
+      imu_in_(wiring.latest(topics::kImuState)), line_in_(wiring.latest(topics::kLinePercept)),
+      objects_in_(wiring.latest(topics::kObjectPercepts)), pose_in_(wiring.latest(topics::kRobotPose)),
+      map_in_(wiring.latest(topics::kFieldMap)), command_out_(wiring.output(topics::kJointCommand)),
       status_out_(wiring.output(topics::kMotionStatus)) {
   add_parameters(config_, parameters_);
 }
@@ -38,9 +41,21 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
   return desired;
 }
 
+Surroundings Control::surroundings() const {
+  const auto newest = [](const auto& input) { return input ? &*input : nullptr; };
+  return {newest(contacts_in_), newest(imu_in_), newest(line_in_), newest(objects_in_), newest(pose_in_), newest(map_in_)};
+}
+
 void Control::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
-  if (!joints_in_ || joints_in_->joint_count != robot_.joints.size()) return;
+  if (!joints_in_) return;
+  if (joints_in_->joint_count != robot_.joints.size()) {
+    if (joints_in_.fresh()) {
+      wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) + ", accepted " +
+                            std::to_string(robot_.joints.size()));
+    }
+    return;
+  }
   JointArray measured_rad{};
   JointArray torque_nm{};
   const std::size_t count = robot_.joints.size();
@@ -52,7 +67,7 @@ void Control::step(const Tick& tick) {
   bool known = false;
   const msg::DesiredTrajectory desired = choose(method, known);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s()};
+  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s(), surroundings()};
   if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     method->start(input, state_.body);
@@ -101,8 +116,14 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
   return command;
 }
 
-ComponentFactory make_control_factory() {
-  return {"control", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Control>(wiring, setup); }};
+ComponentFactory make_control_factory() { return make_control_factory({}); }
+
+ComponentFactory make_control_factory(std::vector<MethodMaker> more) {
+  return {"control", [more = std::move(more)](Wiring& wiring, const Setup& setup) {
+            MethodRegistry methods;
+            for (const auto make : more) methods.add(make());
+            return std::make_unique<Control>(wiring, setup, std::move(methods));
+          }};
 }
 
 }  // namespace constrictor

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cereal/types/string.hpp>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "control/control_method.hpp"
 #include "robot/safety_gate.hpp"
@@ -24,18 +26,19 @@ struct ControlState {
   }
 };
 
-/// Reads DesiredTrajectory and JointState, writes JointCommand and MotionStatus every tick. Before the first trajectory, with one
+/// Reads DesiredTrajectory and JointState (and for the methods what the robot perceives), writes JointCommand and MotionStatus every tick. Before the first trajectory, with one
 /// that no method accepts, and with one older than `hold_after_ticks` the posture is held; older than `relax_after_ticks` the
 /// joints are let go. Without a JointState of this robot it writes nothing. Every command passes the safety gate: while nobody has
 /// authority after somebody had it, and during an emergency stop, the posture is held whatever the trajectory says.
 class Control : public StatefulComponent<ControlState> {
  public:
-  Control(Wiring& wiring, const Setup& setup);
+  Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
   void step(const Tick& tick) override;
 
  private:
   /// The trajectory to obey now, after the rules on age and validity.
   [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
+  [[nodiscard]] Surroundings surroundings() const;
   /// What goes to the servos of a command that control wants.
   [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick);
 
@@ -50,10 +53,21 @@ class Control : public StatefulComponent<ControlState> {
   Latest<msg::DesiredTrajectory> trajectory_in_;
   Latest<msg::JointState> joints_in_;
   Latest<msg::Authority> authority_in_;
+  Latest<msg::ContactState> contacts_in_;
+  Latest<msg::ImuState> imu_in_;
+  Latest<msg::LinePercept> line_in_;
+  Latest<msg::ObjectPercepts> objects_in_;
+  Latest<msg::RobotPose> pose_in_;
+  Latest<msg::FieldMap> map_in_;
   Output<msg::JointCommand> command_out_;
   Output<msg::MotionStatus> status_out_;
 };
 
 ComponentFactory make_control_factory();
+
+/// The same with more control methods, for a program with methods of its own (`ComponentFactory` makes one component at a time, but
+/// maybe several: each gets new ones).
+using MethodMaker = std::unique_ptr<ControlMethod> (*)();
+ComponentFactory make_control_factory(std::vector<MethodMaker> more);
 
 }  // namespace constrictor

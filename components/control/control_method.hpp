@@ -31,6 +31,17 @@ struct BodyState {
   }
 };
 
+/// What the robot perceives, for methods that adapt to it (obstacles, grip, terrain). Newest message of each; null before the
+/// first. `header.tick` tells how old it is.
+struct Surroundings {
+  const msg::ContactState* contacts = nullptr;
+  const msg::ImuState* imu = nullptr;
+  const msg::LinePercept* line = nullptr;
+  const msg::ObjectPercepts* objects = nullptr;
+  const msg::RobotPose* pose = nullptr;
+  const msg::FieldMap* map = nullptr;
+};
+
 /// What a method is given at each step.
 struct MethodInput {
   const RobotModel& robot;
@@ -41,6 +52,7 @@ struct MethodInput {
   const JointArray& torque_nm;      ///< joint torques
   const JointArray& commanded_rad;  ///< last setpoints
   double dt_s;                      ///< > 0
+  Surroundings around{};
 };
 
 struct MethodProgress {
@@ -50,7 +62,7 @@ struct MethodProgress {
 
 /// A control method. It keeps nothing itself: whatever must survive a step is in BodyState (its own part is `scratch`), so a
 /// method can be changed, and a process restarted, in the middle of a motion. Setpoints need not respect the robot's limits:
-/// JointLimiter sees to that. Register a new one in method_registry.cpp.
+/// JointLimiter sees to that. A new one is registered in method_registry.cpp, or given to make_control_factory by a program of its own.
 class ControlMethod {
  public:
   virtual ~ControlMethod() = default;
@@ -67,6 +79,8 @@ class ControlMethod {
 class MethodRegistry {
  public:
   MethodRegistry();
+  /// Adds one; of two with one name the newer counts.
+  void add(std::unique_ptr<ControlMethod> method);
   /// Null if there is none of that name.
   [[nodiscard]] const ControlMethod* find(std::string_view name) const;
   [[nodiscard]] std::vector<std::string_view> names() const;

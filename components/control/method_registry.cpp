@@ -25,6 +25,11 @@ MethodRegistry::MethodRegistry() {
   methods_.push_back(make_squeeze());
 }
 
+void MethodRegistry::add(std::unique_ptr<ControlMethod> method) {
+  std::erase_if(methods_, [&](const auto& known) { return known->name() == method->name(); });
+  methods_.push_back(std::move(method));
+}
+
 const ControlMethod* MethodRegistry::find(std::string_view name) const {
   for (const auto& method : methods_) {
     if (method->name() == name) return method.get();

@@ -28,7 +28,7 @@ double yaw_of(const msg::Quaternion& q) {
 }  // namespace
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
-    : model_(load_robot(setup.robot_file)),
+    : wiring_(wiring), model_(load_robot(setup.robot_file)),
       config_(configuration_of(setup)),
       parameters_(wiring, topics::kGuidanceParameters),
       joints_(wiring.latest(topics::kJointState)),
@@ -52,7 +52,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   // Rolled over, it cannot tell the ground from a wall: nothing but the body's own motion counts then.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
-  if (upright && contacts_ && guidance::plausible(*contacts_) && contacts_->module_count >= model_.module_count) {
+  if (upright && contacts_ && !guidance::implausible(*contacts_) && contacts_->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
     for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
     // what pushes from the side; touches of the robot's own modules cancel in the sum
@@ -116,13 +116,24 @@ double Guidance::speed_m_s(double period_s) const {
   return moved.dot(course.normalized()) / (static_cast<double>(newest - state_.track_tick[i]) * period_s);
 }
 
+template <class Message, class... Limits>
+bool Guidance::believed(const Latest<Message>& input, const char* topic, Limits... limits) {
+  if (!input || !input.fresh()) return false;
+  const char* complaint = guidance::implausible(*input, limits...);
+  if (complaint) wiring_.count_refusal(std::string(topic) + "." + complaint);
+  return !complaint;
+}
+
 void Guidance::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
   guidance::PoseFilter filter(state_.filter);
   const std::size_t joint_count = model_.joints.size();
-  const bool body = joints_ && joints_.fresh() && imu_ && imu_.fresh() && guidance::plausible(*joints_, joint_count) &&
-                    guidance::plausible(*imu_);
-  if (body) {
+  const bool joints = believed(joints_, "joint_state", joint_count);
+  const bool imu = believed(imu_, "imu_state");
+  const bool line = believed(line_, "perception/line");
+  const bool objects = believed(objects_, "perception/objects");
+  const bool contacts = believed(contacts_, "contact_state");
+  if (joints && imu) {
     const guidance::BodyChain chain = planar_module_poses(model_, {joints_->position_rad, joint_count});
     dead_reckon(tick, chain);
     double sum_rad = 0.0;
@@ -130,9 +141,9 @@ void Guidance::step(const Tick& tick) {
     state_.body_turn_rad = sum_rad / static_cast<double>(chain.size());
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
-    if (line_ && line_.fresh() && guidance::plausible(*line_)) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
-    if (objects_ && objects_.fresh() && guidance::plausible(*objects_)) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
-    if (contacts_ && contacts_.fresh() && guidance::plausible(*contacts_)) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
+    if (line) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
+    if (objects) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
+    if (contacts) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
   }
 
   const Pose2 estimate = filter.pose();

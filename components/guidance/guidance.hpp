@@ -38,12 +38,16 @@ class Guidance : public StatefulComponent<GuidanceState> {
   [[nodiscard]] const GuidanceState& state() const { return state_; }
 
  private:
+  /// Whether a message has come that a robot can have; one that none can have is counted as refused.
+  template <class Message, class... Limits>
+  bool believed(const Latest<Message>& input, const char* topic, Limits... limits);
   void dead_reckon(const Tick& tick, const guidance::BodyChain& chain);
   void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
   /// Where the head was at a tick, seen from where it is now.
   [[nodiscard]] guidance::Pose2 past(std::int64_t tick) const;
   [[nodiscard]] double speed_m_s(double period_s) const;
 
+  Wiring& wiring_;
   RobotModel model_;
   guidance::GuidanceConfig config_;
   Parameters parameters_;  ///< of config_

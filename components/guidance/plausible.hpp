@@ -14,48 +14,54 @@ inline bool all_within(const double* values, std::size_t count, double bound) {
   return std::all_of(values, values + count, [bound](double v) { return std::abs(v) <= bound; });
 }
 
+// Each: what is wrong with a message, by field; null if nothing is.
+
 /// The first `count` joints: no angle beyond a turn, no rate that no servo reaches.
-inline bool plausible(const msg::JointState& joints, std::size_t count) {
-  constexpr double kMost_rad = 6.3;
-  constexpr double kMost_rad_s = 100.0;
-  return joints.joint_count == count && all_within(joints.position_rad, count, kMost_rad) &&
-         all_within(joints.velocity_rad_s, count, kMost_rad_s);
+inline const char* implausible(const msg::JointState& joints, std::size_t count) {
+  if (joints.joint_count != count) return "joint_count: not this robot's";
+  if (!all_within(joints.position_rad, count, 6.3)) return "position_rad: accepted -6.3 to 6.3";
+  if (!all_within(joints.velocity_rad_s, count, 100.0)) return "velocity_rad_s: accepted -100 to 100";
+  return nullptr;
 }
 
 /// No force that would break the robot.
-inline bool plausible(const msg::ContactState& contacts) {
-  constexpr double kMost_n = 1e4;
-  const auto bounded = [](const msg::Vector3& f) { return std::max({std::abs(f.x), std::abs(f.y), std::abs(f.z)}) <= kMost_n; };
+inline const char* implausible(const msg::ContactState& contacts) {
+  const auto bounded = [](const msg::Vector3& f) { return std::abs(f.x) <= 1e4 && std::abs(f.y) <= 1e4 && std::abs(f.z) <= 1e4; };
   const std::size_t modules = std::min<std::size_t>(contacts.module_count, msg::kMaxModules);
   const std::size_t touches = std::min<std::size_t>(contacts.contact_count, msg::kMaxContacts);
-  return std::all_of(contacts.force_n, contacts.force_n + modules, bounded) &&
-         std::all_of(contacts.contacts, contacts.contacts + touches, [&](const msg::Contact& c) {
-           return bounded(c.force_n) && std::abs(c.position_m.x) <= 1.0 && std::abs(c.position_m.y) <= 1.0;
-         });
+  if (!std::all_of(contacts.force_n, contacts.force_n + modules, bounded)) return "force_n: accepted -1e4 to 1e4";
+  if (!std::all_of(contacts.contacts, contacts.contacts + touches, [&](const msg::Contact& c) {
+        return bounded(c.force_n) && std::abs(c.position_m.x) <= 1.0 && std::abs(c.position_m.y) <= 1.0;
+      })) {
+    return "contacts: accepted forces of -1e4 to 1e4 N within 1 m of the module";
+  }
+  return nullptr;
 }
 
 /// A unit quaternion, nearly.
-inline bool plausible(const msg::ImuState& imu) {
+inline const char* implausible(const msg::ImuState& imu) {
   const auto& q = imu.orientation;
   const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  return square > 0.5 && square < 2.0;
+  return square > 0.5 && square < 2.0 ? nullptr : "orientation: accepted a unit quaternion";
 }
 
 /// NaN says "unknown"; what is known lies within sight (at the horizon distances grow without meaning much).
 inline bool in_sight(double value) { return std::isnan(value) || std::abs(value) <= 1e4; }
 
-inline bool plausible(const msg::LinePercept& line) {
+inline const char* implausible(const msg::LinePercept& line) {
   const std::size_t points = std::min<std::size_t>(line.point_count, std::size(line.x_m));
-  return in_sight(line.end_distance_m) && in_sight(line.lookahead_m) && in_sight(line.offset_m) && in_sight(line.heading_rad) &&
-         in_sight(line.curvature_1_m) && in_sight(line.near_m) && in_sight(line.far_m) && std::all_of(line.x_m, line.x_m + points, in_sight) &&
-         std::all_of(line.y_m, line.y_m + points, in_sight);
+  const bool seen = in_sight(line.end_distance_m) && in_sight(line.lookahead_m) && in_sight(line.offset_m) && in_sight(line.heading_rad) &&
+                    in_sight(line.curvature_1_m) && in_sight(line.near_m) && in_sight(line.far_m) &&
+                    std::all_of(line.x_m, line.x_m + points, in_sight) && std::all_of(line.y_m, line.y_m + points, in_sight);
+  return seen ? nullptr : "a number: accepted NaN and -1e4 to 1e4";
 }
 
-inline bool plausible(const msg::ObjectPercepts& objects) {
+inline const char* implausible(const msg::ObjectPercepts& objects) {
   const std::size_t count = std::min<std::size_t>(objects.blob_count, std::size(objects.blobs));
-  return std::all_of(objects.blobs, objects.blobs + count, [](const msg::Blob& blob) {
+  const bool seen = std::all_of(objects.blobs, objects.blobs + count, [](const msg::Blob& blob) {
     return in_sight(blob.bearing_rad) && in_sight(blob.range_m) && in_sight(blob.width_m);
   });
+  return seen ? nullptr : "blobs: accepted NaN and -1e4 to 1e4";
 }
 
 }  // namespace constrictor::guidance

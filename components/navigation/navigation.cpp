@@ -39,7 +39,7 @@ void GoalState::set_parameters(const msg::TaskParameters& p) {
 }
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
-    : robot_(load_robot(setup.robot_file)),
+    : wiring_(wiring), robot_(load_robot(setup.robot_file)),
       config_(load_navigation_config(setup.config_file.empty() ? share_path("components/navigation/navigation.yaml")
                                                                : setup.config_file)),
       parameters_(wiring, topics::kNavigationParameters), grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
@@ -61,22 +61,18 @@ void Navigation::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
   TaskOutput output;
   stand(state_.grip, output);
+  if (joints_in_ && joints_in_.fresh() && joints_in_->joint_count != robot_.joints.size()) {
+    wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) + ", accepted " +
+                          std::to_string(robot_.joints.size()));
+  }
   if (!senses_ready()) {
-    for (const auto& command : commands_in_) {
-      if (command.command != msg::kCommandStart) continue;
-      msg::TaskEvent event{};
-      event.goal_id = command.goal_id;
-      event.task = command.task;
-      event.goal_state = msg::kGoalRefused;
-      copy_text(event.detail, "joints, contacts or pose are missing or stale");
-      event_out_.write(event);
-    }
+    answer_blindly();
     write_trajectory(output);
     write_status(output);
     return;
   }
   const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
-  remember_pose(tick.index, X_MH, state_.things);
+  remember_pose(pose_in_->header.tick, X_MH, state_.things);
   if (objects_in_ && objects_in_.fresh()) watch_objects(config_.object, *objects_in_, state_.things);
 
   const std::vector<Pose2> body = planar_body(robot_, *joints_in_);
@@ -103,14 +99,29 @@ void Navigation::step(const Tick& tick) {
   write_status(output);
 }
 
+void Navigation::answer_blindly() {
+  for (const auto& command : commands_in_) {
+    if (command.command == msg::kCommandStart) {
+      write_refusal(command, "joints, contacts or pose are missing or stale");
+    } else {
+      cancel(command);
+    }
+  }
+  take_direct_motions();
+}
+
 void Navigation::take_commands(const TaskInput& input) {
   for (const auto& command : commands_in_) {
     if (command.command == msg::kCommandStart) {
       start_goal(command, input);
-    } else if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0)) {
-      end_goal(msg::kGoalCancelled, "cancelled");
+    } else {
+      cancel(command);
     }
   }
+}
+
+void Navigation::cancel(const msg::TaskCommand& command) {
+  if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0)) end_goal(msg::kGoalCancelled, "cancelled");
 }
 
 void Navigation::take_direct_motions() {
@@ -126,12 +137,7 @@ void Navigation::start_goal(const msg::TaskCommand& command, const TaskInput& se
   std::unique_ptr<Task> task = make_task(command.task);
   const std::string refusal = task ? task->refusal(input, state_.grip) : "no such task";
   if (!refusal.empty()) {
-    msg::TaskEvent event{};
-    event.goal_id = command.goal_id;
-    event.task = command.task;
-    event.goal_state = msg::kGoalRefused;
-    copy_text(event.detail, refusal);
-    event_out_.write(event);
+    write_refusal(command, refusal);
     if (!state_.task) {
       state_.goal = {};
       state_.goal.goal_id = command.goal_id;
@@ -192,6 +198,15 @@ void Navigation::write_event(std::uint8_t event, std::uint8_t goal_state, std::u
   message.object_handle = handle;
   copy_text(message.detail, detail);
   event_out_.write(message);
+}
+
+void Navigation::write_refusal(const msg::TaskCommand& command, const std::string& reason) {
+  msg::TaskEvent event{};
+  event.goal_id = command.goal_id;
+  event.task = command.task;
+  event.goal_state = msg::kGoalRefused;
+  copy_text(event.detail, reason);
+  event_out_.write(event);
 }
 
 void Navigation::write_trajectory(const TaskOutput& output) {

@@ -70,16 +70,21 @@ class Navigation : public StatefulComponent<NavigationState> {
 
  private:
   [[nodiscard]] bool senses_ready() const;
+  /// Without senses nothing can start; what ends a task or asks for a motion is obeyed all the same.
+  void answer_blindly();
   void take_commands(const TaskInput& input);
+  void cancel(const msg::TaskCommand& command);
   void take_direct_motions();
   void start_goal(const msg::TaskCommand& command, const TaskInput& input);
   void run_task(const TaskInput& input, TaskOutput& output);
   void watch_grip(const TaskInput& input, TaskOutput& output);
   void end_goal(std::uint8_t state, const std::string& reason);
   void write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle, const std::string& detail);
+  void write_refusal(const msg::TaskCommand& command, const std::string& reason);
   void write_trajectory(const TaskOutput& output);
   void write_status(const TaskOutput& output);
 
+  Wiring& wiring_;
   RobotModel robot_;
   NavigationConfig config_;
   Parameters parameters_;  ///< of config_

@@ -131,7 +131,7 @@ struct DropConfig {
   double back_m = 1.3;
   double back_timeout_s = 20.0;
   double straighten_rate_rad_s = 0.3;
-  double approach_timeout_s = 120.0;
+  double approach_timeout_s = 120.0;  ///< [s] without reaching the zone's centre; the task then ends without success, still holding
 };
 
 struct NavigationConfig {

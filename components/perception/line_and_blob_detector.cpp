@@ -49,12 +49,16 @@ msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, doubl
 }  // namespace
 
 std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& info) {
-  if (image.width != info.width || image.height != info.height) return "image size differs from the camera's";
-  if (image.width < 32 || image.height < 24) return "image too small";
+  if (image.width != info.width || image.height != info.height) {
+    return cv::format("size: found %d x %d, accepted %d x %d, as camera/info says", image.width, image.height, info.width, info.height);
+  }
+  if (image.width < 32 || image.height < 24) return cv::format("size: found %d x %d, accepted 32 x 24 or more", image.width, image.height);
   const std::size_t bytes = std::size_t{3} * image.width * image.height;
-  if (image.data._length != bytes || image.data._buffer == nullptr) return "image data do not have width x height x 3 bytes";
+  if (image.data._length != bytes || image.data._buffer == nullptr) {
+    return cv::format("data: found %u bytes, accepted %d x %d x 3 = %zu", image.data._length, image.width, image.height, bytes);
+  }
   const bool finite = std::isfinite(info.fx) && std::isfinite(info.fy) && std::isfinite(info.cx) && std::isfinite(info.cy);
-  if (!finite || info.fx <= 0.0 || info.fy <= 0.0) return "camera model without focal length";
+  if (!finite || info.fx <= 0.0 || info.fy <= 0.0) return "not used: camera/info has no focal length above 0";
   return {};
 }
 

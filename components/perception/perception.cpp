@@ -21,6 +21,7 @@ perception::PerceptionConfig configuration_of(const Setup& setup) {
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
     : config_(configuration_of(setup)),
+      wiring_(wiring),
       parameters_(wiring, topics::kPerceptionParameters),
       detector_(config_),
       image_(wiring.latest(topics::kCameraImage)),
@@ -54,8 +55,9 @@ void Perception::step(const Tick& tick) {
   }
   if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
   if (!image_ || !image_.fresh() || !info_) return;
-  if (!perception::image_error(*image_, *info_).empty()) {
-    ++state_.refused_images;
+  const std::string error = perception::image_error(*image_, *info_);
+  if (!error.empty()) {
+    wiring_.count_refusal("camera/image: " + error);
     return;
   }
   ++state_.images;

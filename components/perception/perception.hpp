@@ -25,11 +25,10 @@ struct PerceptionState {
   std::deque<Attitude> attitudes;   ///< of the last ticks, oldest first
   std::uint8_t line_colour = 0;     ///< in use; 0: the configured one
   std::uint64_t images = 0;         ///< worked on
-  std::uint64_t refused_images = 0; ///< whose size or camera model made no sense
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, refused_images, parameters);
+    archive(attitudes, line_colour, images, parameters);
   }
 };
 
@@ -46,6 +45,7 @@ class Perception : public StatefulComponent<PerceptionState> {
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
   perception::PerceptionConfig config_;
+  Wiring& wiring_;
   Parameters parameters_;  ///< of config_
   perception::LineAndBlobDetector detector_;
   double head_height_m_ = 0.0;

@@ -95,7 +95,8 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, error_m, period_s, state_.steering);
     undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(input.X_MH.to_parent(p_HO)).x();
-    if (past_m >= -config.brake_m || state_.phase_s > config.approach_timeout_s) {
+    if (state_.phase_s > config.approach_timeout_s) return output.abort("the zone was not reached");  // still holding
+    if (past_m >= -config.brake_m) {
       enter(input, kStop);
       stand(grip, output);
     }

@@ -87,6 +87,19 @@ TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
   EXPECT_GT(std::abs(torque_nm), 0.5) << "while it was carried";
 }
 
+// A zone that is farther than the time allows: the object is not let go somewhere, it is kept.
+TEST_F(GraspEvents, AnObjectIsKeptIfItsZoneIsNotReachedInTime) {
+  begin(scene(), "approach_timeout_s: 120.0", "approach_timeout_s: 2.0");
+  grasp();
+  ASSERT_FALSE(HasFatalFailure());
+  start(msg::kTaskExplore, &msg::TaskParameters::direction, msg::kDirectionForwards);
+  until([&] { return in_view(head(), {-0.9, 0.5, 0.0}, 1.8); }, 20.0);
+  start(msg::kTaskDrop, &msg::TaskParameters::drop_zone_colour, msg::kColourGreen);
+  EXPECT_EQ(until_end(10.0), msg::kGoalAborted);
+  EXPECT_FALSE(first(msg::kEventDroppingDone));
+  EXPECT_TRUE(run_->latest(topics::kTaskStatus)->carrying);
+}
+
 // As soon as it was pushed 0.2 m, which the wrap's end and the squeeze do, the object is thrown away.
 TEST_F(GraspEvents, AGraspInWhichNothingIsAnyMoreIsLost) {
   begin(scene("perturbations: [{object: 0, when_displaced_m: 0.2, duration_s: 0.3, force_n: [6, 0, 25]}]\n"));

@@ -95,6 +95,63 @@ TEST(Control, HoldsTheMeasuredPostureBeforeTheFirstTrajectory) {
   EXPECT_FALSE(run.latest(topics::kMotionStatus)->known);
 }
 
+/// A method of somebody else's: bends joint 0 by the yaw of the estimated pose, one way if something is touched and the other if not.
+class Feeler : public ControlMethod {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "feeler"; }
+  MethodProgress step(const MethodInput& input, BodyState&, Setpoints& setpoints) const override {
+    setpoints.position_rad = input.commanded_rad;
+    if (!input.around.pose || !input.around.contacts || input.around.map) return {};  // nobody draws a map here
+    setpoints.position_rad[0] = input.around.contacts->contact_count > 0 ? input.around.pose->yaw_rad : -input.around.pose->yaw_rad;
+    return {true, 1.0};
+  }
+};
+
+/// Servos that touch something.
+class TouchingServos : public IdealServos {
+ public:
+  TouchingServos(Wiring& wiring, const Setup& setup) : IdealServos(wiring, setup), contacts_(wiring.output(topics::kContactState)) {}
+  void sample(const Tick& tick) override {
+    IdealServos::sample(tick);
+    msg::ContactState contacts{};
+    contacts.contact_count = 1;
+    contacts_.write(contacts);
+  }
+
+ private:
+  Output<msg::ContactState> contacts_;
+};
+
+class Estimate : public StatefulComponent<int> {
+ public:
+  explicit Estimate(Wiring& wiring) : pose_(wiring.output(topics::kRobotPose)) {}
+  void step(const Tick&) override {
+    msg::RobotPose pose{};
+    pose.yaw_rad = 0.3;
+    pose_.write(pose);
+  }
+
+ private:
+  Output<msg::RobotPose> pose_;
+};
+
+TEST(Control, GivesWhatTheRobotPerceivesToAMethodFromOutside) {
+  constrictor::Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
+    set_method(desired, "feeler", 1);
+    return true;
+  };
+  LocalRun run({{"physics", [](Wiring& w, const constrictor::Setup& s) { return std::make_unique<TouchingServos>(w, s); }},
+                make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Feeler>(); }}),
+                {"guidance", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<Estimate>(w); }},
+                {"navigation", [script](Wiring& w, const constrictor::Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
+               setup);
+  run.advance(100);
+  EXPECT_TRUE(run.latest(topics::kMotionStatus)->known);
+  EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[0], 0.3, 1e-9);
+}
+
 TEST(Control, HoldsOnAnUnknownMethodAndOnAShapeWithNaN) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
     set_method(desired, tick.index < 50 ? "moonwalk" : "undulation", 1);

@@ -12,7 +12,7 @@
 namespace constrictor {
 namespace {
 
-/// Joints that undulate; not finite between ticks 40 and 45.
+/// Joints that undulate; not finite between ticks 40 and 45, and where no joint can be in ticks 50 to 52.
 class Snake : public Plant {
  public:
   Snake(Wiring& wiring, const Setup&)
@@ -26,6 +26,7 @@ class Snake : public Plant {
       joints.velocity_rad_s[i] = 0.5 * 2.0 * 3.14159265 * 0.7 * std::cos(phase - 0.5 * i);
     }
     if (tick.index >= 40 && tick.index < 45) joints.position_rad[3] = std::numeric_limits<double>::quiet_NaN();
+    if (tick.index >= 50 && tick.index < 53) joints.position_rad[3] = 50.0;
     joints_.write(joints);
     msg::ImuState imu{};
     const double yaw = 0.05 * std::sin(phase);
@@ -94,6 +95,8 @@ TEST(GuidanceComponent, WritesThePoseEveryTickAndTheMapEveryFifth) {
   run->advance(100);
   EXPECT_EQ(poses, 100);
   EXPECT_EQ(maps, 20);
+  EXPECT_EQ(run->member("guidance").counters().refused, 3u);
+  EXPECT_EQ(run->member("guidance").counters().last_refusal, "joint_state.position_rad: accepted -6.3 to 6.3");
   ASSERT_EQ(run->latest(topics::kFieldMap)->object_count, 1);
   EXPECT_EQ(run->latest(topics::kFieldMap)->objects[0].handle, 1);
   EXPECT_GT(run->latest(topics::kFieldMap)->line_point_count, 5);

@@ -163,6 +163,17 @@ TEST(Goals, HoldsWhenThePoseIsStale) {
   EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
 }
 
+TEST(Goals, AreCancelledAlsoWhileThePoseIsStale) {
+  msg::TaskCommand cancel{};
+  cancel.command = msg::kCommandCancel;
+  cancel.goal_id = 1;
+  GoalRun r({{10, start(1, msg::kTaskRotate)}, {440, cancel}, {450, start(2, msg::kTaskRotate)}});
+  r.run->advance(460);
+  EXPECT_EQ(r.count(1, msg::kGoalCancelled), 1);
+  EXPECT_EQ(r.ends(1), 1);
+  EXPECT_EQ(r.count(2, msg::kGoalRefused), 1);
+}
+
 TEST(Goals, ContinuesIdenticallyAfterARestart) {
   const Commands commands{{10, start(1, msg::kTaskExplore)}, {150, start(2, msg::kTaskSearchObject)}};
   GoalRun whole(commands);

@@ -107,8 +107,9 @@ TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {
   });
   run->advance(30);
   EXPECT_EQ(percepts, 5);  // exposures 0, 5, 10, 20, 25: 15 was broken
-  const auto& component = dynamic_cast<const Perception&>(run->component("perception"));
-  EXPECT_EQ(component.state().refused_images, 1u);
+  EXPECT_EQ(run->member("perception").counters().refused, 1u);
+  EXPECT_EQ(run->member("perception").counters().last_refusal,
+            "camera/image: data: found 100 bytes, accepted 160 x 120 x 3 = 57600");
   ASSERT_NE(run->latest(topics::kProcessedImage), nullptr);
   EXPECT_EQ(run->latest(topics::kProcessedImage)->data._length, 160u * 120u * 3u);
 }
