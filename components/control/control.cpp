@@ -41,7 +41,7 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
   return desired;
 }
 
-Surroundings Control::surroundings() const {
+Perceived Control::perceived() const {
   const auto newest = [](const auto& input) { return input ? &*input : nullptr; };
   return {newest(contacts_in_), newest(imu_in_), newest(line_in_), newest(objects_in_), newest(pose_in_), newest(map_in_)};
 }
@@ -67,7 +67,7 @@ void Control::step(const Tick& tick) {
   bool known = false;
   const msg::DesiredTrajectory desired = choose(method, known);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s(), surroundings()};
+  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s(), perceived()};
   if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     method->start(input, state_.body);

@@ -38,7 +38,7 @@ class Control : public StatefulComponent<ControlState> {
  private:
   /// The trajectory to obey now, after the rules on age and validity.
   [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
-  [[nodiscard]] Surroundings surroundings() const;
+  [[nodiscard]] Perceived perceived() const;
   /// What goes to the servos of a command that control wants.
   [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick);
 

@@ -33,7 +33,7 @@ struct BodyState {
 
 /// What the robot perceives, for methods that adapt to it (obstacles, grip, terrain). Newest message of each; null before the
 /// first. `header.tick` tells how old it is.
-struct Surroundings {
+struct Perceived {
   const msg::ContactState* contacts = nullptr;
   const msg::ImuState* imu = nullptr;
   const msg::LinePercept* line = nullptr;
@@ -52,7 +52,7 @@ struct MethodInput {
   const JointArray& torque_nm;      ///< joint torques
   const JointArray& commanded_rad;  ///< last setpoints
   double dt_s;                      ///< > 0
-  Surroundings around{};
+  Perceived around{};
 };
 
 struct MethodProgress {
