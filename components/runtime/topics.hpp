@@ -68,7 +68,7 @@ inline constexpr Topic<msg::Authority> kAuthority{
 inline constexpr Topic<msg::TaskStatus> kTaskStatus{
     {16, "task/status", "TaskStatus", "navigation", 1, 8, false, "every tick", "current goal"}};
 inline constexpr Topic<msg::TaskEvent> kTaskEvent{
-    {17, "task/event", "TaskEvent", "navigation", 8, 512, false, "on occurrence", "events of Tables I to XV"}};
+    {17, "task/event", "TaskEvent", "navigation", 16, 1024, false, "on occurrence", "events of Tables I to XV"}};
 inline constexpr Topic<msg::DesiredTrajectory> kDesiredTrajectory{
     {18, "desired_trajectory", "DesiredTrajectory", "navigation", 1, 8, false, "every tick", "path, velocity, posture"}};
 inline constexpr Topic<msg::MotionStatus> kMotionStatus{
