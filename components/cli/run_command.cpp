@@ -203,7 +203,7 @@ int run_command(const RunOptions& options) {
   const DomainClaim claim(options.domain);
   const fs::path report_dir = make_report_dir(options, manifest.scenario_file);
   const std::string scenario = manifest.scenario_file.stem().string();
-  const PublishedNote note({claim.domain(), ::getpid(), scenario, options.seed, roster, report_dir});
+  const PublishedNote note({claim.domain(), ::getpid(), scenario, options.seed, roster, manifest.plant, report_dir});
   const auto environment = run_environment();
 
   const SignalQueue signals;

@@ -27,6 +27,7 @@ std::optional<RunNote> read_note(std::uint32_t domain) {
   note.scenario = json.value("scenario", "");
   note.seed = json.value("seed", std::uint64_t{0});
   note.roster = json.value("roster", std::vector<std::string>{});
+  note.plant = json.value("plant", "physics");
   note.report_dir = json.value("report_dir", "");
   return note;
 }
@@ -35,7 +36,7 @@ std::optional<RunNote> read_note(std::uint32_t domain) {
 
 PublishedNote::PublishedNote(const RunNote& note) : file_(note_file(note.domain)) {
   const nlohmann::json json = {{"pid", note.pid},   {"domain", note.domain}, {"scenario", note.scenario},
-                               {"seed", note.seed}, {"roster", note.roster}, {"report_dir", note.report_dir.string()}};
+                               {"seed", note.seed}, {"roster", note.roster}, {"plant", note.plant}, {"report_dir", note.report_dir.string()}};
   const fs::path unfinished = file_.string() + ".new";
   std::ofstream(unfinished) << json_text(json, 1) << "\n";
   fs::rename(unfinished, file_);

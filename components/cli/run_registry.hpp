@@ -25,6 +25,7 @@ struct RunNote {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<std::string> roster;
+  std::string plant;                 ///< which of them is the plant
   std::filesystem::path report_dir;
 };
 

@@ -16,8 +16,9 @@
 #include "cli/task_names.hpp"
 #include "cli/teleop_screen.hpp"
 #include "cli/terminal.hpp"
-#include "configuration/configuration.hpp"
+#include "cli/usage.hpp"
 #include "robot/drive_gait.hpp"
+#include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -30,6 +31,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kLease = 500ms;
 constexpr auto kTurn = 50ms;      // of the loop
 constexpr auto kRedraw = 100ms;
+constexpr auto kEscape = 400ms;   // an escape that is followed by nothing for so long is no part of a sequence
+constexpr auto kClaimEvery = 200ms;
 
 struct Options {
   std::optional<std::uint32_t> run;
@@ -45,19 +48,48 @@ int no_input(const RunNote& run) {
   return exit_status::kWaitedTooLong;
 }
 
+/// Looks whether the run that it began with is still there.
+class RunWatch {
+ public:
+  RunWatch(const RunNote& run, std::int32_t participant)
+      : domain_(run.domain), observer_(participant, run.plant) {}
+  void look() {
+    const auto now = Clock::now();
+    if (now - claim_seen_ > kClaimEvery) {
+      claim_seen_ = now;
+      launcher_ = domain_claimed(domain_);
+    }
+    observer_.poll();
+    RunSigns signs = observer_.signs();
+    signs.launcher = launcher_;
+    attachment_.look(signs, now);
+  }
+  [[nodiscard]] const RunAttachment& attachment() const { return attachment_; }
+  [[nodiscard]] const TeleopView& view() const { return observer_.view(); }
+
+ private:
+  std::uint32_t domain_;
+  TeleopObserver observer_;
+  RunAttachment attachment_;
+  Clock::time_point claim_seen_{};
+  bool launcher_ = true;
+};
+
 /// `--drive V,W --for T`: drives, stands, releases. 1 if it was refused or lost authority on the way.
-int drive(const RunNote& run, const std::string& text, const std::string& duration) {
+int drive(const Options& options) {
   double speed_m_s = 0.0;
   double turn_rad_s = 0.0;
   char rest = 0;
-  const int count = std::sscanf(text.c_str(), "%lf,%lf%c", &speed_m_s, &turn_rad_s, &rest);
+  const int count = std::sscanf(options.drive.c_str(), "%lf,%lf%c", &speed_m_s, &turn_rad_s, &rest);
   if (count != 2 || !(std::abs(speed_m_s) <= 2.0) || !(std::abs(turn_rad_s) <= 4.0)) {
-    throw ConfigurationError(fmt::format("--drive: found '{}', accepted SPEED,TURN in m/s (to 2) and rad/s (to 4), as 0.3,0.5", text));
+    throw UsageError(fmt::format("--drive: found '{}', accepted SPEED,TURN in m/s (to 2) and rad/s (to 4), as 0.3,0.5", options.drive));
   }
-  const auto bound = duration.empty() ? std::chrono::milliseconds(24h * 365) : parse_duration("--for", duration);
+  const auto bound = options.duration.empty() ? std::chrono::milliseconds(24h * 365) : parse_duration("--for", options.duration);
+  const RunNote run = find_run(options.run);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, on_signal);
   OperatorClient client(run.domain, unique_source("teleop"), kLease);
   if (!client.connect(5s)) return no_input(run);
+  RunWatch watch(run, client.participant());
   const DriveGait gait = drive_gait(speed_m_s, turn_rad_s);
   const std::uint64_t number = client.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m);
   const auto answer = client.wait_for_answer(number, 5s);
@@ -72,6 +104,11 @@ int drive(const RunNote& run, const std::string& text, const std::string& durati
     std::this_thread::sleep_for(kTurn);
     client.assert_alive();
     client.poll();
+    watch.look();
+    if (!watch.attachment().over().empty()) {
+      std::fprintf(stderr, "teleop: %s\n", watch.attachment().over().c_str());
+      return exit_status::kMissionFailed;
+    }
     if (client.holds_authority()) continue;
     std::fprintf(stderr, "teleop: lost authority to %s %s\n", authority_name(client.authority()->level), client.authority()->source);
     return exit_status::kMissionFailed;
@@ -84,29 +121,39 @@ int drive(const RunNote& run, const std::string& text, const std::string& durati
 /// The full-screen client.
 class Teleop {
  public:
-  explicit Teleop(const RunNote& run) : terminal_(), client_(run.domain, unique_source("teleop"), kLease), observer_(client_.participant()) {
-    screen_.run = fmt::format("{} {} seed {}", run.domain, run.scenario, run.seed);
+  explicit Teleop(const RunNote& run)
+      : terminal_(), client_(run.domain, unique_source("teleop"), kLease), watch_(run, client_.participant()) {
+    screen_.run = fmt::format("{} {}", run.domain, run.scenario);
     screen_.source = client_.source();
   }
 
+  /// Why it ended, if the operator did not want it.
+  [[nodiscard]] const std::string& over() const { return watch_.attachment().over(); }
+
   int loop() {
     if (!client_.connect(5s)) return exit_status::kWaitedTooLong;
-    std::string typed;
     auto drawn = Clock::now() - kRedraw;
+    auto heard = Clock::now();
+    std::string typed;
     while (!Terminal::interrupted()) {
       if (!terminal_.read(typed, kTurn)) break;
-      client_.assert_alive();
       client_.poll();
-      observer_.poll();
-      for (std::string_view rest = typed; !rest.empty();) {
-        if (screen_.prompt) type(rest);
-        else if (!act(next_action(rest))) return leave();
+      watch_.look();
+      if (!over().empty()) return exit_status::kMissionFailed;
+      client_.assert_alive();
+      if (!typed.empty()) heard = Clock::now();
+      keys_.add(typed);
+      const bool quiet = Clock::now() - heard > kEscape;
+      for (std::string key = keys_.next(quiet); !key.empty(); key = keys_.next(quiet)) {
+        if (screen_.prompt) type(key);
+        else if (!act(action_of(key))) return leave();
       }
       note_refusal();
       if (Clock::now() - drawn < kRedraw && typed.empty()) continue;
       drawn = Clock::now();
       screen_.authority = client_.authority();
-      screen_.view = observer_.view();
+      screen_.view = watch_.view();
+      screen_.view.silent_s = watch_.attachment().silent_s();
       terminal_.draw(render(screen_));
     }
     return leave();
@@ -122,6 +169,11 @@ class Teleop {
 
   /// False: quit.
   bool act(TeleopAction action) {
+    if (action == TeleopAction::kQuit) return false;
+    if (!watch_.attachment().may_send()) {
+      if (action != TeleopAction::kNone) screen_.notice = "nothing is sent: `input` is away, and may come back";
+      return true;
+    }
     if (screen_.drive.apply(action)) {
       const bool moves = screen_.drive.forward != 0.0 || screen_.drive.turn != 0.0;
       const DriveGait gait = drive_gait(screen_.drive.drive_m_s(), screen_.drive.turn_rad_s());
@@ -149,18 +201,16 @@ class Teleop {
       case TeleopAction::kRelease: still(); asked("release", client_.ask(msg::kRequestRelease)); break;
       case TeleopAction::kCancel: still(); asked("cancel: stand", client_.move(msg::kMotionStand)); break;
       case TeleopAction::kTask: screen_.prompt = ""; break;
-      case TeleopAction::kQuit: return false;
       default: break;
     }
     return true;
   }
 
   /// Takes keys for the task line.
-  void type(std::string_view& rest) {
-    const char key = rest.front();
-    rest.remove_prefix(1);
+  void type(const std::string& typed) {
+    if (typed.size() != 1) return;  // arrows and the like
+    const char key = typed.front();
     if (key == '\033' || key == '\003') {
-      rest = {};
       screen_.prompt.reset();
     } else if (key == '\r' || key == '\n') {
       msg::Request request{};
@@ -170,6 +220,7 @@ class Teleop {
       number_ = 0;
       screen_.notice = parse_task(*screen_.prompt, request.task, request.parameters, request.path);
       screen_.prompt.reset();
+      if (screen_.notice.empty() && !watch_.attachment().may_send()) screen_.notice = "nothing is sent: `input` is away, and may come back";
       if (!screen_.notice.empty()) return;
       screen_.drive.forward = screen_.drive.turn = 0.0;
       asked(task_word(request.task), client_.ask(request));
@@ -195,18 +246,27 @@ class Teleop {
 
   Terminal terminal_;  // first: it forks, and DDS has threads
   OperatorClient client_;
-  TeleopObserver observer_;
+  RunWatch watch_;
+  KeyReader keys_;
   TeleopScreen screen_;
   std::uint64_t number_ = 0;   ///< request whose answer is awaited
   std::string wish_;           ///< what it asks for
 };
 
 int teleop(const Options& options) {
+  if (!options.drive.empty()) return drive(options);
+  if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
   const RunNote run = find_run(options.run);
-  if (!options.drive.empty()) return drive(run, options.drive, options.duration);
-  if (!options.duration.empty()) throw ConfigurationError("--for: accepted together with --drive");
-  const int status = Teleop(run).loop();
-  if (status != exit_status::kOk) no_input(run);
+  int status = exit_status::kOk;
+  std::string over;
+  {
+    Teleop client(run);
+    status = client.loop();
+    over = client.over();
+  }
+  // The terminal is itself again: what is said now stays.
+  if (!over.empty()) std::fprintf(stderr, "teleop: %s\n", over.c_str());
+  else if (status != exit_status::kOk) no_input(run);
   return status;
 }
 

@@ -8,8 +8,9 @@ namespace {
 constexpr double kTurn_1_m = 0.8;         // path curvature of "left" and "right"
 constexpr double kRotate_rad_per_m = 2.5; // turn rate on the spot per speed
 constexpr double kLook_rad = 0.25;
+constexpr std::size_t kMaxSequence = 16;  // bytes of a key
 
-TeleopAction action_of(char key) {
+TeleopAction action_of_character(char key) {
   switch (key) {
     case 'i': return TeleopAction::kForward;
     case ',': return TeleopAction::kBack;
@@ -34,7 +35,6 @@ TeleopAction action_of(char key) {
     case 'x': return TeleopAction::kCancel;
     case 'r': return TeleopAction::kRelease;
     case 'q':
-    case '\033':
     case '\003': return TeleopAction::kQuit;
     default: return TeleopAction::kNone;
   }
@@ -47,25 +47,39 @@ const char* const kTeleopHelp[3] = {
     "s squeeze  d open  t task  x cancel task  r release authority  q quit",
     "SPACE emergency stop  c clear it"};
 
-TeleopAction next_action(std::string_view& typed) {
-  if (typed.empty()) return TeleopAction::kNone;
-  if (typed.size() >= 3 && typed[0] == '\033' && (typed[1] == '[' || typed[1] == 'O')) {
-    // Parameters, then one final letter.
-    std::size_t end = 2;
-    while (end < typed.size() && (typed[end] < '@' || typed[end] > '~')) ++end;
-    const char key = end < typed.size() ? typed[end] : '\0';
-    typed.remove_prefix(std::min(end + 1, typed.size()));
-    switch (key) {
-      case 'A': return TeleopAction::kForward;
-      case 'B': return TeleopAction::kBack;
-      case 'C': return TeleopAction::kRight;
-      case 'D': return TeleopAction::kLeft;
-      default: return TeleopAction::kNone;
+std::string KeyReader::next(bool quiet) {
+  if (typed_.empty()) return {};
+  std::size_t length = 1;
+  if (typed_[0] == '\033') {
+    const char kind = typed_.size() > 1 ? typed_[1] : '\0';
+    bool whole = kind != '\0' && kind != '[' && kind != 'O';  // something else follows an escape key
+    if (kind == '[' || kind == 'O') {
+      // Parameters, then one final character. Anything else, a space above all, breaks it off and is a key of its own.
+      std::size_t end = 2;
+      while (end < typed_.size() && end < kMaxSequence && typed_[end] >= '0' && typed_[end] <= '?') ++end;
+      whole = end < typed_.size();
+      length = whole && typed_[end] >= '@' && typed_[end] <= '~' ? end + 1 : end;
+    }
+    if (!whole) {
+      if (!quiet) return {};
+      length = typed_.size();
     }
   }
-  const char key = typed.front();
-  typed.remove_prefix(1);
-  return action_of(key);
+  std::string key = typed_.substr(0, length);
+  typed_.erase(0, length);
+  return key;
+}
+
+TeleopAction action_of(std::string_view key) {
+  if (key.size() == 1) return action_of_character(key[0]);
+  if (key.size() < 3 || key[0] != '\033') return TeleopAction::kNone;
+  switch (key.back()) {
+    case 'A': return TeleopAction::kForward;
+    case 'B': return TeleopAction::kBack;
+    case 'C': return TeleopAction::kRight;
+    case 'D': return TeleopAction::kLeft;
+    default: return TeleopAction::kNone;
+  }
 }
 
 double TeleopDrive::turn_rad_s() const {

@@ -32,8 +32,22 @@ enum class TeleopAction {
   kQuit,
 };
 
-/// Takes the next key off `typed` (an escape sequence counts as one key; a lone escape quits) and says what it means.
-TeleopAction next_action(std::string_view& typed);
+/// Cuts what is typed into keys: one byte, or an escape sequence (arrows and other special keys). What came of a sequence waits for
+/// the rest: terminals, tmux and SSH cut it anywhere, and send many at once.
+class KeyReader {
+ public:
+  void add(std::string_view bytes) { typed_ += bytes; }
+  /// The next key, empty if there is none yet. `quiet`: nothing came for a while, so that an escape which waits was the key itself.
+  [[nodiscard]] std::string next(bool quiet = false);
+  /// Forgets what was not taken.
+  void clear() { typed_.clear(); }
+
+ private:
+  std::string typed_;
+};
+
+/// What a key of KeyReader means. The escape key means nothing: it might be what is left of a sequence.
+TeleopAction action_of(std::string_view key);
 
 /// The keys for people, at most 80 columns each.
 extern const char* const kTeleopHelp[3];

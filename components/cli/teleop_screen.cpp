@@ -14,6 +14,7 @@ constexpr std::size_t kColumns = 80;
 constexpr std::size_t kRows = 24;
 constexpr int kBar = 12;
 constexpr double kFullBar_nm = 6.0;
+constexpr double kSilent_s = 2.5;  // the run speaks once a second at least
 constexpr std::size_t kJointRows = 8;  // three joints in each: 24 joints
 
 /// Cut to the screen, without anything that is not a printable character.
@@ -32,10 +33,12 @@ std::string authority_line(const TeleopScreen& s) {
 }
 
 std::string time_line(const TeleopScreen& s) {
-  std::string text = fmt::format("teleop  run {:.28}", s.run);
+  std::string text = fmt::format("teleop  run {:.22}", s.run);
+  if (s.view.run) text += fmt::format(" seed {}", s.view.run->seed);  // a reset changes it
   if (!s.view.run) return text + "  waiting for it";
   const msg::RunState& run = *s.view.run;
   text += fmt::format("  tick {}", run.tick);
+  if (s.view.silent_s > kSilent_s) return text + fmt::format("  SILENT for {:.0f} s", s.view.silent_s);
   if (run.paused) return text + "  PAUSED";
   const std::string pace = run.realtime ? "real time" : run.pace > 0.0 ? fmt::format("at most {}x", run.pace) : "lock-step";
   if (std::isfinite(run.real_time_factor)) text += fmt::format("  {:.2f}x", run.real_time_factor);

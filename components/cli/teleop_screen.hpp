@@ -11,7 +11,7 @@
 namespace constrictor::cli {
 
 struct TeleopScreen {
-  std::string run;                          ///< "3 case_study seed 1"
+  std::string run;                          ///< "3 case_study"
   std::string source;                       ///< our own name
   std::optional<msg::Authority> authority;
   TeleopView view;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/run_attachment.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor::cli {
@@ -19,20 +20,27 @@ struct TeleopView {
   std::optional<msg::JointState> joints;
   std::optional<msg::ContactState> contacts;
   std::deque<std::string> events;  ///< the last few, oldest first
+  double silent_s = 0.0;           ///< [s] since the newest of `run`, as RunAttachment says
 };
 
 class TeleopObserver {
  public:
-  /// `participant`: of DDS, owned by somebody who lives longer.
-  explicit TeleopObserver(std::int32_t participant);
+  /// `participant`: of DDS, owned by somebody who lives longer. `plant`: its component.
+  TeleopObserver(std::int32_t participant, std::string plant);
   ~TeleopObserver();
   void poll();
+  /// Of the run that was heard of first, and nothing of any other.
   [[nodiscard]] const TeleopView& view() const { return view_; }
+  /// What there is to be seen of the run, its launcher aside.
+  [[nodiscard]] RunSigns signs() const;
 
  private:
   struct Readers;
   std::unique_ptr<Readers> readers_;
+  std::string plant_;
   TeleopView view_;
+  RunSigns signs_;
+  std::optional<std::uint64_t> run_id_;  ///< of the first run that was heard of
 };
 
 }  // namespace constrictor::cli

@@ -108,12 +108,46 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
   launcher.wait(10s);
 }
 
+TEST_F(TerminalClient, ArrowsComeInBurstsAndPiecesAndItLeavesARunThatIsGone) {
+  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
+  enter("PS1='$ '; clear; echo was here before");
+  ASSERT_TRUE(shows("was here before"));
+  const std::string before = settings("before");
+  enter(program("constrictor") + " teleop");
+  ASSERT_TRUE(shows("authority  nobody")) << screen();
+
+  std::vector<std::string> burst = {"send-keys", "-t", "robot"};
+  burst.insert(burst.end(), 30, "Up");
+  tmux(burst);
+  EXPECT_TRUE(shows("drive      +0.3 m/s  turn +0.00")) << screen();
+  for (const char* byte : {"1b", "5b", "43"}) tmux({"send-keys", "-t", "robot", "-H", byte});  // the right arrow, as SSH may cut it
+  EXPECT_TRUE(shows("turn -0.24 rad/s")) << screen();
+  type("Escape");
+  type("k");
+  EXPECT_TRUE(shows("granted: stand")) << screen();
+
+  ASSERT_EQ(command({"status", "--json"}), exit_status::kOk) << output_;
+  const auto status = nlohmann::json::parse(output_);
+  const pid_t host = status["components"][0]["pid"];
+  ::kill(host, SIGSTOP);
+  EXPECT_TRUE(shows("SILENT for")) << screen();
+  ::kill(host, SIGCONT);
+  EXPECT_TRUE(eventually([&] { return screen().find("SILENT") == std::string::npos; })) << screen();
+
+  launcher.signal(SIGKILL);  // its children go with it, and nobody says goodbye
+  EXPECT_TRUE(shows("teleop: the run has ended")) << screen();
+  EXPECT_TRUE(shows("was here before")) << screen();
+  EXPECT_EQ(settings("after"), before);
+}
+
 TEST_F(TerminalClient, WithoutATerminalItSaysWhatElseThereIs) {
   Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
   EXPECT_EQ(command({"teleop"}), exit_status::kSoftware);
   EXPECT_NE(output_.find("--drive"), std::string::npos) << output_;
-  EXPECT_EQ(command({"teleop", "--drive", "fast"}), exit_status::kConfiguration);
+  EXPECT_EQ(command({"teleop", "--drive", "fast"}), exit_status::kUsage);
   EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
   launcher.wait(10s);
 }

@@ -174,7 +174,7 @@ int status(const Options& options) {
       if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
       else fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()), table(run, observer.view(), rates));
       std::fflush(stdout);
-      if (observer.view().ended(run.roster.front())) return exit_status::kOk;
+      if (observer.view().ended(run.plant)) return exit_status::kOk;
     }
     std::this_thread::sleep_for(kPoll);
   }

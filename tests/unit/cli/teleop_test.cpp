@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "cli/task_command.hpp"
 #include "cli/task_names.hpp"
@@ -16,21 +17,53 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(TeleopKeys, ReadsArrowsAndLettersOneByOne) {
-  std::string_view typed = "i\033[A\033[1;5Dk \033";
-  for (const auto expected : {TeleopAction::kForward, TeleopAction::kForward, TeleopAction::kLeft, TeleopAction::kStand,
-                              TeleopAction::kEmergencyStop, TeleopAction::kQuit, TeleopAction::kNone}) {
-    EXPECT_EQ(next_action(typed), expected);
+/// What comes out if `typed` arrives in pieces of so many bytes.
+std::vector<TeleopAction> actions(const std::string& typed, std::size_t piece) {
+  KeyReader keys;
+  std::vector<TeleopAction> list;
+  for (std::size_t at = 0; at < typed.size(); at += piece) {
+    keys.add(std::string_view(typed).substr(at, piece));
+    for (std::string key = keys.next(); !key.empty(); key = keys.next()) list.push_back(action_of(key));
   }
+  return list;
+}
+
+TEST(TeleopKeys, ReadsArrowsAndLettersHoweverTheyAreCut) {
+  const std::vector<TeleopAction> expected = {TeleopAction::kForward, TeleopAction::kForward, TeleopAction::kLeft, TeleopAction::kRight,
+                                              TeleopAction::kStand, TeleopAction::kEmergencyStop, TeleopAction::kQuit};
+  for (std::size_t piece = 1; piece <= 16; ++piece) EXPECT_EQ(actions("i\033[A\033[1;5D\033OCk q", piece), expected) << piece;
+}
+
+TEST(TeleopKeys, ABurstOfArrowsIsThatManyArrowsInReadsOf64Bytes) {
+  std::string burst;
+  for (int i = 0; i < 30; ++i) burst += "\033[A";
+  EXPECT_EQ(actions(burst, 64), std::vector<TeleopAction>(30, TeleopAction::kForward));
+}
+
+TEST(TeleopKeys, TheEscapeKeyDoesNotQuitAndHidesNoKeyAfterIt) {
+  KeyReader keys;
+  keys.add("\033");
+  EXPECT_EQ(keys.next(), "") << "the rest of an arrow may follow";
+  EXPECT_EQ(keys.next(/*quiet=*/true), "\033");
+  EXPECT_EQ(action_of("\033"), TeleopAction::kNone);
+  EXPECT_EQ(actions("\033 ", 2), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop}));
+  EXPECT_EQ(actions("\033[ ", 1), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop})) << "not swallowed by half a sequence";
+  EXPECT_EQ(actions("\033[1;\003", 1), (std::vector{TeleopAction::kNone, TeleopAction::kQuit}));
 }
 
 TEST(TeleopKeys, AnyBytesEndAndMostMeanNothing) {
   std::string bytes;
-  for (int i = 0; i < 256; ++i) bytes += static_cast<char>(i);
-  std::string_view typed = bytes;
+  for (int i = 1; i < 256; ++i) bytes += static_cast<char>(i);
+  bytes += std::string("\033[") + std::string(100, '1');
+  KeyReader keys;
+  keys.add(bytes);
+  std::size_t taken = 0;
   int steps = 0;
-  while (!typed.empty() && ++steps < 1000) next_action(typed);
-  EXPECT_TRUE(typed.empty());
+  for (std::string key = keys.next(true); !key.empty() && ++steps < 1000; key = keys.next(true)) {
+    taken += key.size();
+    action_of(key);
+  }
+  EXPECT_EQ(taken, bytes.size());
 }
 
 TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {
@@ -113,13 +146,14 @@ TEST(Durations, TakeUnitsAndRefuseTheRest) {
 
 TeleopScreen full_screen() {
   TeleopScreen s;
-  s.run = "7 case_study seed 123456789012345678";
+  s.run = "7 case_study_of_a_long_name";
   s.source = "teleop.host.1";
   s.authority = msg::Authority{};
   std::snprintf(s.authority->source, sizeof s.authority->source, "%s", s.source.c_str());
   s.authority->level = msg::kAuthorityOperator;
   s.view.run = msg::RunState{};
   s.view.run->tick = 1234567;
+  s.view.run->seed = 7;
   s.view.run->real_time_factor = 0.987;
   s.view.run->pace = 1.0;
   s.view.run->operator_cap = true;
@@ -154,8 +188,11 @@ TEST(TeleopScreen, ShowsWhoHasAuthorityAndThePrompt) {
   EXPECT_NE(render(s)[0].find("0.99x"), std::string::npos);
   s.prompt = "rotate direction=";
   EXPECT_EQ(render(s)[23], "task> rotate direction=_");
+  EXPECT_NE(render(s)[0].find("seed 7"), std::string::npos) << render(s)[0];
   s.view.run->paused = true;
   EXPECT_NE(render(s)[0].find("PAUSED"), std::string::npos);
+  s.view.silent_s = 12.3;
+  EXPECT_NE(render(s)[0].find("SILENT for 12 s"), std::string::npos) << render(s)[0];
 }
 
 TEST(TeleopScreen, ABarIsAsLongAsTheTorque) {
