@@ -16,6 +16,7 @@
 #include "cli/run_registry.hpp"
 #include "cli/run_report.hpp"
 #include "cli/supervisor.hpp"
+#include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
@@ -47,7 +48,7 @@ std::vector<std::string> pace_arguments(const std::string& pace) {
   char* end = nullptr;
   const double factor = std::strtod(pace.c_str(), &end);
   if (end == pace.c_str() || std::string(end) != "x" || !(factor > 0 && factor <= 1000)) {
-    throw ConfigurationError(fmt::format("--pace: found '{}', accepted lockstep, realtime, or a factor such as 2x (to 1000x)", pace));
+    throw UsageError(fmt::format("--pace: found '{}', accepted lockstep, realtime, or a factor such as 2x (to 1000x)", pace));
   }
   return {"--pace", fmt::format("{}", factor)};
 }
@@ -120,7 +121,7 @@ LaunchManifest make_manifest(const RunOptions& options) {
   if (!options.robot.empty()) manifest.robot_file = resolve(options.robot, "components/robot", "--robot");
   for (const auto& text : options.config_files) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos) throw ConfigurationError("--config: found '" + text + "', accepted NAME=FILE");
+    if (equals == std::string::npos) throw UsageError("--config: found '" + text + "', accepted NAME=FILE");
     manifest.config_files[text.substr(0, equals)] = fs::absolute(text.substr(equals + 1));
   }
   if (!fs::exists(manifest.scenario_file)) throw ConfigurationError(manifest.scenario_file.string() + ": no such scenario");
@@ -196,14 +197,14 @@ class Speedometer {
 }  // namespace
 
 int run_command(const RunOptions& options) {
+  pace_arguments(options.pace);  // before anything is done
   LaunchManifest manifest = make_manifest(options);
-  pace_arguments(options.pace);
   // The run's identity must not depend on how its components are spread over processes.
   const std::vector<std::string> roster = load_manifest(resolve(options.manifest, "deploy", "--manifest")).roster();
   const DomainClaim claim(options.domain);
   const fs::path report_dir = make_report_dir(options, manifest.scenario_file);
   const std::string scenario = manifest.scenario_file.stem().string();
-  const PublishedNote note({claim.domain(), ::getpid(), scenario, options.seed, roster, manifest.plant, report_dir});
+  PublishedNote note({claim.domain(), ::getpid(), scenario, options.seed, roster, manifest.plant, report_dir});
   const auto environment = run_environment();
 
   const SignalQueue signals;
@@ -228,6 +229,7 @@ int run_command(const RunOptions& options) {
     }
     state = supervisor.poll();
     for (const auto& line : observer.poll()) display.say(line);
+    note.set_seed(observer.view().seed(options.seed));
     if (observer.view().ended(manifest.plant)) supervisor.expect_end();
     if (Clock::now() - sampled > kMemoryEvery) {
       sampled = Clock::now();
@@ -243,6 +245,7 @@ int run_command(const RunOptions& options) {
     outcome.error = supervisor.failure();
     status = supervisor.failure_status();
   }
+  outcome.seed = observer.view().seed(options.seed);
   const bool success = write_report(report_dir, outcome, observer.view(), supervisor.records());
   if (status == exit_status::kOk && !success) status = exit_status::kMissionFailed;
   display.say(fmt::format("{}{}: {:.1f} s simulated in {:.1f} s; {}", success ? "mission succeeded" : "mission did not succeed",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
@@ -13,6 +14,8 @@ namespace constrictor::cli {
 namespace {
 
 namespace wire = dds::barrier_topics;
+constexpr auto kSettle = std::chrono::milliseconds(500);
+constexpr std::int64_t kMostAhead = 50;  // ticks that a component may be done with while another still waits for one, in any configuration
 
 template <std::size_t N>
 const char* name_in(const std::array<const char*, N>& names, std::uint8_t index) {
@@ -47,53 +50,102 @@ bool RunView::ended(const std::string& component) const {
   return found != components.end() && found->second.state == msg::kComponentEnded;
 }
 
+bool RunView::over(const msg::Waiting& waiting) const {
+  if (waiting.run_id == 0 || run_id_ == 0) return false;  // before a run begins there is no tick to be done
+  const auto waiter = components.find(waiting.component);
+  const bool done = waiter != components.end() && waiter->second.epoch == epoch_ && waiter->second.tick >= waiting.tick;
+  const bool of_earlier_epoch = tick >= 0 && waiting.tick > tick + kMostAhead;
+  return waiting.run_id != run_id_ || done || of_earlier_epoch || tick > waiting.tick + kMostAhead;
+}
+
+bool RunView::present(std::uint64_t message_run_id, std::uint32_t message_epoch) {
+  if (message_run_id == 0) return false;  // of a member that waits for the run to begin
+  if (run_id_ == 0) run_id_ = message_run_id;
+  if (message_run_id != run_id_ || message_epoch < epoch_) return false;
+  if (message_epoch > epoch_) {
+    epoch_ = message_epoch;
+    tick = -1;
+    mission.reset();
+    task.reset();
+    authority.reset();
+  }
+  return true;
+}
+
+void RunView::take(const msg::Tick& message) {
+  if (!present(message.run_id, message.epoch)) return;
+  period_s = static_cast<double>(message.period_ns) * 1e-9;
+  tick = std::max(tick, message.index);
+}
+
+void RunView::take(const msg::ComponentStatus& message) {
+  const std::string name = message.component;
+  const auto before = components.find(name);
+  if (before != components.end()) {
+    if (message.incarnation < before->second.incarnation || message.epoch < before->second.epoch) return;
+    if (message.incarnation > before->second.incarnation) {
+      earlier_overruns_[name] += before->second.overruns;
+      earlier_refused_[name] += before->second.refused;
+    }
+  }
+  components[name] = message;
+  overruns[name] = earlier_overruns_[name] + message.overruns;
+  refused[name] = earlier_refused_[name] + message.refused;
+  if (present(message.run_id, message.epoch)) tick = std::max(tick, message.tick);
+}
+
+void RunView::take(const msg::MissionStatus& message) {
+  if (!present(message.header.run_id, message.header.epoch)) return;
+  mission = message;
+  tick = std::max(tick, message.header.tick);
+}
+
+void RunView::take(const msg::TaskStatus& message) {
+  if (present(message.header.run_id, message.header.epoch)) task = message;
+}
+
+void RunView::take(const msg::Authority& message) {
+  if (present(message.header.run_id, message.header.epoch)) authority = message;
+}
+
+void RunView::take(const msg::RunState& message) {
+  if (!present(message.run_id, message.epoch)) return;
+  run_state = message;
+  tick = std::max(tick, message.tick - 1);  // it tells the next one
+}
+
 RunObserver::RunObserver(std::uint32_t domain) : readers_(std::make_unique<Readers>(domain)) {}
 RunObserver::~RunObserver() = default;
 
 std::vector<std::string> RunObserver::poll() {
+  const auto into_view = [this](const auto& message) { view_.take(message); };
   if (readers_->tick.get() > 0) {
     bool known = false;
     readers_->tick.take([&](const msg::Tick& tick) {
-      view_.period_s = static_cast<double>(tick.period_ns) * 1e-9;
-      view_.tick = std::max(view_.tick, tick.index);
+      view_.take(tick);
       known = true;
     });
     if (known) readers_->tick = {};
   }
-  readers_->status.take([&](const msg::ComponentStatus& status) {
-    const std::string name = status.component;
-    const auto before = view_.components.find(name);
-    if (before != view_.components.end()) {
-      if (status.incarnation < before->second.incarnation) return;
-      if (status.incarnation > before->second.incarnation) {
-        earlier_overruns_[name] += before->second.overruns;
-        earlier_refused_[name] += before->second.refused;
-      }
-      // A reset begins again at tick 0.
-      if (status.epoch > before->second.epoch) view_.tick = -1;
-    }
-    view_.components[name] = status;
-    view_.overruns[name] = earlier_overruns_[name] + status.overruns;
-    view_.refused[name] = earlier_refused_[name] + status.refused;
-    view_.tick = std::max(view_.tick, status.tick);
-  });
-  readers_->mission.take([&](const msg::MissionStatus& mission) {
-    view_.mission = mission;
-    view_.tick = std::max(view_.tick, mission.header.tick);
-  });
-  readers_->task.take([&](const msg::TaskStatus& task) { view_.task = task; });
-  readers_->authority.take([&](const msg::Authority& authority) { view_.authority = authority; });
-  readers_->run_state.take([&](const msg::RunState& state) { view_.run_state = state; });
+  readers_->run_state.take(into_view);
+  readers_->status.take(into_view);
+  readers_->mission.take(into_view);
+  readers_->task.take(into_view);
+  readers_->authority.take(into_view);
   std::vector<std::string> waiting;
   std::vector<std::string> waiting_for_tick;
-  readers_->waiting.take([&](const msg::Waiting& message) {
+  readers_->waiting.take([&](const msg::Waiting& message) { heard_waiting_.push_back(message); });
+  // What is kept for late observers may be long over: that shows once the run's state is known, too.
+  if (std::chrono::steady_clock::now() - begun_ < kSettle) return {};
+  for (const auto& message : std::exchange(heard_waiting_, {})) {
+    if (view_.over(message)) continue;
     const auto told = told_waiting_.emplace(std::string(message.component) + message.topic + message.writer, -1).first;
-    if (told->second == message.tick + 1) return;
+    if (told->second == message.tick + 1) continue;
     told->second = message.tick + 1;
     auto& list = std::string_view(message.topic) == "Tick" ? waiting_for_tick : waiting;
     list.push_back(fmt::format("{} waits for {} of {} at tick {}, for {:.0f} s so far", message.component, message.topic,
                                   message.writer, message.tick, message.waited_s));
-  });
+  }
   if (!waiting.empty()) told_cause_ = std::chrono::steady_clock::now();
   // Everybody waits for the tick that the plant holds back for somebody: only the cause is worth telling, if there is one.
   const bool cause_known = std::chrono::steady_clock::now() - told_cause_ < std::chrono::seconds(5);

@@ -34,9 +34,17 @@ std::optional<RunNote> read_note(std::uint32_t domain) {
 
 }  // namespace
 
-PublishedNote::PublishedNote(const RunNote& note) : file_(note_file(note.domain)) {
-  const nlohmann::json json = {{"pid", note.pid},   {"domain", note.domain}, {"scenario", note.scenario},
-                               {"seed", note.seed}, {"roster", note.roster}, {"plant", note.plant}, {"report_dir", note.report_dir.string()}};
+PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file(note.domain)) { write(); }
+
+void PublishedNote::set_seed(std::uint64_t seed) {
+  if (seed == note_.seed) return;
+  note_.seed = seed;
+  write();
+}
+
+void PublishedNote::write() const {
+  const nlohmann::json json = {{"pid", note_.pid},   {"domain", note_.domain}, {"scenario", note_.scenario}, {"seed", note_.seed},
+                               {"roster", note_.roster}, {"plant", note_.plant}, {"report_dir", note_.report_dir.string()}};
   const fs::path unfinished = file_.string() + ".new";
   std::ofstream(unfinished) << json_text(json, 1) << "\n";
   fs::rename(unfinished, file_);

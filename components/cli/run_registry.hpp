@@ -23,7 +23,7 @@ struct RunNote {
   std::uint32_t domain = 0;
   pid_t pid = 0;                     ///< of the launcher
   std::string scenario;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;            ///< in force
   std::vector<std::string> roster;
   std::string plant;                 ///< which of them is the plant
   std::filesystem::path report_dir;
@@ -36,8 +36,12 @@ class PublishedNote {
   ~PublishedNote();
   PublishedNote(const PublishedNote&) = delete;
   PublishedNote& operator=(const PublishedNote&) = delete;
+  /// Tells the seed in force, which a reset changes.
+  void set_seed(std::uint64_t seed);
 
  private:
+  void write() const;
+  RunNote note_;
   std::filesystem::path file_;
 };
 

@@ -249,7 +249,7 @@ TEST_F(RunCommand, BadFilesAndArgumentsEndItBeforeAnythingStarts) {
   EXPECT_EQ(typo.wait(10s), exit_status::kConfiguration);
   EXPECT_NE(typo.errors().find("typo.yaml:1"), std::string::npos) << typo.errors();
   Process pace = run(300, "r", {"--pace", "fast"});
-  EXPECT_EQ(pace.wait(10s), exit_status::kConfiguration);
+  EXPECT_EQ(pace.wait(10s), exit_status::kUsage);
   Process scenario = command({"run", "nowhere"});
   EXPECT_EQ(scenario.wait(10s), exit_status::kConfiguration);
   Process option = command({"run", "--sead", "3"});

@@ -1,0 +1,123 @@
+// What is known of a run from its messages, also while a reset leaves some of the epoch before.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "cli/run_observer.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+constexpr std::uint64_t kRun = 5;
+
+msg::RunState state(std::uint32_t epoch, std::int64_t next_tick, std::uint64_t seed, std::uint64_t run_id = kRun) {
+  msg::RunState s{};
+  s.run_id = run_id;
+  s.epoch = epoch;
+  s.tick = next_tick;
+  s.seed = seed;
+  return s;
+}
+
+msg::ComponentStatus status(const char* component, std::uint32_t epoch, std::int64_t tick, std::uint32_t incarnation = 1, std::uint64_t overruns = 0) {
+  msg::ComponentStatus s{};
+  std::snprintf(s.component, sizeof s.component, "%s", component);
+  s.run_id = kRun;
+  s.epoch = epoch;
+  s.tick = tick;
+  s.incarnation = incarnation;
+  s.overruns = overruns;
+  return s;
+}
+
+msg::MissionStatus mission(std::uint32_t epoch, std::int64_t tick) {
+  msg::MissionStatus m{};
+  m.header.run_id = kRun;
+  m.header.epoch = epoch;
+  m.header.tick = tick;
+  return m;
+}
+
+TEST(RunView, TheTickIsTheNewestOfAnybody) {
+  RunView view;
+  EXPECT_EQ(view.tick, -1);
+  EXPECT_EQ(view.seed(3), 3u) << "before its first word the seed that it was begun with";
+  view.take(status("control", 1, 50));
+  view.take(mission(1, 60));
+  view.take(state(1, 58, 1));
+  EXPECT_EQ(view.tick, 60);
+  view.take(state(1, 71, 1));
+  EXPECT_EQ(view.tick, 70) << "a RunState tells the next one";
+}
+
+TEST(RunView, AfterAResetTickAndSeedAreTheNewOnes) {
+  RunView view;
+  view.take(state(1, 500, 1));
+  view.take(status("control", 1, 490));
+  view.take(mission(1, 499));
+  view.take(state(2, 0, 7));
+  EXPECT_EQ(view.seed(1), 7u);
+  EXPECT_EQ(view.tick, -1);
+  EXPECT_FALSE(view.mission) << "the mission of the epoch before is over";
+  view.take(mission(1, 501));            // still on its way
+  view.take(status("control", 1, 500));
+  view.take(state(1, 501, 1));
+  EXPECT_EQ(view.tick, -1);
+  EXPECT_EQ(view.seed(1), 7u);
+  EXPECT_FALSE(view.mission);
+  view.take(status("control", 2, 10));
+  EXPECT_EQ(view.tick, 10);
+}
+
+// As a late observer gets them: what writers kept, in any order of topics.
+TEST(RunView, KeptMessagesOfTheEpochBeforeDoNotCountInAnyOrder) {
+  for (const bool state_first : {true, false}) {
+    RunView view;
+    if (state_first) view.take(state(2, 21, 7));
+    view.take(mission(1, 499));
+    view.take(status("planner", 1, 480));
+    view.take(status("control", 2, 15));
+    if (!state_first) view.take(state(2, 21, 7));
+    EXPECT_EQ(view.tick, 20);
+    EXPECT_FALSE(view.mission);
+    EXPECT_EQ(view.components.size(), 2u) << "health is health";
+  }
+}
+
+TEST(RunView, AnotherRunInTheDomainDoesNotCount) {
+  RunView view;
+  view.take(state(1, 100, 1));
+  view.take(state(3, 900, 9, kRun + 1));
+  EXPECT_EQ(view.tick, 99);
+  EXPECT_EQ(view.seed(0), 1u);
+}
+
+TEST(RunView, AWaitIsOverOnceItsTickIsDone) {
+  msg::Waiting waiting{};
+  std::snprintf(waiting.component, sizeof waiting.component, "control");
+  waiting.run_id = kRun;
+  waiting.tick = 100;
+  RunView view;
+  EXPECT_FALSE(view.over(waiting)) << "nothing else is known";
+  view.take(status("control", 1, 50));
+  view.take(state(1, 101, 1));
+  EXPECT_FALSE(view.over(waiting)) << "others may be done with it";
+  view.take(status("control", 1, 100));
+  EXPECT_TRUE(view.over(waiting));
+  RunView later;
+  later.take(state(1, 5000, 1));
+  EXPECT_TRUE(later.over(waiting)) << "its status is not known, yet nobody is so far ahead";
+  waiting.run_id = kRun + 1;
+  EXPECT_TRUE(view.over(waiting));
+}
+
+TEST(RunView, CountsOverrunsOfAllIncarnations) {
+  RunView view;
+  view.take(status("control", 1, 10, 1, 4));
+  view.take(status("control", 1, 20, 2, 3));
+  view.take(status("control", 1, 15, 1, 5));  // of the dead one, late
+  EXPECT_EQ(view.overruns["control"], 7u);
+}
+
+}  // namespace
+}  // namespace constrictor::cli
