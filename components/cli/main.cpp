@@ -1,5 +1,6 @@
 // The command `constrictor`.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -33,7 +34,8 @@ int dispatch(int argc, char** argv) {
   std::vector<std::string> groups;
   auto* run_app = app.add_subcommand("run", "run a scenario with every component a process of its own, and write a report");
   run_app->add_option("SCENARIO", run.scenario, "a name in sim/scenarios, or a file (default: the manifest's)");
-  run_app->add_option("--seed", run.seed, "varies the scene, masses, friction, light, noise and start pose")->capture_default_str();
+  run_app->add_option("--seed", run.seed, "varies the scene, masses, friction, light, noise and start pose")
+      ->capture_default_str()->check(cli::whole_number());
   run_app->add_option("--pace", run.pace, "lockstep, realtime, or at most N times real time (2x)")->capture_default_str();
   run_app->add_flag("--in-process", run.in_process, "all components in one process");
   run_app->add_option("--group", groups, "components, comma separated, that share a process; may be repeated")
@@ -109,6 +111,13 @@ int dispatch(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // A word that is no subcommand, rather than none.
+    const auto rest = app.remaining(true);
+    const auto word = std::find_if(rest.begin(), rest.end(), [](const std::string& text) { return !text.starts_with("-"); });
+    if (word == rest.end()) return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
+    std::fprintf(stderr, "constrictor: no subcommand '%s' (constrictor --help)\n", word->c_str());
+    return exit_status::kUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
   }

@@ -12,7 +12,7 @@
 
 #include "cli/operator_client.hpp"
 #include "cli/run_registry.hpp"
-#include "configuration/configuration.hpp"
+#include "cli/usage.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
 #include "runtime/dds/wire.hpp"
@@ -40,7 +40,7 @@ double parse_pace(const std::string& text) {
   const double pace = std::strtod(text.c_str(), &end);
   const bool number = end != text.c_str() && (*end == '\0' || std::string(end) == "x");
   if (!number || !(pace > 0.0 && pace <= 1000.0)) {
-    throw ConfigurationError(fmt::format("pace: found '{}', accepted lockstep or a factor such as 2x (to 1000x)", text));
+    throw UsageError(fmt::format("PACE: found '{}', accepted lockstep or a factor such as 2x (to 1000x)", text));
   }
   return pace;
 }
@@ -64,16 +64,25 @@ class RunControlClient {
     if (*state.refusal) throw RegistryError(state.refusal);
     return state;
   }
+  /// The first state for which `condition` holds. However long that takes, as long as the run makes ticks; throws RegistryError if it
+  /// does not for `kBound`.
   template <class Condition>
   msg::RunState wait(Condition&& condition) {
-    const auto end = Clock::now() + kBound;
+    auto end = Clock::now() + kBound;
+    std::int64_t newest = -1;
     for (;;) {
       std::optional<msg::RunState> found;
       state_.take([&](const msg::RunState& s) {
-        if (condition(s)) found = s;
+        if (!found && condition(s)) found = s;
+        if (s.tick == newest) return;
+        newest = s.tick;
+        end = Clock::now() + kBound;
       });
       if (found) return *found;
-      if (Clock::now() > end) throw RegistryError(fmt::format("no answer from the run within {} s", kBound.count()));
+      if (Clock::now() > end) {
+        throw RegistryError(newest < 0 ? fmt::format("no answer from the run within {} s", kBound.count())
+                                       : fmt::format("no answer from the run within {} s, and no tick after {}", kBound.count(), newest - 1));
+      }
       std::this_thread::sleep_for(kPoll);
     }
   }
@@ -92,13 +101,13 @@ std::string pace_text(const msg::RunState& state) {
 }
 
 int control(const Options& options, std::uint8_t command) {
-  const RunNote run = find_run(options.run);
-  RunControlClient client(run.domain);
   msg::RunControl message{};
   message.command = command;
   if (command == msg::kRunStep) message.seed = options.steps;
   if (command == msg::kRunReset) message.seed = options.seed;
   if (command == msg::kRunPace) message.pace = parse_pace(options.pace);
+  const RunNote run = find_run(options.run);
+  RunControlClient client(run.domain);
   std::int64_t from = 0;
   if (command == msg::kRunStep) {
     msg::RunControl pause{};
@@ -163,23 +172,39 @@ int release(OperatorClient& client) {
 
 void add_run_control(CLI::App& app, std::function<int()>& action) {
   const auto options = std::make_shared<Options>();
-  const auto add = [&](const char* name, const char* text, std::function<int()> what) {
+  const std::string time_status = fmt::format("0 done; {}, or no answer", kRunStatuses);
+  const std::string safety_status = fmt::format("0 done; 1 refused, with the reason; {};\n  75 no answer within 5 s", kRunStatuses);
+  const auto add = [&](const char* name, const char* text, std::function<int()> what, const std::string& footer) {
     auto* sub = app.add_subcommand(name, text);
     sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
     sub->callback([&action, what = std::move(what)] { action = what; });
+    sub->footer(footer);
     return sub;
   };
   const auto controls = [options](std::uint8_t command) { return [options, command] { return control(*options, command); }; };
-  add("pause", "halt a run's time", controls(msg::kRunPause));
-  add("resume", "let a paused run go on", controls(msg::kRunResume));
-  add("step", "let a run do one tick, or so many, and pause it", controls(msg::kRunStep))
-      ->add_option("TICKS", options->steps, "how many")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))->capture_default_str();
-  add("pace", "set how fast a run may go", controls(msg::kRunPace))
-      ->add_option("PACE", options->pace, "lockstep (as fast as it goes), or at most N times real time: 2x")->required();
-  add("reset", "begin a run anew, with another seed", controls(msg::kRunReset))->add_option("SEED", options->seed, "the seed")->required();
-  add("stop", "latched emergency stop: the robot holds its posture", [options] { return operate(*options, stop); });
-  add("clear-stop", "clear an emergency stop; starts no motion", [options] { return operate(*options, clear_stop); });
-  add("release", "give authority back to the planner, also after an emergency stop", [options] { return operate(*options, release); });
+  add("pause", "halt a run's time", controls(msg::kRunPause),
+      help_footer("Nobody loses patience with anybody meanwhile, and the result stays the same.", {"constrictor pause", "constrictor pause --run 3"}, time_status));
+  add("resume", "let a paused run go on", controls(msg::kRunResume),
+      help_footer("At the pace that was in force.", {"constrictor resume"}, time_status));
+  add("step", "let a run do one tick, or so many, and pause it", controls(msg::kRunStep),
+      help_footer("Waits until they are done, as long as the run makes ticks.", {"constrictor step", "constrictor step 50       # one second"},
+                  fmt::format("0 done; {},\n  or no tick for 10 s", kRunStatuses)))
+      ->add_option("TICKS", options->steps, "how many, 1 to 1000000")->check(whole_number())->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))->capture_default_str();
+  add("pace", "set how fast a run may go", controls(msg::kRunPace),
+      help_footer("While an operator has authority lock-step is capped at real time; a pace set meanwhile overrules that.",
+                  {"constrictor pace lockstep", "constrictor pace 2x"}, time_status))
+      ->add_option("PACE", options->pace, "lockstep (as fast as it goes), or at most N times real time: 2x (to 1000x)")->required();
+  add("reset", "begin a run anew, with another seed", controls(msg::kRunReset),
+      help_footer("In the same processes and report directory. The run is then the one that `constrictor run --seed SEED` makes.", {"constrictor reset 7"}, time_status))
+      ->add_option("SEED", options->seed, "the seed")->required()->check(whole_number());
+  add("stop", "latched emergency stop: the robot holds its posture", [options] { return operate(*options, stop); },
+      help_footer("From anybody, at any time. It lasts until `constrictor clear-stop`.", {"constrictor stop"},
+                  fmt::format("0 `input` has it; {}; 75 no answer within 5 s", kRunStatuses)));
+  add("clear-stop", "clear an emergency stop; starts no motion", [options] { return operate(*options, clear_stop); },
+      help_footer("Authority is with nobody then: `constrictor release` lets the planner take up.", {"constrictor clear-stop && constrictor release"}, safety_status));
+  add("release", "give authority back to the planner, also after an emergency stop", [options] { return operate(*options, release); },
+      help_footer("Authority of nobody, or of a script (`constrictor task`). Whoever sits at a `constrictor teleop` keeps it.",
+                  {"constrictor task wait --end && constrictor release"}, safety_status));
 }
 
 }  // namespace constrictor::cli

@@ -278,6 +278,11 @@ void add_teleop(CLI::App& app, std::function<int()>& action) {
   sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
   sub->add_option("--drive", options->drive, "SPEED,TURN in m/s and rad/s (0.3,0.5): drive without a screen, then stand and release");
   sub->add_option("--for", options->duration, "how long to drive, wall time: 5s, 500ms, 2m (default: until Ctrl-C)");
+  sub->footer(help_footer("Takes authority with the first key that moves something; gives it back at the end (q). The keys stand on its screen, an emergency\n"
+                          "stop is the space bar. If this program or its terminal dies, the robot holds within half a second.",
+                          {"constrictor teleop", "constrictor teleop --run 3", "constrictor teleop --drive 0.3,0.2 --for 5s"},
+                          fmt::format("0 done; 1 refused, authority lost, or the run is gone; {}, or no terminal;\n"
+                                      "  75 no `input` that listens; 130 --drive ended by Ctrl-C", kRunStatuses)));
   sub->callback([&action, options] { action = [options] { return teleop(*options); }; });
 }
 
