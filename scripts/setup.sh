@@ -14,7 +14,7 @@ packages=(
   # configuration, command line, text, logs
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
   # tests and benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev tmux
+  libgtest-dev libgmock-dev libbenchmark-dev tmux zsh fish
 )
 
 if [ "${1:-}" = --fast-dds ]; then

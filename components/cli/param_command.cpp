@@ -51,10 +51,15 @@ int list(const Options& options) {
   const dds::Domain domain(domain_of(options));
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
+  bool begins = false;  // any of them with the prefix
+  std::size_t shown = 0;
   if (!options.view.json && !options.names) fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "what");
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
-    if (name.rfind(options.name, 0) != 0 || (options.changed && p.changed_tick < 0 && p.pending_tick < 0)) continue;
+    if (name.rfind(options.name, 0) != 0) continue;
+    begins = true;
+    if (options.changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
+    ++shown;
     if (options.view.json) json.push_back(to_json(owned));
     else if (options.names) fmt::print("{}\n", name);
     else
@@ -63,7 +68,9 @@ int list(const Options& options) {
   }
   if (options.view.json) fmt::print("{}\n", json_text(json, 2));
   tell_silent(view);
-  return view.parameters.empty() ? exit_status::kMissionFailed : exit_status::kOk;
+  if (!begins && !view.parameters.empty()) std::fprintf(stderr, "param: no parameter begins with '%s' (constrictor param list)\n", options.name.c_str());
+  else if (begins && shown == 0 && !options.view.json) std::fprintf(stderr, "param: none of them was changed\n");
+  return begins ? exit_status::kOk : exit_status::kMissionFailed;
 }
 
 int get(const Options& options) {

@@ -1,4 +1,6 @@
 // topic, node, status, doctor and completion on real processes: a run of toys, and programs that are no part of the project.
+#include <sstream>
+
 #include "cli_fixture.hpp"
 #include "runtime/domain_claim.hpp"
 
@@ -144,8 +146,28 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
     if (!component["rate_hz"].is_null()) { EXPECT_LT(component["rate_hz"], 60.0); }
     EXPECT_GE(component["step_time_p99_us"], component["step_time_p50_us"]);
   }
+  EXPECT_EQ(command({"status"}), 0) << output_;
+  std::istringstream lines(output_);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("report in") == std::string::npos) { EXPECT_LE(line.size(), 80u) << line; }
+  }
+  EXPECT_EQ(command({"topic", "echo", "joint_state", "--count", "1", "--field", "header.tock"}), 64) << output_;
+  EXPECT_NE(output_.find("found 'tock'"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("tick"), std::string::npos) << "the fields that there are: " << output_;
+  EXPECT_EQ(command({"topic", "hz", "request", "--for", "0.5", "--timeout", "1"}), 1);
+  EXPECT_NE(output_.find("request"), std::string::npos) << "the reason: " << output_;
   EXPECT_EQ(command({"doctor"}), 0) << output_;
   EXPECT_NE(output_.find("nothing is wrong"), std::string::npos);
+
+  Process other = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--pace", "1x",
+                         "--report", (dir_ / "other").string()});
+  ASSERT_TRUE(other.wait_for("simulated", 20s)) << other.errors();
+  command({"doctor"});
+  std::size_t domains = 0;
+  for (auto at = output_.find("domain "); at != std::string::npos; at = output_.find("\ndomain ", at + 1)) ++domains;
+  EXPECT_EQ(domains, 2u) << "each run is examined: " << output_;
+  other.signal(SIGTERM);
+  EXPECT_TRUE(other.wait(20s));
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
 }
@@ -215,16 +237,75 @@ TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
   EXPECT_EQ(std::count(found.begin(), found.end(), "differing IDL hash"), 1) << output_;
 }
 
-TEST_F(Introspection, BashCompletesByTheTreeOfOptions) {
-  ASSERT_EQ(command({"completion", "bash"}), 0);
-  write("completion.sh", output_ + "\ncomplete_words() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _constrictor; echo \"${COMPREPLY[@]}\"; }\n"
-                                   "complete_words constrictor topic ''\ncomplete_words constrictor topic echo --ti\ncomplete_words constrictor sta\n");
-  Process bash({"/bin/bash", (dir_ / "completion.sh").string()});
-  ASSERT_EQ(bash.wait(20s), 0) << bash.errors();
-  const std::string out = bash.output();
-  EXPECT_EQ(out.substr(0, out.find('\n')).find("list info echo hz delay"), 0u) << out;
-  EXPECT_NE(out.find("\n--timeout\n"), std::string::npos) << out;
-  EXPECT_NE(out.find("\nstatus"), std::string::npos) << out;
+/// What each shell offers for command lines; the last word of each is what is being typed.
+class Completion : public Introspection {
+ protected:
+  using Words = std::vector<std::string>;
+
+  /// What a shell offers for each of the lines, blanks around each word.
+  [[nodiscard]] Words offers(const std::string& shell, const std::vector<Words>& lines) const {
+    Process script({program("constrictor"), "completion", shell});
+    EXPECT_EQ(script.wait(20s), 0) << script.errors();
+    write("constrictor." + shell, script.output());
+    std::string text = shell == "zsh" ? "autoload -Uz compinit && compinit -u -D\n" : "";
+    text += "source " + (dir_ / ("constrictor." + shell)).string() + "\n";
+    if (shell != "fish") {
+      // As the shell calls it; zsh by its bash-compatible completion, which picks those that begin as typed later.
+      text += "offer() {\n" + std::string(shell == "zsh" ? "emulate -L sh\n" : "") +
+              "COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _constrictor; echo \"\" ${COMPREPLY[@]} \"\"\n}\n";
+    }
+    for (const auto& words : lines) {
+      if (shell == "fish") {
+        std::string line = "constrictor";
+        for (const auto& word : words) line += " " + word;
+        text += "echo '' (complete -C '" + line + "' | string replace -r '\\t.*' '') ''\n";
+      } else {
+        text += "offer constrictor";
+        for (const auto& word : words) text += " '" + word + "'";
+        text += "\n";
+      }
+    }
+    write("offer." + shell, text);
+    Process process({"/usr/bin/" + shell, (dir_ / ("offer." + shell)).string()}, environment_);
+    EXPECT_EQ(process.wait(30s), 0) << process.errors();
+    Words offered;
+    std::istringstream output(process.output());
+    for (std::string line; std::getline(output, line);) offered.push_back(line);
+    return offered;
+  }
+};
+
+TEST_F(Completion, EveryShellOffersTheWordsOfTheSubcommandAndNoOthers) {
+  struct Case {
+    Words typed;
+    std::string offered;
+    std::string not_offered;
+  };
+  const std::vector<Case> cases = {
+      {{""}, "teleop", "echo"},
+      {{"te"}, "teleop", "topic"},
+      {{"topic", ""}, "echo", "teleop"},
+      {{"topic", "echo", ""}, "joint_state", "hz"},
+      {{"topic", "echo", "--ti"}, "--timeout", "--count"},
+      {{"task", "wait", "--"}, "--event", "--line-colour"},
+      {{"task", "wait", "--"}, "--end", "--path"},
+      {{"task", "wait", "--event", ""}, "line_lost", "--timeout"},
+      {{"task", "start", ""}, "follow_line", "wait"},
+      {{"task", "start", "rotate", "--"}, "--direction", "--event"},
+      {{"task", "start", "follow_line", "--line-colour", "b"}, "blue", "backwards"},
+      {{"completion", ""}, "fish", "list"},
+      {{"node", "info", "n"}, "navigation", "list"}};
+  std::vector<Words> lines;
+  for (const auto& c : cases) lines.push_back(c.typed);
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
+    const Words offered = offers(shell, lines);
+    ASSERT_EQ(offered.size(), cases.size()) << shell;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      EXPECT_NE(offered[i].find(" " + cases[i].offered + " "), std::string::npos) << shell << " " << cases[i].offered << ": " << offered[i];
+      if (shell == "zsh" && !cases[i].not_offered.starts_with(cases[i].typed.back())) continue;
+      EXPECT_EQ(offered[i].find(" " + cases[i].not_offered + " "), std::string::npos) << shell << " " << cases[i].not_offered << ": " << offered[i];
+    }
+  }
 }
 
 }  // namespace

@@ -5,91 +5,195 @@
 #include <algorithm>
 #include <vector>
 
+#include "cli/task_names.hpp"
 #include "runtime/host.hpp"
+#include "runtime/topics.hpp"
 
 namespace constrictor::cli {
 namespace {
 
+struct Word {
+  std::string text;
+  std::string what;
+};
+
+/// What may be offered for a value: words, or the output of a command; neither: the shell's own, files.
+struct Values {
+  std::string words;
+  std::string command;
+  [[nodiscard]] bool any() const { return !words.empty() || !command.empty(); }
+};
+
+struct OptionWord : Word {
+  bool takes_value = false;
+  Values values;
+};
+
 /// One subcommand, by its path: "topic echo".
 struct Node {
   std::string path;
-  std::vector<std::pair<std::string, std::string>> words;  ///< what may follow, and what it is for
-  std::vector<std::string> with_value;                     ///< options that a file or value follows
+  std::vector<Word> subcommands;
+  std::vector<OptionWord> options;
+  Values values;  ///< what follows that is no option
 };
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-void collect(const CLI::App& app, const std::string& path, std::vector<Node>& nodes) {
-  Node node{path, {}, {}};
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!sub->get_name().empty()) node.words.emplace_back(sub->get_name(), first_line(sub->get_description()));
-  }
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) {
-      node.words.emplace_back("--" + name, first_line(option->get_description()));
-      if (option->get_items_expected_max() > 0) node.with_value.push_back("--" + name);
-    }
-  }
-  nodes.push_back(node);
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!sub->get_name().empty()) collect(*sub, path.empty() ? sub->get_name() : path + " " + sub->get_name(), nodes);
-  }
-}
-
-std::string words_of(const Node& node) {
+/// Words that people list with commas, each as one: "line lost" is typed line_lost.
+std::string typed(std::string list) {
   std::string words;
-  for (const auto& word : node.words) words += (words.empty() ? "" : " ") + word.first;
+  for (std::size_t at = 0; at < list.size(); ++at) {
+    if (list.compare(at, 2, ", ") == 0) ++at, words += ' ';
+    else words += list[at] == ' ' ? '_' : list[at];
+  }
   return words;
 }
 
-/// Subcommands after which the names of the run's own parameters may follow.
-const std::vector<std::string> kAfterThemParameters{"param get", "param set", "param list"};
+std::string topic_words() {
+  std::string words;
+  for (const auto& info : topics::kInfos) words += (words.empty() ? "" : " ") + std::string(info.name);
+  return words;
+}
+
+std::string component_words() {
+  std::string words;
+  std::vector<std::string_view> known;
+  for (const auto& info : topics::kInfos) {
+    if (std::count(known.begin(), known.end(), info.writer) > 0) continue;
+    known.push_back(info.writer);
+    words += (words.empty() ? "" : " ") + std::string(info.writer);
+  }
+  return words;
+}
+
+/// What may follow a subcommand beside its options.
+Values values_of_path(const std::string& path) {
+  if (path == "param get" || path == "param set" || path == "param list") return {"", "constrictor param list --names 2>/dev/null"};
+  if (path == "task start") return {typed(task_words()), ""};
+  if (path == "completion") return {"bash zsh fish", ""};
+  if (path == "pace") return {"lockstep 1x 2x", ""};
+  if (path == "node info" || path == "host") return {component_words(), ""};
+  if (path.rfind("topic ", 0) == 0 && path != "topic list") return {topic_words(), ""};
+  return {};
+}
+
+/// What may follow an option, by its name alone: names mean the same everywhere.
+Values values_of_option(const std::string& name) {
+  if (name == "event") return {typed(event_words()), ""};
+  if (name == "direction") return {typed(direction_words()), ""};
+  if (name.size() > 7 && name.compare(name.size() - 7, 7, "-colour") == 0) return {typed(colour_words()), ""};
+  if (name == "pace") return {"lockstep realtime 2x", ""};
+  if (name == "goal") return {"any", ""};
+  return {};
+}
+
+/// Options of an app and of the groups in it, which have no name.
+void collect_options(const CLI::App& app, Node& node) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) {
+      OptionWord word;
+      word.text = "--" + name;
+      word.what = first_line(option->get_description());
+      word.takes_value = option->get_items_expected_max() > 0;
+      word.values = values_of_option(name);
+      node.options.push_back(word);
+    }
+  }
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
+    if (group != &app) collect_options(*group, node);
+  }
+}
+
+void collect(const CLI::App& app, const std::string& path, std::vector<Node>& nodes) {
+  Node node{path, {}, {}, values_of_path(path)};
+  const auto subs = app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
+  for (const CLI::App* sub : subs) node.subcommands.push_back({sub->get_name(), first_line(sub->get_description())});
+  collect_options(app, node);
+  nodes.push_back(node);
+  for (const CLI::App* sub : subs) collect(*sub, path.empty() ? sub->get_name() : path + " " + sub->get_name(), nodes);
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between) { return fmt::format("{}", fmt::join(words, between)); }
+
+/// As a word list of bash in double quotes: nothing in it needs escaping but the command.
+std::string bash_words(const std::vector<std::string>& words, const Values& values) {
+  std::string text = joined(words, " ");
+  if (!values.words.empty()) text += " " + values.words;
+  if (!values.command.empty()) text += " $(" + values.command + ")";
+  return text;
+}
 
 /// Bash, and zsh by its bash-compatible completion.
 std::string bash_script(const std::string& name, const std::vector<Node>& nodes) {
   std::string cases;
-  std::string known;
   std::string valued;
+  std::vector<std::string> known;
   for (const auto& node : nodes) {
-    const bool parameters = std::count(kAfterThemParameters.begin(), kAfterThemParameters.end(), node.path) > 0;
-    cases += parameters ? fmt::format("    '{}') words=\"{} $({} param list --names 2>/dev/null)\" ;;\n", node.path, words_of(node), name)
-                        : fmt::format("    '{}') words='{}' ;;\n", node.path, words_of(node));
-    for (const auto& option : node.with_value) valued += fmt::format("    '{} {}') COMPREPLY=(); return ;;\n", node.path, option);
-    if (!node.path.empty()) known += fmt::format("{}'{}'", known.empty() ? "" : "|", node.path);
+    std::vector<std::string> words;
+    for (const auto& sub : node.subcommands) words.push_back(sub.text);
+    for (const auto& option : node.options) {
+      words.push_back(option.text);
+      if (option.takes_value) valued += fmt::format("    '{} {}') words=\"{}\"; value=1 ;;\n", node.path, option.text, bash_words({}, option.values));
+    }
+    cases += fmt::format("    '{}') words=\"{}\" ;;\n", node.path, bash_words(words, node.values));
+    if (!node.path.empty()) known.push_back("'" + node.path + "'");
   }
   return fmt::format(R"(# Completion of {0} for bash:  source <({0} completion bash)
 _{0}() {{
-  local path='' next i words current="${{COMP_WORDS[COMP_CWORD]}}"
+  local path='' next i words='' value='' current="${{COMP_WORDS[COMP_CWORD]}}"
   for ((i = 1; i < COMP_CWORD; i++)); do
     next="${{path:+$path }}${{COMP_WORDS[i]}}"
     case "$next" in {1}) path="$next" ;; esac
   done
-  # A value follows, usually a file: leave that to the shell.
+  # An option's value follows: its words, or a file, which is left to the shell.
   case "$path ${{COMP_WORDS[COMP_CWORD-1]}}" in
 {3}  esac
-  case "$path" in
-{2}  esac
+  if [ -z "$value" ]; then
+    case "$path" in
+{2}    esac
+  fi
   COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
 complete -o default -F _{0} {0}
-)", name, known, cases, valued);
+)", name, joined(known, "|"), cases, valued);
+}
+
+std::string fish_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string fish_values(const Values& values) {
+  return fish_quoted(values.command.empty() ? values.words : values.words + (values.words.empty() ? "" : " ") + "(" + values.command + ")");
 }
 
 std::string fish_script(const std::string& name, const std::vector<Node>& nodes) {
-  std::string script = fmt::format("# Completion of {0} for fish:  {0} completion fish | source\n", name);
-  script += fmt::format("function __{0}_at\n  set -l path\n  for word in (commandline -opc)[2..]\n    string match -q -- '-*' $word; or set -a path $word\n  end\n"
-                        "  test \"$path\" = \"$argv\"; or string match -q -- \"$argv *\" \"$path\"; and test -n \"$argv\"\nend\n", name);
+  std::vector<std::string> known;
   for (const auto& node : nodes) {
-    for (const auto& [word, what] : node.words) {
-      std::string text;
-      for (const char c : what) text += c == '\'' ? std::string("\\'") : std::string(1, c);
-      const bool option = word.rfind("--", 0) == 0;
-      script += fmt::format("complete -c {0} -n '__{0}_at {1}' {2} {3} -d '{4}'\n", name, node.path, option ? "-l" : "-f -a",
-                            option ? word.substr(2) : word, text);
+    if (!node.path.empty()) known.push_back("'" + node.path + "'");
+  }
+  // The path is the longest subcommand that the words before the cursor make; what is no part of one is a value.
+  std::string script = fmt::format(R"(# Completion of {0} for fish:  {0} completion fish | source
+function __{0}_at
+  set -l path ''
+  for word in (commandline -opc)[2..]
+    set -l next (string trim -- "$path $word")
+    if contains -- "$next" {1}
+      set path "$next"
+    end
+  end
+  test "$path" = "$argv"
+end
+)", name, joined(known, " "));
+  for (const auto& node : nodes) {
+    const std::string at = fmt::format("complete -c {0} -n '__{0}_at {1}'", name, node.path);
+    for (const auto& sub : node.subcommands) script += fmt::format("{} -f -a {} -d {}\n", at, sub.text, fish_quoted(sub.what));
+    for (const auto& option : node.options) {
+      const std::string value = !option.takes_value ? "" : option.values.any() ? " -x -a " + fish_values(option.values) : " -r";
+      script += fmt::format("{} -l {}{} -d {}\n", at, option.text.substr(2), value, fish_quoted(option.what));
     }
-    if (std::count(kAfterThemParameters.begin(), kAfterThemParameters.end(), node.path) > 0) {
-      script += fmt::format("complete -c {0} -n '__{0}_at {1}' -f -a '({0} param list --names 2>/dev/null)'\n", name, node.path);
-    }
+    if (node.values.any()) script += fmt::format("{} -f -a {}\n", at, fish_values(node.values));
   }
   return script;
 }
@@ -102,7 +206,7 @@ std::string completion_script(const CLI::App& app, const std::string& shell) {
   const std::string name = "constrictor";
   if (shell == "fish") return fish_script(name, nodes);
   const std::string script = bash_script(name, nodes);
-  return shell == "zsh" ? "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n" + script : script;
+  return shell == "zsh" ? "(( $+functions[compdef] )) || { autoload -Uz compinit && compinit }\nautoload -Uz +X bashcompinit && bashcompinit\n" + script : script;
 }
 
 void add_completion(CLI::App& app, std::function<int()>& action) {

@@ -73,39 +73,67 @@ void look(const DomainView& view, Facts& facts) {
   }
 }
 
-int doctor(const ViewOptions& options) {
+struct Diagnosis {
   Facts facts;
-  for (const auto& run : live_runs()) facts.runs.push_back(run.domain);
-  facts.domain = options.domain.value_or(facts.runs.empty() ? 0 : facts.runs.front());
+  std::vector<Finding> findings;
+};
+
+Diagnosis examine(std::uint32_t domain, const std::vector<std::uint32_t>& runs) {
+  Diagnosis result;
+  Facts& facts = result.facts;
+  facts.runs = runs;
+  facts.domain = domain;
   facts.interfaces = interfaces();
   facts.receive_buffer_max_bytes = receive_buffer_max();
   facts.idl_hash = msg::kIdlHash;
   read_configuration(facts);
   std::string error;
   try {
-    ViewOptions chosen = options;
-    chosen.domain = facts.domain;
+    ViewOptions chosen;
+    chosen.domain = domain;
     look(DomainView(chosen), facts);
   } catch (const dds::Error& failed) {
     error = failed.what();  // with a wrong configuration Cyclone does not even start: the findings say why
   }
-  auto findings = diagnose(facts);
+  auto& findings = result.findings = diagnose(facts);
   if (!error.empty()) {
     // Nobody was asked who is there, so nothing is known of that.
     std::erase_if(findings, [](const Finding& finding) { return finding.fault == "nobody there" || finding.fault == "wrong domain"; });
     findings.push_back({"no DDS", error, findings.empty() ? "unset CYCLONEDDS_URI, or correct it (deploy/README.md)" : "cure what stands above first"});
   }
-  if (options.json) {
-    nlohmann::ordered_json json = {{"domain", facts.domain}, {"participants", facts.participants.size()}};
-    auto& list = json["findings"] = nlohmann::ordered_json::array();
-    for (const auto& finding : findings) list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
-    fmt::print("{}\n", json_text(json, 2));
-  } else {
-    fmt::print("domain {}: {} processes, {} readers and writers\n", facts.domain, facts.participants.size(), facts.endpoints.size());
-    for (const auto& finding : findings) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
-    if (findings.empty()) fmt::print("nothing is wrong that can be seen from here\n");
+  return result;
+}
+
+nlohmann::ordered_json json_of(const Diagnosis& diagnosis) {
+  nlohmann::ordered_json json = {{"domain", diagnosis.facts.domain}, {"participants", diagnosis.facts.participants.size()}};
+  auto& list = json["findings"] = nlohmann::ordered_json::array();
+  for (const auto& finding : diagnosis.findings) list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
+  return json;
+}
+
+void tell(const Diagnosis& diagnosis) {
+  fmt::print("domain {}: {} processes, {} readers and writers\n", diagnosis.facts.domain, diagnosis.facts.participants.size(), diagnosis.facts.endpoints.size());
+  for (const auto& finding : diagnosis.findings) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+  if (diagnosis.findings.empty()) fmt::print("nothing is wrong that can be seen from here\n");
+}
+
+/// The domain that was chosen; otherwise those of all runs on this host; otherwise the default one.
+int doctor(const ViewOptions& options) {
+  std::vector<std::uint32_t> runs;
+  for (const auto& run : live_runs()) runs.push_back(run.domain);
+  std::vector<std::uint32_t> domains = runs;
+  if (options.domain) domains = {*options.domain};
+  if (domains.empty()) domains = {0};
+  bool well = true;
+  auto all = nlohmann::ordered_json::array();
+  for (const std::uint32_t domain : domains) {
+    const Diagnosis diagnosis = examine(domain, runs);
+    well = well && diagnosis.findings.empty();
+    if (options.json) all.push_back(json_of(diagnosis));
+    else fmt::print("{}", domain == domains.front() ? "" : "\n"), tell(diagnosis);
   }
-  return findings.empty() ? exit_status::kOk : kFaults;
+  if (options.json) fmt::print("{}\n", json_text(all.size() == 1 ? all.front() : all, 2));
+  return well ? exit_status::kOk : kFaults;
 }
 
 }  // namespace
@@ -115,7 +143,7 @@ void add_doctor(CLI::App& app, std::function<int()>& action) {
   auto* sub = app.add_subcommand("doctor", "find what keeps processes from working together, and name the cure");
   add_view_options(*sub, *options);
   sub->footer("Looks for: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two members of one\n"
-              "name, small socket buffers.\n\nEXAMPLES\n  constrictor doctor\n  constrictor doctor --run 7 --json\n\n"
+              "name, small socket buffers. Without --run in the domains of all runs on this host; --json is a list then, if there are several.\n\nEXAMPLES\n  constrictor doctor\n  constrictor doctor --run 7 --json\n\n"
               "EXIT STATUS\n  0 nothing found; 1 something is wrong; 64 wrong usage\n\nENVIRONMENT\n"
               "  CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      is examined, too");
   sub->callback([&action, options] { action = [options] { return doctor(*options); }; });

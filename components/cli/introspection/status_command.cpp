@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "cli/introspection/domain_view.hpp"
@@ -23,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kPoll = 20ms;
 constexpr auto kRateWindow = 3500ms;
+constexpr std::size_t kColumns = 80;
 
 struct Options {
   ViewOptions view;
@@ -70,6 +74,26 @@ const char* level_name(std::uint8_t level) {
   return level < kNames.size() ? kNames[level] : "?";
 }
 
+/// Lines of at most 80 columns, broken at blanks; all are indented, the first only if it is asked for.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string lines(indent, ' ');
+  std::size_t column = indent;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool first = column == indent;
+    if (!first && column + 1 + word.size() > kColumns) {
+      lines += "\n" + std::string(std::max<std::size_t>(indent, 2), ' ');
+      column = std::max<std::size_t>(indent, 2);
+    } else if (!first) {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
 std::string run_line(const RunView& view) {
   std::string line = progress_line(view, 0);
   line = line.substr(0, line.rfind(','));
@@ -80,31 +104,36 @@ std::string run_line(const RunView& view) {
     if (state.realtime) line += ", on the wall clock";
     else if (state.pace > 0) line += fmt::format(", at most {:g}x{}", state.pace, state.operator_cap ? " while an operator has authority" : "");
   }
+  line = wrapped(line, 0);
   if (view.authority) {
     const auto& authority = *view.authority;
-    line += fmt::format("\nauthority: {}{}{}", level_name(authority.level), *authority.source ? " " : "", authority.source);
-    if (authority.refused_count > 0) line += fmt::format("; {} requests refused, the last: {}", authority.refused_count, authority.refusal);
+    std::string who = fmt::format("authority: {}{}{}", level_name(authority.level), *authority.source ? " " : "", authority.source);
+    if (authority.refused_count > 0) who += fmt::format("; {} requests refused, the last that of {}: {}", authority.refused_count, authority.refused_source, authority.refusal);
+    line += "\n" + wrapped(who, 0);
   }
   return line;
 }
 
 std::string number(double value, const char* format) { return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-"; }
 
+/// In 80 columns, so that nothing wraps on a plain terminal; hosts only if there are several.
 std::string table(const RunNote& run, const RunView& view, const RateMeter& rates) {
-  std::string text = fmt::format("{:<12} {:<8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>7} {:>4} {:>7}  {}\n", "component", "state", "tick", "[Hz]",
-                                 "p50[us]", "p99[us]", "overruns", "refused", "inc.", "pid", "host");
+  constexpr const char* kRow = "{:<12}{:<8}{:>8}{:>7}{:>8}{:>8}{:>9}{:>8}{:>4}{:>8}\n";
+  std::string text = fmt::format(kRow, "component", "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns", "refused", "inc.", "pid");
+  std::set<std::string> hosts;
+  for (const auto& [name, status] : view.components) hosts.insert(status.host);
   for (const auto& name : run.roster) {
     const auto found = view.components.find(name);
     if (found == view.components.end()) {
-      text += fmt::format("{:<12} not heard of\n", name);
+      text += fmt::format("{:<12}not heard of\n", name);
       continue;
     }
     const auto& status = found->second;
-    text += fmt::format("{:<12} {:<8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>7} {:>4} {:>7}  {}\n", name, component_state_name(status.state),
-                        status.tick, number(rates.rate_hz(name), "{:.1f}"), number(status.step_time_p50_us, "{:.0f}"),
-                        number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name), status.incarnation,
-                        status.pid, status.host);
-    if (*status.last_refusal) text += fmt::format("{:<12} last refusal: {}\n", "", status.last_refusal);
+    text += fmt::format(kRow, name, component_state_name(status.state), status.tick, number(rates.rate_hz(name), "{:.1f}"),
+                        number(status.step_time_p50_us, "{:.0f}"), number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name),
+                        view.refused.at(name), status.incarnation, status.pid);
+    if (hosts.size() > 1) text += fmt::format("{:<12}on {}\n", "", status.host);
+    if (*status.last_refusal) text += wrapped(fmt::format("last refusal: {}", status.last_refusal), 12) + "\n";
   }
   return text;
 }
@@ -112,7 +141,7 @@ std::string table(const RunNote& run, const RunView& view, const RateMeter& rate
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
-  Json json = {{"run", run.domain}, {"pid", run.pid}, {"scenario", run.scenario}, {"seed", run.seed},
+  Json json = {{"run", run.domain}, {"pid", run.pid}, {"scenario", run.scenario}, {"seed", view.seed(run.seed)},
                {"report", run.report_dir.string()}, {"tick", view.tick}, {"sim_time_s", view.sim_time_s()}};
   json["real_time_factor"] = view.run_state ? finite(view.run_state->real_time_factor) : Json(nullptr);
   json["paused"] = view.run_state ? Json(view.run_state->paused) : Json(nullptr);
@@ -145,7 +174,7 @@ int status(const Options& options) {
   const auto runs = live_runs();
   if (!options.view.json) {
     for (const auto& run : runs) {
-      fmt::print("run {}: {} seed {}, pid {}, report in {}\n", run.domain, run.scenario, run.seed, run.pid, run.report_dir.string());
+      fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid, run.report_dir.string());
     }
     if (runs.size() > 1 && !options.view.domain) {
       fmt::print("choose one with --run for its components\n");
@@ -191,7 +220,8 @@ void add_status(CLI::App& app, std::function<int()>& action) {
   auto* sub = app.add_subcommand("status", "the runs on this host, and the health of one's components");
   add_view_options(*sub, options->view);
   sub->add_flag("--watch,-w", options->watch, "a live table, once a second, until Ctrl-C or the run's end");
-  sub->footer("Step times are those since a component's previous status (every 50 ticks); a rate is in ticks per second of wall time.\n\n"
+  sub->footer("Step times are those since a component's previous status (every 50 ticks); a rate is in ticks per second of wall time; inc. is the\n"
+              "incarnation, one more with each restart.\n\n"
               "EXAMPLES\n  constrictor status\n  constrictor status --watch\n  constrictor status --json | jq '.components[].rate_hz'\n\n"
               "EXIT STATUS\n  0 done; 64 wrong usage; 70 no run, or several and none chosen with --json\n\nENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
   sub->callback([&action, options] { action = [options] { return status(*options); }; });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "constrictor/json.hpp"
 #include "constrictor/reflect.hpp"
@@ -51,18 +52,24 @@ void print_raw(const dds::RawSample& sample, const char* why) {
   if (sample.bytes.size() > kMostShown * 4) fmt::print("  ... and {} more\n", sample.bytes.size() - kMostShown * 4);
 }
 
-/// The part of a sample that --field names; null if there is none.
-Json part(const Json& sample, const std::string& field) {
-  Json at = sample;
+/// The part of a sample that --field names. If there is none, `accepted` says what there is instead.
+std::optional<Json> part(const Json& sample, const std::string& field, std::string& accepted) {
+  const Json* at = &sample;
   for (const auto& name : CLI::detail::split(field, '.')) {
-    if (at.is_array() && !name.empty() && name.find_first_not_of("0123456789") == std::string::npos) {
-      const auto index = std::stoul(name);
-      at = index < at.size() ? Json(at[index]) : Json(nullptr);
+    const bool index = !name.empty() && name.size() < 10 && name.find_first_not_of("0123456789") == std::string::npos;
+    if (at->is_array() && index && std::stoul(name) < at->size()) {
+      at = &(*at)[std::stoul(name)];
+    } else if (at->is_object() && at->contains(name)) {
+      at = &(*at)[name];
     } else {
-      at = at.is_object() && at.contains(name) ? Json(at[name]) : Json(nullptr);
+      if (at->is_array()) accepted = at->empty() ? "nothing: it is empty" : fmt::format("0 to {}", at->size() - 1);
+      else if (!at->is_object()) accepted = "nothing: it has no parts";
+      else for (const auto& [key, value] : at->items()) accepted += (accepted.empty() ? "" : ", ") + key;
+      accepted = fmt::format("found '{}', accepted {}", name, accepted);
+      return std::nullopt;
     }
   }
-  return at;
+  return *at;
 }
 
 /// Calls `use` for each sample until it returns false, an interruption, `for_s`, or nothing came for the timeout.
@@ -90,7 +97,10 @@ int watch(const ViewOptions& options, const WatchOptions& watched, bool history,
       last = now;
       if (more) more = use(sample, std::chrono::duration<double>(now - start).count());
     });
-    if (watched.for_s > 0 && now - start > std::chrono::duration<double>(watched.for_s)) break;
+    if (watched.for_s > 0 && now - start > std::chrono::duration<double>(watched.for_s)) {
+      if (last == start) std::fprintf(stderr, "topic: no sample of '%s' within %g s\n", watched.topic.c_str(), watched.for_s);
+      break;
+    }
     if (now - last > bound) {
       std::fprintf(stderr, "topic: no sample of '%s' for %g s\n", watched.topic.c_str(), watched.timeout_s);
       return kNothingCame;
@@ -121,16 +131,21 @@ struct Statistics {
 int echo_command(const ViewOptions& view, const WatchOptions& options) {
   std::unique_ptr<dds::TypeTree> tree;
   std::uint64_t seen = 0;
+  std::string wrong;
   const auto begin = [&](const DomainView& domain, const dds::Endpoint& writer) {
     if (!options.raw) tree = dds::TypeTree::find(domain.participant(), writer, 2s);
   };
-  return watch(view, options, true, begin, [&](const dds::RawSample& sample, double) {
+  const int status = watch(view, options, true, begin, [&](const dds::RawSample& sample, double) {
     const char* why = options.raw ? "as asked" : "its writer does not describe the type";
     Json json;
     if (tree) {
       try {
         json = tree->decode(sample.bytes);
-        if (!options.field.empty()) json = part(json, options.field);
+        if (!options.field.empty()) {
+          const auto found = part(json, options.field, wrong);
+          if (!found) return false;
+          json = *found;
+        }
       } catch (const std::exception& error) {
         why = "not as its type says";
       }
@@ -148,6 +163,9 @@ int echo_command(const ViewOptions& view, const WatchOptions& options) {
     std::fflush(stdout);
     return options.count == 0 || ++seen < options.count;
   });
+  if (wrong.empty()) return status;
+  std::fprintf(stderr, "topic: --field of '%s': %s\n", options.topic.c_str(), wrong.c_str());
+  return exit_status::kUsage;
 }
 
 int hz_command(const ViewOptions& view, const WatchOptions& options) {
