@@ -1,5 +1,8 @@
 #include "ros_bridge/bridge.hpp"
 
+#include <unistd.h>
+
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -7,8 +10,13 @@ namespace constrictor::ros {
 
 using namespace std::chrono_literals;
 
+namespace {
+constexpr std::int64_t kLease_ns = 500'000'000;  // of a bridge that died: then the robot holds
+}
+
 Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
-    : options_(options), translator_(std::move(robot)), robot_side_(options.domain) {
+    : options_(options), translator_(std::move(robot)), source_("ros_bridge." + std::to_string(::getpid())), robot_side_(options.domain),
+      request_(robot_side_.participant(), kLease_ns, /*by_hand=*/false), pilot_(options.hold_after_s) {
   const dds_entity_t robot_side = robot_side_.participant();
   if (options.ros_domain != options.domain) {
     other_domain_.emplace(options.ros_domain, options.ros_localhost_only ? dds::Reach::kLoopback : dds::Reach::kNetwork);
@@ -32,7 +40,8 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   pose_ = dds::Reader<msg::RobotPose>::observer(robot_side, "guidance/pose", 8);
   camera_image_ = dds::Reader<msg::CameraImage>::observer(robot_side, "camera/image", 2);
   camera_info_ = dds::Reader<msg::CameraInfo>::member(robot_side, "camera/info");  // written once an epoch: also if that was before us
-  request_ = {robot_side, "request", 64};
+  authority_ = dds::Reader<msg::Authority>::member(robot_side, "authority");
+  answers_ = dds::Reader<msg::RequestAnswer>::member(robot_side, "request/answer");
   wait_set_ = dds::WaitSet(robot_side);
   for (const auto reader : {tick_.get(), joints_.get(), imu_.get(), pose_.get(), camera_info_.get(), camera_image_.get()}) {
     wait_set_.attach(reader);
@@ -82,32 +91,28 @@ void Bridge::pass_out() {
 }
 
 void Bridge::pass_velocity(SteadyClock::time_point now) {
-  std::optional<Drive> wish;
-  velocity_.take([&](const Twist& twist) { wish = drive_of(twist, options_.drive); });
-  if (wish) {
-    commanded_ = now;
-  } else if (holds_ && velocity_.writers() == 0) {
-    ask(msg::kRequestRelease, {});  // whoever steered has gone: the planner may go on
-    holds_ = false;
-    return;
-  } else if (holds_ && drive_ != Drive{} && std::chrono::duration<double>(now - commanded_).count() > options_.hold_after_s) {
-    wish = Drive{};
-  }
-  if (!wish || (holds_ && *wish == drive_)) return;
-  ask(msg::kRequestMotion, *wish);
-  holds_ = true;
-  drive_ = *wish;
+  const double now_s = std::chrono::duration<double>(now.time_since_epoch()).count();
+  velocity_.take([&](const Twist& twist) { pilot_.command(drive_of(twist, options_.drive), now_s); });
+  answers_.take([&](const msg::RequestAnswer& answer) {
+    if (source_ != answer.source || answer.request_sequence != sequence_) return;
+    pilot_.answered(answer.granted);
+    if (answer.granted) refusal_.clear();
+    else if (refusal_ != answer.reason) std::fprintf(stderr, "ros_bridge: cmd_vel is refused: %s\n", (refusal_ = answer.reason).c_str());
+  });
+  authority_.take([&](const msg::Authority& authority) {
+    pilot_.authority(authority.level == options_.level && source_ == authority.source, authority.emergency_stop, now_s);
+  });
+  if (const auto wish = pilot_.next(request_.heard(), velocity_.writers() > 0, now_s)) ask(wish->kind, wish->drive);
 }
 
 void Bridge::ask(std::uint8_t kind, const Drive& drive) {
   msg::Request request{};
   request.robot_id = options_.robot_id;
-  dds::set_text(request.source, "ros_bridge");
+  dds::set_text(request.source, source_);
   request.header.sequence_number = ++sequence_;
   request.level = options_.level;
   request.kind = kind;
   request.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
-  request.motion = drive == Drive{} ? msg::kMotionStand : msg::kMotionDrive;
   request.motion = drive == Drive{} ? msg::kMotionStand : msg::kMotionDrive;
   request.frequency_hz = drive.frequency_hz;
   request.curvature_1_m = drive.curvature_1_m;

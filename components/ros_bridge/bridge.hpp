@@ -8,8 +8,10 @@
 
 #include "ros_bridge/ros_descriptors.hpp"
 #include "ros_bridge/ros_translator.hpp"
+#include "ros_bridge/velocity_pilot.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/outside_link.hpp"
 #include "runtime/dds/wait_set.hpp"
 
 namespace constrictor::ros {
@@ -42,6 +44,7 @@ class Bridge {
 
   BridgeOptions options_;
   Translator translator_;
+  std::string source_;               ///< a name of this process's own
   dds::Domain robot_side_;
   std::optional<dds::Domain> other_domain_;  ///< empty: ROS 2 is on the run's own domain
   dds::Reader<msg::Tick> tick_;
@@ -50,7 +53,9 @@ class Bridge {
   dds::Reader<msg::RobotPose> pose_;
   dds::Reader<msg::CameraInfo> camera_info_;
   dds::Reader<msg::CameraImage> camera_image_;
-  dds::Writer<msg::Request> request_;
+  dds::RequestWriter request_;
+  dds::Reader<msg::Authority> authority_;
+  dds::Reader<msg::RequestAnswer> answers_;
   dds::Writer<Clock> clock_out_;
   dds::Writer<JointState> joints_out_;
   dds::Writer<Imu> imu_out_;
@@ -64,9 +69,8 @@ class Bridge {
   msg::ImuState last_imu_{};
   std::optional<msg::CameraInfo> last_info_;
   std::uint64_t sequence_ = 0;
-  bool holds_ = false;               ///< asked for a motion and has not released
-  Drive drive_;
-  SteadyClock::time_point commanded_{};
+  VelocityPilot pilot_;
+  std::string refusal_;              ///< the last that was printed
   bool met_ = false, over_ = false;
 };
 

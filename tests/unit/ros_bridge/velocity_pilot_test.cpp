@@ -1,0 +1,94 @@
+// When the bridge asks for a motion, for how long it insists, and when it lets go.
+#include <gtest/gtest.h>
+
+#include "ros_bridge/velocity_pilot.hpp"
+
+namespace constrictor::ros {
+namespace {
+
+constexpr Drive kAhead{0.5, 0.0};
+constexpr double kTurn_s = 0.02;
+
+class VelocityPilotTest : public ::testing::Test {
+ protected:
+  /// Lets time pass with a constant velocity from ROS (none: nobody says anything); how many requests were made.
+  int asks(double duration_s, std::optional<Drive> stream, bool heard = true, bool steered = true) {
+    int count = 0;
+    for (const double end_s = now_s_ + duration_s; now_s_ < end_s; now_s_ += kTurn_s) {
+      if (stream) pilot_.command(*stream, now_s_);
+      const auto ask = pilot_.next(heard, steered, now_s_);
+      if (!ask) continue;
+      ++count;
+      last_ = *ask;
+      if (answer_) pilot_.answered(*answer_);
+      if (answer_ == true) pilot_.authority(ask->kind == msg::kRequestMotion, false, now_s_);
+    }
+    return count;
+  }
+  VelocityPilot pilot_{0.5};
+  std::optional<bool> answer_ = true;  ///< what `input` says; none: it is not there
+  VelocityPilot::Ask last_;
+  double now_s_ = 1000.0;
+};
+
+TEST_F(VelocityPilotTest, AConstantVelocityIsAskedForOnce) {
+  EXPECT_EQ(asks(5.0, kAhead), 1);
+  EXPECT_EQ(last_.drive, kAhead);
+}
+
+TEST_F(VelocityPilotTest, AConstantVelocityThatWasRefusedIsAskedForUntilItIsObeyed) {
+  answer_ = false;
+  const int refused = asks(5.0, kAhead);
+  EXPECT_GE(refused, 4);
+  EXPECT_LE(refused, 6) << "at a modest rate";
+  answer_ = true;
+  EXPECT_EQ(asks(5.0, kAhead), 1);
+}
+
+TEST_F(VelocityPilotTest, WhatIsNotAnsweredIsAskedAgain) {
+  answer_.reset();
+  const int unheard = asks(2.0, kAhead);
+  EXPECT_GE(unheard, 4);
+  EXPECT_LE(unheard, 5);
+}
+
+TEST_F(VelocityPilotTest, NothingIsAskedBeforeInputIsMet) {
+  EXPECT_EQ(asks(2.0, kAhead, /*heard=*/false), 0);
+  EXPECT_EQ(asks(0.1, kAhead), 1);
+}
+
+TEST_F(VelocityPilotTest, TakenAwayItIsAskedForAgainAfterAWhile) {
+  asks(1.0, kAhead);
+  pilot_.authority(false, false, now_s_);
+  EXPECT_EQ(asks(0.9, kAhead), 0);
+  EXPECT_EQ(asks(0.3, kAhead), 1);
+}
+
+TEST_F(VelocityPilotTest, ClearingAnEmergencyStopStartsNothingBeforeTheStreamHasPaused) {
+  asks(1.0, kAhead);
+  pilot_.authority(false, true, now_s_);
+  EXPECT_EQ(asks(2.0, kAhead), 0);
+  pilot_.authority(false, false, now_s_);
+  EXPECT_EQ(asks(3.0, kAhead), 0);
+  asks(1.0, std::nullopt);
+  EXPECT_EQ(asks(0.2, kAhead), 1);
+}
+
+TEST_F(VelocityPilotTest, SilenceStandsAndTheEndOfItsWriterReleases) {
+  asks(1.0, kAhead);
+  EXPECT_EQ(asks(2.0, std::nullopt), 1);
+  EXPECT_EQ(last_.kind, msg::kRequestMotion);
+  EXPECT_EQ(last_.drive, Drive{});
+  EXPECT_EQ(asks(2.0, std::nullopt, true, /*steered=*/false), 1);
+  EXPECT_EQ(last_.kind, msg::kRequestRelease);
+  EXPECT_EQ(asks(0.1, kAhead), 1) << "whoever steers next need not wait";
+}
+
+TEST_F(VelocityPilotTest, AChangedVelocityIsAskedForAtOnce) {
+  asks(1.0, kAhead);
+  EXPECT_EQ(asks(0.1, Drive{0.5, 0.3}), 1);
+  EXPECT_EQ(asks(0.1, Drive{0.4, 0.3}), 1);
+}
+
+}  // namespace
+}  // namespace constrictor::ros
