@@ -3,10 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -22,6 +24,7 @@
 namespace {
 
 namespace msg = constrictor::msg;
+using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t g_stop = 0;
 
@@ -101,8 +104,10 @@ class Planner {
     participant_.read<msg::AuthorityPubSubType>("authority", true, 8, [this](const msg::Authority& authority) {
       mine_ = authority.level() == msg::kAuthorityExternal && std::string(authority.source()) == kName;
     });
-    participant_.read<msg::RequestAnswerPubSubType>("request/answer", true, 288, [](const msg::RequestAnswer& answer) {
-      if (answer.granted() || std::string(answer.source()) != kName) return;
+    participant_.read<msg::RequestAnswerPubSubType>("request/answer", true, 288, [this](const msg::RequestAnswer& answer) {
+      if (std::string(answer.source()) != kName) return;
+      unanswered_.erase(answer.request_sequence());
+      if (answer.granted()) return;
       std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence()), answer.reason().c_str());
     });
     participant_.read<msg::TaskStatusPubSubType>("task/status", false, 1, [this](const msg::TaskStatus& status) {
@@ -120,6 +125,7 @@ class Planner {
   int run() {
     while (!g_stop && !gone()) {
       participant_.wait(0.2);
+      repeat_unanswered();
       if (now_s_ < options_.at_s || options_.sequence.size() - logic_.remaining().size() < options_.after) continue;
       if (!asked_ && connected()) {
         std::printf("at %.1f s: asking for authority\n", now_s_);
@@ -138,7 +144,10 @@ class Planner {
         std::printf("at %.1f s: everything is delivered, %d setbacks\n", now_s_, logic_.setbacks());
         msg::Request release = request(msg::kRequestRelease);
         send(release);
-        while (mine_ && !gone() && !g_stop) participant_.wait(0.2);  // the release has arrived
+        while (mine_ && !gone() && !g_stop) {  // until the release has arrived
+          participant_.wait(0.2);
+          repeat_unanswered();
+        }
         return 0;
       }
     }
@@ -173,8 +182,17 @@ class Planner {
     return request;
   }
   void send(msg::Request& request) {
+    unanswered_[request.header().sequence_number()] = {request, Clock::now()};
     if (!requests_->write(&request)) throw std::runtime_error("cannot write a request");
     std::fflush(stdout);
+  }
+  /// What is not answered is said again, under its number: `input` hears nothing while its process is being restarted.
+  void repeat_unanswered() {
+    for (auto& [number, wish] : unanswered_) {
+      if (Clock::now() - wish.said < std::chrono::milliseconds(500)) continue;
+      requests_->write(&wish.request);
+      wish.said = Clock::now();
+    }
   }
   void send(const retrieval::Order& order) {
     std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task, static_cast<unsigned long long>(order.goal));
@@ -198,6 +216,11 @@ class Planner {
   retrieval::Retrieval logic_;
   eprosima::fastdds::dds::DataWriter* requests_ = nullptr;
   eprosima::fastdds::dds::DataReader* pose_ = nullptr;
+  struct Unanswered {
+    msg::Request request;
+    Clock::time_point said;
+  };
+  std::map<std::uint64_t, Unanswered> unanswered_;  // by number
   std::uint64_t sequence_ = 0;
   double now_s_ = -1;
   bool asked_ = false, mine_ = false, commanding_ = false, over_ = false;

@@ -17,24 +17,29 @@
 #include "retrieval.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/outside_link.hpp"
 #include "runtime/dds/wait_set.hpp"
+#include "runtime/unanswered_requests.hpp"
 
 namespace {
 
 namespace msg = constrictor::msg;
 using constrictor::dds::Reader;
+using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t g_stop = 0;
 
 /// A name of this process's own: another process under the same name would count as another source, and this one as dead.
 const std::string kName = "red_first." + std::to_string(::getpid());
 
+/// The robot is to hold within half a second if this process dies.
+constexpr std::int64_t kLease_ns = 500'000'000;
+
 class Planner {
  public:
   Planner(std::uint32_t domain, std::vector<std::uint8_t> sequence, double at_s, std::size_t after)
-      : at_s_(at_s), wait_for_(after), objects_count_(sequence.size()), domain_(domain), logic_(std::move(sequence), msg::kColourBlue) {
+      : at_s_(at_s), wait_for_(after), objects_count_(sequence.size()), domain_(domain), requests_(domain_.participant(), kLease_ns, /*by_hand=*/false), logic_(std::move(sequence), msg::kColourBlue) {
     const dds_entity_t participant = domain_.participant();
-    requests_ = {participant, "request", 32};
     pose_ = Reader<msg::RobotPose>::observer(participant, "guidance/pose");
     line_ = Reader<msg::LinePercept>::observer(participant, "perception/line", 8);
     objects_ = Reader<msg::ObjectPercepts>::observer(participant, "perception/objects", 8);
@@ -55,7 +60,7 @@ class Planner {
       if (now_s_ < at_s_ || objects_count_ - logic_.remaining().size() < wait_for_) continue;
       if (!asked_ && connected()) {
         std::printf("at %.1f s: asking for authority\n", now_s_);
-        requests_.write(request(msg::kRequestTake));
+        ask(request(msg::kRequestTake));
         asked_ = true;
       }
       if (mine_ != commanding_) {
@@ -67,7 +72,7 @@ class Planner {
       if (const auto order = logic_.decide(now_s_)) send(*order);
       if (logic_.done()) {
         std::printf("at %.1f s: everything is delivered, %d setbacks\n", now_s_, logic_.setbacks());
-        requests_.write(request(msg::kRequestRelease));
+        ask(request(msg::kRequestRelease));
         while (mine_ && !gone() && !g_stop) listen();  // until the release has arrived
         return 0;
       }
@@ -87,9 +92,12 @@ class Planner {
       mine_ = authority.level == msg::kAuthorityExternal && std::string(authority.source) == kName;
     });
     answers_.take([this](const msg::RequestAnswer& answer) {
-      if (answer.granted || std::string(answer.source) != kName) return;
+      if (std::string(answer.source) != kName) return;
+      unanswered_.answered(answer.request_sequence);
+      if (answer.granted) return;
       std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence), answer.reason);
     });
+    unanswered_.repeat(Clock::now(), std::chrono::milliseconds(500), [this](const msg::Request& wish) { requests_.write(wish); });
     status_.take([this](const msg::TaskStatus& status) {
       logic_.know({own(status.goal_id), status.task, status.state, status.carrying});
     });
@@ -116,7 +124,7 @@ class Planner {
   [[nodiscard]] bool gone() const { return over_ || (now_s_ >= 0 && pose_.writers() == 0); }
 
   /// `input` hears only what is written after it and we have found each other.
-  [[nodiscard]] bool connected() const { return requests_.readers() > 0; }
+  [[nodiscard]] bool connected() const { return requests_.heard(); }
 
   /// A goal's id on task/event and task/status is (level << 48) + (number of the source << 32) + our own.
   [[nodiscard]] std::uint64_t own(std::uint64_t goal) const {
@@ -133,6 +141,11 @@ class Planner {
     request.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
     return request;
   }
+  /// What is not answered is said again: `input` hears nothing while its process is being restarted.
+  void ask(const msg::Request& wish) {
+    unanswered_.asked(wish, Clock::now());
+    requests_.write(wish);
+  }
   void send(const retrieval::Order& order) {
     std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task,
                 static_cast<unsigned long long>(order.goal));
@@ -147,14 +160,15 @@ class Planner {
     if (order.timeout_s > 0) wish.parameters.timeout_s = order.timeout_s;
     wish.path.point_count = static_cast<std::uint16_t>(order.path.size());
     for (std::size_t i = 0; i < order.path.size(); ++i) std::tie(wish.path.x_m[i], wish.path.y_m[i]) = order.path[i];
-    requests_.write(wish);
+    ask(wish);
   }
 
   double at_s_;
   std::size_t wait_for_, objects_count_;
   constrictor::dds::Domain domain_;
+  constrictor::dds::RequestWriter requests_;
+  constrictor::UnansweredRequests unanswered_;
   retrieval::Retrieval logic_;
-  constrictor::dds::Writer<msg::Request> requests_;
   Reader<msg::RobotPose> pose_;
   Reader<msg::LinePercept> line_;
   Reader<msg::ObjectPercepts> objects_;

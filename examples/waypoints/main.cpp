@@ -16,7 +16,9 @@
 #include "constrictor/messages.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/outside_link.hpp"
 #include "runtime/dds/wait_set.hpp"
+#include "runtime/unanswered_requests.hpp"
 
 namespace msg = constrictor::msg;
 using namespace std::chrono_literals;
@@ -56,7 +58,13 @@ msg::Request along(const std::vector<std::string>& points, std::uint64_t sequenc
 /// Exit status: 0 if the path was followed to its end.
 int follow(std::uint32_t domain, const std::vector<std::string>& points) {
   const constrictor::dds::Domain here(domain);
-  const constrictor::dds::Writer<msg::Request> requests(here.participant(), "request", 8);
+  // Half a second after this process died the robot holds.
+  const constrictor::dds::RequestWriter requests(here.participant(), std::chrono::nanoseconds(500ms).count(), /*by_hand=*/false);
+  constrictor::UnansweredRequests unanswered;  // what was not answered is said again
+  const auto ask = [&](const msg::Request& wish) {
+    unanswered.asked(wish, std::chrono::steady_clock::now());
+    requests.write(wish);
+  };
   const auto status = Reader<msg::TaskStatus>::observer(here.participant(), "task/status", 8);
   const auto events = Reader<msg::TaskEvent>::member(here.participant(), "task/event");
   const auto authority = Reader<msg::Authority>::member(here.participant(), "authority");
@@ -65,12 +73,12 @@ int follow(std::uint32_t domain, const std::vector<std::string>& points) {
   for (const auto reader : {status.get(), events.get(), authority.get(), answers.get()}) wait_set.attach(reader);
 
   // Nobody hears a request before both sides have met; a task request takes authority by itself.
-  for (const auto end = std::chrono::steady_clock::now() + 10s; requests.readers() == 0 || status.writers() == 0;) {
+  for (const auto end = std::chrono::steady_clock::now() + 10s; !requests.heard() || status.writers() == 0;) {
     if (std::chrono::steady_clock::now() > end) throw std::runtime_error("nobody on domain " + std::to_string(domain) + " hears requests");
     wait_set.wait(50ms);
     status.take([](const msg::TaskStatus&) {});
   }
-  requests.write(along(points, 1));
+  ask(along(points, 1));
 
   double squares = 0;
   double largest_m = 0;
@@ -84,9 +92,11 @@ int follow(std::uint32_t domain, const std::vector<std::string>& points) {
     authority.take([&](const msg::Authority& now) { mine = std::string(now.source) == kName; });
     answers.take([&](const msg::RequestAnswer& answer) {
       if (std::string(answer.source) != kName) return;
+      unanswered.answered(answer.request_sequence);
       if (!answer.granted) throw std::runtime_error("refused: " + std::string(answer.reason));
       goal = answer.goal_id;
     });
+    unanswered.repeat(std::chrono::steady_clock::now(), 500ms, [&](const msg::Request& wish) { requests.write(wish); });
     events.take([&](const msg::TaskEvent& event) { heard.push_back(event); });
     if (goal == 0) {
       if (std::chrono::steady_clock::now() - asked > 10s) throw std::runtime_error("no answer; is the run paused?");
@@ -106,7 +116,7 @@ int follow(std::uint32_t domain, const std::vector<std::string>& points) {
     std::fflush(stdout);
   }
   std::printf("cross-track error: %.3f m rms, %.3f m at most, over %d ticks\n", count > 0 ? std::sqrt(squares / count) : 0.0, largest_m, count);
-  requests.write(request(msg::kRequestRelease, 2));
+  ask(request(msg::kRequestRelease, 2));
   for (int i = 0; i < 20 && mine; ++i) {
     wait_set.wait(200ms);
     authority.take([&](const msg::Authority& now) { mine = std::string(now.source) == kName; });
