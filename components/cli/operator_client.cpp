@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = 10ms;
+constexpr auto kRepeat = 200ms;
 constexpr std::size_t kMostAnswers = 256;  // kept for those who ask late
 
 }  // namespace
@@ -58,7 +59,7 @@ std::uint64_t OperatorClient::ask(msg::Request request) {
   request.level = msg::kAuthorityOperator;
   request.detached = detached_;
   request.header.sequence_number = ++sequence_;
-  if (request.kind == msg::kRequestEmergencyStop) stop_ = sequence_;
+  unanswered_.asked(request, Clock::now());
   endpoints_->request.write(request);
   return sequence_;
 }
@@ -99,14 +100,18 @@ void OperatorClient::poll() {
     if (source_ != answer.source) return;
     answers_.try_emplace(answer.request_sequence, answer);  // a request is answered once: what comes later under its number is a repetition
     if (answers_.size() > kMostAnswers) answers_.erase(answers_.begin());
+    unanswered_.answered(answer.request_sequence);
   });
   endpoints_->authority.take([this](const msg::Authority& authority) {
     authority_ = authority;
-    if (stop_ == 0 || !authority.emergency_stop) return;
+    const std::uint64_t stop = unanswered_.stop();
+    if (stop == 0 || !authority.emergency_stop) return;
     msg::RequestAnswer answer{};
     answer.granted = true;  // whoever's word it was
-    answers_.try_emplace(std::exchange(stop_, 0), answer);
+    answers_.try_emplace(stop, answer);
+    unanswered_.answered(stop);
   });
+  unanswered_.repeat(Clock::now(), kRepeat, [this](const msg::Request& request) { endpoints_->request.write(request); });
 }
 
 bool OperatorClient::holds_authority() const {

@@ -9,9 +9,11 @@
 #include <string>
 
 #include "constrictor/messages.hpp"
+#include "runtime/unanswered_requests.hpp"
 
 namespace constrictor::cli {
 
+/// What is asked is said again, under its number, until it is answered: `input` hears nothing while its process is being restarted.
 class OperatorClient {
  public:
   /// `source`: the name under which it asks. `lease` > 0: authority falls to nobody if assert_alive() is not called for so long;
@@ -28,7 +30,7 @@ class OperatorClient {
   std::uint64_t start(std::uint8_t task, const msg::TaskParameters& parameters);
   void assert_alive() const;
 
-  /// Takes in what arrived.
+  /// Takes in what arrived, and repeats what was not answered.
   void poll();
   /// Newest word of `input`; empty before the first.
   [[nodiscard]] const std::optional<msg::Authority>& authority() const { return authority_; }
@@ -55,7 +57,7 @@ class OperatorClient {
   std::unique_ptr<Endpoints> endpoints_;
   std::uint64_t sequence_ = 0;
   std::optional<msg::Authority> authority_;
-  std::uint64_t stop_ = 0;         ///< the last emergency stop that was asked for and not answered; 0: none
+  UnansweredRequests unanswered_;
   std::map<std::uint64_t, msg::RequestAnswer> answers_;  ///< to our requests, the newest of them, by number
   std::string refusal_;
   std::uint64_t goal_ = 0;

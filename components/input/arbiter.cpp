@@ -7,6 +7,8 @@ namespace constrictor {
 namespace {
 constexpr std::uint64_t kMaxOwnGoal = 0xffffffffu;
 constexpr std::size_t kMaxSources = 64;  // at a time; the dead are forgotten
+constexpr std::size_t kKeptForOperators = 16;  // of these
+constexpr std::uint64_t kRemembered = 64;  // numbers of a source, in bits
 
 bool is_readable(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
@@ -19,6 +21,9 @@ Ruling Arbiter::refuse(const std::string& reason) {
   state_.refusal = reason;
   state_.refused_source = state_.ruled_source;
   state_.refused_sequence = state_.ruled_sequence;
+  if (const auto known = state_.sources.find(state_.ruled_source); known != state_.sources.end()) {
+    if (known->second.sequence == state_.ruled_sequence) known->second.granted &= ~std::uint64_t{1};
+  }
   return {Ruling::kRefused};
 }
 
@@ -33,12 +38,20 @@ void Arbiter::note(const msg::Request& request) {
   state_.ruled_sequence = request.header.sequence_number;
 }
 
+/// Who loses authority and is dead is not needed any more.
+void Arbiter::forget_gone_holder() {
+  const auto holder = state_.sources.find(state_.holder);
+  if (holder != state_.sources.end() && holder->second.gone) state_.sources.erase(holder);
+}
+
 void Arbiter::leave_to_nobody() {
+  forget_gone_holder();
   state_.level = msg::kAuthorityNone;
   state_.holder.clear();
 }
 
 void Arbiter::hold(const msg::Request& request, Source& source) {
+  if (state_.holder != state_.ruled_source) forget_gone_holder();
   state_.level = request.level;
   state_.holder = state_.ruled_source;
   source.detached = request.detached;
@@ -64,17 +77,23 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
   if (known != state_.sources.end() && (known->second.index == 0) != built_in) {
     return refuse("source " + name + ": that name is the " + (built_in ? "name of somebody outside" : "built-in planner's"));
   }
-  if (known == state_.sources.end() && state_.sources.size() >= kMaxSources) {
-    return refuse("source " + name + ": there are " + std::to_string(kMaxSources) + " already");
+  const std::size_t room = kMaxSources - (request.level == msg::kAuthorityExternal ? kKeptForOperators : 0);
+  if (known == state_.sources.end() && state_.sources.size() >= room) {
+    return refuse("source " + name + ": there are " + std::to_string(room) + " already");
   }
   const auto [entry, first] = state_.sources.try_emplace(name);
   Source& source = entry->second;
   if (first && !built_in) source.index = state_.next_index++;
   const std::uint64_t number = request.header.sequence_number;
   if (number <= source.sequence) {
+    const std::uint64_t age = source.sequence - number;
+    if (age < kRemembered && (source.ruled >> age & 1) != 0) return {Ruling::kRepeated, 0, (source.granted >> age & 1) != 0};
     return refuse("sequence_number of " + name + ": found " + std::to_string(number) + ", accepted more than " +
                   std::to_string(source.sequence));
   }
+  const std::uint64_t shift = number - source.sequence;
+  source.ruled = (shift < kRemembered ? source.ruled << shift : 0) | 1;
+  source.granted = (shift < kRemembered ? source.granted << shift : 0) | 1;  // until it is refused
   source.sequence = number;
 
   switch (request.kind) {
@@ -125,7 +144,9 @@ Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
   } else if (goal == 0 || goal > source.last_goal) {
     return refuse("cancel of " + name + ": goal " + std::to_string(goal) + " was never started");
   }
+  const bool takes_over = state_.holder != name && state_.level != msg::kAuthorityNone;
   hold(request, source);
+  if (takes_over && request.command == msg::kCommandCancel) return {Ruling::kCancelAll};  // what runs is another's
   return {Ruling::kForward, mapped_goal_id(request.level, source.index, goal)};
 }
 
@@ -156,9 +177,41 @@ Ruling Arbiter::release(const msg::Request& request) {
   return {Ruling::kCancelAll};
 }
 
+Ruling Arbiter::decide_outside(const msg::Request& request, const WriterId& writer) {
+  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  const auto meet = [&] {
+    const auto known = state_.sources.find(name);
+    if (known == state_.sources.end() || known->second.index == 0) return;
+    known->second.writer = writer;
+    known->second.gone = false;
+  };
+  meet();
+  const Ruling ruling = decide(request, false);
+  meet();  // its first request
+  return ruling;
+}
+
+bool Arbiter::has_another_writer(const std::string& source, const WriterId& writer) const {
+  const auto known = state_.sources.find(source);
+  return known != state_.sources.end() && known->second.writer != WriterId{} && known->second.writer != writer;
+}
+
+std::vector<LivingSource> Arbiter::living() const {
+  std::vector<LivingSource> living;
+  for (const auto& [name, source] : state_.sources) {
+    if (source.writer != WriterId{} && !source.gone) living.push_back({name, source.writer});
+  }
+  return living;
+}
+
 Ruling Arbiter::on_death(const std::string& source) {
   const auto known = state_.sources.find(source);
-  if (known == state_.sources.end() || known->second.index == 0 || known->second.detached) return {Ruling::kNothing};
+  if (known == state_.sources.end() || known->second.index == 0) return {Ruling::kNothing};
+  if (known->second.detached && state_.holder == source) {
+    known->second.gone = true;
+    known->second.sequence = known->second.ruled = known->second.granted = 0;  // whoever takes the name counts from 1
+    return {Ruling::kNothing};
+  }
   state_.sources.erase(known);
   if (state_.holder != source) return {Ruling::kNothing};
   leave_to_nobody();

@@ -1,13 +1,16 @@
 // Command authority: who may say what the robot does, decided request by request. Pure.
 #pragma once
 
+#include <cereal/types/array.hpp>
 #include <cereal/types/map.hpp>
 #include <cereal/types/string.hpp>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "constrictor/messages.hpp"
+#include "runtime/outside_requests.hpp"
 
 namespace constrictor {
 
@@ -15,12 +18,16 @@ namespace constrictor {
 struct ArbiterState {
   struct Source {
     std::uint64_t sequence = 0;   ///< newest sequence number that was ruled on
+    std::uint64_t ruled = 0;      ///< bit i: number `sequence` - i was ruled on,
+    std::uint64_t granted = 0;    ///< and granted
+    WriterId writer{};            ///< through which it spoke last; all zeros: unknown
     std::uint32_t index = 0;      ///< order of first appearance; the built-in planner has 0
     std::uint64_t last_goal = 0;  ///< newest goal it started, by its own count
     bool detached = false;        ///< what it holds outlives its writer
+    bool gone = false;            ///< its writer is dead, but it holds authority, detached
     template <class Archive>
     void serialize(Archive& archive) {
-      archive(sequence, index, last_goal, detached);
+      archive(sequence, ruled, granted, writer, index, last_goal, detached, gone);
     }
   };
   std::uint8_t level = msg::kAuthorityNone;
@@ -52,14 +59,17 @@ struct Ruling {
     kSet,        ///< a parameter may be changed
     kCancelAll,  ///< whatever runs must end
     kNothing,
+    kRepeated,   ///< was ruled on before: nothing happens, and it is answered as it was then
   };
   Kind kind = kNothing;
   std::uint64_t goal_id = 0;  ///< of kForward: as it goes on task/command
+  bool granted = false;       ///< of kRepeated: what the answer was
 };
 
 /// Emergency stop over operator over external planner over built-in planner. A request for a task, a motion or authority itself by
 /// a source of higher level than the holder's takes authority; one of the same or a lower level is refused until the holder
 /// releases it or dies. A detached holder does not die; sources of its own level may take over from it, or release for it.
+/// A request is ruled on once, however often it is repeated under its number.
 /// Parameters may be set without authority, but by nobody of a lower level than who has it.
 /// An emergency stop is obeyed from anybody, whatever else the request says.
 class Arbiter {
@@ -69,10 +79,14 @@ class Arbiter {
   /// Rules on a request of the built-in planner (topic planner/request).
   Ruling decide_planner(const msg::Request& request) { return decide(request, true); }
   /// Rules on a request from outside the run: never at the built-in planner's level, nor under its name.
-  Ruling decide_outside(const msg::Request& request) { return decide(request, false); }
+  Ruling decide_outside(const msg::Request& request, const WriterId& writer = {});
   /// A source's process is gone. If it held authority, that falls to nobody and the robot holds its posture. It is forgotten:
-  /// one of the same name is another source.
+  /// one of the same name is another source. Of a detached holder authority and the count of its goals stay until it loses authority.
   Ruling on_death(const std::string& source);
+  /// Whether the source of this name is known by another writer than this one.
+  [[nodiscard]] bool has_another_writer(const std::string& source, const WriterId& writer) const;
+  /// The sources outside that have a writer.
+  [[nodiscard]] std::vector<LivingSource> living() const;
   /// Refuses a request for a reason that was found elsewhere.
   Ruling refuse(const msg::Request& request, const std::string& reason);
 
@@ -88,6 +102,7 @@ class Arbiter {
   void hold(const msg::Request& request, Source& source);
   [[nodiscard]] bool holder_is_detached() const;
   void leave_to_nobody();
+  void forget_gone_holder();
   ArbiterState& state_;
 };
 

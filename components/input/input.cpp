@@ -41,10 +41,17 @@ void Input::step(const Tick& tick) {
   const bool stopped_before = state_.arbiter.stopped;
   bool changed = set_planned_parameters(tick);
   if (outside_) {
-    for (const auto& item : outside_->latch()) {
+    for (const auto& item : outside_->latch(arbiter.living())) {
       changed = true;
-      if (item.died) obey(arbiter.on_death(item.source), item.request);
-      else answer(item.request, [&] { return arbiter.decide_outside(item.request); });
+      if (!item.refusal.empty()) {
+        answer(item.request, [&] { return arbiter.refuse(item.request, item.refusal); });
+        state_.arbiter.refused += item.times - 1;
+        continue;
+      }
+      const bool another = item.writer != WriterId{} && arbiter.has_another_writer(item.source, item.writer);
+      // Who speaks through another writer is another process: the former of that name is dead. A death that comes after that is old.
+      if (item.died != another) obey(arbiter.on_death(item.source), item.request);
+      if (!item.died) answer(item.request, [&] { return arbiter.decide_outside(item.request, item.writer); });
     }
   }
   for (const auto& request : planner_requests_) {
@@ -70,15 +77,16 @@ void Input::answer(const msg::Request& request, Decide&& decide) {
   msg::RequestAnswer answer{};
   set_text(answer.source, state_.arbiter.ruled_source);
   answer.request_sequence = request.header.sequence_number;
-  answer.granted = state_.arbiter.refused == refused_before;
+  answer.granted = ruling.kind == Ruling::kRepeated ? ruling.granted : state_.arbiter.refused == refused_before;
   if (answer.granted) answer.goal_id = ruling.goal_id;
-  else set_text(answer.reason, state_.arbiter.refusal);
+  else set_text(answer.reason, ruling.kind == Ruling::kRepeated ? "was refused before" : state_.arbiter.refusal);
   answer_out_.write(answer);
 }
 
 void Input::obey(const Ruling& ruling, const msg::Request& request) {
   switch (ruling.kind) {
     case Ruling::kNothing:
+    case Ruling::kRepeated:
     case Ruling::kRefused: break;
     case Ruling::kCancelAll: cancel_running(); break;
     case Ruling::kMove: forward_motion(request); break;

@@ -116,6 +116,7 @@ void Host::Impl::make_endpoints() {
   for (auto& local : members_) {
     if (!local.member->outside()) continue;
     outside_link_ = std::make_unique<dds::OutsideLink>(participant, options_.setup.robot_id);
+    outside_link_->watch(*local.member->outside());
     attach(outside_link_->get(), [this, &member = *local.member] {
       outside_link_->take(*member.outside(), [&](const std::string& reason) { member.refuse(reason); });
     });

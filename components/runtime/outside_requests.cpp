@@ -5,36 +5,123 @@
 #include <utility>
 
 namespace constrictor {
+namespace {
 
-void OutsideRequests::add(const msg::Request& request) {
+/// Requests that compete for the same room.
+enum Pool : std::size_t { kStops, kStanding, kOther };
+
+struct Room {
+  std::size_t of_source;
+  std::size_t of_all;
+};
+constexpr std::array<Room, 3> kRooms{{{1, 8}, {4, 16}, {12, 48}}};
+
+Pool pool_of(const msg::Request& request) {
+  switch (request.kind) {
+    case msg::kRequestEmergencyStop: return kStops;
+    case msg::kRequestRelease:
+    case msg::kRequestClearStop: return kStanding;
+    case msg::kRequestMotion: return request.motion == msg::kMotionStand ? kStanding : kOther;
+    default: return kOther;
+  }
+}
+
+}  // namespace
+
+void OutsideRequests::add(const msg::Request& request, const WriterId& writer) {
   const std::lock_guard lock(mutex_);
-  const bool stop = request.kind == msg::kRequestEmergencyStop;
-  if (items_.size() >= capacity_ && (!stop || std::exchange(stop_kept_, true))) {
-    ++dropped_;
+  OutsideItem item{request.source, false, request, writer, {}, 1};
+  const Pool pool = pool_of(request);
+  std::size_t of_source = 0;
+  std::size_t of_all = 0;
+  auto own = items_.end();     // oldest of this source in the pool, a motion before anything else
+  auto lowest = items_.end();  // oldest of the lowest level in the pool
+  for (auto at = items_.begin(); at != items_.end(); ++at) {
+    if (at->died) continue;
+    const bool same = at->source == item.source;
+    if (same && at->writer == writer && at->request.header.sequence_number == request.header.sequence_number) return;
+    if (pool_of(at->request) != pool) continue;
+    ++of_all;
+    if (lowest == items_.end() || at->request.level < lowest->request.level) lowest = at;
+    if (!same) continue;
+    ++of_source;
+    const auto is_motion = [](const OutsideItem& i) { return i.request.kind == msg::kRequestMotion; };
+    if (own == items_.end() || (is_motion(*at) && !is_motion(*own))) own = at;
+  }
+  if (of_source >= kRooms[pool].of_source) {
+    OutsideItem gone = std::move(*own);
+    items_.erase(own);
+    if (pool != kStops) drop(std::move(gone));  // a stop that is said again is the same stop
+  } else if (of_all >= kRooms[pool].of_all) {
+    if (pool == kStops) return;  // so many say it already
+    if (lowest->request.level > request.level) return drop(std::move(item));
+    OutsideItem gone = std::move(*lowest);
+    items_.erase(lowest);
+    drop(std::move(gone));
+  }
+  items_.push_back(std::move(item));
+}
+
+void OutsideRequests::add_refused(const msg::Request& request, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  refuse({request.source, false, request, {}, {}, 1}, reason);
+}
+
+void OutsideRequests::drop(OutsideItem item) {
+  ++dropped_;
+  refuse(std::move(item), "too many requests between two ticks; newer or stronger ones were kept");
+}
+
+void OutsideRequests::refuse(OutsideItem item, const std::string& reason) {
+  if (refused_.size() >= kMostRefusals) {
+    ++refused_.back().times;
     return;
   }
-  items_.push_back({request.source, false, request});
+  item.refusal = reason;
+  refused_.push_back(std::move(item));
 }
 
 void OutsideRequests::add_death(const std::string& source) {
   const std::lock_guard lock(mutex_);
   // One death of a source says it all: deaths between two ticks are bounded by the sources.
   const auto same = [&](const OutsideItem& item) { return item.died && item.source == source; };
-  if (std::none_of(items_.begin(), items_.end(), same)) items_.push_back({source, true, {}});
+  if (std::none_of(items_.begin(), items_.end(), same)) items_.push_back({source, true, {}, {}, {}, 1});
 }
 
-std::vector<OutsideItem> OutsideRequests::latch() {
+void OutsideRequests::watch_writers(std::function<bool(const WriterId&)> lives) {
+  const std::lock_guard lock(mutex_);
+  lives_ = std::move(lives);
+}
+
+std::vector<OutsideItem> OutsideRequests::latch(const std::vector<LivingSource>& living) {
   std::vector<OutsideItem> items;
+  std::vector<OutsideItem> refused;
+  std::function<bool(const WriterId&)> lives;
   {
     const std::lock_guard lock(mutex_);
     items.swap(items_);
-    stop_kept_ = false;
+    refused.swap(refused_);
+    lives = lives_;
   }
-  const auto order = [](const OutsideItem& item) {
-    return std::make_tuple(item.died, -int{item.request.level}, std::cref(item.source), item.request.header.sequence_number);
+  for (const auto& [source, writer] : living) {
+    if (lives && writer != WriterId{} && !lives(writer)) items.push_back({source, true, {}, writer, {}, 1});
+  }
+  // Writers of one source follow each other: what the former said comes before what the later one says, whatever their numbers.
+  std::vector<std::pair<std::size_t, OutsideItem>> ordered;
+  for (auto& item : items) {
+    std::size_t turn = 0;
+    for (const auto& [earlier_turn, earlier] : ordered) {
+      if (!earlier.died && earlier.source == item.source) turn = earlier.writer == item.writer ? earlier_turn : earlier_turn + 1;
+    }
+    ordered.emplace_back(turn, std::move(item));
+  }
+  const auto order = [](const std::pair<std::size_t, OutsideItem>& entry) {
+    const auto& [turn, item] = entry;
+    return std::make_tuple(item.died, -int{item.request.level}, std::cref(item.source), turn, item.request.header.sequence_number);
   };
-  std::stable_sort(items.begin(), items.end(), [&](const OutsideItem& a, const OutsideItem& b) { return order(a) < order(b); });
-  return items;
+  std::stable_sort(ordered.begin(), ordered.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
+  for (auto& [turn, item] : ordered) refused.push_back(std::move(item));
+  return refused;
 }
 
 std::uint64_t OutsideRequests::dropped() const {

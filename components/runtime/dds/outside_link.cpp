@@ -1,10 +1,70 @@
 #include "runtime/dds/outside_link.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "constrictor/reflect.hpp"
 
 namespace constrictor::dds {
+namespace {
 
-OutsideLink::OutsideLink(dds_entity_t participant, std::uint16_t robot_id) : robot_id_(robot_id) {
+void on_liveliness(dds_entity_t, const dds_liveliness_changed_status_t status, void* watch) {
+  if (status.alive_count_change == 0) return;  // a dead one left
+  static_cast<WriterWatch*>(watch)->note(status.last_publication_handle, status.alive_count_change > 0);
+}
+
+/// An emergency stop is obeyed whatever else its request says: nothing else of it goes on.
+msg::Request bare_stop(const msg::Request& request) {
+  msg::Request stop{};
+  stop.robot_id = request.robot_id;
+  std::copy_n(request.source, sizeof stop.source, stop.source);
+  stop.header.sequence_number = request.header.sequence_number;
+  stop.kind = msg::kRequestEmergencyStop;
+  stop.level = std::min(request.level, msg::kAuthorityOperator);
+  return stop;
+}
+
+}  // namespace
+
+void WriterWatch::note(dds_instance_handle_t writer, bool alive) {
+  const std::lock_guard lock(mutex_);
+  news_.emplace_back(writer, alive);
+}
+
+WriterId WriterWatch::id_of(dds_entity_t reader, dds_instance_handle_t writer) {
+  if (const auto known = ids_.find(writer); known != ids_.end()) return known->second;
+  WriterId id{};
+  dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
+  if (!data) return id;  // gone already: its end comes as that of its instance
+  std::copy_n(data->key.v, id.size(), id.begin());
+  dds_builtintopic_free_endpoint(data);
+  ids_[writer] = id;
+  return id;
+}
+
+void WriterWatch::catch_up(dds_entity_t reader) {
+  std::vector<std::pair<dds_instance_handle_t, bool>> news;
+  {
+    const std::lock_guard lock(mutex_);
+    news.swap(news_);
+  }
+  for (const auto& [handle, alive] : news) {
+    const WriterId id = id_of(reader, handle);
+    if (id != WriterId{}) alive_[id] = alive;
+    if (!alive) ids_.erase(handle);
+  }
+}
+
+bool WriterWatch::lives(dds_entity_t reader, const WriterId& writer) {
+  catch_up(reader);
+  const bool looking = std::chrono::steady_clock::now() - since_ < grace_;
+  if (!looking) std::erase_if(alive_, [](const auto& entry) { return !entry.second; });
+  const auto known = alive_.find(writer);
+  return known != alive_.end() ? known->second : looking;
+}
+
+OutsideLink::OutsideLink(dds_entity_t participant, std::uint16_t robot_id, std::chrono::milliseconds grace)
+    : robot_id_(robot_id), watch_(std::make_unique<WriterWatch>(grace)) {
   const Qos qos = make_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
@@ -12,10 +72,18 @@ OutsideLink::OutsideLink(dds_entity_t participant, std::uint16_t robot_id) : rob
   // A dead source's instance is forgotten once its end was taken: sources come and go.
   dds_qset_reader_data_lifecycle(qos.get(), DDS_SECS(1), DDS_SECS(1));
   const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr), "dds_create_topic");
-  reader_ = Entity(dds_create_reader(participant, topic.get(), qos.get(), nullptr), "dds_create_reader");
+  // By a listener, since a status keeps the last change alone. It calls as soon as there is a reader: none is missed.
+  const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(watch_.get()), dds_delete_listener);
+  dds_lset_liveliness_changed(listener.get(), on_liveliness);
+  reader_ = Entity(dds_create_reader(participant, topic.get(), qos.get(), listener.get()), "dds_create_reader");
+}
+
+void OutsideLink::watch(OutsideRequests& outside) const {
+  outside.watch_writers([watch = watch_.get(), reader = reader_.get()](const WriterId& writer) { return watch->lives(reader, writer); });
 }
 
 void OutsideLink::take(OutsideRequests& outside, const std::function<void(const std::string&)>& refused) const {
+  watch_->catch_up(reader_.get());
   for (;;) {
     void* message = nullptr;  // one at a time: a few requests a tick, and the loan is simple
     dds_sample_info_t info{};
@@ -29,20 +97,24 @@ void OutsideLink::take(OutsideRequests& outside, const std::function<void(const 
     const auto& request = *static_cast<const msg::Request*>(message);
     if (request.robot_id != robot_id_) continue;
     if (info.valid_data) {
-      if (const auto violation = validate(request)) refused(std::string(kRequestTopic) + "." + *violation);
-      else outside.add(request);
+      const WriterId writer = watch_->id_of(reader_.get(), info.publication_handle);
+      const auto violation = validate(request);
+      if (violation) refused(std::string(kRequestTopic) + "." + *violation);
+      if (request.kind == msg::kRequestEmergencyStop) outside.add(bare_stop(request), writer);
+      else if (violation) outside.add_refused(request, *violation);
+      else outside.add(request, writer);
     }
     if (info.instance_state != DDS_IST_ALIVE) outside.add_death(request.source);
   }
 }
 
-RequestWriter::RequestWriter(dds_entity_t participant, std::int64_t lease_ns) {
+RequestWriter::RequestWriter(dds_entity_t participant, std::int64_t lease_ns, bool by_hand) {
   const Qos qos = make_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 64);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_writer_data_lifecycle(qos.get(), false);
-  if (lease_ns > 0) dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, lease_ns);
+  if (lease_ns > 0) dds_qset_liveliness(qos.get(), by_hand ? DDS_LIVELINESS_MANUAL_BY_TOPIC : DDS_LIVELINESS_AUTOMATIC, lease_ns);
   const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr), "dds_create_topic");
   writer_ = Entity(dds_create_writer(participant, topic.get(), qos.get(), nullptr), "dds_create_writer");
 }

@@ -1,4 +1,4 @@
-// The arbiter, the latch for outside requests, and `input` as a member of a run.
+// The arbiter, and `input` as a member of a run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,24 +9,10 @@
 
 #include "input/input.hpp"
 #include "runtime/local_run.hpp"
+#include "requests.hpp"
 
 namespace constrictor {
 namespace {
-
-msg::Request request(const std::string& source, std::uint8_t level, std::uint8_t kind, std::uint64_t sequence, std::uint64_t goal = 1) {
-  msg::Request r{};
-  std::copy(source.begin(), source.end(), r.source);
-  r.level = level;
-  r.kind = kind;
-  r.header.sequence_number = sequence;
-  r.goal_id = goal;
-  r.task = msg::kTaskFollowLine;
-  return r;
-}
-
-constexpr auto kPlanner = msg::kAuthorityPlanner;
-constexpr auto kExternal = msg::kAuthorityExternal;
-constexpr auto kOperator = msg::kAuthorityOperator;
 
 class ArbiterTest : public ::testing::Test {
  protected:
@@ -77,9 +63,9 @@ TEST_F(ArbiterTest, EmergencyStopLatchesOverEverybodyAndClearingStartsNoMotion) 
   EXPECT_EQ(kind(request("pilot", kOperator, msg::kRequestClearStop, 4)), Ruling::kRefused);  // there is none any more
 }
 
-TEST_F(ArbiterTest, RepeatedOrOlderSequenceNumbersAndGoalsAreRefused) {
+TEST_F(ArbiterTest, OlderSequenceNumbersAndGoalsAreRefusedAndARepeatedNumberDoesNothing) {
   decide(request("planner", kPlanner, msg::kRequestTask, 5, 3));
-  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 5, 4)), Ruling::kRefused);
+  EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 5, 4)), Ruling::kRepeated);
   EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 4, 4)), Ruling::kRefused);
   EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 6, 3)), Ruling::kRefused);
   EXPECT_EQ(kind(request("planner", kPlanner, msg::kRequestTask, 7, std::uint64_t{1} << 32)), Ruling::kRefused);
@@ -130,21 +116,9 @@ TEST_F(ArbiterTest, ADetachedHolderOutlivesItsWriterUntilItsEqualsTakeOverOrRele
   decide(request("pilot", kOperator, msg::kRequestRelease, 2));
   script.header.sequence_number = 2;
   script.goal_id = 0;
-  EXPECT_EQ(decide(script).goal_id & 0xffffffffu, 2u);
+  EXPECT_EQ(decide(script).goal_id, mapped_goal_id(kOperator, 5, 1));  // it was forgotten when it lost authority: a fifth source, its first goal
   EXPECT_EQ(kind(request("other", kOperator, msg::kRequestRelease, 2)), Ruling::kCancelAll);
   EXPECT_EQ(state_.level, msg::kAuthorityNone);
-}
-
-TEST_F(ArbiterTest, NamesThatComeAndGoNeedNoMoreMemoryThanTheLiving) {
-  for (int i = 0; i < 1000; ++i) {
-    const std::string name = "n" + std::to_string(i);
-    decide(request(name, kExternal, msg::kRequestTake, 1));
-    arbiter_.on_death(name);
-  }
-  EXPECT_TRUE(state_.sources.empty());
-  for (int i = 0; i < 1000; ++i) decide(request("n" + std::to_string(i), kExternal, msg::kRequestRelease, 1));
-  EXPECT_LE(state_.sources.size(), 64u);
-  EXPECT_EQ(kind(request("last", kOperator, msg::kRequestEmergencyStop, 1)), Ruling::kCancelAll);
 }
 
 TEST_F(ArbiterTest, ARefusalSaysWhoseRequestItWas) {
@@ -223,38 +197,6 @@ TEST_F(ArbiterTest, RandomRequestsNeverPassTheHolderOrAStop) {
     }
   }
   EXPECT_GT(forwarded, 100);
-}
-
-TEST(OutsideRequests, OrderOfArrivalDoesNotMatter) {
-  std::vector<msg::Request> requests;
-  for (const std::string source : {"b", "a", "c"}) {
-    for (std::uint64_t number = 1; number <= 4; ++number) {
-      requests.push_back(request(source, kExternal, msg::kRequestTask, number, number));
-    }
-  }
-  std::mt19937 random(3);
-  for (int round = 0; round < 50; ++round) {
-    std::shuffle(requests.begin(), requests.end(), random);
-    OutsideRequests outside;
-    outside.add_death("b");
-    for (const auto& r : requests) outside.add(r);
-    const auto items = outside.latch();
-    ASSERT_EQ(items.size(), 13u);
-    std::string order;
-    for (const auto& item : items) order += item.source + (item.died ? "x" : std::to_string(item.request.header.sequence_number));
-    EXPECT_EQ(order, "a1a2a3a4b1b2b3b4c1c2c3c4bx");
-    EXPECT_TRUE(outside.latch().empty());
-  }
-}
-
-TEST(OutsideRequests, AFloodIsBoundedButAnEmergencyStopGetsThrough) {
-  OutsideRequests outside(8);
-  for (std::uint64_t i = 1; i <= 100; ++i) outside.add(request("x", kExternal, msg::kRequestTask, i, i));
-  outside.add(request("x", kExternal, msg::kRequestEmergencyStop, 101));
-  EXPECT_EQ(outside.dropped(), 92u);
-  const auto items = outside.latch();
-  ASSERT_EQ(items.size(), 9u);
-  EXPECT_EQ(items.back().request.kind, msg::kRequestEmergencyStop);
 }
 
 // ---- as a member of a run ----
@@ -356,6 +298,59 @@ TEST_F(InputMemberTest, TheAnswerToATaskNamesItsGoalAndWhatInputItselfRefusesIsA
   EXPECT_EQ(answers_[3].goal_id, 0u);
   EXPECT_FALSE(answers_[4].granted);
   EXPECT_NE(std::string(answers_[4].reason).find("no.such"), std::string::npos);
+}
+
+TEST_F(InputMemberTest, WhoSpeaksThroughAnotherWriterIsAnotherProcessAndTheFormerIsDead) {
+  WriterId first{1};
+  WriterId second{2};
+  run({}, 30, {{5, [&] { outside_->add(request("p", kExternal, msg::kRequestTask, 57, 3), first); }},
+               {9, [&] { outside_->add(request("p", kExternal, msg::kRequestTask, 58, 4), first); }},
+               {15, [&] { outside_->add(request("p", kExternal, msg::kRequestTake, 1), second); }},
+               {20, [&] { outside_->add(request("p", kExternal, msg::kRequestTask, 2, 1), second); }}});
+  ASSERT_EQ(answers_.size(), 4u);
+  for (const auto& answer : answers_) EXPECT_TRUE(answer.granted) << answer.reason;
+  ASSERT_EQ(commands_.size(), 4u);
+  EXPECT_EQ(commands_[2].command, msg::kCommandCancel);  // of the dead one's task
+  EXPECT_EQ(commands_[2].goal_id, commands_[1].goal_id);
+  EXPECT_EQ(commands_[2].header.tick, 15);
+  EXPECT_EQ(commands_[3].command, msg::kCommandStart);
+  std::set<std::uint64_t> goals = {commands_[0].goal_id, commands_[1].goal_id, commands_[3].goal_id};
+  EXPECT_EQ(goals.size(), 3u);
+}
+
+TEST_F(InputMemberTest, AHolderWhoseWriterIsGoneIsDeadAndALateDeathDoesNotHitItsSuccessor) {
+  WriterId first{1};
+  WriterId second{2};
+  WriterId dead{9};
+  run({}, 40, {{4, [&] { outside_->watch_writers([&](const WriterId& id) { return id != dead; }); }},
+               {5, [&] { outside_->add(request("p", kOperator, msg::kRequestTask, 1), first); }},
+               {15, [&] { dead = first; }},
+               {20, [&] { outside_->add(request("p", kOperator, msg::kRequestTask, 1), first); dead = {}; }},
+               {25, [&] { outside_->add(request("p", kOperator, msg::kRequestTask, 1), second); dead = first; }}});
+  std::vector<std::pair<std::int64_t, std::uint8_t>> levels;
+  for (const auto& a : authority_) {
+    if (levels.empty() || levels.back().second != a.level) levels.emplace_back(a.header.tick, a.level);
+  }
+  const std::vector<std::pair<std::int64_t, std::uint8_t>> expected = {{0, 0}, {5, kOperator}, {15, 0}, {20, kOperator}};
+  EXPECT_EQ(levels, expected);
+  EXPECT_EQ(commands_.back().command, msg::kCommandStart);
+}
+
+TEST_F(InputMemberTest, WhatFindsNoRoomInTheLatchIsAnsweredAndCounted) {
+  run({}, 20, {{5, [&] {
+        for (std::uint64_t i = 1; i <= 100; ++i) outside_->add(request("x", kExternal, msg::kRequestMotion, i));
+        auto drive = request("x", kExternal, msg::kRequestMotion, 101);
+        drive.motion = msg::kMotionDrive;
+        drive.frequency_hz = 0.7;
+        outside_->add(drive);
+      }}});
+  ASSERT_EQ(motions_.size(), 1u);
+  EXPECT_DOUBLE_EQ(motions_[0].frequency_hz, 0.7);
+  EXPECT_TRUE(answers_.back().granted);
+  EXPECT_EQ(answers_.back().request_sequence, 101u);
+  EXPECT_FALSE(answers_.front().granted);
+  EXPECT_EQ(authority_.back().refused_count, outside_->dropped());
+  EXPECT_GT(outside_->dropped(), OutsideRequests::kMostRefusals);
 }
 
 TEST_F(InputMemberTest, ForwardsThePlannersTasksInTheirOrderWithMappedIds) {
