@@ -72,11 +72,8 @@ int dispatch(int argc, char** argv) {
       "  CYCLONEDDS_URI      how DDS reaches other hosts (deploy/cyclonedds)");
 
   std::optional<std::uint32_t> domain;
-  const auto choose_run = [&domain](CLI::App* sub) {
-    sub->add_option("--run", domain, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
-  };
   auto* end_app = app.add_subcommand("end", "end a run and all of its processes");
-  choose_run(end_app);
+  cli::add_run_option(*end_app, domain);
   end_app->footer("Asks the run's launcher to end and waits until the last process is gone; the report is written.\n\n"
                   "EXAMPLES\n  constrictor end\n  constrictor end --run 3\n\n"
                   "EXIT STATUS\n  0 it has ended; 64 wrong usage; 70 no run, or several and none chosen; 75 it did not end within 20 s\n\n"

@@ -176,7 +176,7 @@ void add_run_control(CLI::App& app, std::function<int()>& action) {
   const std::string safety_status = fmt::format("0 done; 1 refused, with the reason; {};\n  75 no answer within 5 s", kRunStatuses);
   const auto add = [&](const char* name, const char* text, std::function<int()> what, const std::string& footer) {
     auto* sub = app.add_subcommand(name, text);
-    sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
+    add_run_option(*sub, options->run);
     sub->callback([&action, what = std::move(what)] { action = what; });
     sub->footer(footer);
     return sub;

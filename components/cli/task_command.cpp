@@ -265,7 +265,7 @@ void add_task(CLI::App& app, std::function<int()>& action) {
     return sub;
   };
   const auto of_run = [&](CLI::App* sub) {
-    sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
+    add_run_option(*sub, options->run);
     return sub;
   };
   auto* start_app = of_run(add("start", "start a task as an operator; authority stays until `constrictor release`", [options] { return start(*options); }));

@@ -275,7 +275,7 @@ int teleop(const Options& options) {
 void add_teleop(CLI::App& app, std::function<int()>& action) {
   const auto options = std::make_shared<Options>();
   auto* sub = app.add_subcommand("teleop", "drive the robot by hand: a full-screen terminal client; with --drive for scripts");
-  sub->add_option("--run", options->run, "the run, by its DDS domain (default: the only one there is)")->envname("CONSTRICTOR_DOMAIN");
+  add_run_option(*sub, options->run);
   sub->add_option("--drive", options->drive, "SPEED,TURN in m/s and rad/s (0.3,0.5): drive without a screen, then stand and release");
   sub->add_option("--for", options->duration, "how long to drive, wall time: 5s, 500ms, 2m (default: until Ctrl-C)");
   sub->footer(help_footer("Takes authority with the first key that moves something; gives it back at the end (q). The keys stand on its screen, an emergency\n"

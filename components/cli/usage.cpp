@@ -14,6 +14,11 @@ CLI::Validator whole_number() {
           ""};
 }
 
+void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain) {
+  app.add_option("--run", domain, "the run, by its DDS domain (default: the only one there is)")
+      ->envname("CONSTRICTOR_DOMAIN")->check(whole_number())->check(CLI::Range(0, 229));
+}
+
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples, const std::string& exit_status) {
   std::string text = about + (about.empty() ? "" : "\n\n") + "EXAMPLES\n";
   for (const char* example : examples) text += fmt::format("  {}\n", example);

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace CLI {
+class App;
 class Validator;
 }
 
@@ -20,6 +22,9 @@ class UsageError : public std::runtime_error {
 
 /// Refuses what is no whole number from 0 on: "-1" would otherwise be a very large one.
 CLI::Validator whole_number();
+
+/// Adds --run: the run, by its DDS domain, also by CONSTRICTOR_DOMAIN.
+void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);
 
 /// The end of a --help: what is good to know, EXAMPLES one a line, EXIT STATUS, and the ENVIRONMENT that all commands to a run heed.
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples, const std::string& exit_status);

@@ -122,6 +122,8 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
   EXPECT_EQ(owners.size(), 4u) << all;
   EXPECT_EQ(ask({"param", "list", "perception.blob."}).size(), 2u);
   EXPECT_EQ(ask({"param", "list", "--changed"}), json::array());
+  EXPECT_EQ(command({"param", "list", "nosuch"}), 1);
+  EXPECT_NE(output_.find("no parameter begins with 'nosuch'"), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "list", "--names", "control.squeeze"}), 0);
   EXPECT_EQ(output_, "control.squeeze.opening_share\ncontrol.squeeze.rate_rad_s\n");
 

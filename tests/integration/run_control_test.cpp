@@ -113,7 +113,8 @@ TEST_F(RunControl, WrongValuesAreWrongUsageWithOrWithoutARun) {
   for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
            {"pace", "fast"}, {"reset", "-1"}, {"step", "-3"}, {"teleop", "--drive", "9,0"}, {"teleop", "--drive", "0.3,0", "--for", "0s"},
            {"task", "start", "nothing"}, {"task", "start", "rotate", "--direction", "up"}, {"task", "wait", "--event", "tea"},
-           {"task", "wait", "--end", "--timeout", "soon"}, {"run", "--seed", "-1"}, {"run", "--pace", "fast"}, {"param", "set", "a", "b"}}) {
+           {"task", "wait", "--end", "--timeout", "soon"}, {"run", "--seed", "-1"}, {"run", "--pace", "fast"}, {"param", "set", "a", "b"}, {"pause", "--run", "-1"},
+           {"topic", "echo", "joint_state", "--count", "-1"}}) {
     EXPECT_EQ(command(wrong), exit_status::kUsage) << wrong.front() << " " << wrong[1] << ": " << output_;
     EXPECT_NE(output_.find("accepted"), std::string::npos) << output_;
   }

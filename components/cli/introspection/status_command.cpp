@@ -119,7 +119,7 @@ std::string number(double value, const char* format) { return std::isfinite(valu
 /// In 80 columns, so that nothing wraps on a plain terminal; hosts only if there are several.
 std::string table(const RunNote& run, const RunView& view, const RateMeter& rates) {
   constexpr const char* kRow = "{:<12}{:<8}{:>8}{:>7}{:>8}{:>8}{:>9}{:>8}{:>4}{:>8}\n";
-  std::string text = fmt::format(kRow, "component", "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns", "refused", "inc.", "pid");
+  std::string text = fmt::format(kRow, "component", "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns", "refused", "inc", "pid");
   std::set<std::string> hosts;
   for (const auto& [name, status] : view.components) hosts.insert(status.host);
   for (const auto& name : run.roster) {
@@ -220,7 +220,7 @@ void add_status(CLI::App& app, std::function<int()>& action) {
   auto* sub = app.add_subcommand("status", "the runs on this host, and the health of one's components");
   add_view_options(*sub, options->view);
   sub->add_flag("--watch,-w", options->watch, "a live table, once a second, until Ctrl-C or the run's end");
-  sub->footer("Step times are those since a component's previous status (every 50 ticks); a rate is in ticks per second of wall time; inc. is the\n"
+  sub->footer("Step times are those since a component's previous status (every 50 ticks); a rate is in ticks per second of wall time; inc is the\n"
               "incarnation, one more with each restart.\n\n"
               "EXAMPLES\n  constrictor status\n  constrictor status --watch\n  constrictor status --json | jq '.components[].rate_hz'\n\n"
               "EXIT STATUS\n  0 done; 64 wrong usage; 70 no run, or several and none chosen with --json\n\nENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");

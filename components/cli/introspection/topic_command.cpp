@@ -7,6 +7,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/introspection/topic_watch.hpp"
+#include "cli/usage.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/dds/type_tree.hpp"
 #include "runtime/host.hpp"
@@ -145,7 +146,7 @@ void add_topic(CLI::App& app, std::function<int()>& action) {
   add_view_options(*info_app, options->view);
   act(info_app, info);
   auto* echo_app = add_watch(*topic, *options, "echo", "print the samples of a topic");
-  echo_app->add_option("--count,-n", options->watch.count, "so many samples, then end (default: until Ctrl-C)");
+  echo_app->add_option("--count,-n", options->watch.count, "so many samples, then end (default: until Ctrl-C)")->check(whole_number());
   echo_app->add_option("--field", options->watch.field, "only this field, for example header.tick or position_rad");
   echo_app->add_flag("--raw", options->watch.raw, "the encoded bytes in hexadecimal");
   act(echo_app, [](const Options& chosen) { return echo_command(chosen.view, chosen.watch); });
