@@ -123,7 +123,7 @@ int start(const Options& options) {
     const GoalReaders readers(client.participant());
     const auto ruled = answer_of_input(client, client.ask(request));
     if (ruled != OperatorClient::Answer::kGranted) return status_of(ruled);
-    const std::uint64_t goal = client.authority()->goal_id;
+    const std::uint64_t goal = client.goal();
     GoalWatch watch;
     for (const auto limit = Clock::now() + kAnswerBound; Clock::now() < limit; std::this_thread::sleep_for(kPoll)) {
       readers.take(watch);

@@ -102,13 +102,13 @@ int drive(const Options& options) {
   const auto start = Clock::now();
   while (Clock::now() - start < bound && g_interrupted == 0) {
     std::this_thread::sleep_for(kTurn);
-    client.assert_alive();
-    client.poll();
     watch.look();
     if (!watch.attachment().over().empty()) {
       std::fprintf(stderr, "teleop: %s\n", watch.attachment().over().c_str());
       return exit_status::kMissionFailed;
     }
+    client.assert_alive();
+    client.poll();
     if (client.holds_authority()) continue;
     std::fprintf(stderr, "teleop: lost authority to %s %s\n", authority_name(client.authority()->level), client.authority()->source);
     return exit_status::kMissionFailed;
@@ -137,9 +137,9 @@ class Teleop {
     std::string typed;
     while (!Terminal::interrupted()) {
       if (!terminal_.read(typed, kTurn)) break;
-      client_.poll();
       watch_.look();
-      if (!over().empty()) return exit_status::kMissionFailed;
+      if (!over().empty()) return exit_status::kMissionFailed;  // before poll(), which says again what was not answered
+      client_.poll();
       client_.assert_alive();
       if (!typed.empty()) heard = Clock::now();
       keys_.add(typed);
