@@ -123,7 +123,7 @@ ComponentFactory make_control_factory(std::vector<MethodMaker> more) {
             MethodRegistry methods;
             for (const auto make : more) methods.add(make());
             return std::make_unique<Control>(wiring, setup, std::move(methods));
-          }};
+          }, "components/control/control.yaml"};
 }
 
 }  // namespace constrictor

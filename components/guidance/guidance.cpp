@@ -167,7 +167,8 @@ void Guidance::step(const Tick& tick) {
 }
 
 ComponentFactory make_guidance_factory() {
-  return {"guidance", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Guidance>(wiring, setup); }};
+  return {"guidance", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Guidance>(wiring, setup); },
+          "components/guidance/guidance.yaml"};
 }
 
 }  // namespace constrictor

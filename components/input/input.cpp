@@ -197,7 +197,7 @@ void Input::publish_authority(const Tick& tick) {
 ComponentFactory make_input_factory(std::shared_ptr<OutsideRequests> outside) {
   return {"input", [outside = std::move(outside)](Wiring& wiring, const Setup& setup) {
             return std::make_unique<Input>(wiring, setup, outside);
-          }};
+          }, "components/input/input.yaml"};
 }
 
 }  // namespace constrictor

@@ -232,7 +232,8 @@ void Navigation::write_status(const TaskOutput& output) {
 }
 
 ComponentFactory make_navigation_factory() {
-  return {"navigation", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Navigation>(wiring, setup); }};
+  return {"navigation", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Navigation>(wiring, setup); },
+          "components/navigation/navigation.yaml"};
 }
 
 }  // namespace constrictor

@@ -85,7 +85,8 @@ void Perception::step(const Tick& tick) {
 
 ComponentFactory make_perception_factory() {
   return {"perception",
-          [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); }};
+          [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); },
+          "components/perception/perception.yaml"};
 }
 
 }  // namespace constrictor

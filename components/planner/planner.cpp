@@ -65,7 +65,8 @@ void Planner::step(const Tick& tick) {
 }
 
 ComponentFactory make_planner_factory() {
-  return {"planner", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Planner>(wiring, setup); }};
+  return {"planner", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Planner>(wiring, setup); },
+          "components/planner/planner.yaml"};
 }
 
 }  // namespace constrictor

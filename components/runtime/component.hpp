@@ -97,10 +97,12 @@ class Plant : public Component {
   void load(const std::string&) override {}
 };
 
-/// How the runtime makes a component: its name and its constructor.
+/// How the runtime makes a component: its name, its constructor, and the file below the share folder that it reads if Setup names no
+/// other (empty: none).
 struct ComponentFactory {
   std::string name;
   std::function<std::unique_ptr<Component>(Wiring&, const Setup&)> create;
+  std::filesystem::path default_config = {};
 };
 
 }  // namespace constrictor

@@ -12,4 +12,7 @@ namespace constrictor {
 std::string run_config_hash(const std::filesystem::path& robot_file, const std::vector<std::string>& roster,
                             const std::string& plant);
 
+/// SHA-256, as hex, over the bytes of a component's own configuration file and the scenario's; a file that is not there counts as empty.
+std::string component_config_hash(const std::filesystem::path& config_file, const std::filesystem::path& scenario_file);
+
 }  // namespace constrictor

@@ -9,10 +9,13 @@
 
 #include "runtime/config_hash.hpp"
 #include "runtime/host_impl.hpp"
+#include "runtime/share.hpp"
 #include "runtime/version.hpp"
 
 namespace constrictor {
 namespace {
+
+namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
@@ -39,10 +42,13 @@ Host::Impl::Impl(HostOptions options, std::vector<ComponentFactory> factories)
     Setup setup = options_.setup;
     const auto config = options_.config_files.find(factory.name);
     if (config != options_.config_files.end()) setup.config_file = config->second;
+    fs::path config_file = setup.config_file;
+    if (config_file.empty() && !factory.default_config.empty()) config_file = share_path(factory.default_config);
+    const std::string config_hash = component_config_hash(config_file, setup.scenario_file);
     const bool checkpoints = !conducts || options_.record;
     members_.push_back({std::make_unique<Member>(std::move(factory), std::move(setup), options_.incarnation, checkpoints,
                                                  static_cast<MemberSink&>(*this)),
-                        {}, false});
+                        {}, false, config_hash});
     if (members_.back().member->name() == options_.plant) plant_ = members_.back().member.get();
   }
   if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
@@ -122,7 +128,8 @@ void Host::Impl::report_waiting(const std::string& component, const std::string&
 
 void Host::Impl::watch() {
   const auto now = SteadyClock::now();
-  if (pacer_.holding() || paused_elsewhere_) last_progress_ = now;
+  // Who may tick and does not is held back by the pace.
+  if (conductor_ && (pacer_.holding() || conductor_->may_tick())) last_progress_ = now;
   const double waited = std::chrono::duration<double>(now - last_progress_).count();
   if (waited < 2.0 || now - last_waiting_report_ < std::chrono::seconds(1)) return;
   last_waiting_report_ = now;
@@ -179,7 +186,7 @@ int Host::Impl::run() {
       exit_status_ = exit_status::kOk;
       break;
     }
-    const bool settled = members_.front().ready_said;
+    const bool settled = std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.ready_said; });
     const dds_duration_t timeout = stepped || ticked ? 0 : std::min<dds_duration_t>(pacer_.wait_ns(), settled ? DDS_MSECS(100) : DDS_MSECS(10));
     const int count = dds::check(dds_waitset_wait(wait_set_.get(), triggered.data(), triggered.size(), timeout), "dds_waitset_wait");
     for (std::size_t i = 0; i < std::min<std::size_t>(static_cast<std::size_t>(count), triggered.size()); ++i) {

@@ -65,7 +65,8 @@ void Host::Impl::note_authority(const TopicInfo& topic, const Sample& sample) {
   if (!conductor_ || topic.id != topics::kAuthority.id) return;
   const auto& authority = *static_cast<const msg::Authority*>(sample.message.get());
   const bool before = pacer_.capped();
-  pacer_.operator_holds(authority.level == msg::kAuthorityOperator);
+  // A stop is a person's doing too: the run must not race on while somebody reaches for the robot.
+  pacer_.operator_holds(authority.level >= msg::kAuthorityOperator);
   if (pacer_.capped() != before) publish_run_state(true);
 }
 
@@ -89,6 +90,7 @@ void Host::Impl::publish_run_state(bool changed) {
   msg::RunState message = state;
   message.tick = conductor_->next_index();
   message.paused = pacer_.paused();
+  message.held = conductor_->may_tick();
   message.realtime = options_.realtime;
   message.pace = pacer_.pace();
   message.operator_cap = pacer_.capped();

@@ -33,6 +33,7 @@ class Host::Impl : private MemberSink, private ConductorSink {
     std::unique_ptr<Member> member;
     StatusMeter meter;
     bool ready_said = false;
+    std::string config_hash;  ///< of what it was built from
   };
   // MemberSink
   void publish(const TopicInfo& topic, const Sample& sample) override;
@@ -46,10 +47,16 @@ class Host::Impl : private MemberSink, private ConductorSink {
   void make_endpoints();
   void make_conductor();
   void greet();
-  [[nodiscard]] Greeting greeting_of(const Member& member) const;
+  [[nodiscard]] Greeting greeting_of(const LocalMember& local) const;
   [[nodiscard]] bool here(const std::string& component) const;
   void take(std::size_t reader);
   void take_hello(const msg::Hello& message);
+  void take_done(const msg::TickDone& message);
+  /// Counts and names a message that is not accepted, in the ComponentStatus of a member here.
+  void refuse_message(const std::string& topic, const std::string& reason);
+  /// Whether it obeys its IDL; otherwise it is refused.
+  template <class T>
+  [[nodiscard]] bool acceptable(const char* topic, const T& message);
   void take_control(const msg::RunControl& control);
   [[nodiscard]] std::string obey_control(const msg::RunControl& control);
   void note_authority(const TopicInfo& topic, const Sample& sample);
@@ -100,7 +107,6 @@ class Host::Impl : private MemberSink, private ConductorSink {
   std::map<std::string, std::uint64_t> control_sequences_;
   Pacer pacer_;
   msg::RunState run_state_{};                  ///< conductor: as published last
-  bool paused_elsewhere_ = false;              ///< as the conductor said
   SteadyClock::time_point last_run_state_{};
   SteadyClock::time_point last_progress_ = SteadyClock::now();
   SteadyClock::time_point last_waiting_report_ = SteadyClock::now();

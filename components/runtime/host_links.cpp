@@ -71,46 +71,59 @@ void Host::Impl::make_endpoints() {
   };
   attach(epoch_reader_.get(), [this, each] {
     epoch_reader_.take([&](const msg::EpochStart& start) {
+      if (!acceptable(wire::kEpochStart, start)) return;
       each([&](Member& member) { member.on_epoch({start.run_id, start.epoch}, start.seed); });
       for (auto& local : members_) local.ready_said = false;
     });
   });
   attach(resume_reader_.get(), [this, each] {
     resume_reader_.take([&](const msg::Resume& message) {
+      if (!acceptable(wire::kResume, message)) return;
       each([&](Member& member) {
-        if (member.name() == message.component && member.incarnation() == message.incarnation) {
-          member.on_resume(dds::from_wire(message));
-        }
+        if (member.name() != message.component || member.incarnation() != message.incarnation || member.in_epoch()) return;
+        if (const auto resumption = dds::from_wire(message)) return member.on_resume(*resumption);
+        member.refuse("resume.checkpoint: damaged");
       });
     });
   });
   attach(tick_reader_.get(), [this, each] {
-    tick_reader_.take([&](const msg::Tick& message) { each([&](Member& member) { member.on_tick(message); }); });
+    tick_reader_.take([&](const msg::Tick& message) {
+      if (!acceptable(wire::kTick, message)) return;
+      each([&](Member& member) {
+        const std::int64_t newest = member.newest_tick();
+        member.on_tick(message);
+        if (member.newest_tick() > newest) last_progress_ = SteadyClock::now();  // the run goes on, whoever is due
+      });
+    });
   });
   attach(refused_reader_.get(), [this] {
     refused_reader_.take([&](const msg::Refused& message) {
-      if (message.pid != ::getpid() || !here(message.component)) return;
+      if (!acceptable(wire::kRefused, message)) return;
+      if (message.pid != ::getpid() || message.incarnation != options_.incarnation || !here(message.component)) return;
       std::fprintf(stderr, "%s: the run refuses this process: %s\n", message.component, message.reason);
       exit_status_ = exit_status::kRefused;
     });
   });
   attach(hello_reader_.get(), [this] { hello_reader_.take([this](const msg::Hello& message) { take_hello(message); }); });
   attach(done_reader_.get(), [this] {
-    done_reader_.take([this](const msg::TickDone& message) {
-      const StepDone step = dds::from_wire(message);
-      if (!conductor_->on_done(step)) return;
-      last_progress_ = SteadyClock::now();
-      if (!hash_log_) return;
-      for (const auto& written : step.written) hash_log_->add(written.topic, written.bytes);
-    });
+    done_reader_.take([this](const msg::TickDone& message) { take_done(message); });
   });
   attach(ready_reader_.get(), [this] {
     ready_reader_.take([this](const msg::Ready& message) {
-      conductor_->on_ready(message.component, {message.run_id, message.epoch}, message.incarnation);
+      const EpochId epoch{message.run_id, message.epoch};
+      if (!acceptable(wire::kReady, message)) return;
+      if (const auto why = conductor_->stranger(message.component, epoch, message.incarnation)) return refuse_message(wire::kReady, *why);
+      conductor_->on_ready(message.component, epoch, message.incarnation);
     });
   });
-  attach(run_state_reader_.get(), [this] {
-    run_state_reader_.take([this](const msg::RunState& state) { paused_elsewhere_ = state.paused; });
+  attach(run_state_reader_.get(), [this, each] {
+    run_state_reader_.take([&](const msg::RunState& state) {
+      if (!acceptable(wire::kRunState, state) || (!state.paused && !state.held)) return;
+      // Said once a second as long as the conductor lives: the run stands still, but is not stuck.
+      each([&](const Member& member) {
+        if (member.in_epoch() && member.epoch() == EpochId{state.run_id, state.epoch}) last_progress_ = SteadyClock::now();
+      });
+    });
   });
   attach(control_reader_.get(), [this] { control_reader_.take([this](const msg::RunControl& c) { take_control(c); }); });
   for (auto& local : members_) {
@@ -154,7 +167,32 @@ void Host::Impl::make_conductor() {
   conductor_ = std::make_unique<Conductor>(conductor, static_cast<ConductorSink&>(*this));
 }
 
-Greeting Host::Impl::greeting_of(const Member& member) const {
+void Host::Impl::refuse_message(const std::string& topic, const std::string& reason) {
+  (plant_ ? plant_ : members_.front().member.get())->refuse(topic + "." + reason);
+}
+
+template <class T>
+bool Host::Impl::acceptable(const char* topic, const T& message) {
+  const auto violation = validate(message);
+  if (violation) refuse_message(topic, *violation);
+  return !violation;
+}
+
+void Host::Impl::take_done(const msg::TickDone& message) {
+  if (!acceptable(wire::kTickDone, message)) return;
+  const auto refuse = [this](const std::string& reason) { refuse_message(wire::kTickDone, reason); };
+  if (const auto why = conductor_->stranger(message.component, {message.run_id, message.epoch}, message.incarnation)) return refuse(*why);
+  const auto step = dds::from_wire(message);
+  if (!step) return refuse("checkpoint: damaged");
+  if (const auto why = conductor_->implausible(*step)) return refuse(*why);
+  if (!conductor_->on_done(*step)) return;
+  last_progress_ = SteadyClock::now();
+  if (!hash_log_) return;
+  for (const auto& written : step->written) hash_log_->add(written.topic, written.bytes);
+}
+
+Greeting Host::Impl::greeting_of(const LocalMember& local) const {
+  const Member& member = *local.member;
   Greeting greeting;
   greeting.component = member.name();
   greeting.incarnation = member.incarnation();
@@ -162,6 +200,7 @@ Greeting Host::Impl::greeting_of(const Member& member) const {
   greeting.host = host_name();
   greeting.idl_hash = std::string(msg::kIdlHash);
   greeting.config_hash = config_hash_;
+  greeting.component_hash = local.config_hash;
   greeting.numeric_profile = numeric_profile();
   greeting.timing = member.timing();
   greeting.reads = member.reads();
@@ -171,24 +210,26 @@ Greeting Host::Impl::greeting_of(const Member& member) const {
 
 void Host::Impl::greet() {
   for (const auto& local : members_) {
-    const Greeting greeting = greeting_of(*local.member);
+    const Greeting greeting = greeting_of(local);
     hello_writer_.write(dds::to_wire(greeting, kVersion));
     if (conductor_) conductor_->on_greeting(greeting);
   }
 }
 
 void Host::Impl::take_hello(const msg::Hello& message) {
-  if (const auto violation = validate(message)) return;
+  if (!acceptable(wire::kHello, message)) return;
   const Greeting greeting = dds::from_wire(message);
+  // What is of another run replaces nobody and is waited for by nobody; the conductor tells it so.
+  const bool ours = !difference(greeting, greeting_of(members_.front()));
   if (here(greeting.component)) {
     if (greeting.pid == ::getpid() && greeting.host == host_name()) return;  // our own
-    if (!conductor_ && greeting.incarnation > options_.incarnation) {
+    if (!conductor_ && ours && greeting.incarnation > options_.incarnation) {
       std::fprintf(stderr, "%s: replaced by incarnation %u (pid %d on %s)\n", greeting.component.c_str(),
                    greeting.incarnation, greeting.pid, greeting.host.c_str());
       exit_status_ = exit_status::kRefused;
       return;
     }
-  } else {
+  } else if (ours && std::count(options_.roster.begin(), options_.roster.end(), greeting.component) > 0) {
     greetings_[greeting.component] = greeting;
   }
   if (conductor_) conductor_->on_greeting(greeting);
@@ -251,8 +292,9 @@ void Host::Impl::refuse(const Greeting& greeting, const std::string& reason) {
 }
 
 void Host::Impl::say_ready() {
-  if (std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.ready_said; })) return;
-  if (!members_.front().member->in_epoch()) return;
+  // Each for itself: after a restart the members of one process are resumed one by one, perhaps far apart.
+  const auto owes = [](const LocalMember& local) { return local.member->in_epoch() && !local.ready_said; };
+  if (std::none_of(members_.begin(), members_.end(), owes)) return;
   const auto now = SteadyClock::now();
   if (now - last_match_check_ < std::chrono::milliseconds(10)) return;
   last_match_check_ = now;
@@ -268,10 +310,11 @@ void Host::Impl::say_ready() {
   unmatched_ = bus_->unmatched(readers_of);
   if (!unmatched_.empty()) return;
   for (auto& local : members_) {
+    if (!owes(local)) continue;
     const Member& member = *local.member;
     local.ready_said = true;
     if (conductor_) {
-      conductor_->on_ready(member.name(), *conductor_->epoch(), member.incarnation());
+      conductor_->on_ready(member.name(), member.epoch(), member.incarnation());
     } else {
       msg::Ready ready{};
       dds::set_text(ready.component, member.name());

@@ -84,7 +84,8 @@ void Camera::step(const Tick& tick) {
 }
 
 ComponentFactory make_camera_factory() {
-  return {"camera", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Camera>(wiring, setup); }};
+  return {"camera", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Camera>(wiring, setup); },
+          "sim/camera/camera.yaml"};
 }
 
 }  // namespace constrictor

@@ -101,7 +101,8 @@ void Overview::step(const Tick&) {
 }
 
 ComponentFactory make_overview_factory() {
-  return {"overview", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Overview>(wiring, setup); }};
+  return {"overview", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Overview>(wiring, setup); },
+          "sim/camera/overview.yaml"};
 }
 
 }  // namespace constrictor

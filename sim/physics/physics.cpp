@@ -88,7 +88,8 @@ void Physics::step(const Tick& tick) {
 }
 
 ComponentFactory make_physics_factory() {
-  return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Physics>(wiring, setup); }};
+  return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Physics>(wiring, setup); },
+          "sim/physics/physics.yaml"};
 }
 
 }  // namespace constrictor

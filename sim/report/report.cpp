@@ -291,7 +291,8 @@ void Report::write_files(const Tick& tick) const {
 }
 
 ComponentFactory make_report_factory() {
-  return {"report", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Report>(wiring, setup); }};
+  return {"report", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Report>(wiring, setup); },
+          "sim/report/report.yaml"};
 }
 
 }  // namespace constrictor

@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
 #include <random>
-#include <sstream>
 #include <thread>
 
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wire.hpp"
 #include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -37,6 +41,17 @@ struct ToyRun {
   }
   void start_all(const std::vector<std::string>& groups) {
     for (const auto& group : groups) start(group);
+  }
+  /// Waits until an incarnation of a member has done a step.
+  [[nodiscard]] bool wait_for_step_of(const std::string& component, std::uint32_t incarnation) const {
+    const dds::Domain domain(claim.domain());
+    const auto reader = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
+    bool seen = false;
+    for (int i = 0; i < 4000 && !seen; ++i) {
+      reader.take([&](const msg::ComponentStatus& s) { seen |= s.component == component && s.incarnation == incarnation && s.tick >= 0; });
+      std::this_thread::sleep_for(5ms);
+    }
+    return seen;
   }
   /// Waits for the report's result; the empty string if anything failed.
   std::string result(std::chrono::seconds bound = 60s) {
@@ -88,6 +103,27 @@ TEST(RuntimeProcesses, EachMemberButThePlantMayBeKilledAtAnyTick) {
   }
 }
 
+// The members of such a process are resumed one by one.
+TEST(RuntimeProcesses, AProcessOfSeveralMembersMayBeKilledAtAnyTick) {
+  const long ticks = 4000;
+  const std::string expected = reference(ticks);
+  std::mt19937 random(20261122);
+  const std::string victim = "navigation,control,planner";
+  ToyRun run(ticks, {"--patience", "20"});
+  run.start_all({"physics,report", victim});
+  int kills = 0;
+  for (int incarnation = 2; incarnation < 14; ++incarnation) {
+    std::this_thread::sleep_for(std::chrono::microseconds(20'000 + random() % 200'000));  // before, while and after it joins
+    if (!run.processes.at("physics,report").running()) break;
+    run.processes.at(victim).signal(SIGKILL);
+    ASSERT_TRUE(run.processes.at(victim).wait(10s));
+    run.start(victim, incarnation);
+    ++kills;
+  }
+  EXPECT_EQ(run.result(), expected) << "after " << kills << " kills";
+  EXPECT_GE(kills, 6) << "the run was over too soon to mean anything";
+}
+
 TEST(RuntimeProcesses, AnyProcessMayBeStoppedAndContinued) {
   const std::string expected = reference(3000);
   for (const std::string& stopped : kEach) {
@@ -108,6 +144,30 @@ TEST(RuntimeProcesses, CappedPaceGivesTheSameResult) {
   run.start_all(kEach);
   EXPECT_EQ(run.result(), expected);
   EXPECT_GE(std::chrono::steady_clock::now() - start, 480ms);  // 100 ticks of 20 ms at four times real time
+}
+
+// Whoever is seldom due, and whoever has to wait long for the next tick, is not stuck.
+TEST(RuntimeProcesses, ASlowPaceIsNoStall) {
+  const auto run_at = [](long ticks, std::vector<std::string> options) {
+    ToyRun run(ticks, std::move(options));
+    const std::string roster = kRoster + ",overview";
+    for (const auto& name : kEach) run.start(name, 1, {}, roster);
+    run.start("overview", 1, {}, roster);
+    const std::string result = run.result();
+    for (const auto& [group, process] : run.processes) EXPECT_EQ(process.errors().find("waits for Tick"), std::string::npos) << process.errors();
+    return result;
+  };
+  EXPECT_EQ(run_at(60, {"--pace", "0.2", "--patience", "3"}), run_at(60, {}));    // 5 s between two steps of overview
+  EXPECT_EQ(run_at(2, {"--pace", "0.005", "--patience", "2"}), run_at(2, {}));  // 4 s between two ticks
+}
+
+TEST(RuntimeProcesses, AnEmergencyStopKeepsTheOperatorsPace) {
+  const std::string roster = kRoster + ",input";
+  ToyRun run(150);
+  const auto start = std::chrono::steady_clock::now();
+  run.start(roster, 1, {}, roster);
+  EXPECT_NE(run.result().find("result"), std::string::npos);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 2500ms);  // from tick 20 on, 20 ms each
 }
 
 TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
@@ -166,6 +226,27 @@ TEST(RuntimeProcesses, AnotherRosterIsRefused) {
   run.start("planner", 1, {}, "physics,navigation,control,planner");
   EXPECT_EQ(run.processes.at("planner").wait(20s), exit_status::kRefused);
   EXPECT_NE(run.processes.at("planner").errors().find("configuration hash differs"), std::string::npos);
+}
+
+// What it reads at its start is part of the run: a change shows when it comes back, not in the result.
+TEST(RuntimeProcesses, AMemberThatComesBackWithAnotherConfigurationIsRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path config = folder.path() / "planner.yaml";
+  std::ofstream(config) << "first: 1\n";
+  ToyRun run(100'000, {"--config", "planner=" + config.string(), "--patience", "20"});
+  run.start_all(kEach);
+  ASSERT_TRUE(run.wait_for_step_of("planner", 1));
+  run.processes.at("planner").signal(SIGKILL);
+  run.processes.at("planner").wait(10s);
+  run.start("planner", 2);
+  ASSERT_TRUE(run.wait_for_step_of("planner", 2)) << "the same file is welcome";
+  std::ofstream(config) << "first: 2\n";
+  run.processes.at("planner").signal(SIGKILL);
+  run.processes.at("planner").wait(10s);
+  run.start("planner", 3);
+  EXPECT_EQ(run.processes.at("planner").wait(20s), exit_status::kRefused);
+  EXPECT_NE(run.processes.at("planner").errors().find("its configuration or scenario file is not the one that the run began with"), std::string::npos)
+      << run.processes.at("planner").errors();
 }
 
 TEST(RuntimeProcesses, SigtermEndsEveryProcessWithinTwoSeconds) {

@@ -39,12 +39,45 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   std::filesystem::path output_dir_;
 };
 
+/// Steps once a second of the run, as what watches does, and writes nothing.
+class ToyOverview : public StatefulComponent<toys::Mixer> {
+ public:
+  ToyOverview(Wiring& wiring, const Setup&) : joints_(wiring.latest(topics::kJointState)) {}
+  [[nodiscard]] Timing timing() const override { return {50, 1}; }
+  void step(const Tick&) override { state_.mix(joints_->position_rad[0]); }
+
+ private:
+  Latest<msg::JointState> joints_;
+};
+
+/// An operator takes authority at tick 10, and stops the robot at tick 20.
+class ToyInput : public StatefulComponent<toys::Mixer> {
+ public:
+  ToyInput(Wiring& wiring, const Setup&) : authority_(wiring.output(topics::kAuthority)) {}
+  void step(const Tick& tick) override {
+    if (tick.index != 10 && tick.index != 20) return;
+    msg::Authority authority{};
+    authority.level = tick.index == 10 ? msg::kAuthorityOperator : msg::kAuthorityStop;
+    authority_.write(authority);
+  }
+
+ private:
+  Output<msg::Authority> authority_;
+};
+
+template <class Toy>
+ComponentFactory made(const std::string& name) {
+  return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<Toy>(w, s); }};
+}
+
 ComponentFactory factory(const std::string& name) {
   if (name == "physics") return toys::plant();
   if (name == "navigation") return toys::navigation({2, 2});
   if (name == "control") return toys::control();
   if (name == "planner") return toys::planner();
-  return {"report", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyReport>(w, s); }};
+  if (name == "overview") return made<ToyOverview>(name);
+  if (name == "input") return made<ToyInput>(name);
+  return made<ToyReport>("report");
 }
 
 }  // namespace

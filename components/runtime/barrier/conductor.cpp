@@ -24,15 +24,17 @@ void Conductor::on_greeting(const Greeting& greeting) {
                   "; a replacement needs a higher --incarnation");
   }
   if (greeting.component == options_.plant && member.greeted) return refuse("the plant cannot be replaced in a run");
-  const auto differs = [&](const char* what, const std::string& theirs, const std::string& ours) {
-    refuse(std::string(what) + " differs: found " + theirs + ", the run has " + ours);
-  };
-  if (greeting.idl_hash != options_.idl_hash) return differs("IDL hash", greeting.idl_hash, options_.idl_hash);
-  if (greeting.config_hash != options_.config_hash) {
-    return differs("configuration hash", greeting.config_hash, options_.config_hash);
+  Greeting ours;
+  ours.idl_hash = options_.idl_hash;
+  ours.config_hash = options_.config_hash;
+  ours.numeric_profile = options_.numeric_profile;
+  if (const auto what = difference(greeting, ours)) return refuse(*what);
+  if (member.greeted && greeting.component_hash != member.greeting.component_hash) {
+    return refuse("its configuration or scenario file is not the one that the run began with: found " + greeting.component_hash +
+                  ", the run has " + member.greeting.component_hash);
   }
-  if (greeting.numeric_profile != options_.numeric_profile) {
-    return differs("numeric profile", greeting.numeric_profile, options_.numeric_profile);
+  if (epoch_ && member.last_done >= 0 && member.state.empty()) {
+    return refuse("it cannot be resumed: its TickDone carried no checkpoint");
   }
   member.greeting = greeting;
   member.greeted = true;
@@ -71,6 +73,39 @@ std::int64_t Conductor::newest_due(const MemberState& member, std::int64_t tick)
   return latest_start - latest_start % member.greeting.timing.period;
 }
 
+std::optional<std::string> Conductor::stranger(const std::string& component, const EpochId& epoch, std::uint32_t incarnation) const {
+  const auto found = members_.find(component);
+  if (found == members_.end()) return "component: found '" + component + "', accepted one of the roster";
+  if (epoch_ != epoch) return "of another run or epoch";
+  if (incarnation > found->second.greeting.incarnation) return "incarnation: found " + std::to_string(incarnation) + ", which said no hello";
+  return {};
+}
+
+std::optional<std::string> Conductor::implausible(const StepDone& done) const {
+  const MemberState& member = members_.at(done.component);
+  if (done.incarnation < member.greeting.incarnation || done.index <= member.last_done) return {};  // on_done() passes over it
+  const std::int64_t period = member.greeting.timing.period;
+  if (done.index >= next_index_ || done.index % period != 0) {
+    return "index: found " + std::to_string(done.index) + ", accepted a tick that was sent and at which it steps";
+  }
+  const auto steps = static_cast<std::uint64_t>((done.index - (member.last_done < 0 ? -period : member.last_done)) / period);
+  for (const auto& [topic, count] : done.published) {
+    if (topic >= topics::kCount || !(member.greeting.writes >> topic & 1)) {
+      return "published: found topic " + std::to_string(topic) + ", which it does not write";
+    }
+    const std::uint64_t before = member.published[topic];
+    if (count < before || count - before > steps * topics::kInfos[topic].max_per_tick) {
+      return "published: found " + std::to_string(count) + " of topic " + std::to_string(topic) + " after " + std::to_string(before);
+    }
+  }
+  for (const auto& written : done.written) {
+    if (!(member.greeting.writes >> written.topic & 1)) {
+      return "checkpoint: found topic " + std::to_string(written.topic) + ", which it does not write";
+    }
+  }
+  return {};
+}
+
 bool Conductor::on_done(const StepDone& done) {
   const auto found = members_.find(done.component);
   if (found == members_.end() || epoch_ != done.epoch) return false;
@@ -79,6 +114,7 @@ bool Conductor::on_done(const StepDone& done) {
   if (done.incarnation != member.greeting.incarnation || done.index <= member.last_done || done.index >= next_index_) return false;
   member.last_done = done.index;
   member.state = done.state;
+  for (const auto& [topic, count] : done.published) member.published[topic] = count;
   member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
   for (const auto& written : done.written) {
     auto& history = member.history[written.topic];
@@ -177,6 +213,11 @@ std::map<std::string, std::array<std::uint8_t, 32>> Conductor::output_hashes() c
 std::uint32_t Conductor::incarnation(const std::string& component) const {
   const auto found = members_.find(component);
   return found == members_.end() ? 0 : found->second.greeting.incarnation;
+}
+
+std::string Conductor::known_of(const std::string& component) const {
+  const MemberState& member = members_.at(component);
+  return std::to_string(member.greeting.incarnation) + (member.ready ? "r" : "-") + std::to_string(member.last_done);
 }
 
 }  // namespace constrictor

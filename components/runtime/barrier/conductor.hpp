@@ -42,6 +42,10 @@ class Conductor {
   /// A member introduces itself: joins, rejoins with a newer incarnation, or is refused with the reason.
   void on_greeting(const Greeting& greeting);
   void on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation);
+  /// Why a message of this member, epoch and incarnation is none of this run's, if so. An older incarnation's is: it comes late.
+  [[nodiscard]] std::optional<std::string> stranger(const std::string& component, const EpochId& epoch, std::uint32_t incarnation) const;
+  /// What cannot be true of a step from elsewhere, if anything; on_done() must not see it then.
+  [[nodiscard]] std::optional<std::string> implausible(const StepDone& done) const;
   /// Returns whether it counts: false for an older incarnation, another epoch, or a step done before.
   bool on_done(const StepDone& done);
   /// Ends this epoch and begins the next; every member builds its component anew and says ready again.
@@ -74,6 +78,8 @@ class Conductor {
   /// Output hash chain of each member over what was visible at the last tick; for reports and comparison of runs.
   [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const;
   [[nodiscard]] std::uint32_t incarnation(const std::string& component) const;
+  /// What it knows of a member, for comparison of states: incarnation, ready or not, last tick done.
+  [[nodiscard]] std::string known_of(const std::string& component) const;
 
  private:
   /// A step that is done and whose outputs are not visible yet.
@@ -89,6 +95,7 @@ class Conductor {
     bool ready = false;
     std::int64_t last_done = -1;
     std::deque<Pending> pending;
+    std::array<std::uint64_t, msg::kMaxTopics> published{};           ///< by topic, after last_done
     std::array<std::uint8_t, 32> output_hash{};                       ///< of what is visible
     std::string state;                                                ///< checkpoint after last_done
     std::map<std::uint8_t, std::deque<std::string>> history;          ///< last outputs by topic

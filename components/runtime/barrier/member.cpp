@@ -107,6 +107,11 @@ void Member::build(std::uint64_t seed) {
   if (timing_.period < 1 || timing_.latency < 1) bug(name(), "period and latency must be at least 1 tick");
 }
 
+const EpochId& Member::epoch() const {
+  if (!epoch_) bug(name(), "asked for its epoch before it was in one");
+  return *epoch_;
+}
+
 void Member::refuse(const std::string& reason) {
   ++counters_.refused;
   counters_.last_refusal = reason;
@@ -114,7 +119,10 @@ void Member::refuse(const std::string& reason) {
 
 void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   if (epoch_ == epoch) return;
-  if (!epoch_ && incarnation_ > 1) return;  // its Resumption comes
+  if (!epoch_ && incarnation_ > 1) {
+    if (!epoch_after_resume_ || epoch.epoch > epoch_after_resume_->first.epoch) epoch_after_resume_ = {epoch, seed};
+    return;
+  }
   if (epoch_ && (epoch.run_id != epoch_->run_id || epoch.epoch < epoch_->epoch)) {
     return refuse("epoch: an epoch of another run or an earlier one");
   }
@@ -134,16 +142,23 @@ void Member::replay_early() {
 
 void Member::on_resume(const Resumption& resumption) {
   if (epoch_ || resumption.incarnation != incarnation_) return;
+  const auto next = std::exchange(epoch_after_resume_, {});
+  if (next && next->first.run_id == resumption.epoch.run_id && next->first.epoch > resumption.epoch.epoch) {
+    epoch_ = resumption.epoch;  // over already: only what began since counts
+    return on_epoch(next->first, next->second);
+  }
+  std::vector<std::pair<const TopicInfo*, Sample>> outputs;
+  for (const auto& written : resumption.outputs) {
+    const Sample sample = topic_ops(written.topic).parse(std::as_bytes(std::span(written.bytes)));
+    if (!sample.message) return refuse("resume.checkpoint: damaged output");
+    outputs.emplace_back(&topics::kInfos[written.topic], sample);
+  }
   build(resumption.seed);
   epoch_ = resumption.epoch;
   last_done_ = newest_tick_ = resumption.index;
   if (resumption.index >= 0) restore(resumption.state);
   // Readers that missed the last words of the dead process, or start later than it died, find them with the new writer.
-  for (const auto& written : resumption.outputs) {
-    const Sample sample = topic_ops(written.topic).parse(std::as_bytes(std::span(written.bytes)));
-    if (!sample.message) throw std::runtime_error("checkpoint of " + name() + ": damaged output");
-    sink_.publish(topics::kInfos[written.topic], sample);
-  }
+  for (const auto& [topic, sample] : outputs) sink_.publish(*topic, sample);
   replay_early();
 }
 
@@ -153,6 +168,7 @@ void Member::on_tick(const msg::Tick& tick) {
     return;
   }
   if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch) return refuse("tick: of another epoch");
+  if (tick.index < 0 || tick.period_ns <= 0) return refuse("tick: found neither index nor period, accepted an index from 0 and a period above 0");
   if (tick.index <= last_done_ && !tick.final_tick) return;  // history, after a rejoin
   if (tick.final_tick && !ended_) conclude(tick);
   newest_tick_ = std::max(newest_tick_, tick.index);

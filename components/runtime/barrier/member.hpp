@@ -51,10 +51,11 @@ class Member {
   /// Counts a message that could not be accepted.
   void refuse(const std::string& reason);
 
-  /// A new epoch: the component is built anew. A restarted member (incarnation > 1) waits for its Resumption instead.
+  /// A new epoch: the component is built anew. A restarted member (incarnation > 1) waits for its Resumption first: it is of this
+  /// epoch, or of the one before if a reset came between.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);
   /// Continue where the previous incarnation's last finished step ended; its last outputs are published again.
-  /// Throws std::runtime_error if the checkpoint is not one of this component's.
+  /// Throws std::runtime_error if the state is not one of this component's; other damage is refused.
   void on_resume(const Resumption& resumption);
   void on_tick(const msg::Tick& tick);
   /// Validates the sample; a refused one still counts in its writer's order, so that nothing waits for it.
@@ -73,8 +74,8 @@ class Member {
   [[nodiscard]] std::int64_t last_done() const { return last_done_; }
   [[nodiscard]] std::int64_t newest_tick() const { return newest_tick_; }
   [[nodiscard]] bool in_epoch() const { return epoch_.has_value(); }
-  /// The epoch it is in; only if in_epoch().
-  [[nodiscard]] const EpochId& epoch() const { return *epoch_; }
+  /// The epoch it is in; only if in_epoch(): anything else is a bug and aborts.
+  [[nodiscard]] const EpochId& epoch() const;
   [[nodiscard]] MissingInput missing() const;
 
   struct Counters {
@@ -115,6 +116,7 @@ class Member {
   std::vector<std::unique_ptr<Input>> inputs_;
   std::vector<std::unique_ptr<OutputPort>> outputs_;
   std::optional<EpochId> epoch_;
+  std::optional<std::pair<EpochId, std::uint64_t>> epoch_after_resume_;  ///< with its seed: heard of before the Resumption
   std::vector<std::pair<std::size_t, Sample>> early_;  ///< arrived before the epoch was known
   std::vector<msg::Tick> early_ticks_;                 ///< likewise
   std::map<std::int64_t, msg::Tick> ticks_;   ///< arrived and not yet done

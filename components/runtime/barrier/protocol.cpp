@@ -1,31 +1,84 @@
 #include "runtime/barrier/protocol.hpp"
 
-#include <cereal/types/string.hpp>
-#include <cereal/types/vector.hpp>
-#include <stdexcept>
+#include <string_view>
 
 namespace constrictor {
+namespace {
 
-template <class Archive>
-void serialize(Archive& archive, StepDone::Written& written) {
-  archive(written.topic, written.bytes);
+void append_number(std::string& block, std::uint64_t number) {
+  for (int shift = 0; shift < 64; shift += 8) block.push_back(static_cast<char>(number >> shift & 0xff));
 }
 
-std::string pack_outputs(const std::string& state, const std::vector<StepDone::Written>& outputs) {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(state, outputs);
-  return std::move(stream).str();
-}
+/// Takes things off the front of a block; `ok` turns false, and stays so, where it is too short.
+struct BlockReader {
+  std::string_view block;
+  bool ok = true;
 
-void unpack_outputs(const std::string& block, std::string& state, std::vector<StepDone::Written>& outputs) {
-  try {
-    std::istringstream stream(block);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(state, outputs);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(std::string("damaged checkpoint: ") + error.what());
+  std::string bytes(std::uint64_t size) {
+    if (size > block.size()) {
+      ok = false;
+      return {};
+    }
+    std::string taken(block.substr(0, size));
+    block.remove_prefix(size);
+    return taken;
   }
+  std::uint64_t number() {
+    std::uint64_t value = 0;
+    int shift = 0;
+    for (const char byte : bytes(8)) {
+      value |= std::uint64_t{static_cast<unsigned char>(byte)} << shift;
+      shift += 8;
+    }
+    return value;
+  }
+};
+
+}  // namespace
+
+std::optional<std::string> difference(const Greeting& greeting, const Greeting& ours) {
+  const auto differs = [](const char* what, const std::string& theirs, const std::string& our) {
+    return std::string(what) + " differs: found " + theirs + ", the run has " + our;
+  };
+  if (greeting.idl_hash != ours.idl_hash) return differs("IDL hash", greeting.idl_hash, ours.idl_hash);
+  if (greeting.config_hash != ours.config_hash) return differs("configuration hash", greeting.config_hash, ours.config_hash);
+  if (greeting.numeric_profile != ours.numeric_profile) {
+    return differs("numeric profile", greeting.numeric_profile, ours.numeric_profile);
+  }
+  return {};
+}
+
+std::string pack_checkpoint(const std::string& state, const std::vector<StepDone::Written>& outputs) {
+  std::string block;
+  if (state.empty() && outputs.empty()) return block;
+  append_number(block, state.size());
+  block += state;
+  append_number(block, outputs.size());
+  for (const auto& output : outputs) {
+    block.push_back(static_cast<char>(output.topic));
+    append_number(block, output.bytes.size());
+    block += output.bytes;
+  }
+  return block;
+}
+
+bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<StepDone::Written>& outputs) {
+  state.clear();
+  outputs.clear();
+  if (block.empty()) return true;
+  BlockReader reader{block};
+  state = reader.bytes(reader.number());
+  const std::uint64_t count = reader.number();
+  for (std::uint64_t i = 0; i < count && reader.ok; ++i) {
+    const std::string topic = reader.bytes(1);
+    StepDone::Written output{topic.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(topic[0]), reader.bytes(reader.number())};
+    reader.ok &= output.topic < topics::kCount;
+    outputs.push_back(std::move(output));
+  }
+  if (reader.ok && reader.block.empty()) return true;
+  state.clear();
+  outputs.clear();
+  return false;
 }
 
 }  // namespace constrictor

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,15 @@ struct Greeting {
   std::string host;
   std::string idl_hash;
   std::string config_hash;
+  std::string component_hash;  ///< of the component's own configuration file; empty: it has none
   std::string numeric_profile;
   Timing timing;
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
 };
+
+/// The first thing, with both values, in which `greeting` is of another run than `ours`: IDL, configuration, numeric profile.
+std::optional<std::string> difference(const Greeting& greeting, const Greeting& ours);
 
 /// A step is done.
 struct StepDone {
@@ -65,8 +70,10 @@ struct Resumption {
   std::vector<StepDone::Written> outputs;
 };
 
-/// Flattens outputs into one block and back; parse throws std::runtime_error on damage.
-std::string pack_outputs(const std::string& state, const std::vector<StepDone::Written>& outputs);
-void unpack_outputs(const std::string& block, std::string& state, std::vector<StepDone::Written>& outputs);
+/// A checkpoint as it travels, little-endian: length of the state (u64), state, number of outputs (u64), and of each its topic
+/// (u8), length (u64) and bytes. Empty if there is neither state nor output.
+std::string pack_checkpoint(const std::string& state, const std::vector<StepDone::Written>& outputs);
+/// The inverse, of bytes from anybody; false, and both empty, if they are not exactly one checkpoint of known topics.
+bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<StepDone::Written>& outputs);
 
 }  // namespace constrictor

@@ -37,19 +37,18 @@ msg::TickDone to_wire(const StepDone& done, std::string& block) {
   for (std::size_t i = 0; i < done.consumed.size(); ++i) message.consumed[i] = {done.consumed[i].topic, done.consumed[i].count};
   std::copy(done.output_hash.begin(), done.output_hash.end(), message.output_hash);
   message.end_of_run = done.end_of_run;
-  block = pack_outputs(done.state, done.written);
+  block = pack_checkpoint(done.state, done.written);
   message.checkpoint = borrow(block);
   return message;
 }
 
-StepDone from_wire(const msg::TickDone& message) {
+std::optional<StepDone> from_wire(const msg::TickDone& message) {
   StepDone done;
   done.component = message.component;
   done.epoch = {message.run_id, message.epoch};
   done.incarnation = message.incarnation;
   done.index = message.index;
   for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
-    if (message.published[i].topic >= topics::kCount) throw std::runtime_error("TickDone.published: unknown topic");
     done.published.push_back({message.published[i].topic, message.published[i].count});
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(message.consumed_count, std::size(message.consumed)); ++i) {
@@ -57,10 +56,7 @@ StepDone from_wire(const msg::TickDone& message) {
   }
   std::copy(std::begin(message.output_hash), std::end(message.output_hash), done.output_hash.begin());
   done.end_of_run = message.end_of_run;
-  unpack_outputs(bytes_of(message.checkpoint), done.state, done.written);
-  for (const auto& written : done.written) {
-    if (written.topic >= topics::kCount) throw std::runtime_error("TickDone.checkpoint: unknown topic");
-  }
+  if (!unpack_checkpoint(bytes_of(message.checkpoint), done.state, done.written)) return {};
   return done;
 }
 
@@ -73,6 +69,7 @@ msg::Hello to_wire(const Greeting& greeting, const std::string& version) {
   set_text(message.version, version);
   set_text(message.idl_hash, greeting.idl_hash);
   set_text(message.config_hash, greeting.config_hash);
+  set_text(message.component_hash, greeting.component_hash);
   set_text(message.numeric_profile, greeting.numeric_profile);
   message.period_ticks = greeting.timing.period;
   message.latency_ticks = greeting.timing.latency;
@@ -89,6 +86,7 @@ Greeting from_wire(const msg::Hello& message) {
   greeting.host = message.host;
   greeting.idl_hash = message.idl_hash;
   greeting.config_hash = message.config_hash;
+  greeting.component_hash = message.component_hash;
   greeting.numeric_profile = message.numeric_profile;
   greeting.timing = {message.period_ticks, message.latency_ticks};
   greeting.reads = message.reads;
@@ -104,22 +102,19 @@ msg::Resume to_wire(const Resumption& resumption, std::string& block) {
   message.incarnation = resumption.incarnation;
   message.index = resumption.index;
   message.seed = resumption.seed;
-  block = pack_outputs(resumption.state, resumption.outputs);
+  block = pack_checkpoint(resumption.state, resumption.outputs);
   message.checkpoint = borrow(block);
   return message;
 }
 
-Resumption from_wire(const msg::Resume& message) {
+std::optional<Resumption> from_wire(const msg::Resume& message) {
   Resumption resumption;
   resumption.component = message.component;
   resumption.epoch = {message.run_id, message.epoch};
   resumption.incarnation = message.incarnation;
   resumption.index = message.index;
   resumption.seed = message.seed;
-  unpack_outputs(bytes_of(message.checkpoint), resumption.state, resumption.outputs);
-  for (const auto& written : resumption.outputs) {
-    if (written.topic >= topics::kCount) throw std::runtime_error("Resume.checkpoint: unknown topic");
-  }
+  if (!unpack_checkpoint(bytes_of(message.checkpoint), resumption.state, resumption.outputs)) return {};
   return resumption;
 }
 

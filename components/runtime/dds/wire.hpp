@@ -1,6 +1,7 @@
 // The barrier's values to and from their wire forms (idl/constrictor/barrier.idl).
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/barrier/protocol.hpp"
@@ -27,11 +28,12 @@ inline constexpr int kTickDepth = 256;
 
 /// `block` keeps the bytes that the message points into.
 msg::TickDone to_wire(const StepDone& done, std::string& block);
-/// Throws std::runtime_error if the checkpoint is damaged.
-StepDone from_wire(const msg::TickDone& message);
+/// Empty if the checkpoint is damaged. Of a message that validate() accepts.
+std::optional<StepDone> from_wire(const msg::TickDone& message);
 msg::Hello to_wire(const Greeting& greeting, const std::string& version);
 Greeting from_wire(const msg::Hello& message);
 msg::Resume to_wire(const Resumption& resumption, std::string& block);
-Resumption from_wire(const msg::Resume& message);
+/// Empty if the checkpoint is damaged.
+std::optional<Resumption> from_wire(const msg::Resume& message);
 
 }  // namespace constrictor::dds
