@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -69,7 +70,7 @@ class QueueWorld : private ConductorSink {
     switch (action.kind) {
       case Action::kDeliver: {
         auto& queue = channels_[action.what];
-        const auto deliver = std::move(queue.front());
+        const auto deliver = std::move(queue.front().deliver);
         queue.pop_front();
         deliver();
         break;
@@ -102,7 +103,9 @@ class QueueWorld : private ConductorSink {
 
   /// What can be observed of the state: states with equal fingerprints have equal futures.
   [[nodiscard]] std::string fingerprint() const {
-    std::string text = std::to_string(conductor_->next_index()) + (conductor_->may_tick() ? "m" : "-");
+    std::string text = std::to_string(conductor_->next_index()) + (conductor_->may_tick() ? "m" : "-") +
+                       (conductor_->epoch() ? std::to_string(conductor_->epoch()->epoch) : "?");
+    for (const auto& node : nodes_) text += "," + conductor_->known_of(node->member->name());
     for (const auto& node : nodes_) {
       const Member& member = *node->member;
       const MissingInput missing = member.missing();
@@ -112,9 +115,10 @@ class QueueWorld : private ConductorSink {
               node->member->component().save();
     }
     for (const auto& [name, queue] : channels_) {
-      if (!queue.empty()) text += "|" + name + ":" + std::to_string(queue.size());
+      if (!queue.empty()) text += "|" + name + ":";
+      for (const auto& message : queue) text += message.what + ";";
     }
-    for (const auto& [name, count] : delivered_) text += "," + std::to_string(count);
+    for (const auto& [name, count] : delivered_) text += "," + name + std::to_string(count);
     return text;
   }
 
@@ -131,6 +135,7 @@ class QueueWorld : private ConductorSink {
     QueueWorld* world = nullptr;
     std::size_t index = 0;
     std::unique_ptr<Member> member;
+    std::optional<EpochId> ready_in;                      ///< what it said ready for
     std::map<std::uint8_t, std::deque<Sample>> history;   ///< transient-local, dies with the process
     void publish(const TopicInfo& topic, const Sample& sample) override {
       auto& kept = history[topic.id];
@@ -142,10 +147,19 @@ class QueueWorld : private ConductorSink {
     }
     void done(const StepDone& step) override {
       QueueWorld* w = world;
-      w->channels_[key(*this, "done", "conductor")].push_back([w, step] { w->conductor_->on_done(step); });
+      w->push(key(*this, "done", "conductor"), "d" + std::to_string(step.epoch.epoch) + "," + std::to_string(step.index),
+              [w, step] { w->conductor_->on_done(step); });
     }
   };
 
+  /// A message under way: what it is, for the fingerprint, and what its arrival does.
+  struct Message {
+    std::string what;
+    std::function<void()> deliver;
+  };
+  void push(const std::string& channel, std::string what, std::function<void()> deliver) {
+    channels_[channel].push_back({std::move(what), std::move(deliver)});
+  }
   static std::string key(const Node& from, const std::string& topic, const std::string& to) {
     return from.member->name() + "." + std::to_string(from.member->incarnation()) + ">" + topic + ">" + to;
   }
@@ -164,10 +178,12 @@ class QueueWorld : private ConductorSink {
     if (to.member->name() == from.member->name()) return to.member->on_sample(topic, sample);
     const std::string name = key(from, std::string(topics::kInfos[topic].name), to.member->name());
     Node* reader = &to;
-    channels_[name].push_back([this, name, reader, topic, sample] {
-      ++delivered_[name];
-      reader->member->on_sample(topic, sample);
-    });
+    const msg::Header& header = *sample.header;
+    push(name, "s" + std::to_string(header.epoch) + "," + std::to_string(header.incarnation) + "," + std::to_string(header.sequence_number),
+         [this, name, reader, topic, sample] {
+           ++delivered_[name];
+           reader->member->on_sample(topic, sample);
+         });
   }
 
   void start(std::size_t index, std::uint32_t incarnation) {
@@ -183,6 +199,8 @@ class QueueWorld : private ConductorSink {
     greeting.incarnation = incarnation;
     greeting.pid = static_cast<int>(incarnation);
     greeting.timing = nodes_[index]->member->timing();
+    greeting.reads = nodes_[index]->member->reads();
+    greeting.writes = nodes_[index]->member->writes();
     conductor_->on_greeting(greeting);
   }
 
@@ -208,13 +226,14 @@ class QueueWorld : private ConductorSink {
       }
     }
     for (const auto& tick : ticks_) send_tick(tick, reborn);
+    if (conductor_->epoch()) send_epoch(reborn, *conductor_->epoch(), conductor_->seed());
   }
 
   void send_tick(const msg::Tick& tick, Node& to) {
     if (to.index == 0) return to.member->on_tick(tick);
     Node* reader = &to;
     const std::string name = "conductor>tick>" + to.member->name();
-    channels_[name].push_back([this, name, reader, tick] {
+    push(name, "t" + std::to_string(tick.epoch) + "," + std::to_string(tick.index), [this, name, reader, tick] {
       ++delivered_[name];
       reader->member->on_tick(tick);
     });
@@ -227,23 +246,34 @@ class QueueWorld : private ConductorSink {
     ticks_.clear();
     for (auto& node : nodes_) {
       Node* reader = node.get();
-      const std::size_t index = node->index;
-      channels_["conductor>epoch>" + node->member->name()].push_back([this, reader, index, epoch, seed] {
-        reader->member->on_epoch(epoch, seed);
-        channels_[key(*nodes_[index], "ready", "conductor")].push_back(
-            [this, name = reader->member->name(), incarnation = reader->member->incarnation(), epoch] {
-              conductor_->on_ready(name, epoch, incarnation);
-            });
-      });
+      send_epoch(*reader, epoch, seed);
     }
+  }
+  void send_epoch(Node& to, const EpochId& epoch, std::uint64_t seed) {
+    Node* reader = &to;
+    const std::string name = "conductor>epoch>" + to.member->name();
+    push(name, "e" + std::to_string(epoch.epoch), [this, name, reader, epoch, seed] {
+      ++delivered_[name];
+      reader->member->on_epoch(epoch, seed);
+      say_ready(*reader);
+    });
+  }
+  /// As a process does: once for each epoch that its member is in.
+  void say_ready(Node& from) {
+    const Member& member = *from.member;
+    if (!member.in_epoch() || from.ready_in == member.epoch()) return;
+    from.ready_in = member.epoch();
+    push(key(from, "ready", "conductor"), "r" + std::to_string(member.epoch().epoch),
+         [this, name = member.name(), incarnation = member.incarnation(), epoch = member.epoch()] {
+           conductor_->on_ready(name, epoch, incarnation);
+         });
   }
   void resume(const Resumption& resumption) override {
     Node* reader = &find(resumption.component);
-    channels_["conductor>resume>" + resumption.component].push_back([this, reader, resumption] {
+    const std::string what = "R" + std::to_string(resumption.epoch.epoch) + "," + std::to_string(resumption.index);
+    push("conductor>resume>" + resumption.component, what, [this, reader, resumption] {
       reader->member->on_resume(resumption);
-      channels_[key(*reader, "ready", "conductor")].push_back([this, resumption] {
-        conductor_->on_ready(resumption.component, resumption.epoch, resumption.incarnation);
-      });
+      say_ready(*reader);
     });
   }
   void refuse(const Greeting& greeting, const std::string& reason) override {
@@ -254,7 +284,7 @@ class QueueWorld : private ConductorSink {
   std::int64_t final_tick_;
   std::unique_ptr<Conductor> conductor_;
   std::vector<std::unique_ptr<Node>> nodes_;
-  std::map<std::string, std::deque<std::function<void()>>> channels_;
+  std::map<std::string, std::deque<Message>> channels_;
   std::map<std::string, int> delivered_;
   std::vector<msg::Tick> ticks_;
 };
