@@ -227,9 +227,10 @@ int run_command(const RunOptions& options) {
       status = 128 + wish;
       break;
     }
-    state = supervisor.poll();
     for (const auto& line : observer.poll()) display.say(line);
     note.set_seed(observer.view().seed(options.seed));
+    supervisor.run_is_at(observer.view().tick, observer.view().held());
+    state = supervisor.poll();
     if (observer.view().ended(manifest.plant)) supervisor.expect_end();
     if (Clock::now() - sampled > kMemoryEvery) {
       sampled = Clock::now();

@@ -37,6 +37,8 @@ struct RunView {
   [[nodiscard]] bool over(const msg::Waiting& waiting) const;
   /// True if the component said that the run is over for it.
   [[nodiscard]] bool ended(const std::string& component) const;
+  /// True if nobody keeps the next tick waiting, only the pace or a pause.
+  [[nodiscard]] bool held() const { return run_state && run_state->held; }
   [[nodiscard]] double sim_time_s() const { return tick < 0 ? 0.0 : static_cast<double>(tick) * period_s; }
   /// The seed in force, which a reset changes; `begun_with` before the run's first word.
   [[nodiscard]] std::uint64_t seed(std::uint64_t begun_with) const { return run_state ? run_state->seed : begun_with; }

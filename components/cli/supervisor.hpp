@@ -44,8 +44,10 @@ class Supervisor {
     kFailed,  ///< see failure()
   };
   /// Looks after the processes without waiting: restarts members that died, within their budget. The plant's death, a bad
-  /// configuration, a refusal, a peer waited for too long, and deaths in quick succession end the run.
+  /// configuration, a refusal, a peer waited for too long, and five deaths of a process without a tick between them end the run.
   State poll();
+  /// How far the run is, -1 before it began. `held`: nobody keeps the next tick waiting, only its pace or a pause.
+  void run_is_at(std::int64_t tick, bool held);
   void sample_memory();
   /// The plant said that the run is over: from now on members end, and none is restarted.
   void expect_end() { ending_ = true; }
@@ -67,10 +69,9 @@ class Supervisor {
     std::vector<ChildProcess> child;        ///< the present incarnation, if it was started
     ProcessRecord record;
     std::uint32_t incarnation = 0;
-    Clock::time_point started{};
     Clock::time_point ended{};
     std::uintmax_t log_offset = 0;          ///< where this incarnation's output begins
-    int quick_deaths = 0;
+    int vain_deaths = 0;                    ///< since the run last moved on
     bool over = false;                      ///< ended, and its exit dealt with
   };
   void spawn(Member& member);
@@ -87,6 +88,7 @@ class Supervisor {
   std::filesystem::path log_dir_;
   Say say_;
   std::vector<Member> members_;
+  std::int64_t tick_ = -1;                  ///< newest that is known
   State state_ = State::kRunning;
   bool ending_ = false;
   std::string failure_;

@@ -69,7 +69,7 @@ class DeterminismRun : public ::testing::Test {
     }
     std::ofstream(dir_ / name) << text;
   }
-  /// Pid of the process of this test's run whose program is `name`; -1 if there is none.
+  /// Pid of the process of this test's run whose program, or whose group of components, is `name`; -1 if there is none.
   [[nodiscard]] pid_t pid_of(const std::string& name) const {
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       const std::string pid = entry.path().filename();
@@ -77,14 +77,15 @@ class DeterminismRun : public ::testing::Test {
       std::ifstream file(entry.path() / "cmdline");
       const std::string line{std::istreambuf_iterator<char>(file), {}};
       const std::string executable = std::filesystem::path(line.substr(0, line.find('\0'))).filename();
-      if (executable == name && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
+      const bool hosts = executable == "constrictor_host" && line.find('\0' + name + '\0') != std::string::npos;
+      if ((executable == name || hosts) && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
     }
     return -1;
   }
-  /// Waits until `name` runs.
-  [[nodiscard]] pid_t running(const std::string& name) const {
+  /// Waits until `name` runs, as another process than `dead`.
+  [[nodiscard]] pid_t running(const std::string& name, pid_t dead = -1) const {
     for (int i = 0; i < 5000; ++i) {
-      if (const pid_t pid = pid_of(name); pid > 0) return pid;
+      if (const pid_t pid = pid_of(name); pid > 0 && pid != dead) return pid;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return -1;

@@ -67,6 +67,22 @@ TEST_F(Determinism, KilledMembersLeaveNoTrace) {
   EXPECT_GE(kills, 7);
 }
 
+TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesLeavesNoTrace) {
+  const std::string expected = run("reference");
+  const std::string victim = "navigation,control,input,planner";
+  Process process = start("killed", {"--pace", "1x", "--group", victim, "--group", "camera,overview,perception,report"});
+  int kills = 0;
+  for (pid_t dead = -1; kills < 10; ++kills) {
+    const pid_t pid = running(victim, dead);
+    ASSERT_GT(pid, 0) << process.output();
+    std::this_thread::sleep_for(std::chrono::milliseconds(150 + 70 * kills));  // before, while and after it joins
+    if (!process.running()) break;
+    ::kill(dead = pid, SIGKILL);
+  }
+  EXPECT_EQ(hash_of("killed", process), expected) << process.output();
+  EXPECT_GE(kills, 8);
+}
+
 TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnLeavesNoTrace) {
   const std::string expected = run("reference");
   EXPECT_EQ(run_with_stops("physics", 2s), expected);

@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wire.hpp"
 #include "runtime/host.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
@@ -136,6 +139,29 @@ TEST_F(RunCommand, RestartsAMemberThatDiedWithoutATrace) {
   EXPECT_EQ(state_hash("r"), state_hash("undisturbed"));
   EXPECT_EQ(report("r")["processes"][2]["restarts"], 1);
   EXPECT_NE(launcher.output().find("control was killed by signal 9 (Killed); restarted as incarnation 2"), std::string::npos) << launcher.output();
+}
+
+// Each death soon after the start of its incarnation, and far more of them than a member may die in vain.
+TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
+  ASSERT_EQ(run(600, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
+  Process launcher = run(600, "r", {"--pace", "2x"});
+  ASSERT_TRUE(launcher.wait_for("run ", 15s));
+  const dds::Domain domain(static_cast<std::uint32_t>(std::stoul(launcher.output().substr(4))));
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
+  for (std::uint32_t incarnation = 1; incarnation <= 10; ++incarnation) {
+    bool steps = false;
+    ASSERT_TRUE(eventually([&] {
+      statuses.take([&](const msg::ComponentStatus& status) {
+        steps |= status.component == std::string("control") && status.incarnation == incarnation && status.tick >= 0;
+      });
+      return steps;
+    })) << incarnation << ": " << launcher.output();
+    std::this_thread::sleep_for(100ms);  // ten ticks, if it lets them pass
+    ::kill(members()["control"], SIGKILL);
+  }
+  ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
+  EXPECT_EQ(state_hash("r"), state_hash("undisturbed"));
+  EXPECT_EQ(report("r")["processes"][2]["restarts"], 10);
 }
 
 TEST_F(RunCommand, ThePlantsDeathEndsTheRunWithAnError) {
