@@ -2,7 +2,9 @@
 #pragma once
 
 #include <sys/types.h>
+#include <sys/wait.h>
 
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,6 +20,8 @@ struct ChildExit {
   [[nodiscard]] bool clean() const { return wait_status == 0; }
   /// Exit status; none if a signal killed it.
   [[nodiscard]] std::optional<int> code() const;
+  /// True if SIGKILL or SIGTERM ended it: somebody's will, not its own fault.
+  [[nodiscard]] bool killed_from_outside() const { return WIFSIGNALED(wait_status) && (WTERMSIG(wait_status) == SIGKILL || WTERMSIG(wait_status) == SIGTERM); }
   /// "exit status 78 (configuration)", "killed by signal 9 (Killed)".
   [[nodiscard]] std::string describe() const;
 };

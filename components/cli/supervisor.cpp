@@ -88,9 +88,9 @@ void Supervisor::run_is_at(std::int64_t tick, bool held) {
   for (auto& member : members_) member.vain_deaths = 0;
 }
 
-void Supervisor::restart(Member& member, const std::string& why) {
+void Supervisor::restart(Member& member, const std::string& why, bool in_vain) {
   // No tick passes a step that its member always dies of. Whoever is killed and comes back lets the run go on, however often.
-  if (++member.vain_deaths >= kMostVainDeaths) {
+  if (in_vain && ++member.vain_deaths >= kMostVainDeaths) {
     return fail(fmt::format("{} died {} times in a row while the run stood still; last: {}", member.record.name, kMostVainDeaths, why),
                 exit_status::kSoftware);
   }
@@ -117,7 +117,7 @@ void Supervisor::take_exit(Member& member, const ChildExit& exit) {
   if (is_plant(member)) return fail(fmt::format("{}, the plant, ended: {}", member.record.name, how), code ? code : exit_status::kSoftware);
   if (ending_) return say_(fmt::format("{} {} after the run's end", member.record.name, how));
   if (is_hopeless(code)) return fail(fmt::format("{} ended: {}", member.record.name, how), code == 127 ? exit_status::kSoftware : code);
-  if (state_ == State::kRunning) restart(member, how.rfind("killed", 0) == 0 ? "was " + how : "ended: " + how);
+  if (state_ == State::kRunning) restart(member, how.rfind("killed", 0) == 0 ? "was " + how : "ended: " + how, !exit.killed_from_outside());
 }
 
 Supervisor::State Supervisor::poll() {
@@ -129,7 +129,7 @@ Supervisor::State Supervisor::poll() {
   }
   for (auto& member : members_) {
     const bool ended_alone = !ending_ && member.over && state_ == State::kRunning && Clock::now() - member.ended > kEndTogether;
-    if (ended_alone) restart(member, "ended before the run did");
+    if (ended_alone) restart(member, "ended before the run did", true);
   }
   return state_;
 }

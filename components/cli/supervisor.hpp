@@ -76,7 +76,8 @@ class Supervisor {
   };
   void spawn(Member& member);
   void take_exit(Member& member, const ChildExit& exit);
-  void restart(Member& member, const std::string& why);
+  /// `in_vain`: of its own fault, so that another start may change nothing.
+  void restart(Member& member, const std::string& why, bool in_vain);
   void fail(const std::string& why, int status);
   [[nodiscard]] bool is_plant(const Member& member) const;
   [[nodiscard]] std::filesystem::path log_of(const Member& member) const;
