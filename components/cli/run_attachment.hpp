@@ -29,8 +29,10 @@ class RunAttachment {
 
   /// Why there is nothing to operate any more, for people; empty: it goes on.
   [[nodiscard]] const std::string& over() const { return over_; }
-  /// False while nobody would listen: then nothing is sent.
+  /// False while nobody would listen: then nothing is sent that would move the robot later.
   [[nodiscard]] bool may_send() const { return over_.empty() && !input_gone_; }
+  /// An emergency stop may be asked for also while `input` is away: it is said again until it is heard, and moves nothing.
+  [[nodiscard]] bool may_stop() const { return over_.empty(); }
   /// [s] since the run last said how it is; 0 before its first word.
   [[nodiscard]] double silent_s() const { return silent_s_; }
 

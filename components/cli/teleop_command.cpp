@@ -170,7 +170,8 @@ class Teleop {
   /// False: quit.
   bool act(TeleopAction action) {
     if (action == TeleopAction::kQuit) return false;
-    if (!watch_.attachment().may_send()) {
+    const RunAttachment& run = watch_.attachment();
+    if (action == TeleopAction::kEmergencyStop ? !run.may_stop() : !run.may_send()) {
       if (action != TeleopAction::kNone) screen_.notice = "nothing is sent: `input` is away, and may come back";
       return true;
     }

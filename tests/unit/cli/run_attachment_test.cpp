@@ -59,6 +59,7 @@ TEST_F(Attachment, NothingIsSentWhileInputIsAwayAndItMayComeBack) {
   signs_.input = false;
   look();
   EXPECT_FALSE(attachment_.may_send());
+  EXPECT_TRUE(attachment_.may_stop()) << "a stop that is heard late is better than none";
   look(4s);
   EXPECT_EQ(attachment_.over(), "");
   signs_.input = true;
@@ -69,6 +70,7 @@ TEST_F(Attachment, NothingIsSentWhileInputIsAwayAndItMayComeBack) {
   EXPECT_EQ(attachment_.over(), "") << "counted from when it went away";
   look(5s);
   EXPECT_NE(attachment_.over(), "");
+  EXPECT_FALSE(attachment_.may_stop());
 }
 
 TEST_F(Attachment, TellsHowLongTheRunIsSilent) {
