@@ -87,7 +87,7 @@ TEST(RuntimeProcesses, EachMemberButThePlantMayBeKilledAtAnyTick) {
   const std::string expected = reference(ticks);
   std::mt19937 random(20261121);
   for (const std::string victim : {"navigation", "control", "planner"}) {
-    ToyRun run(ticks);
+    ToyRun run(ticks, {"--pace", "30"});  // 2.7 s at least: nobody is killed when it is over, for nobody would resume him
     run.start_all(kEach);
     int kills = 0;
     for (int incarnation = 2; incarnation < 12; ++incarnation) {
@@ -109,7 +109,7 @@ TEST(RuntimeProcesses, AProcessOfSeveralMembersMayBeKilledAtAnyTick) {
   const std::string expected = reference(ticks);
   std::mt19937 random(20261122);
   const std::string victim = "navigation,control,planner";
-  ToyRun run(ticks, {"--patience", "20"});
+  ToyRun run(ticks, {"--patience", "20", "--pace", "20"});  // 4 s at least, longer than the kills
   run.start_all({"physics,report", victim});
   int kills = 0;
   for (int incarnation = 2; incarnation < 14; ++incarnation) {
