@@ -90,7 +90,7 @@ TEST(RuntimeProcesses, EachMemberButThePlantMayBeKilledAtAnyTick) {
     ToyRun run(ticks, {"--pace", "30"});  // 2.7 s at least: nobody is killed when it is over, for nobody would resume him
     run.start_all(kEach);
     int kills = 0;
-    for (int incarnation = 2; incarnation < 12; ++incarnation) {
+    for (int incarnation = 2; incarnation < 8; ++incarnation) {
       std::this_thread::sleep_for(std::chrono::microseconds(20'000 + random() % 150'000));  // somewhere in the run
       if (!run.processes.at("physics").running()) break;
       run.processes.at(victim).signal(SIGKILL);
@@ -112,7 +112,7 @@ TEST(RuntimeProcesses, AProcessOfSeveralMembersMayBeKilledAtAnyTick) {
   ToyRun run(ticks, {"--patience", "20", "--pace", "20"});  // 4 s at least, longer than the kills
   run.start_all({"physics,report", victim});
   int kills = 0;
-  for (int incarnation = 2; incarnation < 14; ++incarnation) {
+  for (int incarnation = 2; incarnation < 11; ++incarnation) {
     std::this_thread::sleep_for(std::chrono::microseconds(20'000 + random() % 200'000));  // before, while and after it joins
     if (!run.processes.at("physics,report").running()) break;
     run.processes.at(victim).signal(SIGKILL);
