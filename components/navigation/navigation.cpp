@@ -72,7 +72,9 @@ void Navigation::step(const Tick& tick) {
     return;
   }
   const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
-  remember_pose(pose_in_->header.tick, X_MH, state_.things);
+  // The pose is of the tick before. Filed under that one, drops missed their zone in 2 of 17 missions, under this one in none of
+  // 40: what else is a tick late is not known yet.
+  remember_pose(tick.index, X_MH, state_.things);
   if (objects_in_ && objects_in_.fresh()) watch_objects(config_.object, *objects_in_, state_.things);
 
   const std::vector<Pose2> body = planar_body(robot_, *joints_in_);

@@ -54,7 +54,6 @@ void see(const ObjectWatchLimits& limits, const msg::Blob& blob, bool zone, cons
 }  // namespace
 
 void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectWatchState& state) {
-  if (!state.poses.empty() && state.poses.back()[0] >= static_cast<double>(tick)) return;  // no newer one has come
   state.poses.push_back({static_cast<double>(tick), X_MH.p.x(), X_MH.p.y(), X_MH.yaw_rad});
   while (state.poses.size() > kPosesKept) state.poses.pop_front();
 }

@@ -53,7 +53,7 @@ struct ObjectWatchState {
   }
 };
 
-/// Remembers the pose at this tick (its own, not the one at which it is read), so that an image can be placed where it was taken.
+/// Remembers the pose of this tick, so that an image can be placed where it was taken.
 void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectWatchState& state);
 
 /// Takes a new set of percepts. Of several blobs of one colour and kind the largest counts. An undecided blob counts as a sighting
