@@ -1,4 +1,5 @@
 // What a process's members say and hear over DDS, and how the conductor's words go out.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -72,6 +73,10 @@ void Host::Impl::make_endpoints() {
   attach(epoch_reader_.get(), [this, each] {
     epoch_reader_.take([&](const msg::EpochStart& start) {
       if (!acceptable(wire::kEpochStart, start)) return;
+      // The first run that is heard is the one taken part in: it must be ours.
+      if (start.config_hash != config_hash_) {
+        return refuse_message(wire::kEpochStart, fmt::format("config_hash: found '{}', accepted {}", start.config_hash, config_hash_));
+      }
       each([&](Member& member) { member.on_epoch({start.run_id, start.epoch}, start.seed); });
       for (auto& local : members_) local.ready_said = false;
     });

@@ -142,6 +142,7 @@ void Member::replay_early() {
 
 void Member::on_resume(const Resumption& resumption) {
   if (epoch_ || resumption.incarnation != incarnation_) return;
+  if (incarnation_ == 1) return refuse("resume: the first incarnation begins with an epoch");
   const auto next = std::exchange(epoch_after_resume_, {});
   if (next && next->first.run_id == resumption.epoch.run_id && next->first.epoch > resumption.epoch.epoch) {
     epoch_ = resumption.epoch;  // over already: only what began since counts
