@@ -16,11 +16,10 @@ bool is_end(std::uint8_t state) { return state >= msg::kGoalSucceeded; }
 }  // namespace
 
 bool GoalWatch::counts(const msg::Header& header) {
-  if (run_id_ == 0) run_id_ = header.run_id;
-  if (header.run_id != run_id_ || header.epoch < epoch_) return false;
-  if (header.epoch > epoch_) {
+  const auto is = present_.take(header.run_id, header.epoch);
+  if (is == NewestEpoch::Is::kOther) return false;
+  if (is == NewestEpoch::Is::kNew) {
     // A reset: goals are numbered anew.
-    epoch_ = header.epoch;
     tick_ = -1;
     authority_.reset();
     status_.reset();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/newest_epoch.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor::cli {
@@ -34,15 +35,14 @@ class GoalWatch {
   /// How a goal ended; empty: it did not yet. With `by_status` also if only the state of navigation tells, whose events are lost.
   [[nodiscard]] std::optional<End> end(std::uint64_t goal, bool by_status) const;
 
-  [[nodiscard]] std::uint32_t epoch() const { return epoch_; }       ///< 0: nothing was heard
+  [[nodiscard]] std::uint32_t epoch() const { return present_.epoch(); }  ///< 0: nothing was heard
   [[nodiscard]] std::int64_t tick() const { return tick_; }          ///< newest that was heard of; -1: none
 
  private:
   /// False: the message does not count.
   bool counts(const msg::Header& header);
 
-  std::uint64_t run_id_ = 0;
-  std::uint32_t epoch_ = 0;
+  NewestEpoch present_;
   std::int64_t tick_ = -1;
   std::optional<msg::Authority> authority_;
   std::optional<msg::TaskStatus> status_;

@@ -13,7 +13,6 @@
 #include "cli/introspection/domain_view.hpp"
 #include "cli/operator_client.hpp"
 #include "cli/parameter_view.hpp"
-#include "cli/run_registry.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/endpoint.hpp"
@@ -37,8 +36,6 @@ struct Options {
   std::int64_t at_tick = 0;
 };
 
-std::uint32_t domain_of(const Options& options) { return options.view.domain ? *options.view.domain : find_run(std::nullopt).domain; }
-
 std::string pending_text(const msg::Parameter& p) {
   return p.pending_tick < 0 ? "" : fmt::format("  -> {} at tick {}", value_text(p, p.pending_value), p.pending_tick);
 }
@@ -48,7 +45,7 @@ void tell_silent(const ParameterView& view) {
 }
 
 int list(const Options& options) {
-  const dds::Domain domain(domain_of(options));
+  const dds::Domain domain(chosen_domain(options.view));
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
   bool begins = false;  // any of them with the prefix
@@ -74,7 +71,7 @@ int list(const Options& options) {
 }
 
 int get(const Options& options) {
-  const dds::Domain domain(domain_of(options));
+  const dds::Domain domain(chosen_domain(options.view));
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
@@ -134,7 +131,7 @@ int set(const Options& options) {
       return exit_status::kMissionFailed;
     }
   }
-  OperatorClient client(domain_of(options), unique_source("param"), 0ms, /*detached=*/true);
+  OperatorClient client(chosen_domain(options.view), unique_source("param"), 0ms, /*detached=*/true);
   const auto changes = dds::Reader<msg::ParameterChange>::member(client.participant(), std::string(topics::kParameterChange.name));
   if (!client.connect(kBound)) {
     std::fprintf(stderr, "param: the run has no `input` that listens\n");

@@ -51,25 +51,22 @@ bool RunView::ended(const std::string& component) const {
 }
 
 bool RunView::over(const msg::Waiting& waiting) const {
-  if (waiting.run_id == 0 || run_id_ == 0) return false;  // before a run begins there is no tick to be done
+  if (waiting.run_id == 0 || present_.run_id() == 0) return false;  // before a run begins there is no tick to be done
   const auto waiter = components.find(waiting.component);
-  const bool done = waiter != components.end() && waiter->second.epoch == epoch_ && waiter->second.tick >= waiting.tick;
+  const bool done = waiter != components.end() && waiter->second.epoch == present_.epoch() && waiter->second.tick >= waiting.tick;
   const bool of_earlier_epoch = tick >= 0 && waiting.tick > tick + kMostAhead;
-  return waiting.run_id != run_id_ || done || of_earlier_epoch || tick > waiting.tick + kMostAhead;
+  return waiting.run_id != present_.run_id() || done || of_earlier_epoch || tick > waiting.tick + kMostAhead;
 }
 
 bool RunView::present(std::uint64_t message_run_id, std::uint32_t message_epoch) {
-  if (message_run_id == 0) return false;  // of a member that waits for the run to begin
-  if (run_id_ == 0) run_id_ = message_run_id;
-  if (message_run_id != run_id_ || message_epoch < epoch_) return false;
-  if (message_epoch > epoch_) {
-    epoch_ = message_epoch;
+  const auto is = present_.take(message_run_id, message_epoch);
+  if (is == NewestEpoch::Is::kNew) {
     tick = -1;
     mission.reset();
     task.reset();
     authority.reset();
   }
-  return true;
+  return is != NewestEpoch::Is::kOther;
 }
 
 void RunView::take(const msg::Tick& message) {

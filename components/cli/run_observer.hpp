@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/newest_epoch.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor::cli {
@@ -46,8 +47,7 @@ struct RunView {
  private:
   /// True if it is of the present epoch; a newer one begins with it.
   bool present(std::uint64_t message_run_id, std::uint32_t message_epoch);
-  std::uint64_t run_id_ = 0;
-  std::uint32_t epoch_ = 0;
+  NewestEpoch present_;
   std::map<std::string, std::uint64_t> earlier_overruns_;  ///< of incarnations before the newest
   std::map<std::string, std::uint64_t> earlier_refused_;
 };

@@ -7,13 +7,12 @@
 #include <string_view>
 
 #include "control/control_parameters.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor {
 
 Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
     : robot_(load_robot(setup.robot_file)),
-      config_(load_control_config(setup.config_file.empty() ? share_path("components/control/control.yaml") : setup.config_file)),
+      config_(load_control_config(setup.config_file)),
       parameters_(wiring, topics::kControlParameters), chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
       registry_(std::move(methods)), trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
       authority_in_(wiring.latest(topics::kAuthority)), contacts_in_(wiring.latest(topics::kContactState)),

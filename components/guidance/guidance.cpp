@@ -6,7 +6,6 @@
 #include "guidance/guidance_parameters.hpp"
 #include "guidance/planar.hpp"
 #include "guidance/plausible.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor {
 namespace {
@@ -16,11 +15,6 @@ using guidance::Pose2;
 constexpr std::int64_t kMapPeriodTicks = 5;
 constexpr std::size_t kTrackTicks = 110;  // covers the speed's window and any camera's delay
 
-guidance::GuidanceConfig configuration_of(const Setup& setup) {
-  return guidance::load_guidance_config(setup.config_file.empty() ? share_path("components/guidance/guidance.yaml")
-                                                                  : setup.config_file);
-}
-
 double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }
@@ -29,7 +23,7 @@ double yaw_of(const msg::Quaternion& q) {
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
     : wiring_(wiring), model_(load_robot(setup.robot_file)),
-      config_(configuration_of(setup)),
+      config_(guidance::load_guidance_config(setup.config_file)),
       parameters_(wiring, topics::kGuidanceParameters),
       joints_(wiring.latest(topics::kJointState)),
       imu_(wiring.latest(topics::kImuState)),

@@ -1,7 +1,8 @@
 #include "input/arbiter.hpp"
 
 #include <algorithm>
-#include <cstring>
+
+#include "constrictor/text.hpp"
 
 namespace constrictor {
 namespace {
@@ -33,7 +34,7 @@ Ruling Arbiter::refuse(const msg::Request& request, const std::string& reason) {
 }
 
 void Arbiter::note(const msg::Request& request) {
-  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  const std::string name = text_of(request.source);
   state_.ruled_source = is_readable(name) ? name : "?";  // it goes to people's terminals
   state_.ruled_sequence = request.header.sequence_number;
 }
@@ -63,7 +64,7 @@ bool Arbiter::holder_is_detached() const {
 }
 
 Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
-  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  const std::string name = text_of(request.source);
   note(request);
   if (request.kind == msg::kRequestEmergencyStop) return stop(state_.ruled_source);
   if (!is_readable(name)) return refuse("source: found nothing or unprintable characters, accepted a name without blanks");
@@ -178,7 +179,7 @@ Ruling Arbiter::release(const msg::Request& request) {
 }
 
 Ruling Arbiter::decide_outside(const msg::Request& request, const WriterId& writer) {
-  const std::string name(request.source, ::strnlen(request.source, sizeof request.source));
+  const std::string name = text_of(request.source);
   const auto meet = [&] {
     const auto known = state_.sources.find(name);
     if (known == state_.sources.end() || known->second.index == 0) return;

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/share.hpp"
+#include "constrictor/text.hpp"
 
 namespace constrictor {
 namespace {
 
 constexpr std::int64_t kAuthorityInterval_ticks = 50;
 constexpr std::int64_t kStale_ticks = 50;
-
-template <std::size_t N>
-void set_text(char (&field)[N], const std::string& text) {
-  std::copy_n(text.begin(), std::min(text.size(), N - 1), field);
-}
 
 }  // namespace
 
@@ -27,7 +22,7 @@ Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests
       answer_out_(wiring.output(topics::kRequestAnswer)),
       parameters_in_{wiring.latest(topics::kNavigationParameters), wiring.latest(topics::kControlParameters),
                      wiring.latest(topics::kPerceptionParameters), wiring.latest(topics::kGuidanceParameters)},
-      planned_(load_planned_changes(setup.config_file.empty() ? share_path("components/input/input.yaml") : setup.config_file)),
+      planned_(load_planned_changes(setup.config_file)),
       outside_(outside ? std::move(outside) : wiring.outside_requests()) {}
 
 void Input::step(const Tick& tick) {

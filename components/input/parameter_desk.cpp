@@ -1,9 +1,9 @@
 #include "input/parameter_desk.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "configuration/configuration.hpp"
+#include "constrictor/text.hpp"
 #include "runtime/parameters.hpp"
 
 namespace constrictor {
@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::int64_t kFirstPlannedTick = 10;  // by then every owner has announced its parameters
 constexpr std::size_t kMostInATick = topics::kParameterChange.max_per_tick;
-
-template <std::size_t N>
-std::string text_of(const char (&field)[N]) {
-  return {field, ::strnlen(field, N)};
-}
 
 /// A name that goes to people's terminals, in a refusal.
 std::string printable(const std::string& name) {

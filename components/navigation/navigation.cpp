@@ -1,22 +1,13 @@
 #include "navigation/navigation.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
+#include "constrictor/text.hpp"
 #include "navigation/motions.hpp"
 #include "navigation/navigation_parameters.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor {
-namespace {
-
-template <std::size_t N>
-void copy_text(char (&to)[N], const std::string& from) {
-  std::snprintf(to, N, "%s", from.c_str());
-}
-
-}  // namespace
 
 msg::TaskParameters GoalState::parameters() const {
   msg::TaskParameters p{};
@@ -40,8 +31,7 @@ void GoalState::set_parameters(const msg::TaskParameters& p) {
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
     : wiring_(wiring), robot_(load_robot(setup.robot_file)),
-      config_(load_navigation_config(setup.config_file.empty() ? share_path("components/navigation/navigation.yaml")
-                                                               : setup.config_file)),
+      config_(load_navigation_config(setup.config_file)),
       parameters_(wiring, topics::kNavigationParameters), grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
       line_in_(wiring.latest(topics::kLinePercept)), objects_in_(wiring.latest(topics::kObjectPercepts)),
       pose_in_(wiring.latest(topics::kRobotPose)), map_in_(wiring.latest(topics::kFieldMap)),
@@ -198,7 +188,7 @@ void Navigation::write_event(std::uint8_t event, std::uint8_t goal_state, std::u
   message.goal_state = goal_state;
   message.colour = colour;
   message.object_handle = handle;
-  copy_text(message.detail, detail);
+  set_text(message.detail, detail);
   event_out_.write(message);
 }
 
@@ -207,7 +197,7 @@ void Navigation::write_refusal(const msg::TaskCommand& command, const std::strin
   event.goal_id = command.goal_id;
   event.task = command.task;
   event.goal_state = msg::kGoalRefused;
-  copy_text(event.detail, reason);
+  set_text(event.detail, reason);
   event_out_.write(event);
 }
 
@@ -228,8 +218,8 @@ void Navigation::write_status(const TaskOutput& output) {
   status.parameters = state_.goal.parameters();
   status.carrying = state_.grip.carrying;
   status.cross_track_m = output.cross_track_m;
-  copy_text(status.phase, state_.goal.phase);
-  copy_text(status.reason, state_.goal.reason);
+  set_text(status.phase, state_.goal.phase);
+  set_text(status.reason, state_.goal.reason);
   status_out_.write(status);
 }
 

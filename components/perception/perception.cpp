@@ -5,22 +5,16 @@
 
 #include "perception/perception_parameters.hpp"
 #include "robot/robot_model.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor {
 namespace {
 
 constexpr std::size_t kAttitudes = 32;  // ticks; longer than any camera's delay
 
-perception::PerceptionConfig configuration_of(const Setup& setup) {
-  return perception::load_perception_config(
-      setup.config_file.empty() ? share_path("components/perception/perception.yaml") : setup.config_file);
-}
-
 }  // namespace
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
-    : config_(configuration_of(setup)),
+    : config_(perception::load_perception_config(setup.config_file)),
       wiring_(wiring),
       parameters_(wiring, topics::kPerceptionParameters),
       detector_(config_),

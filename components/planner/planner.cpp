@@ -1,22 +1,13 @@
 #include "planner/planner.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
-#include "runtime/share.hpp"
+#include "constrictor/text.hpp"
 
 namespace constrictor {
-namespace {
-
-template <std::size_t N>
-void set_text(char (&field)[N], const std::string& text) {
-  std::copy_n(text.begin(), std::min(text.size(), N - 1), field);
-}
-
-}  // namespace
 
 Planner::Planner(Wiring& wiring, const Setup& setup)
-    : config_(load_planner_config(setup.config_file.empty() ? share_path("components/planner/planner.yaml") : setup.config_file)),
+    : config_(load_planner_config(setup.config_file)),
       planner_(config_, state_.mission),
       line_(wiring.latest(topics::kLinePercept)),
       objects_(wiring.latest(topics::kObjectPercepts)),

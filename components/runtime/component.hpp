@@ -40,7 +40,7 @@ struct Setup {
   std::string component;                ///< its name in the roster
   std::filesystem::path robot_file;     ///< YAML of components/robot
   std::filesystem::path scenario_file;  ///< YAML of sim/scenarios; only sim/ may open it
-  std::filesystem::path config_file;    ///< the component's own YAML; empty: its default
+  std::filesystem::path config_file;    ///< the component's own YAML; the runtime fills in its factory's default
   std::filesystem::path output_dir;     ///< for members that write files (report); may be empty
   std::uint64_t seed = 1;               ///< of the epoch
   std::uint16_t robot_id = 1;           ///< key of every message of this robot
@@ -97,8 +97,8 @@ class Plant : public Component {
   void load(const std::string&) override {}
 };
 
-/// How the runtime makes a component: its name, its constructor, and the file below the share folder that it reads if Setup names no
-/// other (empty: none).
+/// How the runtime makes a component: its name, its constructor, and the file below the share folder that Setup::config_file is if
+/// nobody names another (empty: none).
 struct ComponentFactory {
   std::string name;
   std::function<std::unique_ptr<Component>(Wiring&, const Setup&)> create;

@@ -9,13 +9,10 @@
 
 #include "runtime/config_hash.hpp"
 #include "runtime/host_impl.hpp"
-#include "runtime/share.hpp"
 #include "runtime/version.hpp"
 
 namespace constrictor {
 namespace {
-
-namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
@@ -42,14 +39,12 @@ Host::Impl::Impl(HostOptions options, std::vector<ComponentFactory> factories)
     Setup setup = options_.setup;
     const auto config = options_.config_files.find(factory.name);
     if (config != options_.config_files.end()) setup.config_file = config->second;
-    fs::path config_file = setup.config_file;
-    if (config_file.empty() && !factory.default_config.empty()) config_file = share_path(factory.default_config);
-    const std::string config_hash = component_config_hash(config_file, setup.scenario_file);
     const bool checkpoints = !conducts || options_.record;
-    members_.push_back({std::make_unique<Member>(std::move(factory), std::move(setup), options_.incarnation, checkpoints,
-                                                 static_cast<MemberSink&>(*this)),
-                        {}, false, config_hash});
-    if (members_.back().member->name() == options_.plant) plant_ = members_.back().member.get();
+    auto member = std::make_unique<Member>(std::move(factory), std::move(setup), options_.incarnation, checkpoints,
+                                           static_cast<MemberSink&>(*this));
+    if (member->name() == options_.plant) plant_ = member.get();
+    const std::string config_hash = component_config_hash(member->setup().config_file, member->setup().scenario_file);
+    members_.push_back({std::move(member), {}, false, config_hash});
   }
   if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
     throw std::runtime_error(options_.plant + " is named as the plant but is not one");

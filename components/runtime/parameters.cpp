@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <stdexcept>
+
+#include "constrictor/text.hpp"
 
 namespace constrictor {
 namespace {
@@ -13,14 +14,9 @@ namespace {
 constexpr std::size_t kMostWaiting = std::size_t{2} * msg::kMaxParameterChanges;
 
 template <std::size_t N>
-std::string text_of(const char (&field)[N]) {
-  return {field, ::strnlen(field, N)};
-}
-
-template <std::size_t N>
-void set_text(char (&field)[N], const std::string& text) {
+void set_whole_text(char (&field)[N], const std::string& text) {
   if (text.size() >= N) throw std::logic_error("parameter " + text + ": more than " + std::to_string(N - 1) + " characters");
-  std::copy(text.begin(), text.end(), field);
+  set_text(field, text);
 }
 
 std::string number(double value) {
@@ -59,9 +55,9 @@ void Parameters::add(int& field, std::string_view key, std::string_view unit, Pa
 
 void Parameters::add(Row row, std::string_view key, std::string_view unit, ParameterBounds bounds, std::string_view doc) {
   const std::string name = owner_ + "." + std::string(key);
-  set_text(row.facts.name, name);
-  set_text(row.facts.unit, std::string(unit));
-  set_text(row.facts.doc, std::string(doc));
+  set_whole_text(row.facts.name, name);
+  set_whole_text(row.facts.unit, std::string(unit));
+  set_whole_text(row.facts.doc, std::string(doc));
   row.facts.minimum = bounds.min;
   row.facts.maximum = bounds.max;
   if (const auto refusal = parameter_refusal(row.facts, row.facts.default_value); !refusal.empty()) throw std::logic_error(refusal);

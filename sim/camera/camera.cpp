@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "configuration/configuration.hpp"
-#include "runtime/share.hpp"
 #include "sim/render/scene_messages.hpp"
 
 namespace constrictor {
@@ -32,7 +31,7 @@ Camera::Camera(Wiring& wiring, const Setup& setup)
       description_(wiring.latest(topics::kSceneDescription)),
       info_(wiring.output(topics::kCameraInfo)),
       image_(wiring.output(topics::kCameraImage)) {
-  auto file = Configuration::load(setup.config_file.empty() ? share_path("sim/camera/camera.yaml") : setup.config_file);
+  auto file = Configuration::load(setup.config_file);
   options_.shadow_map_size = static_cast<int>(file.integer("shadow_map_size", 0, 4096));
   options_.module_segments = static_cast<int>(file.integer("module_segments", 8, 64));
   shadow_radius_m_ = file.number("shadow_radius_m", {0.5, 20.0});

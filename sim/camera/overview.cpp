@@ -2,7 +2,6 @@
 
 #include "configuration/configuration.hpp"
 #include "robot/robot_model.hpp"
-#include "runtime/share.hpp"
 #include "sim/render/scene_messages.hpp"
 
 namespace constrictor {
@@ -34,7 +33,7 @@ OverviewConfiguration load_overview(const std::filesystem::path& path) {
 }
 
 Overview::Overview(Wiring& wiring, const Setup& setup)
-    : configuration_(load_overview(setup.config_file.empty() ? share_path("sim/camera/overview.yaml") : setup.config_file)),
+    : configuration_(load_overview(setup.config_file)),
       timing_{static_cast<std::uint16_t>(configuration_.period_ticks), static_cast<std::uint16_t>(configuration_.latency_ticks)},
       world_(wiring.latest(topics::kWorldState)),
       description_(wiring.latest(topics::kSceneDescription)),

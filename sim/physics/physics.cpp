@@ -18,7 +18,7 @@ std::filesystem::path or_default(const std::filesystem::path& file, const char* 
 }  // namespace
 
 Physics::Physics(Wiring& wiring, const Setup& setup)
-    : Physics(wiring, setup, load_physics_config(or_default(setup.config_file, "sim/physics/physics.yaml")),
+    : Physics(wiring, setup, load_physics_config(setup.config_file),
               load_robot(or_default(setup.robot_file, "components/robot/mamba.yaml")),
               load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed)) {}
 

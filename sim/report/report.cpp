@@ -10,7 +10,6 @@
 #include "configuration/configuration.hpp"
 #include "constrictor/json.hpp"
 #include "robot/robot_model.hpp"
-#include "runtime/share.hpp"
 #include "sim/report/figure.hpp"
 #include "sim/report/names.hpp"
 
@@ -79,7 +78,7 @@ ReportConfiguration load_report(const std::filesystem::path& path) {
 
 Report::Report(Wiring& wiring, const Setup& setup)
     : wiring_(wiring),
-      configuration_(load_report(setup.config_file.empty() ? share_path("sim/report/report.yaml") : setup.config_file)),
+      configuration_(load_report(setup.config_file)),
       folder_(setup.output_dir),
       yaw_joints_(load_robot(setup.robot_file).yaw_joints()),
       torques_(in_folder(folder_, "joint_torques.csv")),

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <sstream>
+#include <optional>
 
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
@@ -21,6 +22,15 @@ class TerminalClient : public CliFixture {
           "  - {components: [physics, guidance, navigation, control, input]}\n");
   }
   ~TerminalClient() override { tmux({"kill-server"}); }
+
+  /// A run, and a shell in a terminal of 80x24 that has something on it.
+  void begin() {
+    launcher_.emplace(start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
+    ASSERT_TRUE(launcher_->wait_for("simulated", 30s)) << launcher_->output() << launcher_->errors();
+    tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
+    enter("PS1='$ '; clear; echo was here before");
+    ASSERT_TRUE(shows("was here before"));
+  }
 
   std::string tmux(std::vector<std::string> arguments) const {
     std::vector<std::string> all = {"tmux", "-L", socket_, "-f", "/dev/null"};
@@ -47,14 +57,13 @@ class TerminalClient : public CliFixture {
   }
 
   std::string socket_;
+  std::optional<Process> launcher_;
 };
 
 TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
-  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
-  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
-  tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
-  enter("PS1='$ '; clear; echo was here before");
-  ASSERT_TRUE(shows("was here before"));
+  begin();
+  ASSERT_FALSE(HasFatalFailure());
+  Process& launcher = *launcher_;
   const std::string before = settings("before");
   ASSERT_FALSE(before.empty());
 
@@ -109,11 +118,9 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
 }
 
 TEST_F(TerminalClient, ArrowsComeInBurstsAndPiecesAndItLeavesARunThatIsGone) {
-  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
-  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
-  tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
-  enter("PS1='$ '; clear; echo was here before");
-  ASSERT_TRUE(shows("was here before"));
+  begin();
+  ASSERT_FALSE(HasFatalFailure());
+  Process& launcher = *launcher_;
   const std::string before = settings("before");
   enter(program("constrictor") + " teleop");
   ASSERT_TRUE(shows("authority  nobody")) << screen();

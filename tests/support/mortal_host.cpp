@@ -107,5 +107,5 @@ int main(int argc, char** argv) {
   const ComponentFactory factory = known->second();
   return component_main(argc - 1, argv + 1, {factory.name, [factory](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
                                                return std::make_unique<Mortal>(factory, wiring, setup);
-                                             }});
+                                             }, factory.default_config});
 }

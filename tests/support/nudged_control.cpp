@@ -74,5 +74,5 @@ int main(int argc, char** argv) {
   const std::int64_t tick = text ? std::atoll(text) : 1000;
   return component_main(argc, argv, {"control", [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
                                        return std::make_unique<NudgedControl>(wiring, setup, tick);
-                                     }});
+                                     }, make_control_factory().default_config});
 }

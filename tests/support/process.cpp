@@ -29,14 +29,12 @@ std::string read_file(const std::string& path) {
 }  // namespace
 
 Process::Process(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "constrictor-test-XXXXXX").string();
-  if (!::mkdtemp(pattern.data())) throw std::runtime_error("mkdtemp failed");
-  directory_ = pattern;
+  folder_ = std::make_unique<TemporaryFolder>();
   std::vector<char*> argv;
   for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const std::string out = directory_ + "/out";
-  const std::string err = directory_ + "/err";
+  const std::string out = folder_->path() / "out";
+  const std::string err = folder_->path() / "err";
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ > 0) return;
@@ -49,14 +47,14 @@ Process::Process(std::vector<std::string> arguments, const std::map<std::string,
 }
 
 Process::Process(Process&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), status_(other.status_), directory_(std::exchange(other.directory_, {})) {}
+    : pid_(std::exchange(other.pid_, -1)), status_(other.status_), folder_(std::move(other.folder_)) {}
 
 Process& Process::operator=(Process&& other) noexcept {
   if (this != &other) {
     discard();
     pid_ = std::exchange(other.pid_, -1);
     status_ = other.status_;
-    directory_ = std::exchange(other.directory_, {});
+    folder_ = std::move(other.folder_);
   }
   return *this;
 }
@@ -69,8 +67,7 @@ void Process::discard() {
     ::waitpid(pid_, nullptr, 0);
   }
   pid_ = -1;
-  std::error_code ignored;
-  if (!directory_.empty()) std::filesystem::remove_all(directory_, ignored);
+  folder_.reset();
 }
 
 void Process::signal(int number) const { ::kill(pid_, number); }
@@ -89,8 +86,8 @@ std::optional<int> Process::wait(std::chrono::seconds bound) {
   return status_;
 }
 
-std::string Process::output() const { return read_file(directory_ + "/out"); }
-std::string Process::errors() const { return read_file(directory_ + "/err"); }
+std::string Process::output() const { return read_file(folder_->path() / "out"); }
+std::string Process::errors() const { return read_file(folder_->path() / "err"); }
 
 bool Process::wait_for(const std::string& text, std::chrono::seconds bound) {
   const auto end = Clock::now() + bound;

@@ -3,10 +3,13 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <sys/types.h>
 #include <vector>
+
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
@@ -34,7 +37,7 @@ class Process {
   void discard();
   pid_t pid_ = -1;
   std::optional<int> status_;
-  std::string directory_;
+  std::unique_ptr<TemporaryFolder> folder_;  ///< of output and errors
 };
 
 /// Path of a program of this build.

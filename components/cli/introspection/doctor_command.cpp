@@ -78,15 +78,21 @@ struct Diagnosis {
   std::vector<Finding> findings;
 };
 
-Diagnosis examine(std::uint32_t domain, const std::vector<std::uint32_t>& runs) {
-  Diagnosis result;
-  Facts& facts = result.facts;
-  facts.runs = runs;
-  facts.domain = domain;
+/// What is the same in every domain.
+Facts facts_of_host() {
+  Facts facts;
+  for (const auto& run : live_runs()) facts.runs.push_back(run.domain);
   facts.interfaces = interfaces();
   facts.receive_buffer_max_bytes = receive_buffer_max();
   facts.idl_hash = msg::kIdlHash;
   read_configuration(facts);
+  return facts;
+}
+
+Diagnosis examine(std::uint32_t domain, const Facts& host) {
+  Diagnosis result{host, {}};
+  Facts& facts = result.facts;
+  facts.domain = domain;
   std::string error;
   try {
     ViewOptions chosen;
@@ -119,15 +125,14 @@ void tell(const Diagnosis& diagnosis) {
 
 /// The domain that was chosen; otherwise those of all runs on this host; otherwise the default one.
 int doctor(const ViewOptions& options) {
-  std::vector<std::uint32_t> runs;
-  for (const auto& run : live_runs()) runs.push_back(run.domain);
-  std::vector<std::uint32_t> domains = runs;
+  const Facts host = facts_of_host();
+  std::vector<std::uint32_t> domains = host.runs;
   if (options.domain) domains = {*options.domain};
   if (domains.empty()) domains = {0};
   bool well = true;
   auto all = nlohmann::ordered_json::array();
   for (const std::uint32_t domain : domains) {
-    const Diagnosis diagnosis = examine(domain, runs);
+    const Diagnosis diagnosis = examine(domain, host);
     well = well && diagnosis.findings.empty();
     if (options.json) all.push_back(json_of(diagnosis));
     else fmt::print("{}", domain == domains.front() ? "" : "\n"), tell(diagnosis);

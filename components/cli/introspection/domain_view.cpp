@@ -24,8 +24,10 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
   app.add_flag("--json", options.json, "for scripts: JSON instead of text");
 }
 
+std::uint32_t chosen_domain(const ViewOptions& options) { return options.domain ? *options.domain : find_run(std::nullopt).domain; }
+
 DomainView::DomainView(const ViewOptions& options)
-    : number_(options.domain ? *options.domain : find_run(std::nullopt).domain), domain_(number_), discovery_(domain_.participant()) {}
+    : number_(chosen_domain(options)), domain_(number_), discovery_(domain_.participant()) {}
 
 bool DomainView::settle(std::chrono::milliseconds bound) const {
   const auto end = Clock::now() + bound;

@@ -31,6 +31,9 @@ struct Member {
   std::optional<msg::ComponentStatus> status;
 };
 
+/// The domain that the options name, or that of the only run there is. Throws RegistryError.
+std::uint32_t chosen_domain(const ViewOptions& options);
+
 class DomainView {
  public:
   /// Joins the domain that the options name, or that of the only run there is. Throws RegistryError or dds::Error.

@@ -9,6 +9,7 @@
 #include "constrictor/reflect.hpp"
 #include "runtime/barrier/topic_ops.hpp"
 #include "runtime/concluding.hpp"
+#include "runtime/share.hpp"
 
 namespace constrictor {
 namespace {
@@ -88,6 +89,7 @@ Member::Member(ComponentFactory factory, Setup setup, std::uint32_t incarnation,
     : factory_(std::move(factory)), setup_(std::move(setup)), incarnation_(incarnation), checkpoints_(checkpoints),
       sink_(sink) {
   setup_.component = factory_.name;
+  if (setup_.config_file.empty() && !factory_.default_config.empty()) setup_.config_file = share_path(factory_.default_config);
   build(setup_.seed);
 }
 

@@ -41,6 +41,8 @@ class Member {
   Member& operator=(const Member&) = delete;
 
   [[nodiscard]] const std::string& name() const { return setup_.component; }
+  /// What its component is built from, with the configuration file that counts.
+  [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] std::uint32_t incarnation() const { return incarnation_; }
   [[nodiscard]] Timing timing() const { return timing_; }
   [[nodiscard]] std::uint64_t reads() const { return reads_; }    ///< bit i: topic i

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "constrictor/text.hpp"
 #include "runtime/dds/entity.hpp"
 
 namespace constrictor::dds {
@@ -128,13 +129,7 @@ class Reader {
   Entity entity_;
 };
 
-/// Copies text into a bounded string of a message, cut to what fits.
-template <std::size_t N>
-void set_text(char (&field)[N], const std::string& text) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  std::copy_n(text.begin(), length, field);
-  std::fill(field + length, field + N, '\0');
-}
+using constrictor::set_text;
 
 /// User data of every endpoint matched with a reader or writer.
 std::vector<std::string> matched_user_data(dds_entity_t endpoint, bool is_writer);
