@@ -62,8 +62,8 @@ void Navigation::step(const Tick& tick) {
     return;
   }
   const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
-  // The pose is of the tick before. Filed under that one, drops missed their zone in 2 of 17 missions, under this one in none of
-  // 40: what else is a tick late is not known yet.
+  // The pose is of the tick before, and the tasks take it for the present one. Things are placed by poses that are late by as much,
+  // so that they are right as seen from X_MH: what the robot does in one tick cancels. Filed under its own tick it would not.
   remember_pose(tick.index, X_MH, state_.things);
   if (objects_in_ && objects_in_.fresh()) watch_objects(config_.object, *objects_in_, state_.things);
 

@@ -134,7 +134,10 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       break;
     }
     case msg::kTaskNone: choose_search(inputs, wanted); break;
-    default: parameters.object_colour = colour(); break;
+    default:
+      parameters.object_colour = colour();
+      parameters.object_handle = memory_.object_handle;
+      break;
   }
   return wanted;
 }

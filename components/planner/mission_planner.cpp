@@ -26,7 +26,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
-  note_deliveries_of_others(inputs);
+  note_deliveries(inputs);
   if (!may_command(inputs)) return std::nullopt;
   if (memory_.state == kDone) return std::nullopt;
   memory_.active_s += elapsed_s;
@@ -56,6 +56,7 @@ void MissionPlanner::enter(MissionState state) {
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
   }
   if (state == kGrasp) memory_.way_known = true;
+  if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
   memory_.asked = false;
   memory_.unlike_s = 0.0;
@@ -120,9 +121,9 @@ void MissionPlanner::skip_delivered() {
   while (memory_.object_index < config_.sequence.size() && (memory_.delivered >> memory_.object_index & 1u) != 0) ++memory_.object_index;
 }
 
-void MissionPlanner::note_deliveries_of_others(const PlannerInputs& inputs) {
+void MissionPlanner::note_deliveries(const PlannerInputs& inputs) {
   for (const auto* event : inputs.events) {
-    if (event->event != msg::kEventDroppingDone || event->goal_id >> 48 == msg::kAuthorityPlanner) continue;
+    if (event->event != msg::kEventDroppingDone) continue;
     for (std::size_t i = memory_.object_index; i < config_.sequence.size(); ++i) {
       if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;
       memory_.delivered |= std::uint32_t{1} << i;
@@ -149,6 +150,7 @@ std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
 
 std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs) {
   if (event.event == msg::kEventEndOfLine) return end_of_line(inputs);
+  if (event.event == msg::kEventObjectReached || event.event == msg::kEventObjectPregrasped) memory_.object_handle = event.object_handle;
   for (const auto& loss : row_of(memory_.state).losses) {
     if (loss.event != msg::kEventNone && loss.event == event.event) return recover(loss.to);
   }

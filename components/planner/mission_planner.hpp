@@ -60,6 +60,7 @@ struct MissionMemory {
   std::uint16_t object_index = 0;   ///< of the sequence: the first that is not delivered
   std::uint32_t delivered = 0;      ///< bit i: object i of the sequence is on its zone, whoever brought it there
   std::uint16_t recoveries = 0;
+  std::uint16_t object_handle = 0;  ///< of the object in front of the robot or beside it, as navigation named it; 0: none is known
   std::uint16_t object_images = 0;  ///< consecutive images that show the wanted object
   std::uint16_t zone_images = 0;
   std::uint16_t line_images = 0;
@@ -73,7 +74,7 @@ struct MissionMemory {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(state, asked, way_known, suspended, stopped, last_s, active_s, entered_s, asked_s, unlike_s, line_ended_s, zone_seen_s,
-            goals, object_index, delivered, recoveries, object_images, zone_images, line_images, searches, searching, guided, direction,
+            goals, object_index, delivered, recoveries, object_handle, object_images, zone_images, line_images, searches, searching, guided, direction,
             trail, reason);
   }
 };
@@ -100,8 +101,9 @@ class MissionPlanner {
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
   [[nodiscard]] MissionState delivered();
-  /// What an operator or an external planner dropped need not be fetched any more.
-  void note_deliveries_of_others(const PlannerInputs& inputs);
+  /// What was dropped need not be fetched any more: by an operator, by an external planner, or by its own last task while somebody
+  /// took over.
+  void note_deliveries(const PlannerInputs& inputs);
   void skip_delivered();
   /// Counts a recovery: `to`, or failure if there were too many.
   [[nodiscard]] MissionState recover(MissionState to);

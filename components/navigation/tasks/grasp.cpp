@@ -29,12 +29,18 @@ struct GraspState {
 
 class Grasp : public StatefulTask<GraspState> {
  public:
-  std::string refusal(const TaskInput&, const Grip& grip) const override {
+  std::string refusal(const TaskInput& input, const Grip& grip) const override {
+    const std::uint16_t named = input.parameters.object_handle;
     if (grip.carrying) return "the body holds an object already";
-    return grip.pregrasped ? "" : "no object is pregrasped";
+    if (!grip.pregrasped) return "no object is pregrasped";
+    const std::uint8_t colour = input.parameters.object_colour;
+    if (colour != msg::kColourUnknown && colour != grip.colour) return "the object that is pregrasped has another colour";
+    const bool another = named != 0 && grip.handle != 0 && named != grip.handle;
+    return another ? "object_handle: found " + std::to_string(named) + ", pregrasped is " + std::to_string(grip.handle) : "";
   }
   void start(const TaskInput& input, Grip& grip) override {
     grip.pregrasped = false;
+    if (grip.handle == 0) grip.handle = input.parameters.object_handle;
     state_.before = input.X_MH;
     state_.speed_m_s = input.config.grasp.wrap_speed_m_s;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "navigation/motions.hpp"
+#include "navigation/object_handles.hpp"
 #include "navigation/steering.hpp"
 
 namespace constrictor {
@@ -41,7 +42,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const Sighting& thing = input.things.objects[colour];
     const double unseen_s = static_cast<double>(input.tick.index - thing.seen_tick) * input.tick.period_s();
     if (!thing.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
-    return "";
+    return handle_refusal(input);
   }
 
   void start(const TaskInput& input, Grip& grip) override {
@@ -188,7 +189,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
       grip.pregrasped = true;
       grip.side = state_.side;
       grip.colour = input.parameters.object_colour;
-      grip.handle = input.parameters.object_handle;
+      grip.handle = object_handle(input);
       grip.radius_m = state_.radius_m;
       grip.p_MO = state_.p_MO;
       output.emit(msg::kEventObjectPregrasped, grip.colour, grip.handle);
@@ -207,10 +208,16 @@ class Pregrasp : public StatefulTask<PregraspState> {
     enter(kAdvance);
   }
 
+  /// The one that is named, else the one that is here.
+  static std::uint16_t object_handle(const TaskInput& input) {
+    const std::uint16_t named = input.parameters.object_handle;
+    return named != 0 ? named : seen_handle(input, input.parameters.object_colour);
+  }
+
   void lose(const TaskInput& input, Grip& grip, TaskOutput& output, const char* why) {
     grip.pregrasped = false;
     stand(grip, output);
-    output.emit(msg::kEventObjectPregraspLost, input.parameters.object_colour, input.parameters.object_handle);
+    output.emit(msg::kEventObjectPregraspLost, input.parameters.object_colour, object_handle(input));
     output.abort(why);
   }
 };

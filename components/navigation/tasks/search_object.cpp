@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "navigation/motions.hpp"
+#include "navigation/object_handles.hpp"
 
 namespace constrictor {
 namespace {
@@ -29,7 +30,8 @@ struct SearchState {
 class SearchObject : public StatefulTask<SearchState> {
  public:
   std::string refusal(const TaskInput& input, const Grip&) const override {
-    return input.parameters.object_colour == msg::kColourUnknown ? "search_object needs an object colour" : "";
+    if (input.parameters.object_colour == msg::kColourUnknown) return "search_object needs an object colour";
+    return handle_refusal(input);
   }
   void start(const TaskInput& input, Grip&) override { begin(input); }
 
@@ -47,8 +49,8 @@ class SearchObject : public StatefulTask<SearchState> {
       confirm(input, grip, thing, output);
       return;
     }
-    if (thing.visible && thing.missed == 0) {
-      output.emit(msg::kEventObjectFound, colour);
+    if (thing.visible && thing.missed == 0 && is_named(input)) {
+      output.emit(msg::kEventObjectFound, colour, seen_handle(input, colour));
       enter(input, kConfirm);
       confirm(input, grip, thing, output);
       return;
@@ -136,9 +138,9 @@ class SearchObject : public StatefulTask<SearchState> {
     stand(grip, output);
     output.phase = "confirm";
     if (!thing.visible) {
-      output.emit(msg::kEventObjectLost, input.parameters.object_colour);
+      output.emit(msg::kEventObjectLost, input.parameters.object_colour, input.parameters.object_handle);
       begin(input);
-    } else if (state_.phase_s >= input.config.search.confirm_s) {
+    } else if (state_.phase_s >= input.config.search.confirm_s && thing.missed == 0) {
       output.succeed();
     }
   }

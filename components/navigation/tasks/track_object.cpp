@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "navigation/motions.hpp"
+#include "navigation/object_handles.hpp"
 #include "navigation/steering.hpp"
 
 namespace constrictor {
@@ -31,6 +32,7 @@ class TrackObject : public StatefulTask<TrackState> {
     if (colour == msg::kColourUnknown) return "track_object needs an object colour";
     if (grip.carrying) return "track_object cannot run while carrying";
     if (!input.things.objects[colour].known) return "no object of this colour was seen yet";
+    if (!is_named(input)) return "object_handle: found " + std::to_string(input.parameters.object_handle) + ", accepted 0 or the object that is seen";
     return "";
   }
   void start(const TaskInput& input, Grip&) override {
@@ -51,7 +53,7 @@ class TrackObject : public StatefulTask<TrackState> {
     if (input.image) state_.missed = thing.missed == 0 || !in_view ? 0 : state_.missed + 1;
     const double unseen_s = static_cast<double>(input.tick.index - thing.seen_tick) * input.tick.period_s();
     if (state_.missed >= input.config.object.lost_after || unseen_s > config.memory_s) {
-      output.emit(msg::kEventObjectLost, colour);
+      output.emit(msg::kEventObjectLost, colour, input.parameters.object_handle);
       output.abort("object lost");
       stand(grip, output);
       return;
@@ -80,7 +82,7 @@ class TrackObject : public StatefulTask<TrackState> {
     const bool straight = std::abs(turn_rad) <= config.straight_rad;
     const bool reached = range_m <= config.reach_m && std::abs(mean_rad) <= config.reach_bearing_rad && thing.missed == 0;
     if (reached && straight && range_m > config.too_near_m) {
-      output.emit(msg::kEventObjectReached, colour);
+      output.emit(msg::kEventObjectReached, colour, seen_handle(input, colour));
       output.succeed();
     } else if (range_m <= config.too_near_m || (range_m <= config.reach_m && state_.turning)) {
       state_.leaving = true;

@@ -70,7 +70,7 @@ class Behaviour : public ::testing::Test {
   /// `from` is replaced by `to`.
   void begin(const std::string& world, const std::string& from = "", const std::string& to = "") {
     constrictor::Setup setup;
-    setup.robot_file = share_path("components/robot/mamba.yaml");
+    setup.robot_file = share_path("components/robot/" + robot_ + ".yaml");
     setup.scenario_file = dir_ / "scenario.yaml";
     setup.seed = 1;
     std::ofstream(setup.scenario_file) << world;
@@ -145,6 +145,24 @@ class Behaviour : public ::testing::Test {
     return nullptr;
   }
 
+  /// Handle of the only object of a colour in guidance's map; 0: there is none, or more than one.
+  [[nodiscard]] std::uint16_t mapped_handle(std::uint8_t colour) const {
+    const auto& map = *run_->latest(topics::kFieldMap);
+    std::vector<std::uint16_t> handles;
+    for (int i = 0; i < map.object_count; ++i) {
+      if (map.objects[i].kind == msg::kBlobObject && map.objects[i].colour == colour) handles.push_back(map.objects[i].handle);
+    }
+    return handles.size() == 1 ? handles.front() : 0;
+  }
+  /// Handle of the object that guidance's map has within 0.3 m of a place. Where the robot starts at W's origin, M is W.
+  [[nodiscard]] std::uint16_t mapped_near(const Place& place) const {
+    const auto& map = *run_->latest(topics::kFieldMap);
+    for (int i = 0; i < map.object_count; ++i) {
+      const auto& thing = map.objects[i];
+      if (thing.kind == msg::kBlobObject && place.distance_m({thing.x_m, thing.y_m}) < 0.3) return thing.handle;
+    }
+    return 0;
+  }
   [[nodiscard]] const msg::WorldState& world() const { return *run_->latest(topics::kWorldState); }
   [[nodiscard]] Place head() const { return place_of(world().module_poses[0]); }
   [[nodiscard]] Place module(std::size_t index) const { return place_of(world().module_poses[index]); }
@@ -178,6 +196,7 @@ class Behaviour : public ::testing::Test {
   }
   [[nodiscard]] double time_s() const { return run_->time_s(); }
 
+  std::string robot_ = "mamba";  ///< which robot file the next run takes
   std::vector<Happened> happened;
   double object_touched_s = 0.0;  ///< when the robot, or anything else, last touched the object
   const TemporaryFolder folder_;

@@ -60,10 +60,16 @@ TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
   std::printf("pregrasped: %.3f m from the body, wound %.2f rad\n", nearest_module_m(), wound_rad());
   EXPECT_LT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.15);
   EXPECT_GT(object_touched_s, 0.0);
+  const std::uint16_t handle = first(msg::kEventObjectPregrasped)->event.object_handle;
+  ASSERT_GT(handle, 0);
+  EXPECT_EQ(handle, mapped_handle(msg::kColourGreen));
 
-  start(msg::kTaskGrasp, [](msg::TaskParameters&) {});
+  start(msg::kTaskGrasp, [&](msg::TaskParameters& p) { p.object_handle = handle + 1; });
+  EXPECT_EQ(until_end(1.0), msg::kGoalRefused) << "another object is pregrasped";
+  start(msg::kTaskGrasp, [&](msg::TaskParameters& p) { p.object_handle = handle; });
   ASSERT_TRUE(until_event(msg::kEventObjectGrasped, 90.0));
   const Happened grasped = *first(msg::kEventObjectGrasped);
+  EXPECT_EQ(grasped.event.object_handle, handle);
   std::printf("grasped: wound %.2f rad\n", wound_rad());
   EXPECT_GT(std::abs(wound_rad()), 4.0) << "seen from the object the body goes round by well over half a turn";
   EXPECT_LT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.02);
@@ -76,6 +82,7 @@ TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
   ASSERT_TRUE(until_event(msg::kEventDroppingDone, 150.0));
   EXPECT_FALSE(first(msg::kEventObjectGraspLost));
   const Happened dropped = *first(msg::kEventDroppingDone);
+  EXPECT_EQ(dropped.event.object_handle, handle);
   const double away_m = dropped.object.distance_m({-0.9, 0.5, 0.0});
   std::printf("dropped %.2f m from the zone's centre, %.2f m from the body; base torque while carried %.2f Nm\n", away_m,
               nearest_module_m(), torque_nm);

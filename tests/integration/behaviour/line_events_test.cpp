@@ -110,5 +110,21 @@ TEST_F(Behaviour, ExploreMovesInItsDirectionAndLooksToBothSides) {
   }
 }
 
+// Where the body's front has gone and points, as ground truth has it: the head itself looks to either side.
+TEST_F(Behaviour, ExploreToASideGoesToThatSide) {
+  for (const bool left : {true, false}) {
+    begin(std::string("name: nothing\n") + kStart);
+    start(msg::kTaskExplore, &msg::TaskParameters::direction, left ? msg::kDirectionLeft : msg::kDirectionRight);
+    until([] { return false; }, 10.0);
+    double yaw_rad = 0.0;  // over a wave of the body
+    for (std::size_t m = 8; m < 20; ++m) yaw_rad += module(m).yaw_rad / 12;
+    const double side = left ? 1.0 : -1.0;
+    std::printf("head at (%.2f, %.2f) m, body points to %.2f rad\n", head().x_m, head().y_m, yaw_rad);
+    EXPECT_GT(side * head().y_m, 0.1);
+    EXPECT_GT(side * yaw_rad, 0.1);
+    EXPECT_GT(head().x_m, 0.2) << "forwards";
+  }
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -133,10 +133,12 @@ TEST(Goals, ANewGoalPreemptsAndACancelCancels) {
 TEST(Goals, RefusesWithAReasonAndLeavesTheRunningGoalAlone) {
   msg::TaskCommand bad = start(2, msg::kTaskFollowLine);
   bad.parameters.line_colour = msg::kColourUnknown;
+  msg::TaskCommand unknown = start(7, msg::kTaskSearchObject);
+  unknown.parameters.object_handle = 3;
   GoalRun r({{10, start(1, msg::kTaskRotate)}, {20, bad}, {30, start(3, msg::kTaskDrop)}, {40, start(4, msg::kTaskGrasp)},
-         {50, start(5, msg::kTaskPregrasp)}, {60, start(6, msg::kTaskTrackObject)}});
+         {50, start(5, msg::kTaskPregrasp)}, {60, start(6, msg::kTaskTrackObject)}, {70, unknown}});
   r.run->advance(100);
-  for (std::uint64_t goal = 2; goal <= 6; ++goal) {
+  for (std::uint64_t goal = 2; goal <= 7; ++goal) {
     EXPECT_EQ(r.count(goal, msg::kGoalRefused), 1) << goal;
     EXPECT_EQ(r.ends(goal), 0) << goal;
   }

@@ -57,6 +57,30 @@ TEST_F(PlannerTest, IgnoresAnObjectOfAnotherColourAZoneAndWhatIsFar) {
   EXPECT_EQ(memory_.state, kFollowLine);
 }
 
+// Tables VII and IX: the object to pregrasp and to grasp is named by the handle under which it was reached.
+TEST_F(PlannerTest, TheObjectThatWasReachedIsPregraspedAndGraspedByItsHandle) {
+  const auto succeed_with = [this](std::uint8_t what, std::uint16_t handle) {
+    msg::TaskEvent e = event(what, msg::kGoalSucceeded);
+    e.object_handle = handle;
+    step({e});
+  };
+  find_line();
+  drive(4.0);
+  see(msg::kColourGreen, msg::kBlobObject, 1.2);
+  steps(4);
+  ASSERT_EQ(last_.task, msg::kTaskTrackObject);
+  EXPECT_EQ(last_.parameters.object_handle, 0);
+  succeed_with(msg::kEventObjectReached, 7);
+  ASSERT_EQ(last_.task, msg::kTaskPregrasp);
+  EXPECT_EQ(last_.parameters.object_handle, 7);
+  succeed_with(msg::kEventObjectPregrasped, 8);  // placed anew, when it was felt
+  ASSERT_EQ(last_.task, msg::kTaskGrasp);
+  EXPECT_EQ(last_.parameters.object_handle, 8);
+  abort(msg::kEventObjectGraspLost);
+  ASSERT_EQ(last_.task, msg::kTaskSearchObject);
+  EXPECT_EQ(last_.parameters.object_handle, 0) << "the map may place it anew";
+}
+
 TEST_F(PlannerTest, ASingleImageDoesNotConvince) {
   find_line();
   for (int i = 0; i < 10; ++i) {

@@ -234,6 +234,26 @@ TEST_F(PlannerTest, WhatOthersDropIsDelivered) {
   EXPECT_EQ(memory_.state, MissionState::kDone);
 }
 
+// Its last word crosses somebody's taking over.
+TEST_F(PlannerTest, WhatItsOwnDropPutDownIsDeliveredAlsoIfSomebodyTookOverAtThatMoment) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  steps(4);
+  ASSERT_EQ(last_.task, msg::kTaskDrop);
+  status_.carrying = false;
+  auto done = event(msg::kEventDroppingDone, msg::kGoalSucceeded);
+  done.colour = msg::kColourGreen;
+  authority_.level = msg::kAuthorityExternal;
+  step({done});
+  see_nothing();
+  steps(100);
+  authority_.level = msg::kAuthorityNone;
+  step();
+  EXPECT_EQ(memory_.object_index, 1) << "red is next";
+}
+
 TEST_F(PlannerTest, AnObjectThatSomebodyElseDroppedIsSkippedInItsTurn) {
   find_line();
   authority_.level = msg::kAuthorityExternal;
