@@ -98,9 +98,11 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
       gate_.offer({now.run_id, now.epoch, now.tick, static_cast<std::uint64_t>(tick.index) + 1, wanted.mode, std::span(wanted.position_rad, count),
                    std::span(wanted.velocity_rad_s, count), std::span(wanted.torque_limit_nm, count)},
                   now, state_.gate);
-  if (refusal != GateRefusal::kNone) wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal));
+  if (refusal != GateRefusal::kNone) wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal, state_.gate));
   const GateOrder order =
-      authority_in_ ? SafetyGate::order_of(authority_in_->emergency_stop, authority_in_->level, state_.gate) : GateOrder::kObey;
+      authority_in_ ? SafetyGate::order_of(authority_in_->emergency_stop, level_in_force(authority_in_->level, authority_in_.age_ticks()),
+                                           authority_in_->source, state_.gate)
+                    : GateOrder::kObey;
   const auto& setpoints = gate_.setpoints(std::span(measured_rad).first(count), order, tick.dt_s(), state_.gate);
   msg::JointCommand command = wanted;
   command.mode = state_.gate.mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "constrictor/text.hpp"
+#include "runtime/topics.hpp"
 
 namespace constrictor {
 namespace {
@@ -74,6 +75,8 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
     return refuse("level of " + name + ": found " + std::to_string(request.level) +
                   (built_in ? ", accepted 1" : ", accepted 2 (external planner) or 3 (operator)"));
   }
+  // The built-in planner's name is its own before it has spoken, too.
+  if (!built_in && name == topics::kPlannerRequest.writer) return refuse("source " + name + ": that name is the built-in planner's");
   const auto known = state_.sources.find(name);
   if (known != state_.sources.end() && (known->second.index == 0) != built_in) {
     return refuse("source " + name + ": that name is the " + (built_in ? "name of somebody outside" : "built-in planner's"));

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 namespace constrictor {
@@ -30,6 +32,10 @@ const char* text_of(GateRefusal refusal) {
 
 std::uint64_t refused_count(const GateState& state) {
   return std::accumulate(state.refused.begin(), state.refused.end(), std::uint64_t{0});
+}
+
+std::string text_of(GateRefusal refusal, const GateState& state) {
+  return std::string(text_of(refusal)) + " (" + std::to_string(SafetyGate::refused(state, refusal)) + " so far)";
 }
 
 SafetyGate::SafetyGate(const RobotModel& robot, GateLimits limits) : joints_(robot.joints), limits_(limits) {}
@@ -71,10 +77,20 @@ GateRefusal SafetyGate::offer(const GateCommand& command, const GateInstant& now
   return GateRefusal::kNone;
 }
 
-GateOrder SafetyGate::order_of(bool emergency_stop, std::uint8_t level, GateState& state) {
-  if (emergency_stop) return GateOrder::kStop;
-  if (level == 0 && state.commanded) return GateOrder::kHold;
-  state.commanded = state.commanded || level != 0;
+GateOrder SafetyGate::order_of(bool emergency_stop, std::uint8_t level, std::span<const char> source, GateState& state) {
+  if (emergency_stop || level == 0) {
+    state.level = 0;
+    state.source.clear();
+    if (emergency_stop) return GateOrder::kStop;
+    return state.commanded ? GateOrder::kHold : GateOrder::kObey;
+  }
+  const std::string_view name(source.data(), ::strnlen(source.data(), source.size()));
+  if (level != state.level || name != state.source) {
+    state.take_over = state.commanded;
+    state.commanded = true;
+    state.level = level;
+    state.source = name;
+  }
   return GateOrder::kObey;
 }
 
@@ -98,21 +114,23 @@ const std::vector<JointSetpoint>& SafetyGate::setpoints(std::span<const double> 
     state.mode = state.silent_ticks > limits_.relax_after_ticks ? GateMode::kRelaxed : GateMode::kHolding;
   }
   const bool held = before == GateMode::kHolding || before == GateMode::kStopped;
-  switch (state.mode) {
-    case GateMode::kObeying: follow(dt_s, state); break;
-    case GateMode::kRelaxed: relax(measured_rad, state); break;
-    case GateMode::kHolding:
-    case GateMode::kStopped:
-      if (!held) hold(measured_rad, state);  // sagging under load must not move the setpoint afterwards
-      break;
+  if (state.mode == GateMode::kObeying) {
+    follow(measured_rad, dt_s, state);
+  } else if (state.mode == GateMode::kRelaxed) {
+    relax(measured_rad, state);
+  } else if (!held) {
+    hold(measured_rad, state);  // once: sagging under load must not move the setpoint afterwards
   }
   return state.setpoints;
 }
 
-void SafetyGate::follow(double dt_s, GateState& state) const {
+void SafetyGate::follow(std::span<const double> measured_rad, double dt_s, GateState& state) const {
+  const bool take_over = std::exchange(state.take_over, false);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const double step_rad = joints_[i].max_speed_rad_s * dt_s + kRounding_rad;
-    const double before_rad = state.setpoints[i].position_rad;
+    double before_rad = state.setpoints[i].position_rad;
+    // A loaded joint is not where its setpoint is: who takes over begins where it is.
+    if (take_over) before_rad = std::clamp(finite_or(measured_rad[i], before_rad), joints_[i].min_rad, joints_[i].max_rad);
     state.setpoints[i] = state.offered[i];
     state.setpoints[i].position_rad = std::clamp(state.offered[i].position_rad, before_rad - step_rad, before_rad + step_rad);
   }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "robot/joint_limits.hpp"
@@ -66,6 +68,13 @@ struct GateLimits {
   std::int64_t relax_after_ticks = 250;  ///< ... and after this long without an acceptable command the joints relax
 };
 
+/// `authority` is said every 50 ticks. Said longer ago than this, it is nobody's: whoever says it hangs or has gone, which counts at
+/// real-time pace, where nobody is waited for. An emergency stop stays.
+inline constexpr std::int64_t kAuthoritySilentAfter_ticks = 150;
+[[nodiscard]] constexpr std::uint8_t level_in_force(std::uint8_t level, std::int64_t age_ticks) {
+  return age_ticks > kAuthoritySilentAfter_ticks ? std::uint8_t{0} : level;
+}
+
 /// Everything the gate remembers. Serialisable.
 struct GateState {
   GateMode mode = GateMode::kHolding;
@@ -73,6 +82,9 @@ struct GateState {
   bool accepted = false;       ///< a command was accepted since the last setpoints()
   bool relax = false;          ///< ... and asks for relaxed joints
   bool commanded = false;      ///< somebody has had authority
+  std::uint8_t level = 0;      ///< of whom is obeyed; 0: nobody, or stopped
+  std::string source;          ///< ... and who that is
+  bool take_over = false;      ///< somebody else has taken over, and no command was obeyed since
   std::int64_t silent_ticks = 0;
   std::uint64_t last_sequence = 0;             ///< of the newest message that was judged
   std::vector<JointSetpoint> offered;
@@ -81,13 +93,15 @@ struct GateState {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(mode, started, accepted, relax, commanded, silent_ticks, last_sequence, offered, setpoints);
+    archive(mode, started, accepted, relax, commanded, level, source, take_over, silent_ticks, last_sequence, offered, setpoints);
     for (std::uint64_t& count : refused) archive(count);
   }
 };
 
 /// Messages refused for any reason.
 [[nodiscard]] std::uint64_t refused_count(const GateState& state);
+/// The reason with its count, for people: "stale when it came (3 so far)".
+[[nodiscard]] std::string text_of(GateRefusal refusal, const GateState& state);
 
 class SafetyGate {
  public:
@@ -98,13 +112,16 @@ class SafetyGate {
   /// acceptable when it came and has grown stale since is silence, not a mistake: kStale, uncounted.
   GateRefusal offer(const GateCommand& command, const GateInstant& now, GateState& state) const;
 
-  /// What the topic `authority` demands. `level`: kAuthority... of mission.idl. Nobody's authority (0) is a reason to hold only
-  /// after somebody had it: at the start of a run control holds the posture by itself.
-  static GateOrder order_of(bool emergency_stop, std::uint8_t level, GateState& state);
+  /// What the topic `authority` demands. `level`: kAuthority... of mission.idl; `source`: who has it (a zero may end it). Nobody's
+  /// authority (0) is a reason to hold only after somebody had it: at the start of a run control holds the posture by itself. Another
+  /// level or source than was obeyed before, also after a hold or a stop, is a take-over; the first of a run is not.
+  static GateOrder order_of(bool emergency_stop, std::uint8_t level, std::span<const char> source, GateState& state);
 
   /// Setpoints for the `dt_s` that begin, after at most one offer() since the previous call. The first ones are the measured
-  /// posture, and from there on no setpoint moves faster than its joint can. Held is the last setpoint of each joint where it
-  /// agrees with the measured angle, else the measured angle, with the torque limits in force: what was grasped stays so.
+  /// posture, and from there on no setpoint moves faster than its joint can. The first command that is obeyed after a take-over
+  /// begins anew at the measured posture (a joint without a finite measurement: at its setpoint). Held is the last setpoint of each
+  /// joint where it agrees with the measured angle, else the measured angle, with the torque limits in force: what was grasped
+  /// stays so.
   const std::vector<JointSetpoint>& setpoints(std::span<const double> measured_rad, GateOrder order, double dt_s, GateState& state) const;
 
   [[nodiscard]] static std::uint64_t refused(const GateState& state, GateRefusal reason) {
@@ -113,7 +130,7 @@ class SafetyGate {
 
  private:
   [[nodiscard]] GateRefusal judge(const GateCommand& command, const GateInstant& now) const;
-  void follow(double dt_s, GateState& state) const;
+  void follow(std::span<const double> measured_rad, double dt_s, GateState& state) const;
   void hold(std::span<const double> measured_rad, GateState& state) const;
   void relax(std::span<const double> measured_rad, GateState& state) const;
 

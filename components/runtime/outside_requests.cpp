@@ -106,6 +106,14 @@ std::vector<OutsideItem> OutsideRequests::latch(const std::vector<LivingSource>&
   for (const auto& [source, writer] : living) {
     if (lives && writer != WriterId{} && !lives(writer)) items.push_back({source, true, {}, writer, {}, 1});
   }
+  // A death told by the source's name alone is the former writer's, where another already speaks for it: that tells it, too.
+  const auto is_old_news = [&](const OutsideItem& death) {
+    const auto known = std::find_if(living.begin(), living.end(), [&](const LivingSource& l) { return l.source == death.source; });
+    return death.died && death.writer == WriterId{} && known != living.end() && std::any_of(items.begin(), items.end(), [&](const OutsideItem& item) {
+      return !item.died && item.source == death.source && item.writer != WriterId{} && item.writer != known->writer;
+    });
+  };
+  for (auto at = items.begin(); at != items.end();) at = is_old_news(*at) ? items.erase(at) : std::next(at);
   // Writers of one source follow each other: what the former said comes before what the later one says, whatever their numbers.
   std::vector<std::pair<std::size_t, OutsideItem>> ordered;
   for (auto& item : items) {

@@ -67,10 +67,11 @@ void Physics::obey(const Tick& tick) {
         gate_.offer({header.run_id, header.epoch, header.tick, header.sequence_number, command_->mode, std::span(command_->position_rad, count),
                      std::span(command_->velocity_rad_s, count), std::span(command_->torque_limit_nm, count)},
                     {tick.run_id, tick.epoch, tick.index}, gate_state_);
-    if (refused_count(gate_state_) != refused_before) wiring_.count_refusal(std::string("joint_command: ") + text_of(refusal));
+    if (refused_count(gate_state_) != refused_before) wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
   }
-  const GateOrder order =
-      authority_ ? SafetyGate::order_of(authority_->emergency_stop, authority_->level, gate_state_) : GateOrder::kObey;
+  const GateOrder order = authority_ ? SafetyGate::order_of(authority_->emergency_stop, level_in_force(authority_->level, authority_.age_ticks()),
+                                                            authority_->source, gate_state_)
+                                     : GateOrder::kObey;
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
   const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {

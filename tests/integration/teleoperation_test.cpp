@@ -1,66 +1,17 @@
 // People and scripts at a running robot, with the real components: who is obeyed, and what the joints do when an operator dies.
-#include <csignal>
+#include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <set>
 
-#include "integration/cli_fixture.hpp"
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
+#include "integration/run_watcher.hpp"
 #include "runtime/host.hpp"
-#include "runtime/topics.hpp"
 
 namespace constrictor::testing {
 namespace {
 
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-constexpr double kMaxSpeed_rad_s = 4.0;  // of Mamba's joints (components/robot/mamba.yaml)
-
-/// Everything that matters of a run, as an observer that misses nothing.
-class Watcher {
- public:
-  explicit Watcher(std::uint32_t domain)
-      : domain_(domain), authority_(reader<msg::Authority>(topics::kAuthority)), command_(reader<msg::JointCommand>(topics::kJointCommand)),
-        joints_(reader<msg::JointState>(topics::kJointState)), mission_(reader<msg::MissionStatus>(topics::kMissionStatus)),
-        task_(reader<msg::TaskStatus>(topics::kTaskStatus)) {}
-  void poll() {
-    authority_.take([this](const msg::Authority& m) { authorities.emplace_back(m, Clock::now()); });
-    command_.take([this](const msg::JointCommand& m) { commands.push_back(m); });
-    joints_.take([this](const msg::JointState& m) { joints.push_back(m); });
-    mission_.take([this](const msg::MissionStatus& m) { mission = m; });
-    task_.take([this](const msg::TaskStatus& m) { task = m; });
-  }
-  [[nodiscard]] bool wait_for_level(std::uint8_t level, std::chrono::milliseconds bound = 30s) {
-    return eventually([&] { poll(); return !authorities.empty() && authorities.back().first.level == level; }, bound);
-  }
-  /// How fast the wave turns, by the last setpoints: greatest difference of two commands.
-  [[nodiscard]] bool moves() {
-    const std::size_t from = commands.size();
-    return eventually([&] {
-      poll();
-      return commands.size() > from + 5 && commands.back().position_rad[8] != commands[from].position_rad[8];
-    });
-  }
-
-  std::vector<std::pair<msg::Authority, Clock::time_point>> authorities;
-  std::vector<msg::JointCommand> commands;
-  std::vector<msg::JointState> joints;
-  msg::MissionStatus mission{};
-  msg::TaskStatus task{};
-
- private:
-  template <class T>
-  [[nodiscard]] dds::Reader<T> reader(const Topic<T>& topic) const {
-    return dds::Reader<T>::member(domain_.participant(), std::string(topic.name));
-  }
-  dds::Domain domain_;
-  dds::Reader<msg::Authority> authority_;
-  dds::Reader<msg::JointCommand> command_;
-  dds::Reader<msg::JointState> joints_;
-  dds::Reader<msg::MissionStatus> mission_;
-  dds::Reader<msg::TaskStatus> task_;
-};
 
 class Teleoperation : public CliFixture {
  protected:
@@ -81,34 +32,13 @@ class Teleoperation : public CliFixture {
   }
 };
 
-/// Commands and measured joints after somebody died while driving: held from the next tick on, and nothing jerked.
-void expect_held(Watcher& watcher, std::int64_t latched, bool lockstep) {
-  double fastest_setpoint = 0.0;
-  double fastest_joint = 0.0;
-  std::int64_t held_from = -1;
-  for (std::size_t i = 1; i < watcher.commands.size(); ++i) {
-    const msg::JointCommand& a = watcher.commands[i - 1];
-    const msg::JointCommand& b = watcher.commands[i];
-    const double dt_s = 0.02 * static_cast<double>(b.header.tick - a.header.tick);
-    bool same = true;
-    for (int j = 0; j < b.joint_count; ++j) {
-      fastest_setpoint = std::max(fastest_setpoint, std::abs(b.position_rad[j] - a.position_rad[j]) / dt_s);
-      same = same && a.position_rad[j] == b.position_rad[j];
-    }
-    if (!same) held_from = b.header.tick;
-  }
-  for (const auto& state : watcher.joints) {
-    if (state.header.tick < latched) continue;
-    for (int j = 0; j < state.joint_count; ++j) fastest_joint = std::max(fastest_joint, std::abs(state.velocity_rad_s[j]));
-  }
-  EXPECT_LE(fastest_setpoint, kMaxSpeed_rad_s * 1.001);
-  EXPECT_LE(fastest_joint, kMaxSpeed_rad_s);
-  std::printf("latched at tick %ld, last setpoint that differs at tick %ld, fastest joint after that %.2f rad/s\n",
-              static_cast<long>(latched), static_cast<long>(held_from), fastest_joint);
-  if (lockstep) { EXPECT_LE(held_from, latched + 1); }
-}
-
+// Teleop's lease is 0.5 s of wall time, and the death is latched by `input` at a tick. In lock-step control reads that word in the
+// next tick: the setpoints of latched + 1 are those that are held. At real-time pace nobody is waited for: that is one tick later
+// for each tick by which `input` is late.
 TEST_F(Teleoperation, KilledWhileDrivingTheJointsHoldWithinALeaseAndATick) {
+  constexpr double kLease_s = 0.5;
+  constexpr std::int64_t kSettle_ticks = 25;
+  constexpr double kBusy_s = 0.25;  // what a busy machine adds
   for (const std::string pace : {"2x", "realtime"}) {
     SCOPED_TRACE(pace);
     Process launcher = run_blind(pace);
@@ -117,16 +47,29 @@ TEST_F(Teleoperation, KilledWhileDrivingTheJointsHoldWithinALeaseAndATick) {
     ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
     ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
     ASSERT_TRUE(watcher.moves());
-    teleop.signal(SIGKILL);
     const auto killed = Clock::now();
+    teleop.signal(SIGKILL);
     ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
-    const auto [nobody, heard] = watcher.authorities.back();
-    const double wall_s = std::chrono::duration<double>(heard - killed).count();
-    std::printf("%s: held %.3f s of wall time after the kill\n", pace.c_str(), wall_s);
-    EXPECT_LT(wall_s, 0.5 + 0.5) << "a lease of 0.5 s and what a busy machine adds";
-    const std::int64_t latched = nobody.header.tick;
-    ASSERT_TRUE(eventually([&] { watcher.poll(); return watcher.commands.back().header.tick > latched + 60; }));
-    expect_held(watcher, latched, pace != "realtime");
+    const std::int64_t latched = watcher.authorities.back().first.header.tick;
+    ASSERT_TRUE(eventually([&] { watcher.poll(); return watcher.joints.back().header.tick > latched + 1 + kSettle_ticks + 55; }));
+    ASSERT_EQ(watcher.authorities.back().first.level, msg::kAuthorityNone);
+    const double wall_s = std::chrono::duration<double>(watcher.changed - killed).count();
+    const std::int64_t held = watcher.changed_tick;
+    const std::int64_t rest = held + kSettle_ticks;
+    const double resting_rad = widest_range(watcher, rest, rest + 50);
+    std::printf("%s: last setpoint that changed %.3f s of wall time after the kill, at tick %+ld from the one that latched it; fastest joint "
+                "%.2f rad/s; from 0.5 s after the hold on no joint moved more than %.4f rad in 1 s (before: %.2f), tremor %.2f rad/s\n",
+                pace.c_str(), wall_s, static_cast<long>(held - latched), fastest_joint(watcher, latched), resting_rad,
+                widest_range(watcher, latched - 50, latched), fastest_joint(watcher, rest));
+    EXPECT_LE(wall_s, kLease_s + kTick_s + kBusy_s);
+    EXPECT_GT(wall_s, 0.0) << "it drove when it was killed";
+    EXPECT_LE(held, latched + 1 + (pace == "realtime" ? std::lround(kBusy_s / kTick_s) : 0));
+    if (pace != "realtime") expect_hold_begins_after(watcher, latched);
+    EXPECT_LE(fastest_setpoint(watcher, {held}), kMaxSpeed_rad_s * 1.001);
+    EXPECT_LE(fastest_joint(watcher, latched), kMaxSpeed_rad_s);
+    // Angles are measured with a noise of 0.001 rad. The solver's contacts make held joints tremble: up to 0.4 rad/s within a step,
+    // which moves them by less than that noise; so rest is told by the angles.
+    EXPECT_LT(resting_rad, 0.02) << "a joint has not come to rest";
     end(launcher);
   }
 }
@@ -228,14 +171,14 @@ TEST_F(Teleoperation, TakesOverInMidMissionDrivesAndThePlannerGoesOn) {
   EXPECT_TRUE(level_seen(msg::kAuthorityOperator));
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityPlanner));
   EXPECT_TRUE(eventually([&] { watcher.poll(); return watcher.task.state == msg::kGoalRunning && watcher.task.goal_id >> 48 == msg::kAuthorityPlanner; }));
-  // While the operator held authority no goal of the planner's ran, and no setpoint jumped at either change.
-  double fastest = 0.0;
-  for (std::size_t i = 1; i < watcher.commands.size(); ++i) {
-    for (int j = 0; j < watcher.commands[i].joint_count; ++j) {
-      fastest = std::max(fastest, std::abs(watcher.commands[i].position_rad[j] - watcher.commands[i - 1].position_rad[j]) / 0.02);
-    }
+  std::set<std::int64_t> begun;  // ticks in which control first reads that somebody else has authority
+  for (std::size_t i = 1; i < watcher.authorities.size(); ++i) {
+    const msg::Authority& now = watcher.authorities[i].first;
+    if (now.level != watcher.authorities[i - 1].first.level) begun.insert(now.header.tick + 1);
   }
-  EXPECT_LE(fastest, kMaxSpeed_rad_s * 1.001);
+  EXPECT_GE(begun.size(), 2u);
+  EXPECT_LE(fastest_setpoint(watcher, begun), kMaxSpeed_rad_s * 1.001);
+  EXPECT_LE(fastest_joint(watcher, 0), kMaxSpeed_rad_s);
   EXPECT_EQ(watcher.mission.mission, msg::kMissionRunning);
   end(launcher);
 }

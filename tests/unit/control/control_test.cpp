@@ -179,6 +179,41 @@ TEST(Control, HoldsThenRelaxesWhenTheTrajectoryIsStale) {
   EXPECT_EQ(run.latest(topics::kJointCommand)->torque_limit_nm[6], 0.0);
 }
 
+/// Says every 50 ticks, as `input` does, that an operator has authority; hangs from tick 200 on.
+class HangingInput : public StatefulComponent<int> {
+ public:
+  explicit HangingInput(Wiring& wiring) : out_(wiring.output(topics::kAuthority)) {}
+  void step(const Tick& tick) override {
+    if (tick.index % 50 != 0 || tick.index > 200) return;
+    msg::Authority authority{};
+    authority.level = msg::kAuthorityOperator;
+    out_.write(authority);
+  }
+
+ private:
+  Output<msg::Authority> out_;
+};
+
+TEST(Control, HoldsWhenNobodySaysAnyMoreWhoHasAuthority) {
+  constrictor::Setup setup;
+  setup.robot_file = share_path("components/robot/mamba.yaml");
+  const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
+    set_method(desired, "undulation", 1);
+    desired.frequency_hz = 0.7;
+    desired.amplitude_rad = 0.5;
+    return true;
+  };
+  LocalRun run({{"physics", [](Wiring& w, const constrictor::Setup& s) { return std::make_unique<IdealServos>(w, s); }},
+                make_control_factory(),
+                {"input", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<HangingInput>(w); }},
+                {"navigation", [script](Wiring& w, const constrictor::Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
+               setup);
+  run.advance(340);
+  EXPECT_GT(largest_step_rad(run, 5), 1e-4) << "a second or two of silence is no reason";
+  run.advance(15);
+  EXPECT_LT(largest_step_rad(run, 100), 1e-12);
+}
+
 TEST(Control, ChangesOfMethodDoNotJump) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
     const auto phase = tick.index / 150;

@@ -10,6 +10,7 @@
 #include "input/input.hpp"
 #include "runtime/local_run.hpp"
 #include "requests.hpp"
+#include "two_writers.hpp"
 
 namespace constrictor {
 namespace {
@@ -420,70 +421,45 @@ TEST_F(InputMemberTest, ADirectMotionEndsWithItsSourceAndATaskEndsItToo) {
   EXPECT_EQ(commands_[1].command, msg::kCommandCancel);
 }
 
-// Two writers of different strength at once: whose word goes on is decided by the strongest that holds, tick by tick.
+// Two writers of different strength at once: whose word goes on is decided by the strongest that holds, tick by tick. With real
+// writers and processes: tests/integration/two_writers_test.cpp.
 TEST_F(InputMemberTest, TwoWritersOfDifferentStrengthAreNeverBothObeyed) {
   constexpr unsigned kSeed = 20261121;
   SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   std::mt19937 random(kSeed);
   constexpr std::int64_t kTicks = 4000;
   constexpr int kCommands = 12000;
-  std::map<std::int64_t, std::function<void()>> at;
+  TwoWriters writers;
   std::map<std::string, std::uint64_t> sequence;
-  std::set<std::int64_t> asked[2];          // ticks in which the external planner, the operator asked for a task or motion
-  std::set<std::int64_t> released;          // ticks in which the operator let go
-  std::vector<std::pair<std::int64_t, msg::Request>> requests;
+  std::map<std::int64_t, std::vector<msg::Request>> requests;
   for (int i = 0; i < kCommands; ++i) {
     const bool operates = random() % 2 == 0;
-    const std::int64_t tick = i * kTicks / kCommands;
     std::uint8_t kind = random() % 2 == 0 ? msg::kRequestTask : msg::kRequestMotion;
     if (operates && random() % 20 == 0) kind = msg::kRequestRelease;
     const std::string name = operates ? "pilot" : "machine";
-    const std::uint64_t number = ++sequence[name];
-    auto r = request(name, operates ? kOperator : kExternal, kind, number, 0);
+    auto r = request(name, operates ? kOperator : kExternal, kind, ++sequence[name], 0);
     r.motion = msg::kMotionDrive;
-    requests.emplace_back(tick, r);
-    if (kind == msg::kRequestRelease) released.insert(tick);
-    else asked[operates ? 1 : 0].insert(tick);
+    writers.asked(r);
+    requests[i * kTicks / kCommands].push_back(r);
   }
-  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
-    at[tick] = [&, tick] {
-      std::vector<msg::Request> now;
-      for (const auto& [when, r] : requests) {
-        if (when == tick) now.push_back(r);
-      }
-      // The two write at once: their words interleave, each keeping its own order.
-      std::stable_partition(now.begin(), now.end(), [&](const msg::Request& r) { return (r.level == kOperator) == (tick % 2 == 0); });
-      for (const auto& r : now) outside_->add(r);
-    };
+  std::map<std::int64_t, std::function<void()>> at;
+  for (auto& [tick, now] : requests) {
+    // The two write at once: their words interleave, each keeping its own order.
+    std::stable_partition(now.begin(), now.end(), [even = tick % 2 == 0](const msg::Request& r) { return (r.level == kOperator) == even; });
+    at[tick] = [&] { std::for_each(now.begin(), now.end(), [&](const auto& r) { outside_->add(r); }); };
   }
   run({}, kTicks, at);
-  std::map<std::int64_t, std::set<int>> levels;  // by tick: whose starts and motions went on
-  for (const auto& c : commands_) {
-    if (c.command == msg::kCommandStart) levels[c.header.tick].insert(static_cast<int>(c.goal_id >> 48));
-  }
-  for (const auto& m : motions_) {
-    if (m.level > 0) levels[m.header.tick].insert(m.level);
-  }
-  int of_operator = 0;
-  int of_external = 0;
-  bool held = false;  // by the operator, as this test tells it from the requests alone
-  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
-    const std::set<int> now = levels.contains(tick) ? levels[tick] : std::set<int>{};
-    of_operator += static_cast<int>(now.count(kOperator));
-    of_external += static_cast<int>(now.count(kExternal));
-    const bool held_before = held;
-    if (asked[1].contains(tick)) held = true;
-    if (released.contains(tick)) {
-      held = !authority_.empty() && std::any_of(authority_.begin(), authority_.end(), [&](const msg::Authority& a) {
-        return a.header.tick == tick && a.level == kOperator;
-      });
-      continue;  // in this tick both may have spoken, one after the other
-    }
-    if (held_before || held) { EXPECT_EQ(now.count(kExternal), 0u) << "tick " << tick; }
-    EXPECT_LE(now.size(), 1u) << "tick " << tick;
-  }
-  EXPECT_GT(of_operator, 1000);
-  EXPECT_GT(of_external, 20);
+  const auto hear = [&](const auto& messages) { std::for_each(messages.begin(), messages.end(), [&](const auto& m) { writers.heard(m); }); };
+  hear(answers_);
+  hear(commands_);
+  hear(motions_);
+  hear(authority_);
+  writers.judge();
+  EXPECT_EQ(writers.answered, kCommands);
+  EXPECT_GT(writers.of_operator, 1000);
+  EXPECT_GT(writers.of_external, 20);
+  EXPECT_GT(writers.refused_to_external, 1000);
+  EXPECT_GT(writers.ticks_of_both, 20) << "one before a release, the other after it";
 }
 
 }  // namespace

@@ -127,6 +127,36 @@ TEST(OutsideRequests, TheWordsOfASuccessorComeAfterThoseOfWhoHadTheNameBefore) {
   EXPECT_EQ(items[2].request.header.sequence_number, 2u);
 }
 
+// The former process of a name died, and the next one spoke, within one tick: it is told of by name alone, and is not the next one.
+TEST(OutsideRequests, ADeathTellsOfTheFormerWriterWhereAnotherSpeaksAlready) {
+  ArbiterState state;
+  Arbiter(state).decide_outside(request("pilot", kOperator, msg::kRequestTake, 1), writer(1));
+  OutsideRequests outside;
+  outside.watch_writers([](const WriterId& id) { return id == writer(2); });
+  outside.add_death("pilot");
+  outside.add(request("pilot", kOperator, msg::kRequestTake, 1), writer(2));
+  const auto items = outside.latch(Arbiter(state).living());
+  ASSERT_EQ(items.size(), 2u);
+  EXPECT_FALSE(items[0].died);
+  EXPECT_TRUE(items[1].died);
+  EXPECT_EQ(items[1].writer, writer(1)) << "known by its writer to be the former one's";
+  // Without a successor it is the source's own.
+  outside.add_death("pilot");
+  outside.watch_writers([](const WriterId&) { return true; });
+  const auto last = outside.latch(Arbiter(state).living());
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_TRUE(last[0].died);
+}
+
+TEST(Arbiter, NobodyOutsideTakesTheBuiltInPlannersNameNotEvenBeforeIt) {
+  ArbiterState state;
+  Arbiter arbiter(state);
+  const auto impostor = arbiter.decide_outside(request("planner", kExternal, msg::kRequestTake, 1), writer(1));
+  EXPECT_EQ(impostor.kind, Ruling::kRefused);
+  EXPECT_NE(state.refusal.find("built-in planner's"), std::string::npos) << state.refusal;
+  EXPECT_NE(arbiter.decide_planner(request("planner", msg::kAuthorityPlanner, msg::kRequestTask, 1, 1)).kind, Ruling::kRefused);
+}
+
 // A process that was restarted knows its sources from its checkpoint, and nothing else of them.
 TEST(OutsideRequests, AKnownSourceWithoutALivingWriterIsDeadAlsoForWhoNeverHeardIt) {
   ArbiterState state;

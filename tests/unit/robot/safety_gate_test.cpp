@@ -1,57 +1,14 @@
-#include "robot/safety_gate.hpp"
-
-#include <gtest/gtest.h>
-
+// What the safety gate lets pass: messages, limits, silence, stops. Who is obeyed: safety_gate_authority_test.cpp.
 #include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <random>
 #include <sstream>
 
+#include "safety_gate_fixture.hpp"
+
 namespace constrictor {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDt_s = 0.02;
-constexpr double kFastest_rad = 4.0 * kDt_s;  // of the default joint, in a tick
-
-class SafetyGateTest : public testing::Test {
- protected:
-  static RobotModel two_joints() {
-    RobotModel robot;
-    robot.module_count = 3;
-    robot.joints.resize(2);
-    return robot;
-  }
-  /// A command that came `age` ticks after it was written.
-  GateRefusal offer(std::vector<double> position, std::vector<double> torque = {5.0, 5.0}, std::int64_t age = 1, std::uint8_t mode = 0) {
-    const std::vector<double> velocity(position.size(), velocity_);
-    return gate_.offer({7, run_epoch_, now_.tick - age, ++sequence_, mode, position, velocity, torque}, now_, state_);
-  }
-  const std::vector<JointSetpoint>& tick(GateOrder order = GateOrder::kObey) {
-    ++now_.tick;
-    return gate_.setpoints(measured_, order, kDt_s, state_);
-  }
-  /// Obeys until both joints' setpoints are there.
-  void drive_to(double a, double b) {
-    for (int i = 0; i < 100; ++i) {
-      offer({a, b});
-      tick();
-    }
-    measured_ = {a, b};
-  }
-  [[nodiscard]] std::uint64_t refused(GateRefusal reason) const { return SafetyGate::refused(state_, reason); }
-
-  SafetyGate gate_{two_joints(), {3, 10}};
-  GateState state_;
-  GateInstant now_{7, 2, 100};
-  std::uint32_t run_epoch_ = 2;
-  std::uint64_t sequence_ = 0;
-  double velocity_ = 0.0;
-  std::vector<double> measured_{0.25, -0.25};
-};
 
 TEST_F(SafetyGateTest, HoldsTheMeasuredPostureBeforeTheFirstCommand) {
   const auto& setpoints = tick();
@@ -128,6 +85,15 @@ TEST_F(SafetyGateTest, AnotherRunIsAnotherEpoch) {
   EXPECT_EQ(gate_.offer({8, 2, now_.tick, 1, 0, zeros, zeros, zeros}, now_, state_), GateRefusal::kWrongEpoch);
 }
 
+TEST_F(SafetyGateTest, ANumberOfRatesThatIsNotTheNumberOfJointsIsRefusedAndAllRefusalsAreCounted) {
+  const std::vector<double> two(2, 0.0);
+  const std::vector<double> three(3, 0.0);
+  EXPECT_EQ(gate_.offer({7, 2, now_.tick, 77, 0, two, three, two}, now_, state_), GateRefusal::kWrongCount);
+  offer({kNan, 0.0});
+  offer({0.0, kNan});
+  EXPECT_EQ(refused_count(state_), 3u);
+}
+
 TEST_F(SafetyGateTest, AMessageThatStaysIsJudgedEachTickButCountedOnce) {
   const std::vector<double> bad{kNan, 0.0};
   const std::vector<double> zeros(2, 0.0);
@@ -201,23 +167,11 @@ TEST_F(SafetyGateTest, AnEmergencyStopHoldsWhateverIsCommandedHoweverLong) {
   EXPECT_EQ(state_.setpoints[0].position_rad, 0.5) << "the end of a stop starts no motion";
 }
 
-TEST_F(SafetyGateTest, WithoutAuthorityThePostureIsHeldAlthoughCommandsCome) {
-  drive_to(0.5, 0.5);
-  for (int i = 0; i < 50; ++i) {
-    offer({1.0, 1.0});
-    EXPECT_EQ(tick(GateOrder::kHold)[0].position_rad, 0.5);
-  }
-  EXPECT_EQ(state_.mode, GateMode::kHolding);
-  offer({1.0, 1.0});
-  EXPECT_NEAR(tick()[0].position_rad, 0.5 + kFastest_rad, 1e-8) << "taking over begins at the posture that is held";
-}
-
-TEST_F(SafetyGateTest, AuthorityOfNobodyCountsAfterSomebodyHadIt) {
-  EXPECT_EQ(SafetyGate::order_of(false, 0, state_), GateOrder::kObey);
-  EXPECT_EQ(SafetyGate::order_of(false, 1, state_), GateOrder::kObey);
-  EXPECT_EQ(SafetyGate::order_of(false, 0, state_), GateOrder::kHold);
-  EXPECT_EQ(SafetyGate::order_of(true, 4, state_), GateOrder::kStop);
-  EXPECT_EQ(SafetyGate::order_of(false, 3, state_), GateOrder::kObey);
+TEST_F(SafetyGateTest, AReasonIsToldWithItsOwnCount) {
+  for (int i = 0; i < 3; ++i) offer({0.0, 0.0}, {5, 5}, 4);
+  offer({0.0, kNan});
+  EXPECT_EQ(text_of(GateRefusal::kStale, state_), "stale when it came (3 so far)");
+  EXPECT_EQ(text_of(GateRefusal::kNotFinite, state_), "not finite (1 so far)");
 }
 
 TEST_F(SafetyGateTest, MeasurementsThatAreNoNumbersChangeNothing) {
@@ -239,6 +193,8 @@ TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
   std::vector<double> before = measured_;
   GateMode mode_before = GateMode::kHolding;
   int obeyed = 0;
+  std::uint8_t level = 1;
+  bool took_over = false;
   for (int i = 0; i < 20000; ++i) {
     std::vector<double> position{wild(random) / 2.5, wild(random) / 2.5};
     std::vector<double> torque{std::abs(wild(random)), wild(random) + 3.8};
@@ -249,7 +205,12 @@ TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
       const double there = state_.started ? state_.setpoints[j].position_rad : measured_[j];
       measured_[j] += std::clamp(there - measured_[j], -0.05, 0.05);  // a servo that follows
     }
-    const auto& setpoints = tick(static_cast<GateOrder>(random() % 20 < 18 ? 0 : random() % 3));
+    if (random() % 40 == 0) level = static_cast<std::uint8_t>(random() % 4);
+    const bool takes_over = level != 0 && level != state_.level && state_.commanded;
+    const auto& setpoints = tick(authority(level, "somebody", random() % 40 == 0));
+    took_over = took_over || takes_over;
+    const bool from_measured = took_over && state_.mode == GateMode::kObeying;
+    if (from_measured) took_over = false;
     obeyed += state_.mode == GateMode::kObeying;
     for (std::size_t j = 0; j < 2; ++j) {
       const JointSetpoint& s = setpoints[j];
@@ -257,9 +218,11 @@ TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
       ASSERT_LE(std::abs(s.velocity_rad_s), 4.0);
       ASSERT_GE(s.torque_limit_nm, 0.0);
       ASSERT_LE(s.torque_limit_nm, 6.0);
-      // A setpoint may only jump to where the joint is.
+      // A setpoint may only jump to where the joint is, at a take-over with a step from there.
       const double jump = std::abs(s.position_rad - before[j]);
-      ASSERT_TRUE(jump <= kFastest_rad + 1e-8 || s.position_rad == measured_[j]) << i << " from mode " << static_cast<int>(mode_before);
+      const double from_joint = std::abs(s.position_rad - measured_[j]);
+      ASSERT_TRUE((jump <= kFastest_rad + 1e-8 && !from_measured) || from_joint <= (from_measured ? kFastest_rad + 1e-8 : 0.0))
+          << i << " from mode " << static_cast<int>(mode_before);
       before[j] = s.position_rad;
     }
     mode_before = state_.mode;

@@ -1,0 +1,177 @@
+// Two programs of different strength ask at once, over DDS, at a running robot: an operator and an external planner, 10,000 times.
+// Never are both obeyed. The order of what `input` wrote is judged by unit/input/two_writers.hpp.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "integration/cli_fixture.hpp"
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/outside_link.hpp"
+#include "runtime/host.hpp"
+#include "runtime/topics.hpp"
+#include "unit/input/two_writers.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr unsigned kSeed = 20261121;
+constexpr std::uint64_t kEach = 5000;
+constexpr std::uint64_t kUnanswered = 9;  // of a source, at most: the latch has room for twelve
+constexpr double kMaxSpeed_rad_s = 4.0;   // of Mamba's joints (components/robot/mamba.yaml)
+
+template <class T>
+dds::Reader<T> reader(dds_entity_t participant, const Topic<T>& topic) {
+  return dds::Reader<T>::member(participant, std::string(topic.name));
+}
+
+/// One program outside: a participant with a writer of requests, on a thread.
+class Program {
+ public:
+  Program(std::uint32_t domain, std::string name, std::uint8_t level)
+      : participant_(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant"), writer_(participant_.get(), 0),
+        answers_(reader(participant_.get(), topics::kRequestAnswer)), name_(std::move(name)), level_(level), random_(kSeed + level) {}
+  ~Program() {
+    give_up_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  [[nodiscard]] bool heard() const { return writer_.heard() && answers_.writers() > 0; }
+  void start() { thread_ = std::thread([this] { speak(); }); }
+  [[nodiscard]] std::uint64_t answered() const { return answered_; }
+  [[nodiscard]] const std::vector<msg::Request>& asked() const { return asked_; }  ///< once all were answered
+
+ private:
+  msg::Request next() {
+    msg::Request r{};
+    r.robot_id = 1;
+    dds::set_text(r.source, name_);
+    r.header.sequence_number = asked_.size() + 1;
+    r.level = level_;
+    const bool operates = level_ == msg::kAuthorityOperator;
+    r.kind = random_() % 8 == 0 ? msg::kRequestTask : msg::kRequestMotion;
+    if (operates && random_() % 20 == 0) r.kind = msg::kRequestRelease;
+    r.task = msg::kTaskRotate;
+    r.parameters.direction = operates ? msg::kDirectionLeft : msg::kDirectionRight;
+    r.parameters.timeout_s = 1.0;
+    r.motion = msg::kMotionDrive;
+    r.frequency_hz = operates ? 0.6 : -0.6;
+    return r;
+  }
+  void speak() {
+    while (!give_up_ && answered_ < kEach) {
+      answers_.take([this](const msg::RequestAnswer& m) { answered_ += name_ == m.source; });
+      if (asked_.size() < kEach && asked_.size() - answered_ < kUnanswered) {
+        asked_.push_back(next());
+        writer_.write(asked_.back());
+      } else {
+        std::this_thread::sleep_for(1ms);
+      }
+    }
+  }
+  dds::Entity participant_;
+  dds::RequestWriter writer_;
+  dds::Reader<msg::RequestAnswer> answers_;
+  std::string name_;
+  std::uint8_t level_;
+  std::mt19937 random_;
+  std::vector<msg::Request> asked_;
+  std::atomic<std::uint64_t> answered_{0};
+  std::atomic<bool> give_up_{false};
+  std::thread thread_;
+};
+
+class TwoWritersOverDds : public CliFixture {
+ protected:
+  /// No setpoint moves faster than its joint can, but to where the joint is when somebody takes over; and no joint does.
+  static void expect_smooth(const std::map<std::int64_t, msg::JointCommand>& commands, const std::map<std::int64_t, msg::JointState>& joints) {
+    constexpr double kStep_rad = kMaxSpeed_rad_s * 0.02 + 1e-6;
+    int judged = 0;
+    for (auto b = commands.begin(); b != commands.end(); ++b) {
+      const auto a = commands.find(b->first - 1);
+      const auto state = joints.find(b->first);
+      if (a == commands.end() || state == joints.end()) continue;
+      ++judged;
+      for (int j = 0; j < b->second.joint_count; ++j) {
+        const double now_rad = b->second.position_rad[j];
+        const double from_before_rad = std::abs(now_rad - a->second.position_rad[j]);
+        ASSERT_LE(std::min(from_before_rad, std::abs(now_rad - state->second.position_rad[j])), kStep_rad)
+            << "tick " << b->first << " joint " << j;
+        ASSERT_LE(std::abs(state->second.velocity_rad_s[j]), kMaxSpeed_rad_s) << "tick " << b->first << " joint " << j;
+      }
+    }
+    EXPECT_GT(judged, 200);
+  }
+};
+
+TEST_F(TwoWritersOverDds, AreNeverBothObeyedOverTenThousandCommands) {
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+  write("blind.yaml",  // nothing here needs to see
+        "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 20\nprocesses:\n"
+        "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
+  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "4x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  const dds::Domain observer(domain());
+  const auto authority = reader(observer.participant(), topics::kAuthority);
+  const auto answers = reader(observer.participant(), topics::kRequestAnswer);
+  const auto tasks = reader(observer.participant(), topics::kTaskCommand);
+  const auto motions = reader(observer.participant(), topics::kMotionCommand);
+  const auto commands = reader(observer.participant(), topics::kJointCommand);
+  const auto joints = reader(observer.participant(), topics::kJointState);
+  TwoWriters judged;
+  std::map<std::int64_t, msg::JointCommand> command_at;
+  std::map<std::int64_t, msg::JointState> joints_at;
+  std::map<std::string, std::uint64_t> newest;  // by topic, to see that the observer missed nothing
+  std::uint64_t missed = 0;
+  const auto hear = [&](const char* topic, const auto& source) {
+    source.take([&](const auto& m) {
+      std::uint64_t& last = newest[topic];
+      if (last > 0 && m.header.sequence_number > last + 1) missed += m.header.sequence_number - last - 1;
+      last = m.header.sequence_number;
+      judged.heard(m);
+    });
+  };
+  const auto poll = [&] {
+    hear("answers", answers);
+    hear("tasks", tasks);
+    hear("motions", motions);
+    hear("authority", authority);
+    commands.take([&](const msg::JointCommand& m) { command_at[m.header.tick] = m; });
+    joints.take([&](const msg::JointState& m) { joints_at[m.header.tick] = m; });
+  };
+  Program planner(domain(), "machine", msg::kAuthorityExternal);
+  Program pilot(domain(), "pilot", msg::kAuthorityOperator);
+  ASSERT_TRUE(eventually([&] { poll(); return planner.heard() && pilot.heard() && newest["authority"] > 0 && !joints_at.empty(); }));
+  const auto began = std::chrono::steady_clock::now();
+  const std::int64_t from = joints_at.rbegin()->first;
+  planner.start();
+  pilot.start();
+  ASSERT_TRUE(eventually([&] { poll(); return planner.answered() == kEach && pilot.answered() == kEach; }, 60s))
+      << planner.answered() << " and " << pilot.answered() << " answered";
+  const std::int64_t to = joints_at.rbegin()->first;
+  ASSERT_TRUE(eventually([&] { poll(); return joints_at.rbegin()->first > to + 5; }));
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  for (const Program* program : {&planner, &pilot}) {
+    for (const auto& r : program->asked()) judged.asked(r);
+  }
+  ASSERT_EQ(missed, 0u) << "the observer was too slow to judge";
+  judged.judge();
+  std::printf("%d commands in %ld ticks, %.1f s: obeyed %d of the operator's, %d of the planner's (%d refused); ticks of both, with a release "
+              "between: %d\n",
+              judged.answered, static_cast<long>(to - from), wall_s, judged.of_operator, judged.of_external, judged.refused_to_external,
+              judged.ticks_of_both);
+  EXPECT_EQ(judged.answered, static_cast<int>(2 * kEach));
+  EXPECT_GT(judged.of_operator, 1000);
+  EXPECT_GT(judged.of_external, 100);
+  EXPECT_GT(judged.refused_to_external, 1000);
+  expect_smooth(command_at, joints_at);
+  EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+  EXPECT_EQ(launcher.wait(15s), 128 + SIGTERM);
+}
+
+}  // namespace
+}  // namespace constrictor::testing
