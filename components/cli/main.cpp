@@ -86,7 +86,8 @@ int dispatch(int argc, char** argv) {
   diff_app->footer("Compares what was written at every tick by its hash; of runs made with `constrictor run --record` it names the field and both\n"
                    "values, too. Equal runs are equal in every bit of every message.\n\n"
                    "EXAMPLES\n  constrictor run --seed 1 --report a && constrictor run --seed 1 --in-process --report b\n  constrictor diff a b\n\n"
-                   "EXIT STATUS\n  0 equal; 1 different; 64 wrong usage; 70 a directory without hashes.bin, or a damaged one");
+                   "EXIT STATUS\n  0 equal; 1 different; 64 wrong usage; 70 a directory without hashes.bin, or a damaged one, or\n  one of a run that never ticked\n\n"
+                   "ENVIRONMENT\n  none: it reads the two directories only");
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
       ->footer("The process becomes `constrictor_host`: queues between the components inside, DDS to those elsewhere. One that hosts only a part\n"
                "of a run names the others by --roster. `constrictor run --group` does it for you.\n\n"

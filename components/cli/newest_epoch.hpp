@@ -1,4 +1,4 @@
-// Which messages are of the present: of the first run that was heard of, and of its newest epoch. Pure.
+// Which messages are of the present: of the run that is meant, or the first that was heard of, and of its newest epoch. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,9 @@ class NewestEpoch {
     kPresent,
     kNew,      ///< the first of a newer epoch, or of all: what was known of an earlier one is over
   };
+  /// 0: the first run that is heard of.
+  explicit NewestEpoch(std::uint64_t run_id = 0) : run_id_(run_id) {}
+
   Is take(std::uint64_t run_id, std::uint32_t epoch) {
     if (run_id == 0) return Is::kOther;  // of a member that waits for the run to begin
     if (run_id_ == 0) run_id_ = run_id;
@@ -20,8 +23,8 @@ class NewestEpoch {
     epoch_ = epoch;
     return Is::kNew;
   }
-  [[nodiscard]] std::uint64_t run_id() const { return run_id_; }  ///< 0: nothing was heard
-  [[nodiscard]] std::uint32_t epoch() const { return epoch_; }    ///< likewise
+  [[nodiscard]] std::uint64_t run_id() const { return run_id_; }  ///< 0: none is meant, and nothing was heard
+  [[nodiscard]] std::uint32_t epoch() const { return epoch_; }    ///< 0: nothing was heard
 
  private:
   std::uint64_t run_id_ = 0;

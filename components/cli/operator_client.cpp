@@ -45,7 +45,7 @@ OperatorClient::~OperatorClient() = default;
 
 bool OperatorClient::connect(std::chrono::milliseconds bound) {
   const auto end = Clock::now() + bound;
-  while (!endpoints_->request.heard() || !authority_) {
+  while (!endpoints_->request.heard() || !authority()) {
     if (Clock::now() > end) return false;
     std::this_thread::sleep_for(kPoll);
     poll();
@@ -59,6 +59,10 @@ std::uint64_t OperatorClient::ask(msg::Request request) {
   request.level = msg::kAuthorityOperator;
   request.detached = detached_;
   request.header.sequence_number = ++sequence_;
+  if (request.kind == msg::kRequestEmergencyStop) {
+    take_authority();  // what is here already is no answer
+    authority_.stop_asked();
+  }
   unanswered_.asked(request, Clock::now());
   endpoints_->request.write(request);
   return sequence_;
@@ -95,6 +99,10 @@ void OperatorClient::flush() const { endpoints_->request.flush(std::chrono::nano
 
 std::int32_t OperatorClient::participant() const { return endpoints_->domain.participant(); }
 
+void OperatorClient::take_authority() {
+  endpoints_->authority.take([this](const msg::Authority& authority) { authority_.take(authority); });
+}
+
 void OperatorClient::poll() {
   endpoints_->answer.take([this](const msg::RequestAnswer& answer) {
     if (source_ != answer.source) return;
@@ -102,20 +110,18 @@ void OperatorClient::poll() {
     if (answers_.size() > kMostAnswers) answers_.erase(answers_.begin());
     unanswered_.answered(answer.request_sequence);
   });
-  endpoints_->authority.take([this](const msg::Authority& authority) {
-    authority_ = authority;
-    const std::uint64_t stop = unanswered_.stop();
-    if (stop == 0 || !authority.emergency_stop) return;
+  take_authority();
+  if (const std::uint64_t stop = unanswered_.stop(); stop != 0 && authority_.stop_latched()) {
     msg::RequestAnswer answer{};
     answer.granted = true;  // whoever's word it was
     answers_.try_emplace(stop, answer);
     unanswered_.answered(stop);
-  });
+  }
   unanswered_.repeat(Clock::now(), kRepeat, [this](const msg::Request& request) { endpoints_->request.write(request); });
 }
 
 bool OperatorClient::holds_authority() const {
-  return authority_ && authority_->level == msg::kAuthorityOperator && source_ == authority_->source;
+  return authority() && authority()->level == msg::kAuthorityOperator && source_ == authority()->source;
 }
 
 OperatorClient::Answer OperatorClient::wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/authority_watch.hpp"
 #include "constrictor/messages.hpp"
 #include "runtime/unanswered_requests.hpp"
 
@@ -33,12 +34,12 @@ class OperatorClient {
   /// Takes in what arrived, and repeats what was not answered.
   void poll();
   /// Newest word of `input`; empty before the first.
-  [[nodiscard]] const std::optional<msg::Authority>& authority() const { return authority_; }
+  [[nodiscard]] const std::optional<msg::Authority>& authority() const { return authority_.newest(); }
   [[nodiscard]] bool holds_authority() const;
 
   enum class Answer { kGranted, kRefused, kNone };
   /// Waits for the answer to a request; kNone if there is none within `bound`. Keeps this source alive meanwhile. An emergency stop
-  /// counts as granted also when `authority` says that one is latched.
+  /// counts as granted also when `authority` says, of a later tick than what was known when it was asked for, that one is latched.
   Answer wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound);
   /// Why the last request that wait_for_answer() saw refused was.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
@@ -52,11 +53,12 @@ class OperatorClient {
 
  private:
   struct Endpoints;
+  void take_authority();
   std::string source_;
   bool detached_;
   std::unique_ptr<Endpoints> endpoints_;
   std::uint64_t sequence_ = 0;
-  std::optional<msg::Authority> authority_;
+  AuthorityWatch authority_;
   UnansweredRequests unanswered_;
   std::map<std::uint64_t, msg::RequestAnswer> answers_;  ///< to our requests, the newest of them, by number
   std::string refusal_;

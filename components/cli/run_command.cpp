@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <random>
 
 #include "cli/manifest.hpp"
 #include "cli/run_observer.hpp"
@@ -21,6 +22,7 @@
 #include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
 #include "runtime/numeric_profile.hpp"
+#include "runtime/pacer.hpp"
 #include "runtime/share.hpp"
 
 namespace constrictor::cli {
@@ -47,8 +49,9 @@ std::vector<std::string> pace_arguments(const std::string& pace) {
   if (pace == "realtime") return {"--realtime"};
   char* end = nullptr;
   const double factor = std::strtod(pace.c_str(), &end);
-  if (end == pace.c_str() || std::string(end) != "x" || !(factor > 0 && factor <= 1000)) {
-    throw UsageError(fmt::format("--pace: found '{}', accepted lockstep, realtime, or a factor such as 2x (to 1000x)", pace));
+  if (end == pace.c_str() || std::string(end) != "x" || !(factor > 0 && Pacer::accepts(factor))) {
+    throw UsageError(fmt::format("--pace: found '{}', accepted lockstep, realtime, or a factor such as 2x ({}x to {}x)", pace, Pacer::kSlowest,
+                                 Pacer::kFastest));
   }
   return {"--pace", fmt::format("{}", factor)};
 }
@@ -134,16 +137,18 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
   fs::path dir = options.report_dir;
   if (dir.empty()) {
     const std::time_t now = std::time(nullptr);
-    dir = fs::path("runs") / fmt::format("{:%Y%m%d-%H%M%S}_{}_seed{}", fmt::localtime(now), scenario.stem().string(), options.seed);
+    const auto name = fmt::format("{:%Y%m%d-%H%M%S}_{}_seed{}", fmt::localtime(now), scenario.stem().string(), options.seed);
+    dir = make_new_directory(fs::path("runs") / name);
+  } else {
+    fs::create_directories(dir);
   }
-  fs::create_directories(dir);
   for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin"}) fs::remove(dir / old);
   return fs::absolute(dir);
 }
 
 /// How each process of the run is called.
 Supervisor::CommandLine command_line(const RunOptions& options, const LaunchManifest& manifest, std::uint32_t domain,
-                                     const std::vector<std::string>& roster, const fs::path& report_dir) {
+                                     const std::vector<std::string>& roster, const fs::path& report_dir, std::uint64_t run_id) {
   const fs::path programs = fs::read_symlink("/proc/self/exe").parent_path();
   std::vector<std::string> common = {"--domain",   std::to_string(domain),
                                      "--roster",   fmt::format("{}", fmt::join(roster, ",")),
@@ -152,7 +157,8 @@ Supervisor::CommandLine command_line(const RunOptions& options, const LaunchMani
                                      "--scenario", manifest.scenario_file.string(),
                                      "--seed",     std::to_string(options.seed),
                                      "--output",   report_dir.string(),
-                                     "--patience", fmt::format("{}", manifest.patience_s)};
+                                     "--patience", fmt::format("{}", manifest.patience_s),
+                                     "--run-id",   std::to_string(run_id)};
   std::vector<std::string> plants = pace_arguments(options.pace);
   if (options.max_sim_time_s > 0) plants.insert(plants.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
   if (options.record) plants.emplace_back("--record");
@@ -196,6 +202,13 @@ class Speedometer {
 
 }  // namespace
 
+fs::path make_new_directory(const fs::path& wanted) {
+  if (wanted.has_parent_path()) fs::create_directories(wanted.parent_path());
+  fs::path directory = wanted;
+  for (int number = 2; !fs::create_directory(directory); ++number) directory = fmt::format("{}-{}", wanted.string(), number);
+  return directory;
+}
+
 int run_command(const RunOptions& options) {
   pace_arguments(options.pace);  // before anything is done
   LaunchManifest manifest = make_manifest(options);
@@ -211,8 +224,10 @@ int run_command(const RunOptions& options) {
   ProgressDisplay display;
   display.say(fmt::format("run {}: {} seed {}, {} components in {} process{}, report in {}", claim.domain(), scenario, options.seed,
                           roster.size(), manifest.processes.size(), manifest.processes.size() == 1 ? "" : "es", report_dir.string()));
-  RunObserver observer(claim.domain());
-  Supervisor supervisor(manifest, command_line(options, manifest, claim.domain(), roster, report_dir), environment,
+  std::random_device entropy;  // names the run among others; nothing computed depends on it
+  const std::uint64_t run_id = (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
+  RunObserver observer(claim.domain(), run_id);
+  Supervisor supervisor(manifest, command_line(options, manifest, claim.domain(), roster, report_dir, run_id), environment,
                         report_dir / "logs", [&](const std::string& line) { display.say(line); });
   RunOutcome outcome{scenario, options.seed, 0, ""};
   int status = exit_status::kOk;
@@ -230,8 +245,10 @@ int run_command(const RunOptions& options) {
     for (const auto& line : observer.poll()) display.say(line);
     note.set_seed(observer.view().seed(options.seed));
     supervisor.run_is_at(observer.view().tick, observer.view().held());
+    // The plant's word may be lost to a launcher that was stopped for long; that the mission was reported tells the same.
+    const bool reported = supervisor.plant_is_gone() && fs::exists(report_dir / "mission.json");
+    if (reported || observer.view().ended(manifest.plant)) supervisor.expect_end();
     state = supervisor.poll();
-    if (observer.view().ended(manifest.plant)) supervisor.expect_end();
     if (Clock::now() - sampled > kMemoryEvery) {
       sampled = Clock::now();
       supervisor.sample_memory();

@@ -24,6 +24,10 @@ struct RunOptions {
   std::vector<std::string> config_files;            ///< "NAME=FILE"
 };
 
+/// Makes a directory that was not there before, even if others do the same at this moment: `wanted`, or that with -2, -3 ... appended.
+/// Throws std::filesystem::filesystem_error.
+std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
+
 /// Throws ConfigurationError for what is wrong before anything was started. Returns the exit status: 0 only after a
 /// successful mission.
 int run_command(const RunOptions& options);

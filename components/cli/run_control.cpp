@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/control_answer.hpp"
 #include "cli/operator_client.hpp"
 #include "cli/run_registry.hpp"
 #include "cli/usage.hpp"
@@ -17,6 +19,7 @@
 #include "runtime/dds/endpoint.hpp"
 #include "runtime/dds/wire.hpp"
 #include "runtime/host.hpp"
+#include "runtime/pacer.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -25,7 +28,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = 10ms;
 constexpr auto kBound = 10s;
-constexpr const char* kSource = "constrictor";
 
 struct Options {
   std::optional<std::uint32_t> run;
@@ -39,55 +41,64 @@ double parse_pace(const std::string& text) {
   char* end = nullptr;
   const double pace = std::strtod(text.c_str(), &end);
   const bool number = end != text.c_str() && (*end == '\0' || std::string(end) == "x");
-  if (!number || !(pace > 0.0 && pace <= 1000.0)) {
-    throw UsageError(fmt::format("PACE: found '{}', accepted lockstep or a factor such as 2x (to 1000x)", text));
+  if (!number || !(pace > 0.0 && Pacer::accepts(pace))) {
+    throw UsageError(fmt::format("PACE: found '{}', accepted lockstep or a factor such as 2x ({}x to {}x)", text, Pacer::kSlowest, Pacer::kFastest));
   }
   return pace;
 }
 
-/// Sends one RunControl and hears the conductor's answer.
+/// Sends commands on `run_control` and hears the conductor's answers.
 class RunControlClient {
  public:
   explicit RunControlClient(std::uint32_t domain)
-      : domain_(domain), state_(dds::Reader<msg::RunState>::member(domain_.participant(), dds::barrier_topics::kRunState)),
+      : source_(unique_source("control")), domain_(domain),
+        state_(dds::Reader<msg::RunState>::member(domain_.participant(), dds::barrier_topics::kRunState)),
         control_(domain_.participant(), dds::barrier_topics::kRunControl, 1) {}
 
   /// The state after the command was obeyed. Throws RegistryError if it was refused or nobody answered.
-  msg::RunState send(msg::RunControl control) {
-    dds::set_text(control.source, kSource);
-    control.sequence_number = static_cast<std::uint64_t>(
-        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
-    control_.write(control);  // kept for the conductor until it finds this writer
-    const auto state = wait([&](const msg::RunState& s) {
-      return std::string(s.control_source) == kSource && s.control_sequence == control.sequence_number;
-    });
-    if (*state.refusal) throw RegistryError(state.refusal);
-    return state;
+  msg::RunState send(msg::RunControl command) {
+    dds::set_text(command.source, source_);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    sequence_ = std::max(sequence_ + 1, static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
+    command.sequence_number = sequence_;
+    WaitBound bound(WaitBound::For::kAnswer, kBound, Clock::now());
+    // The conductor keeps one answer, of its last command: whoever hears it late hears somebody else's.
+    while (state_.writers() == 0 && !bound.over(Clock::now())) std::this_thread::sleep_for(kPoll);
+    control_.write(command);
+    const auto state = wait(bound, "answer from", [&](const msg::RunState& s) { return answer_to(command, s) != ControlAnswer::kNone; });
+    switch (answer_to(command, state)) {
+      case ControlAnswer::kRefused: throw RegistryError(state.refusal);
+      case ControlAnswer::kOvertaken: throw RegistryError("overtaken by a later command of this name; `constrictor status` tells the state");
+      default: return state;
+    }
   }
-  /// The first state for which `condition` holds. However long that takes, as long as the run makes ticks; throws RegistryError if it
-  /// does not for `kBound`.
+  /// The first state for which `condition` holds, however long that takes, as long as the run makes ticks. Throws RegistryError if it
+  /// does not.
   template <class Condition>
-  msg::RunState wait(Condition&& condition) {
-    auto end = Clock::now() + kBound;
-    std::int64_t newest = -1;
+  msg::RunState wait_for_ticks(Condition&& condition) {
+    return wait(WaitBound(WaitBound::For::kTicks, kBound, Clock::now()), "further tick of", condition);
+  }
+
+ private:
+  template <class Condition>
+  msg::RunState wait(WaitBound bound, const char* missing, Condition&& condition) {
     for (;;) {
       std::optional<msg::RunState> found;
       state_.take([&](const msg::RunState& s) {
         if (!found && condition(s)) found = s;
-        if (s.tick == newest) return;
-        newest = s.tick;
-        end = Clock::now() + kBound;
+        bound.heard(s.tick, Clock::now());
       });
       if (found) return *found;
-      if (Clock::now() > end) {
-        throw RegistryError(newest < 0 ? fmt::format("no answer from the run within {} s", kBound.count())
-                                       : fmt::format("no answer from the run within {} s, and no tick after {}", kBound.count(), newest - 1));
+      if (bound.over(Clock::now())) {
+        const std::string tick = bound.next_tick() < 0 ? "" : fmt::format("; its next tick is {}", bound.next_tick());
+        throw RegistryError(fmt::format("no {} the run within {} s{}", missing, kBound.count(), tick));
       }
       std::this_thread::sleep_for(kPoll);
     }
   }
 
- private:
+  std::string source_;
+  std::uint64_t sequence_ = 0;
   dds::Domain domain_;
   dds::Reader<msg::RunState> state_;
   dds::Writer<msg::RunControl> control_;
@@ -117,7 +128,7 @@ int control(const Options& options, std::uint8_t command) {
   msg::RunState state = client.send(message);
   if (command == msg::kRunStep) {
     const auto done = [&](const msg::RunState& s) { return s.tick >= from + static_cast<std::int64_t>(options.steps); };
-    if (!done(state)) state = client.wait(done);
+    if (!done(state)) state = client.wait_for_ticks(done);
   }
   if (command == msg::kRunReset) fmt::print("run {}: reset to seed {}, epoch {}\n", run.domain, state.seed, state.epoch);
   else if (state.paused) fmt::print("run {}: paused, next tick {}\n", run.domain, state.tick);
@@ -193,7 +204,7 @@ void add_run_control(CLI::App& app, std::function<int()>& action) {
   add("pace", "set how fast a run may go", controls(msg::kRunPace),
       help_footer("While an operator has authority lock-step is capped at real time; a pace set meanwhile overrules that.",
                   {"constrictor pace lockstep", "constrictor pace 2x"}, time_status))
-      ->add_option("PACE", options->pace, "lockstep (as fast as it goes), or at most N times real time: 2x (to 1000x)")->required();
+      ->add_option("PACE", options->pace, "lockstep (as fast as it goes), or at most N times real time: 2x (0.001x to 1000x)")->required();
   add("reset", "begin a run anew, with another seed", controls(msg::kRunReset),
       help_footer("In the same processes and report directory. The run is then the one that `constrictor run --seed SEED` makes.", {"constrictor reset 7"}, time_status))
       ->add_option("SEED", options->seed, "the seed")->required()->check(whole_number());

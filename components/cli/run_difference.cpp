@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <tuple>
 
 #include "constrictor/compare.hpp"
@@ -108,7 +109,14 @@ std::optional<RunDifference> first_run_difference(const std::vector<Entry>& a, c
 }
 
 std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
-  return first_run_difference(HashLog::read(a), HashLog::read(b));
+  const auto read = [](const std::filesystem::path& directory) {
+    auto log = HashLog::read(directory);
+    // Two runs that never ticked are alike in nothing.
+    if (last_tick(log) < 0) throw std::runtime_error((directory / "hashes.bin").string() + ": holds no tick");
+    return log;
+  };
+  const auto log_a = read(a);
+  return first_run_difference(log_a, read(b));
 }
 
 }  // namespace constrictor::cli

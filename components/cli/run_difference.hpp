@@ -24,7 +24,7 @@ struct RunDifference {
 /// ticks may be missing from a log, because the plant ends first: that is no difference; other contents are.
 std::optional<RunDifference> first_run_difference(const std::vector<HashLog::Entry>& a, const std::vector<HashLog::Entry>& b);
 
-/// Reads and compares two report directories. Throws std::runtime_error if a log is missing or damaged.
+/// Reads and compares two report directories. Throws std::runtime_error if a log is missing, damaged, or of a run that never ticked.
 std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace constrictor::cli

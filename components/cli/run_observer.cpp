@@ -51,8 +51,10 @@ bool RunView::ended(const std::string& component) const {
 }
 
 bool RunView::over(const msg::Waiting& waiting) const {
-  if (waiting.run_id == 0 || present_.run_id() == 0) return false;  // before a run begins there is no tick to be done
   const auto waiter = components.find(waiting.component);
+  // A wait for the run to begin ends with the waiter's first word in it.
+  if (waiting.run_id == 0) return waiter != components.end() && waiter->second.run_id != 0;
+  if (present_.run_id() == 0) return false;
   const bool done = waiter != components.end() && waiter->second.epoch == present_.epoch() && waiter->second.tick >= waiting.tick;
   const bool of_earlier_epoch = tick >= 0 && waiting.tick > tick + kMostAhead;
   return waiting.run_id != present_.run_id() || done || of_earlier_epoch || tick > waiting.tick + kMostAhead;
@@ -76,11 +78,14 @@ void RunView::take(const msg::Tick& message) {
 }
 
 void RunView::take(const msg::ComponentStatus& message) {
+  if (meant_ != 0 && message.run_id != 0 && message.run_id != meant_) return;
   const std::string name = message.component;
   const auto before = components.find(name);
   if (before != components.end()) {
-    if (message.incarnation < before->second.incarnation || message.epoch < before->second.epoch) return;
-    if (message.incarnation > before->second.incarnation) {
+    // A new incarnation is in no epoch until it is resumed.
+    const bool anew = message.incarnation > before->second.incarnation;
+    if (message.incarnation < before->second.incarnation || (!anew && message.epoch < before->second.epoch)) return;
+    if (anew) {
       earlier_overruns_[name] += before->second.overruns;
       earlier_refused_[name] += before->second.refused;
     }
@@ -111,7 +116,7 @@ void RunView::take(const msg::RunState& message) {
   tick = std::max(tick, message.tick - 1);  // it tells the next one
 }
 
-RunObserver::RunObserver(std::uint32_t domain) : readers_(std::make_unique<Readers>(domain)) {}
+RunObserver::RunObserver(std::uint32_t domain, std::uint64_t run_id) : readers_(std::make_unique<Readers>(domain)), view_(run_id) {}
 RunObserver::~RunObserver() = default;
 
 std::vector<std::string> RunObserver::poll() {

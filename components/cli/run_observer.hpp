@@ -17,6 +17,10 @@ namespace constrictor::cli {
 /// The newest known state of a run. Takes messages in any order; what is of an epoch before the newest (a run that was reset) or
 /// of another run counts only as health of the component that says it.
 struct RunView {
+  /// `run_id`: the run that is meant, of which alone anything counts; 0: the first that is heard of.
+  explicit RunView(std::uint64_t run_id) : meant_(run_id), present_(run_id) {}
+  RunView() : RunView(0) {}
+
   std::int64_t tick = -1;                         ///< newest of any component in this epoch; -1: it did not begin
   double period_s = 0.02;                         ///< [s] control period
   std::optional<msg::MissionStatus> mission;
@@ -47,6 +51,7 @@ struct RunView {
  private:
   /// True if it is of the present epoch; a newer one begins with it.
   bool present(std::uint64_t message_run_id, std::uint32_t message_epoch);
+  std::uint64_t meant_;
   NewestEpoch present_;
   std::map<std::string, std::uint64_t> earlier_overruns_;  ///< of incarnations before the newest
   std::map<std::string, std::uint64_t> earlier_refused_;
@@ -54,8 +59,8 @@ struct RunView {
 
 class RunObserver {
  public:
-  /// Joins a DDS domain. Throws dds::Error.
-  explicit RunObserver(std::uint32_t domain);
+  /// Joins a DDS domain to watch a run there, or the first that it hears of (0). Throws dds::Error.
+  explicit RunObserver(std::uint32_t domain, std::uint64_t run_id = 0);
   ~RunObserver();
   /// Takes in what arrived. Returns who newly waits for something, as text for people: nothing that is over already.
   std::vector<std::string> poll();

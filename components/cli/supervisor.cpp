@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kLastWords = 5;             // lines
 constexpr int kMostVainDeaths = 5;                // of one process, while the run stands at one tick
-constexpr auto kEndTogether = 3s;                 // a member may end this long before the plant says that the run is over
+constexpr auto kEndTogether = 3s;                 // a process may end this long before the plant's word that the run is over arrives
 constexpr auto kTermination = 3s;                 // from SIGTERM to SIGKILL
 constexpr auto kPoll = 10ms;
 
@@ -108,16 +108,25 @@ void Supervisor::take_exit(Member& member, const ChildExit& exit) {
   member.ended = Clock::now();
   member.record.cpu_s += exit.cpu_s;
   if (exit.clean()) {
-    if (is_plant(member) && state_ == State::kRunning) state_ = State::kEnded;
+    plant_gone_ = plant_gone_ || is_plant(member);
     return;
   }
   for (const auto& line : last_lines(log_of(member), member.log_offset, kLastWords)) say_(member.record.name + ": " + line);
   const std::string how = exit.describe();
   const int code = exit.code().value_or(0);
   if (is_plant(member)) return fail(fmt::format("{}, the plant, ended: {}", member.record.name, how), code ? code : exit_status::kSoftware);
-  if (ending_) return say_(fmt::format("{} {} after the run's end", member.record.name, how));
+  if (ending_ || plant_gone_) return say_(fmt::format("{} {} after the {}'s end", member.record.name, how, ending_ ? "run" : "plant"));
   if (is_hopeless(code)) return fail(fmt::format("{} ended: {}", member.record.name, how), code == 127 ? exit_status::kSoftware : code);
   if (state_ == State::kRunning) restart(member, how.rfind("killed", 0) == 0 ? "was " + how : "ended: " + how, !exit.killed_from_outside());
+}
+
+void Supervisor::take_plants_end(const Member& plant) {
+  if (!plant_gone_ || state_ != State::kRunning) return;
+  if (ending_) state_ = State::kEnded;
+  else if (Clock::now() - plant.ended > kEndTogether) {
+    // Nobody else can go on: they would wait for a tick that never comes.
+    fail(fmt::format("{}, the plant (pid {}), ended before the run did", plant.record.name, plant.child.front().pid()), exit_status::kSoftware);
+  }
 }
 
 Supervisor::State Supervisor::poll() {
@@ -127,8 +136,11 @@ Supervisor::State Supervisor::poll() {
     if (member.over || member.child.empty()) continue;
     if (const auto& exit = member.child.front().poll()) take_exit(member, *exit);
   }
+  for (const auto& member : members_) {
+    if (is_plant(member)) take_plants_end(member);
+  }
   for (auto& member : members_) {
-    const bool ended_alone = !ending_ && member.over && state_ == State::kRunning && Clock::now() - member.ended > kEndTogether;
+    const bool ended_alone = !ending_ && !plant_gone_ && member.over && state_ == State::kRunning && Clock::now() - member.ended > kEndTogether;
     if (ended_alone) restart(member, "ended before the run did", true);
   }
   return state_;

@@ -40,17 +40,20 @@ class Supervisor {
 
   enum class State {
     kRunning,
-    kEnded,   ///< the plant's process ended as it should
+    kEnded,   ///< the plant said that the run is over, and its process ended as it should
     kFailed,  ///< see failure()
   };
-  /// Looks after the processes without waiting: restarts members that died, within their budget. The plant's death, a bad
-  /// configuration, a refusal, a peer waited for too long, and five deaths of a process without a tick between them end the run.
+  /// Looks after the processes without waiting: restarts members that died, within their budget. The plant's death, its end before
+  /// the run's (expect_end()), a bad configuration, a refusal, a peer waited for too long, and five deaths of a process without a
+  /// tick between them end the run.
   State poll();
   /// How far the run is, -1 before it began. `held`: nobody keeps the next tick waiting, only its pace or a pause.
   void run_is_at(std::int64_t tick, bool held);
   void sample_memory();
   /// The plant said that the run is over: from now on members end, and none is restarted.
   void expect_end() { ending_ = true; }
+  /// The plant's process ended without an error. Unless expect_end() is called soon, that was not the run's end.
+  [[nodiscard]] bool plant_is_gone() const { return plant_gone_; }
 
   /// Lets everybody end by themselves within `grace`, then ends the rest.
   void finish(std::chrono::seconds grace);
@@ -78,6 +81,7 @@ class Supervisor {
   void take_exit(Member& member, const ChildExit& exit);
   /// `in_vain`: of its own fault, so that another start may change nothing.
   void restart(Member& member, const std::string& why, bool in_vain);
+  void take_plants_end(const Member& plant);
   void fail(const std::string& why, int status);
   [[nodiscard]] bool is_plant(const Member& member) const;
   [[nodiscard]] std::filesystem::path log_of(const Member& member) const;
@@ -92,6 +96,7 @@ class Supervisor {
   std::int64_t tick_ = -1;                  ///< newest that is known
   State state_ = State::kRunning;
   bool ending_ = false;
+  bool plant_gone_ = false;
   std::string failure_;
   int failure_status_ = 0;
 };

@@ -303,7 +303,8 @@ void add_task(CLI::App& app, std::function<int()>& action) {
                                 "constrictor task wait --event \"object grasped\" --goal any"},
                                fmt::format("0 it came, or the goal succeeded; 1 the goal ended without it or did not succeed, or the run ended;\n"
                                            "  {}; 75 too late", kRunStatuses)));
-  add("list", "the tasks and events there are", list)->footer("EXAMPLES\n  constrictor task list\n\nEXIT STATUS\n  0 done; 64 wrong usage");
+  add("list", "the tasks and events there are", list)->footer("EXAMPLES\n  constrictor task list\n\nEXIT STATUS\n  0 done; 64 wrong usage\n\n"
+                                                                  "ENVIRONMENT\n  none: it asks no run");
 }
 
 }  // namespace constrictor::cli

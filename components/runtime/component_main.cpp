@@ -4,20 +4,35 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 
 #include "configuration/configuration.hpp"
 #include "runtime/dds/entity.hpp"
 #include "runtime/host.hpp"
 #include "runtime/numeric_profile.hpp"
+#include "runtime/pacer.hpp"
 #include "runtime/share.hpp"
 #include "runtime/version.hpp"
 
 namespace constrictor {
+namespace {
+
+const CLI::Validator kPace(
+    [](std::string& text) {
+      char* end = nullptr;
+      const double pace = std::strtod(text.c_str(), &end);
+      if (end != text.c_str() && *end == '\0' && Pacer::accepts(pace)) return std::string{};
+      return fmt::format("found '{}', accepted 0 or {} to {}", text, Pacer::kSlowest, Pacer::kFastest);
+    },
+    "");
+
+}  // namespace
 
 int component_main(int argc, char** argv, ComponentFactory factory) { return host_main(argc, argv, {std::move(factory)}); }
 
 int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   ensure_numeric_environment(argv);
+  Host::heed_signals();  // after the program is started anew, which forgets them
   std::string names;
   for (const auto& factory : factories) names += (names.empty() ? "" : ",") + factory.name;
   HostOptions options;
@@ -36,9 +51,10 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--output", options.setup.output_dir, "directory for what this process writes");
   app.add_option("--config", config_files, "NAME=FILE: configuration of a component, instead of its default");
   app.add_option("--incarnation", options.incarnation, "1, and one more with each restart")->check(CLI::Range(1u, 1'000'000u));
-  app.add_option("--pace", options.pace, "plant only: at most so many times real time; 0: as fast as it goes")->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--run-id", options.run_id, "of the run that this process belongs to; 0: of whatever run begins in the domain");
+  app.add_option("--pace", options.pace, "plant only: at most so many times real time; 0: as fast as it goes")->check(kPace);
   app.add_option("--operator-pace", options.operator_pace, "plant only: the same while an operator has authority; 0: no such cap")
-      ->capture_default_str()->check(CLI::Range(0.0, 1000.0));
+      ->capture_default_str()->check(kPace);
   app.add_flag("--realtime", options.realtime, "plant only: ticks on the wall clock, nobody is waited for");
   app.add_option("--max-sim-time", options.max_sim_time_s, "plant only: [s] end the run at this simulated time; 0: never")->check(CLI::Range(0.0, 1e6));
   app.add_option("--patience", options.patience_s, "[s] wait so long for a peer before giving up; 0: for ever")->check(CLI::Range(0.0, 86400.0));

@@ -104,14 +104,16 @@ void Host::Impl::publish_status(LocalMember& local, std::uint8_t state) {
   status_writer_.write(status);
 }
 
-void Host::Impl::report_waiting(const std::string& component, const std::string& what, const std::string& whom,
-                                std::int64_t tick, std::uint64_t have, std::uint64_t want) {
+void Host::Impl::report_waiting(const Member& waiter, const std::string& what, const std::string& whom, std::int64_t tick,
+                                std::uint64_t have, std::uint64_t want) {
+  const std::string& component = waiter.name();
   const double waited = std::chrono::duration<double>(SteadyClock::now() - last_progress_).count();
   std::fprintf(stderr, "%s waits for %s of %s at tick %lld (has %llu, needs %llu) for %.0f s\n", component.c_str(),
                what.c_str(), whom.c_str(), static_cast<long long>(tick), static_cast<unsigned long long>(have),
                static_cast<unsigned long long>(want), waited);
   msg::Waiting message{};
   dds::set_text(message.component, component);
+  if (waiter.in_epoch()) message.run_id = waiter.epoch().run_id;
   message.tick = tick;
   dds::set_text(message.topic, what);
   dds::set_text(message.writer, whom);
@@ -129,20 +131,20 @@ void Host::Impl::watch() {
   if (waited < 2.0 || now - last_waiting_report_ < std::chrono::seconds(1)) return;
   last_waiting_report_ = now;
   const std::int64_t next = conductor_ ? conductor_->next_index() : members_.front().member->newest_tick() + 1;
-  if (!unmatched_.empty()) std::fprintf(stderr, "%s: %s\n", identity_.c_str(), unmatched_.c_str());
+  if (!unmatched_.empty()) std::fprintf(stderr, "%s: %s\n", identity_.c_str(), bus_->explain(unmatched_).c_str());
   if (conductor_) {
     for (const auto& owed : conductor_->owed()) {
-      report_waiting(options_.plant, owed.what, owed.component, next, static_cast<std::uint64_t>(std::max<std::int64_t>(owed.have, 0)),
+      report_waiting(*plant_, owed.what, owed.component, next, static_cast<std::uint64_t>(std::max<std::int64_t>(owed.have, 0)),
                      static_cast<std::uint64_t>(owed.want));
     }
   }
   for (auto& local : members_) {
     const MissingInput missing = local.member->missing();
     if (missing.topic) {
-      report_waiting(local.member->name(), std::string(missing.topic->name), std::string(missing.topic->writer), missing.tick,
+      report_waiting(*local.member, std::string(missing.topic->name), std::string(missing.topic->writer), missing.tick,
                      missing.have, missing.want);
     } else if (!conductor_) {
-      report_waiting(local.member->name(), local.member->in_epoch() ? "Tick" : "EpochStart", options_.plant, missing.tick, 0, 1);
+      report_waiting(*local.member, local.member->in_epoch() ? "Tick" : "EpochStart", options_.plant, missing.tick, 0, 1);
     }
     publish_status(local, msg::kComponentWaiting);
   }
@@ -153,18 +155,16 @@ void Host::Impl::watch() {
 }
 
 void Host::Impl::finish() {
-  for (auto& local : members_) publish_status(local, msg::kComponentEnded);
+  // Only the final tick ends a run: whoever is told to go before that just goes, with its last counts.
+  for (auto& local : members_) publish_status(local, local.member->ended() ? msg::kComponentEnded : msg::kComponentRunning);
   // The final tick must reach everybody before its writer goes; bounded, since a stopped process must not hold the end up.
   if (conductor_ && exit_status_ == exit_status::kOk) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
+  if (plant_ && plant_->ended()) dds_wait_for_acks(status_writer_.get(), DDS_SECS(1));  // by it the launcher knows that this was the run's end
   if (hash_log_) hash_log_->close();
 }
 
 int Host::Impl::run() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
-  greet();
+  if (!g_stop) greet();
   std::vector<dds_attach_t> triggered(takers_.size());
   for (std::size_t i = 0; i < takers_.size(); ++i) takers_[i]();
   while (exit_status_ < 0) {
@@ -196,6 +196,12 @@ int Host::Impl::run() {
 Host::Host(HostOptions options, std::vector<ComponentFactory> factories)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(factories))) {}
 Host::~Host() = default;
+void Host::heed_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+}
 int Host::run() { return impl_->run(); }
 
 }  // namespace constrictor

@@ -28,6 +28,7 @@ struct HostOptions {
   std::vector<std::string> roster;       ///< every member of the run, here or elsewhere
   std::string plant = "physics";         ///< who among them is the time master
   std::uint32_t incarnation = 1;         ///< of this process
+  std::uint64_t run_id = 0;              ///< as the launcher numbers the run; 0: any run that begins in the domain, or a random number
   double pace = 0.0;                     ///< plant's host: at most so many times real time; 0: lock-step, uncapped
   double operator_pace = 1.0;            ///< plant's host: the same while an operator has authority; 0: no such cap
   bool realtime = false;                 ///< plant's host: ticks on the wall clock, nobody is waited for
@@ -44,6 +45,9 @@ class Host {
   /// Builds the components. Throws ConfigurationError or dds::Error.
   Host(HostOptions options, std::vector<ComponentFactory> factories);
   ~Host();
+  /// From here on SIGTERM and SIGINT are wishes to end, which run() obeys, also those that came before it. To be called first of all:
+  /// building components and finding the others takes a while.
+  static void heed_signals();
   /// Takes part until the run ends, a signal (SIGTERM, SIGINT) or an error. Returns the exit status.
   int run();
 

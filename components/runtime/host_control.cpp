@@ -1,4 +1,6 @@
 // Control of the run from outside: pause, resume, step, pace, reset, end; and what the run says about itself.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +12,6 @@
 namespace constrictor {
 namespace {
 
-constexpr std::size_t kMaxControlSources = 256;
 constexpr auto kStateEvery = std::chrono::seconds(1);
 
 }  // namespace
@@ -19,15 +20,10 @@ void Host::Impl::take_control(const msg::RunControl& control) {
   std::string refusal;
   if (const auto violation = validate(control)) {
     refusal = "run_control." + *violation;
+  } else if (!control_sources_.take(control.source, control.sequence_number)) {
+    refusal = "run_control.sequence_number: heard before, or after a higher one of this source";
   } else {
-    const auto known = control_sequences_.find(control.source);
-    if (known != control_sequences_.end() && control.sequence_number <= known->second) return;  // heard before
-    if (known == control_sequences_.end() && control_sequences_.size() >= kMaxControlSources) {
-      refusal = "run_control.source: too many sources";
-    } else {
-      control_sequences_[control.source] = control.sequence_number;
-      refusal = obey_control(control);
-    }
+    refusal = obey_control(control);
   }
   if (!refusal.empty()) {
     std::fprintf(stderr, "%s: run_control refused: %s\n", options_.plant.c_str(), refusal.c_str());
@@ -46,11 +42,13 @@ std::string Host::Impl::obey_control(const msg::RunControl& control) {
       conductor_->reset(control.seed);
       break;
     case msg::kRunEnd:
+      if (!conductor_->epoch()) return "end: the run has not begun";
       conductor_->end_run();
       pacer_.control(msg::kRunResume, 0.0);  // the final tick must come
       break;
     case msg::kRunPace:
       if (options_.realtime) return "pace: this run goes by the wall clock";
+      if (!Pacer::accepts(control.pace)) return fmt::format("pace: found {}, accepted 0 or {} to {}", control.pace, Pacer::kSlowest, Pacer::kFastest);
       pacer_.control(control.command, control.pace);
       break;
     default:
@@ -62,7 +60,7 @@ std::string Host::Impl::obey_control(const msg::RunControl& control) {
 }
 
 void Host::Impl::note_authority(const TopicInfo& topic, const Sample& sample) {
-  if (!conductor_ || topic.id != topics::kAuthority.id) return;
+  if (!conductor_ || topic.id != topics::kAuthority.id || sample.header->run_id != conductor_->run_id()) return;
   const auto& authority = *static_cast<const msg::Authority*>(sample.message.get());
   const bool before = pacer_.capped();
   // A stop is a person's doing too: the run must not race on while somebody reaches for the robot.

@@ -10,6 +10,7 @@
 
 #include "runtime/barrier/conductor.hpp"
 #include "runtime/barrier/member.hpp"
+#include "runtime/control_sources.hpp"
 #include "runtime/dds/domain.hpp"
 #include "runtime/dds/member_bus.hpp"
 #include "runtime/dds/outside_link.hpp"
@@ -49,6 +50,8 @@ class Host::Impl : private MemberSink, private ConductorSink {
   void greet();
   [[nodiscard]] Greeting greeting_of(const LocalMember& local) const;
   [[nodiscard]] bool here(const std::string& component) const;
+  /// The run that this process belongs to: its launcher's, else the one that began; 0: none yet.
+  [[nodiscard]] std::uint64_t run_id() const;
   void take(std::size_t reader);
   void take_hello(const msg::Hello& message);
   void take_done(const msg::TickDone& message);
@@ -65,8 +68,9 @@ class Host::Impl : private MemberSink, private ConductorSink {
   bool conduct();
   bool step_members();
   void watch();
-  void report_waiting(const std::string& component, const std::string& what, const std::string& whom, std::int64_t tick,
-                      std::uint64_t have, std::uint64_t want);
+  /// `waiter` is a member here.
+  void report_waiting(const Member& waiter, const std::string& what, const std::string& whom, std::int64_t tick, std::uint64_t have,
+                      std::uint64_t want);
   void publish_status(LocalMember& local, std::uint8_t state);
   void finish();
 
@@ -104,14 +108,14 @@ class Host::Impl : private MemberSink, private ConductorSink {
   std::vector<std::function<void()>> takers_;  ///< by index attached to the wait set
 
   std::map<std::string, Greeting> greetings_;  ///< of members elsewhere
-  std::map<std::string, std::uint64_t> control_sequences_;
+  ControlSources control_sources_;
   Pacer pacer_;
   msg::RunState run_state_{};                  ///< conductor: as published last
   SteadyClock::time_point last_run_state_{};
   SteadyClock::time_point last_progress_ = SteadyClock::now();
   SteadyClock::time_point last_waiting_report_ = SteadyClock::now();
   SteadyClock::time_point last_match_check_{};
-  std::string unmatched_;
+  dds::Unmatched unmatched_;                   ///< when it was looked at last
   int exit_status_ = -1;
 };
 

@@ -74,6 +74,7 @@ void Host::Impl::make_endpoints() {
     epoch_reader_.take([&](const msg::EpochStart& start) {
       if (!acceptable(wire::kEpochStart, start)) return;
       // The first run that is heard is the one taken part in: it must be ours.
+      if (run_id() != 0 && start.run_id != run_id()) return refuse_message(wire::kEpochStart, "run_id: of another run");
       if (start.config_hash != config_hash_) {
         return refuse_message(wire::kEpochStart, fmt::format("config_hash: found '{}', accepted {}", start.config_hash, config_hash_));
       }
@@ -84,6 +85,7 @@ void Host::Impl::make_endpoints() {
   attach(resume_reader_.get(), [this, each] {
     resume_reader_.take([&](const msg::Resume& message) {
       if (!acceptable(wire::kResume, message)) return;
+      if (run_id() != 0 && message.run_id != run_id()) return refuse_message(wire::kResume, "run_id: of another run");
       each([&](Member& member) {
         if (member.name() != message.component || member.incarnation() != message.incarnation || member.in_epoch()) return;
         if (const auto resumption = dds::from_wire(message)) return member.on_resume(*resumption);
@@ -104,7 +106,8 @@ void Host::Impl::make_endpoints() {
   attach(refused_reader_.get(), [this] {
     refused_reader_.take([&](const msg::Refused& message) {
       if (!acceptable(wire::kRefused, message)) return;
-      if (message.pid != ::getpid() || message.incarnation != options_.incarnation || !here(message.component)) return;
+      if (message.pid != ::getpid() || message.host != host_name() || message.incarnation != options_.incarnation || !here(message.component)) return;
+      if (run_id() != 0 && message.run_id != run_id()) return refuse_message(wire::kRefused, "run_id: of another run");
       std::fprintf(stderr, "%s: the run refuses this process: %s\n", message.component, message.reason);
       exit_status_ = exit_status::kRefused;
     });
@@ -154,7 +157,7 @@ void Host::Impl::make_endpoints() {
 void Host::Impl::make_conductor() {
   ConductorOptions conductor;
   std::random_device entropy;  // names the run; nothing computed depends on it
-  conductor.run_id = (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
+  conductor.run_id = options_.run_id != 0 ? options_.run_id : (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
   conductor.roster = options_.roster;
   conductor.plant = options_.plant;
   conductor.idl_hash = std::string(msg::kIdlHash);
@@ -170,6 +173,13 @@ void Host::Impl::make_conductor() {
     hash_log_ = std::make_unique<HashLog>(options_.setup.output_dir, options_.record);
   }
   conductor_ = std::make_unique<Conductor>(conductor, static_cast<ConductorSink&>(*this));
+}
+
+std::uint64_t Host::Impl::run_id() const {
+  if (options_.run_id != 0) return options_.run_id;
+  if (conductor_ && conductor_->epoch()) return conductor_->run_id();
+  const auto begun = std::find_if(members_.begin(), members_.end(), [](const LocalMember& local) { return local.member->in_epoch(); });
+  return begun == members_.end() ? 0 : begun->member->epoch().run_id;
 }
 
 void Host::Impl::refuse_message(const std::string& topic, const std::string& reason) {
@@ -200,6 +210,7 @@ Greeting Host::Impl::greeting_of(const LocalMember& local) const {
   const Member& member = *local.member;
   Greeting greeting;
   greeting.component = member.name();
+  greeting.run_id = options_.run_id;
   greeting.incarnation = member.incarnation();
   greeting.pid = ::getpid();
   greeting.host = host_name();
@@ -224,6 +235,7 @@ void Host::Impl::greet() {
 void Host::Impl::take_hello(const msg::Hello& message) {
   if (!acceptable(wire::kHello, message)) return;
   const Greeting greeting = dds::from_wire(message);
+  if (greeting.run_id != 0 && run_id() != 0 && greeting.run_id != run_id()) return refuse_message(wire::kHello, "run_id: of another run");
   // What is of another run replaces nobody and is waited for by nobody; the conductor tells it so.
   const bool ours = !difference(greeting, greeting_of(members_.front()));
   if (here(greeting.component)) {
@@ -290,8 +302,10 @@ void Host::Impl::refuse(const Greeting& greeting, const std::string& reason) {
                reason.c_str());
   msg::Refused message{};
   dds::set_text(message.component, greeting.component);
+  message.run_id = conductor_->run_id();
   message.incarnation = greeting.incarnation;
   message.pid = greeting.pid;
+  dds::set_text(message.host, greeting.host);
   dds::set_text(message.reason, reason);
   refused_writer_.write(message);
 }

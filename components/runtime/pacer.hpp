@@ -8,7 +8,14 @@ namespace constrictor {
 
 class Pacer {
  public:
-  /// `pace`: at most so many times real time; 0: as fast as it goes. `operator_pace`: the same while an operator has authority.
+  /// Paces are 0, as fast as it goes, or from kSlowest to kFastest times real time. Slower ones are nobody's wish, and the instants at
+  /// which ticks are due would leave the clock's range.
+  static constexpr double kSlowest = 0.001;
+  static constexpr double kFastest = 1000.0;
+  [[nodiscard]] static constexpr bool accepts(double pace) { return pace == 0.0 || (pace >= kSlowest && pace <= kFastest); }
+
+  /// `pace`: at most so many times real time; 0: as fast as it goes. `operator_pace`: the same while an operator has authority. Both
+  /// as accepts() says, and so is every pace later.
   explicit Pacer(double pace, double operator_pace = 0.0) : pace_(pace), operator_pace_(operator_pace) {}
 
   /// Whether a tick whose simulated time is `time_ns` may be sent now.

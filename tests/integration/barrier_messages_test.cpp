@@ -1,6 +1,7 @@
 // The barrier's messages spoken by hand: a conductor that says less at a time than the real one, and strangers that say what is absurd.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <functional>
 #include <limits>
@@ -118,6 +119,16 @@ class Stranger {
     command();
   }
 
+  /// Another run's conductor does not want this process.
+  void refuse(const char* name, pid_t pid) {
+    msg::Refused refused{};
+    dds::set_text(refused.component, name);
+    refused.run_id = run_.run_id + 1;
+    refused.incarnation = 1;
+    refused.pid = pid;
+    ::gethostname(refused.host, sizeof refused.host - 1);
+    refused_.write(refused);
+  }
   /// Another run's conductor, or what takes itself for one.
   void command() {
     msg::EpochStart epoch{};
@@ -144,10 +155,6 @@ class Stranger {
     resume.index = std::numeric_limits<std::int64_t>::max();
     resume.checkpoint = {7, 7, reinterpret_cast<std::uint8_t*>(block.data()), false};
     resume_.write(resume);
-    msg::Refused refused{};
-    dds::set_text(refused.component, "planner");
-    refused.pid = -1;
-    refused_.write(refused);
     msg::RunState state{};
     state.run_id = run_.run_id + 1;
     state.pace = std::numeric_limits<double>::quiet_NaN();
@@ -256,6 +263,8 @@ TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
   stranger.learn(*state);
   ASSERT_TRUE(eventually([&] { return stranger.heard(); }));
   stranger.speak();
+  stranger.refuse("planner", processes.at(2).pid());
+  stranger.refuse("physics", processes.back().pid());
   for (auto& process : processes) EXPECT_EQ(process.wait(60s), exit_status::kOk) << process.errors();
   EXPECT_EQ(processes.at(3).output(), alone.front().output());
   std::map<std::string, std::string> last;
@@ -268,6 +277,27 @@ TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
   for (const char* name : {"navigation", "control", "planner", "report"}) {
     EXPECT_GT(refused[name], 0u) << name;
     EXPECT_FALSE(last[name].empty()) << name;
+  }
+}
+
+// As where two hosts have chosen one domain: the same components, roster and configuration, each with its launcher's number.
+TEST(BarrierMessages, TwoRunsInOneDomainLeaveEachOtherAlone) {
+  const std::string roster = "physics,navigation,control,planner,report";
+  std::map<std::string, std::string> expected;  // by the number of ticks
+  for (const std::string ticks : {"200", "300"}) {
+    const DomainClaim quiet;
+    Process alone = toys(roster, roster, quiet.domain(), {"--scenario", ticks});
+    ASSERT_EQ(alone.wait(30s), exit_status::kOk);
+    expected[ticks] = alone.output();
+  }
+  const DomainClaim claim;
+  std::map<std::string, std::vector<Process>> runs;
+  for (const std::string group : {"physics,planner", "navigation,control", "report"}) {
+    for (const auto& [ticks, result] : expected) runs[ticks].push_back(toys(group, roster, claim.domain(), {"--scenario", ticks, "--run-id", ticks}));
+  }
+  for (auto& [ticks, processes] : runs) {
+    for (auto& process : processes) EXPECT_EQ(process.wait(60s), exit_status::kOk) << process.errors();
+    EXPECT_EQ(processes.back().output(), expected[ticks]);
   }
 }
 

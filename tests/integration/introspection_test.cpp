@@ -1,7 +1,12 @@
 // topic, node, status, doctor and completion on real processes: a run of toys, and programs that are no part of the project.
+#include <signal.h>
+
 #include <sstream>
 
-#include "cli_fixture.hpp"
+#include "introspection_fixture.hpp"
+#include "runtime/dds/domain.hpp"
+#include "runtime/dds/endpoint.hpp"
+#include "runtime/dds/wire.hpp"
 #include "runtime/domain_claim.hpp"
 
 namespace constrictor::testing {
@@ -9,47 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-constexpr const char* kManifest =
-    "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 30\nprocesses:\n"
-    "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n";
-
-class Introspection : public CliFixture {
- protected:
-  [[nodiscard]] Process foreign(std::uint32_t domain, const std::string& mode) const {
-    Process process({program("foreign_talker"), std::to_string(domain), mode}, environment_);
-    EXPECT_TRUE(process.wait_for("talking", 20s)) << process.errors();
-    return process;
-  }
-  /// A run of toys at real-time pace: 50 ticks a second, and it lasts.
-  [[nodiscard]] Process toys() const {
-    write("toys.yaml", kManifest);
-    write("100000_ticks.yaml", "");
-    Process run = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--pace", "1x",
-                         "--report", (dir_ / "report").string()});
-    EXPECT_TRUE(eventually([&] { return domain() != 0; }));
-    return run;
-  }
-  /// Output of a command as JSON; it must end with `status`. What it says to people stays in `output_`.
-  json json_of(std::vector<std::string> arguments, int status = 0) {
-    arguments.push_back("--json");
-    Process process = start(std::move(arguments));
-    const auto ended = process.wait(30s);
-    output_ = process.output() + process.errors();
-    EXPECT_EQ(ended, status) << output_;
-    return json::parse(process.output(), nullptr, false);
-  }
-  /// Names of what the doctor finds in a domain.
-  std::vector<std::string> faults(std::uint32_t domain) {
-    const json found = json_of({"doctor", "--run", std::to_string(domain)}, 1);
-    std::vector<std::string> names;
-    for (const auto& finding : found.value("findings", json::array())) {
-      names.push_back(finding["fault"]);
-      EXPECT_FALSE(finding["cure"].get<std::string>().empty());
-    }
-    return names;
-  }
-};
 
 TEST_F(Introspection, ShowsEveryFieldOfATypeThatThisProjectDoesNotDefine) {
   const DomainClaim claim;
@@ -172,6 +136,66 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   EXPECT_TRUE(run.wait(20s));
 }
 
+// What was said of a wait is kept for late observers.
+TEST_F(Introspection, StatusTellsNothingOfAWaitThatIsOver) {
+  Process run = toys();
+  ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
+  const json node = json_of({"node", "info", "control"});
+  ASSERT_TRUE(node.is_array() && !node.empty()) << output_;
+  const auto pid = node[0]["pid"].get<pid_t>();
+  ASSERT_EQ(::kill(pid, SIGSTOP), 0);
+  EXPECT_TRUE(run.wait_for("physics waits for TickDone of ", 20s)) << run.output();
+  EXPECT_EQ(command({"status"}), 0);
+  const auto wait = output_.find("physics waits for TickDone of ");
+  ASSERT_NE(wait, std::string::npos) << "as long as it lasts: " << output_;
+  const long tick = std::stol(output_.substr(output_.find("at tick ", wait) + 8));
+  ASSERT_EQ(::kill(pid, SIGCONT), 0);
+  // Each component's status comes every 50 ticks.
+  EXPECT_TRUE(eventually([&] { return json_of({"status"})["tick"] > tick + 120; })) << output_;
+  EXPECT_EQ(command({"status"}), 0);
+  EXPECT_EQ(output_.find("waits for"), std::string::npos) << output_;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(Introspection, StatusTellsWhoHasAuthorityAndWhatWasRefusedAndGoesOnTellingIt) {
+  // The real input, beside toys whose parameters it does not ask for.
+  Process run = toys("  - {components: [overview], program: toy_host}\n  - {components: [input]}\n");
+  ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
+  Process watch = start({"status", "--watch"});
+  ASSERT_TRUE(watch.wait_for("authority: nobody", 20s)) << watch.output() << watch.errors();
+  ASSERT_EQ(command({"stop"}), 0) << output_;
+  ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), 1) << "refused: " << output_;
+  {
+    // What is of no run is refused by every member that hears it.
+    const dds::Domain stranger(domain());
+    const dds::Writer<msg::Tick> ticks(stranger.participant(), dds::barrier_topics::kTick, 1);
+    ASSERT_TRUE(eventually([&] { return ticks.readers() >= 2; }));
+    ticks.write(msg::Tick{});
+    EXPECT_TRUE(eventually([&] {
+      command({"status"});
+      return flat(output_).find("last refusal: tick: of another epoch") != std::string::npos;
+    })) << output_;
+  }
+  const std::string text = flat(output_);
+  EXPECT_NE(text.find("authority: emergency stop "), std::string::npos) << text;
+  EXPECT_NE(text.find("; 1 requests refused, the last that of "), std::string::npos) << text;
+  EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason: " << text;
+  const json status = json_of({"status"});
+  EXPECT_EQ(status["authority"]["level"], "emergency stop") << output_;
+  EXPECT_EQ(status["authority"]["refused"], 1);
+  EXPECT_NE(status["authority"]["refusal"].get<std::string>().find(" is latched"), std::string::npos);
+  for (const auto& component : status["components"]) {
+    const bool listens = component["component"] != "physics";  // who writes the ticks
+    EXPECT_EQ(component["refused"], listens ? 1 : 0) << component;
+    EXPECT_EQ(component["last_refusal"], listens ? "tick: of another epoch" : "") << component;
+  }
+  EXPECT_TRUE(watch.wait_for("authority: emergency stop ", 20s)) << "the same program, later: " << watch.output();
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+  EXPECT_EQ(watch.wait(20s), 0) << "it ends with the run: " << watch.output();
+}
+
 // A running conductor refuses a second member at once; before the run has begun both are there and wait.
 TEST_F(Introspection, TheDoctorFindsASecondMember) {
   const DomainClaim claim;
@@ -226,6 +250,33 @@ TEST_F(Introspection, TheDoctorFindsInterfacesThatCannotWorkAndBuffersThatAreSma
   std::uint64_t limit_bytes = 0;
   std::ifstream("/proc/sys/net/core/rmem_max") >> limit_bytes;
   EXPECT_EQ(std::count(found.begin(), found.end(), "small socket buffers"), limit_bytes < 1024 * 1024 ? 1 : 0) << limit_bytes << output_;
+}
+
+TEST_F(Introspection, TheDoctorFindsAConfigurationThatCannotBeReadOrIsWrong) {
+  using Faults = std::vector<std::string>;
+  const DomainClaim claim;
+  environment_["CYCLONEDDS_URI"] = "file:///nosuch/cyclonedds.xml";
+  EXPECT_EQ(faults(claim.domain()), (Faults{"unreadable configuration", "no DDS"})) << output_;
+  EXPECT_NE(output_.find("cannot read /nosuch/cyclonedds.xml"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("cure what stands above first"), std::string::npos) << output_;
+  write("unclosed.xml", "<CycloneDDS><Domain>\n");
+  for (const std::string wrong : {"<CycloneDDS><Domain></CycloneDDS>", "<CycloneDDS><Domain><Nonsense>3</Nonsense></Domain></CycloneDDS>",
+                                  "file://UNCLOSED"}) {
+    environment_["CYCLONEDDS_URI"] = wrong == "file://UNCLOSED" ? "file://" + (dir_ / "unclosed.xml").string() : wrong;
+    EXPECT_EQ(faults(claim.domain()), Faults{"no DDS"}) << wrong << output_;
+    EXPECT_NE(output_.find("unset CYCLONEDDS_URI, or correct it"), std::string::npos) << output_;
+  }
+}
+
+TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndOneTopicOfTwoTypes) {
+  const DomainClaim claim;
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"}) << output_;
+  const Process talker = foreign(claim.domain(), "final");
+  const dds::Domain domain(claim.domain());
+  const auto other = dds::Reader<msg::RunState>::observer(domain.participant(), "weather");
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"differing type"}) << output_;
+  EXPECT_NE(output_.find("foreign::Weather"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("constrictor::msg::RunState"), std::string::npos) << output_;
 }
 
 TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {

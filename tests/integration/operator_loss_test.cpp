@@ -24,16 +24,16 @@ class OperatorLoss : public CliFixture {
           "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 20\nprocesses:\n"
           "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
     launcher_.emplace(start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
-    ASSERT_TRUE(launcher_->wait_for("simulated", 60s)) << launcher_->output() << launcher_->errors();
+    ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->output() << launcher_->errors();
     hand_.emplace(domain(), "hand", 0ms);
-    ASSERT_TRUE(hand_->connect(20s));
+    ASSERT_TRUE(hand_->connect(60s)) << launcher_->output() << launcher_->errors();  // it does when `input` has stepped
     authority_ = dds::Reader<msg::Authority>::member(hand_->participant(), std::string(topics::kAuthority.name));
     commands_ = dds::Reader<msg::JointCommand>::member(hand_->participant(), std::string(topics::kJointCommand.name));
     statuses_ = dds::Reader<msg::ComponentStatus>::member(hand_->participant(), "component_status");
   }
   void TearDown() override {
     EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
-    EXPECT_EQ(launcher_->wait(15s), 128 + SIGTERM);
+    EXPECT_EQ(launcher_->wait(30s), 128 + SIGTERM);
   }
   void poll() {
     authority_.take([this](const msg::Authority& m) { now_ = m; });

@@ -63,6 +63,13 @@ class RunCommand : public ::testing::Test {
     std::ifstream file(dir_ / report / "logs" / (process + ".log"));
     return {std::istreambuf_iterator<char>(file), {}};
   }
+  /// Signals a member's process once it is there, and nobody else.
+  void kill_member(const std::string& name, int signal) const {
+    ASSERT_TRUE(eventually([&] { return members().contains(name); })) << name;
+    const pid_t pid = members()[name];
+    ASSERT_GT(pid, 0) << name;
+    ::kill(pid, signal);
+  }
   /// Processes that report into this test's directory: name of what each hosts, and pid.
   [[nodiscard]] std::map<std::string, pid_t> members() const {
     std::map<std::string, pid_t> found;
@@ -157,7 +164,7 @@ TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
       return steps;
     })) << incarnation << ": " << launcher.output();
     std::this_thread::sleep_for(100ms);  // ten ticks, if it lets them pass
-    ::kill(members()["control"], SIGKILL);
+    kill_member("control", SIGKILL);
   }
   ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
   EXPECT_EQ(state_hash("r"), state_hash("undisturbed"));
@@ -167,7 +174,7 @@ TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
 TEST_F(RunCommand, ThePlantsDeathEndsTheRunWithAnError) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
-  ::kill(members()["physics"], SIGKILL);
+  kill_member("physics", SIGKILL);
   EXPECT_EQ(launcher.wait(15s), exit_status::kSoftware);
   EXPECT_NE(launcher.output().find("physics, the plant, ended: killed by signal 9"), std::string::npos) << launcher.output();
   EXPECT_EQ(report("r")["success"], false);
@@ -186,7 +193,7 @@ TEST_F(RunCommand, CtrlCEndsEveryProcess) {
 TEST_F(RunCommand, AKilledLauncherLeavesNobody) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
-  ::kill(members()["control"], SIGSTOP);
+  kill_member("control", SIGSTOP);
   launcher.signal(SIGKILL);
   launcher.wait(5s);
   expect_nobody_left();

@@ -214,7 +214,7 @@ void add_completion(CLI::App& app, std::function<int()>& action) {
   auto* sub = app.add_subcommand("completion", "print a script by which a shell completes this command's words");
   sub->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   sub->footer("EXAMPLES\n  source <(constrictor completion bash)\n  constrictor completion zsh > ~/.constrictor-completion && . ~/.constrictor-completion\n"
-              "  constrictor completion fish | source\n\nEXIT STATUS\n  0 done; 64 wrong usage");
+              "  constrictor completion fish | source\n\nEXIT STATUS\n  0 done; 64 wrong usage\n\nENVIRONMENT\n  none");
   sub->callback([&action, &app, shell] {
     action = [&app, shell] {
       fmt::print("{}", completion_script(app, *shell));

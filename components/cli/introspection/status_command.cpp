@@ -170,6 +170,12 @@ Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
   return json;
 }
 
+/// True once the launcher has taken its note away, or died: the plant says that it ended only if the final tick ended it.
+bool is_gone(const RunNote& run) {
+  const auto runs = live_runs();
+  return std::none_of(runs.begin(), runs.end(), [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
+}
+
 int status(const Options& options) {
   const auto runs = live_runs();
   if (!options.view.json) {
@@ -203,7 +209,7 @@ int status(const Options& options) {
       if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
       else fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()), table(run, observer.view(), rates));
       std::fflush(stdout);
-      if (observer.view().ended(run.plant)) return exit_status::kOk;
+      if (observer.view().ended(run.plant) || is_gone(run)) return exit_status::kOk;
     }
     std::this_thread::sleep_for(kPoll);
   }

@@ -65,6 +65,7 @@ class Conductor {
   }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::optional<EpochId> epoch() const { return epoch_; }
+  [[nodiscard]] std::uint64_t run_id() const { return options_.run_id; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
 
   /// Members that keep the next tick from coming, with what they owe ("Hello", "Ready" or "TickDone").

@@ -21,6 +21,7 @@ struct EpochId {
 /// A member introduces itself.
 struct Greeting {
   std::string component;
+  std::uint64_t run_id = 0;    ///< in which it wants to take part; 0: in any
   std::uint32_t incarnation = 1;
   std::int32_t pid = 0;
   std::string host;

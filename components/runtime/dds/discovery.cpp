@@ -133,6 +133,16 @@ std::vector<Endpoint> Discovery::endpoints() const {
   return list;
 }
 
+Endpoint own_endpoint(dds_entity_t own, const dds_topic_descriptor_t& type) {
+  const Qos qos = make_qos();
+  check(dds_get_qos(own, qos.get()), "dds_get_qos");
+  Endpoint endpoint;
+  endpoint.keyed = type.m_nkeys > 0;
+  endpoint.type = type.m_typename;
+  endpoint.qos = qos_of(qos.get());
+  return endpoint;
+}
+
 std::string describe(const EndpointQos& qos) {
   return fmt::format("{}, {}, {}{}", qos.reliable ? "reliable" : "best effort", qos.transient_local ? "transient-local" : "volatile",
                      qos.keep_all ? "keep-all" : fmt::format("keep-last {}", qos.depth),

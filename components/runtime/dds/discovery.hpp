@@ -59,6 +59,9 @@ class Discovery {
   Entity readers_;
 };
 
+/// A reader or writer of this process by the QoS that it has; without names and type information.
+Endpoint own_endpoint(dds_entity_t own, const dds_topic_descriptor_t& type);
+
 /// "reliable, transient-local, keep-last 8".
 std::string describe(const EndpointQos& qos);
 /// Why this reader cannot hear this writer although the topic is the same; empty if it can.

@@ -1,7 +1,10 @@
 #include "runtime/dds/member_bus.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
+
+#include "runtime/dds/discovery.hpp"
 
 namespace constrictor::dds {
 namespace {
@@ -30,7 +33,8 @@ bool names(const std::vector<std::string>& identities, std::string_view componen
 
 }  // namespace
 
-MemberBus::MemberBus(dds_entity_t participant, std::uint64_t reads, std::uint64_t writes, const std::string& identity) {
+MemberBus::MemberBus(dds_entity_t participant, std::uint64_t reads, std::uint64_t writes, const std::string& identity)
+    : participant_(participant) {
   for (const auto& topic : topics::kInfos) {
     const std::string name(topic.name);
     if (writes >> topic.id & 1) {
@@ -61,24 +65,41 @@ void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample
   take_all(readers_[topic_id].get(), [&](const void* message) { use(ops.copy(message)); });
 }
 
-std::string MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of) const {
+Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of) const {
   for (const auto& topic : topics::kInfos) {
-    const std::string name(topic.name);
     if (readers_[topic.id] && !names(matched_user_data(readers_[topic.id].get(), false), topic.writer)) {
-      return name + ": the reader here (reliable, keep-all, transient-local) has not met the writer of " +
-             std::string(topic.writer) + " (reliable, keep-last " + std::to_string(topic.depth) + ", transient-local)";
+      return {&topic, true, std::string(topic.writer)};
     }
     const auto readers = readers_of.find(topic.id);
     if (!writers_[topic.id] || readers == readers_of.end()) continue;
     const auto identities = matched_user_data(writers_[topic.id].get(), true);
     for (const auto& reader : readers->second) {
-      if (!names(identities, reader)) {
-        return name + ": the writer here (reliable, keep-last " + std::to_string(topic.depth) +
-               ", transient-local) has not met the reader of " + reader + " (reliable, keep-all, transient-local)";
-      }
+      if (!names(identities, reader)) return {&topic, false, reader};
     }
   }
   return {};
+}
+
+std::string MemberBus::explain(const Unmatched& missing) const {
+  const char* here = missing.reader ? "reader" : "writer";
+  const char* there = missing.reader ? "writer" : "reader";
+  const std::string topic(missing.topic->name);
+  const Endpoint own = own_endpoint((missing.reader ? readers_ : writers_)[missing.topic->id].get(), descriptor_of_id(missing.topic->id));
+  std::string text = topic + ": the " + here + " here (" + describe(own.qos) + ") has not met the " + there + " of " + missing.counterpart;
+  // One that names the component; else one that names nobody: a stand-in may have forgotten to.
+  std::optional<Endpoint> found;
+  for (auto& endpoint : Discovery(participant_).endpoints()) {
+    if (endpoint.topic != topic || endpoint.writer != missing.reader) continue;
+    const bool named = names({endpoint.user_data}, missing.counterpart);
+    if (named || (endpoint.user_data.empty() && !found)) found = std::move(endpoint);
+    if (named) break;
+  }
+  if (!found) return text + ", which is not there";
+  const std::string why = missing.reader ? mismatch(*found, own) : mismatch(own, *found);
+  const bool nameless = found->user_data.empty();
+  text += (nameless ? std::string("; there is a ") + there + " without a name (" : std::string(" (")) + describe(found->qos) + "); ";
+  if (!why.empty()) return text + why;
+  return text + (nameless ? "its user data must be '" + missing.counterpart + "'" : "perhaps their type information differs");
 }
 
 }  // namespace constrictor::dds

@@ -63,6 +63,7 @@ std::optional<StepDone> from_wire(const msg::TickDone& message) {
 msg::Hello to_wire(const Greeting& greeting, const std::string& version) {
   msg::Hello message{};
   set_text(message.component, greeting.component);
+  message.run_id = greeting.run_id;
   message.incarnation = greeting.incarnation;
   message.pid = greeting.pid;
   set_text(message.host, greeting.host);
@@ -81,6 +82,7 @@ msg::Hello to_wire(const Greeting& greeting, const std::string& version) {
 Greeting from_wire(const msg::Hello& message) {
   Greeting greeting;
   greeting.component = message.component;
+  greeting.run_id = message.run_id;
   greeting.incarnation = message.incarnation;
   greeting.pid = message.pid;
   greeting.host = message.host;

@@ -4,6 +4,7 @@
 
 #include "constrictor/reflect.hpp"
 #include "runtime/topics.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -78,6 +79,36 @@ TEST(RunDifference, AStepDoneTwiceByARestartedMemberIsNone) {
   Log twice = run_of(100);
   twice.insert(twice.begin() + 2 * 50 + 1, command_at(twice, 50));
   EXPECT_FALSE(first_run_difference(run_of(100), twice));
+}
+
+/// A report directory with the log of a run of so many ticks.
+class RunDifferenceOfFiles : public ::testing::Test {
+ protected:
+  std::filesystem::path log_of(const std::string& name, int ticks) const {
+    HashLog log(folder_.path() / name, false);
+    for (int tick = 0; tick < ticks; ++tick) {
+      const auto state = std::make_shared<msg::JointState>();
+      state->header.tick = tick;
+      state->header.sequence_number = static_cast<std::uint64_t>(tick) + 1;
+      log.add(topics::kInfos[topics::kJointState.id], Sample{state, &state->header});
+    }
+    log.close();
+    return folder_.path() / name;
+  }
+  const testing::TemporaryFolder folder_;
+};
+
+TEST_F(RunDifferenceOfFiles, RunsThatNeverTickedAreNotEqual) {
+  EXPECT_FALSE(compare_runs(log_of("a", 3), log_of("b", 3)));
+  const std::filesystem::path empty = log_of("empty", 0);
+  for (const auto& [one, other] : {std::pair(empty, empty), std::pair(empty, log_of("a", 3)), std::pair(log_of("a", 3), empty)}) {
+    try {
+      compare_runs(one, other);
+      FAIL() << one << " and " << other;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("empty/hashes.bin: holds no tick"), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace

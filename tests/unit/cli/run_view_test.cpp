@@ -111,6 +111,27 @@ TEST(RunView, AWaitIsOverOnceItsTickIsDone) {
   EXPECT_TRUE(view.over(waiting));
 }
 
+// Such a wait has no run yet: its end is the waiter's first word of one.
+TEST(RunView, AWaitForTheRunToBeginIsOverOnceTheWaiterIsInIt) {
+  msg::Waiting waiting{};
+  std::snprintf(waiting.component, sizeof waiting.component, "control");
+  RunView view;
+  EXPECT_FALSE(view.over(waiting));
+  msg::ComponentStatus outside = status("control", 0, -1);
+  outside.run_id = 0;
+  view.take(outside);
+  view.take(status("physics", 1, 40));
+  EXPECT_FALSE(view.over(waiting)) << "others are in it";
+  view.take(status("control", 1, 50));
+  EXPECT_TRUE(view.over(waiting));
+  outside.incarnation = 2;
+  view.take(outside);
+  EXPECT_FALSE(view.over(waiting)) << "restarted, and not resumed yet";
+  EXPECT_EQ(view.components["control"].incarnation, 2u);
+  view.take(status("control", 1, 60, 2));
+  EXPECT_TRUE(view.over(waiting));
+}
+
 TEST(RunView, CountsOverrunsOfAllIncarnations) {
   RunView view;
   view.take(status("control", 1, 10, 1, 4));

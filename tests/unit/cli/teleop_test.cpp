@@ -1,8 +1,12 @@
 // The terminal client's pure parts: keys, driving, names, and the screen within 80 columns of 24 lines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "cli/task_command.hpp"
@@ -64,6 +68,77 @@ TEST(TeleopKeys, AnyBytesEndAndMostMeanNothing) {
     action_of(key);
   }
   EXPECT_EQ(taken, bytes.size());
+}
+
+struct HelpedKey {
+  std::string key;
+  TeleopAction action;
+};
+
+// Each key of the help, word by word as it stands there: "keys what they do".
+const std::map<std::string, std::vector<HelpedKey>> kHelped = {
+    {"i/, forward/back", {{"i", TeleopAction::kForward}, {",", TeleopAction::kBack}}},
+    {"j/l turn", {{"j", TeleopAction::kLeft}, {"l", TeleopAction::kRight}}},
+    {"u/o rotate", {{"u", TeleopAction::kRotateLeft}, {"o", TeleopAction::kRotateRight}}},
+    {"k stand", {{"k", TeleopAction::kStand}}},
+    {"+/- speed", {{"+", TeleopAction::kFaster}, {"-", TeleopAction::kSlower}}},
+    {"f/g/h look", {{"f", TeleopAction::kLookLeft}, {"g", TeleopAction::kLookAhead}, {"h", TeleopAction::kLookRight}}},
+    {"w/e wrap", {{"w", TeleopAction::kWrapLeft}, {"e", TeleopAction::kWrapRight}}},
+    {"s squeeze", {{"s", TeleopAction::kSqueeze}}},
+    {"d open", {{"d", TeleopAction::kOpen}}},
+    {"t task", {{"t", TeleopAction::kTask}}},
+    {"x cancel task", {{"x", TeleopAction::kCancel}}},
+    {"r release authority", {{"r", TeleopAction::kRelease}}},
+    {"q quit", {{"q", TeleopAction::kQuit}}},
+    {"SPACE emergency stop", {{" ", TeleopAction::kEmergencyStop}}},
+    {"c clear it", {{"c", TeleopAction::kClearStop}}},
+};
+
+/// The help's entries, which two blanks separate.
+std::vector<std::string> help_entries() {
+  std::vector<std::string> entries;
+  for (const std::string line : kTeleopHelp) {
+    for (std::size_t at = 0; at < line.size();) {
+      const std::size_t end = std::min(line.find("  ", at), line.size());
+      entries.push_back(line.substr(at, end - at));
+      at = end + 2;
+    }
+  }
+  return entries;
+}
+
+/// The keys that an entry begins with: "f/g/h", or the word for the space bar.
+std::vector<std::string> keys_of(const std::string& entry) {
+  const std::string word = entry.substr(0, entry.find(' '));
+  if (word == "SPACE") return {" "};
+  std::vector<std::string> keys;
+  for (std::size_t at = 0; at < word.size(); at += 2) keys.push_back(word.substr(at, 1));
+  return keys;
+}
+
+TEST(TeleopKeys, EachKeyOfTheHelpDoesWhatTheHelpSays) {
+  std::set<std::string> named;
+  for (const std::string& entry : help_entries()) {
+    SCOPED_TRACE(entry);
+    const auto helped = kHelped.find(entry);
+    ASSERT_NE(helped, kHelped.end()) << "nothing is known of what this shall do";
+    const std::vector<std::string> keys = keys_of(entry);
+    ASSERT_EQ(keys.size(), helped->second.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      EXPECT_EQ(keys[i], helped->second[i].key);
+      EXPECT_NE(action_of(keys[i]), TeleopAction::kNone) << keys[i] << " does nothing";
+      EXPECT_EQ(action_of(keys[i]), helped->second[i].action) << keys[i];
+      EXPECT_EQ(actions(keys[i], 1), std::vector{helped->second[i].action}) << "as it is typed";
+      EXPECT_TRUE(named.insert(keys[i]).second) << keys[i] << " stands there twice";
+    }
+  }
+  EXPECT_EQ(help_entries().size(), kHelped.size()) << "the help names them all";
+  // And the reverse: what does something is in the help, or a second way to say the same.
+  for (int c = 1; c < 256; ++c) {
+    const std::string key(1, static_cast<char>(c));
+    if (action_of(key) == TeleopAction::kNone || named.contains(key)) continue;
+    EXPECT_TRUE(key == "=" || key == "\003") << "key " << c << " is not in the help";
+  }
 }
 
 TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {

@@ -2,8 +2,10 @@
 // number of its last messages lost, and with a reset: all must end with what the in-process run computes.
 #include <gtest/gtest.h>
 
+#include <span>
 #include <unordered_set>
 
+#include "constrictor/reflect.hpp"
 #include "queue_world.hpp"
 #include "runtime/local_run.hpp"
 
@@ -70,7 +72,7 @@ class Explorer {
       crashes += action.kind == QueueWorld::Action::kCrash;
       resets += action.kind == QueueWorld::Action::kReset;
     }
-    if (!seen_.insert(world.fingerprint() + "#" + std::to_string(crashes) + std::to_string(resets)).second) return;
+    if (!seen_.insert(key(world.fingerprint() + "#" + std::to_string(crashes) + std::to_string(resets))).second) return;
     ++outcome_.states;
     // Only a reset leaves messages of the epoch before under way.
     if (resets == 0) {
@@ -85,6 +87,14 @@ class Explorer {
       path_.pop_back();
       if (::testing::Test::HasFatalFailure()) return;
     }
+  }
+
+  /// Half of a SHA-256 in the place of a fingerprint, which is some hundred times as long.
+  static std::string key(const std::string& fingerprint) {
+    Sha256 hash;
+    hash.update(std::as_bytes(std::span(fingerprint)));
+    const auto digest = hash.finish();
+    return {reinterpret_cast<const char*>(digest.data()), digest.size() / 2};
   }
 
   void check(const QueueWorld& world, int resets) {
@@ -134,8 +144,11 @@ TEST(BarrierExploration, ACrashOfControlAnywhereGivesTheSameResult) {
 TEST(BarrierExploration, ACrashOfASlowerMemberAnywhereGivesTheSameResult) {
   explore({{plant(), navigation({2, 2}), control()}, kTicksWithCrash, {"navigation"}, 1, 0, false});
 }
-
 #endif
+
+TEST(BarrierExploration, ACrashOfTheOnlyMemberWithinThreeTicksGivesTheSameResult) {
+  explore({{plant(), control()}, 3, {"control"}, 1, 0, false});
+}
 
 TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
   explore({{plant(), control()}, 1, {"control"}, 1, 0});

@@ -1,0 +1,59 @@
+// A run of toys, programs that are no part of the project, and what `constrictor` says of both.
+#pragma once
+
+#include <sstream>
+
+#include "integration/cli_fixture.hpp"
+
+namespace constrictor::testing {
+
+class Introspection : public CliFixture {
+ protected:
+  static constexpr const char* kManifest =
+      "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 30\nprocesses:\n"
+      "  - {components: [physics], program: toy_host}\n";
+  static constexpr const char* kMembers = "  - {components: [navigation, control], program: toy_host}\n";
+
+  [[nodiscard]] Process foreign(std::uint32_t domain, const std::string& mode) const {
+    Process process({program("foreign_talker"), std::to_string(domain), mode}, environment_);
+    EXPECT_TRUE(process.wait_for("talking", std::chrono::seconds(20))) << process.errors();
+    return process;
+  }
+  /// A run of toys at real-time pace: 50 ticks a second, and it lasts. `members`: processes beside the plant, as lines of the manifest.
+  [[nodiscard]] Process toys(const std::string& members = kMembers) const {
+    write("toys.yaml", kManifest + members);
+    write("100000_ticks.yaml", "");
+    Process run = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--pace", "1x",
+                         "--report", (dir_ / "report").string()});
+    EXPECT_TRUE(eventually([&] { return domain() != 0; }));
+    return run;
+  }
+  /// Output of a command as JSON; it must end with `status`. What it says to people stays in `output_`.
+  nlohmann::json json_of(std::vector<std::string> arguments, int status = 0) {
+    arguments.push_back("--json");
+    Process process = start(std::move(arguments));
+    const auto ended = process.wait(std::chrono::seconds(30));
+    output_ = process.output() + process.errors();
+    EXPECT_EQ(ended, status) << output_;
+    return nlohmann::json::parse(process.output(), nullptr, false);
+  }
+  /// Names of what the doctor finds in a domain.
+  std::vector<std::string> faults(std::uint32_t domain) {
+    const nlohmann::json found = json_of({"doctor", "--run", std::to_string(domain)}, 1);
+    std::vector<std::string> names;
+    for (const auto& finding : found.value("findings", nlohmann::json::array())) {
+      names.push_back(finding["fault"]);
+      EXPECT_FALSE(finding["cure"].get<std::string>().empty());
+    }
+    return names;
+  }
+  /// The text with each run of blanks and line ends as one blank: lines are wrapped at 80 columns.
+  [[nodiscard]] static std::string flat(const std::string& text) {
+    std::istringstream words(text);
+    std::string line;
+    for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+    return line;
+  }
+};
+
+}  // namespace constrictor::testing

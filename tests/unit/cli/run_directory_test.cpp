@@ -1,0 +1,34 @@
+#include <gtest/gtest.h>
+
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "cli/run_command.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(RunDirectory, IsNobodyElses) {
+  const testing::TemporaryFolder folder;
+  const fs::path wanted = folder.path() / "runs/20261121-120000_short_seed1";
+  EXPECT_EQ(make_new_directory(wanted), wanted);
+  EXPECT_EQ(make_new_directory(wanted), wanted.string() + "-2");
+  EXPECT_EQ(make_new_directory(wanted), wanted.string() + "-3");
+  EXPECT_TRUE(fs::is_directory(wanted.string() + "-3"));
+}
+
+TEST(RunDirectory, NorWhenManyAskAtOnce) {
+  const testing::TemporaryFolder folder;
+  std::vector<fs::path> made(16);
+  std::vector<std::thread> threads;
+  for (auto& path : made) threads.emplace_back([&] { path = make_new_directory(folder.path() / "runs/r"); });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(std::set<fs::path>(made.begin(), made.end()).size(), made.size());
+}
+
+}  // namespace
+}  // namespace constrictor::cli
