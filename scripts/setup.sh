@@ -2,6 +2,7 @@
 # Installs what Constrictor needs to build and run on Debian 12. Does nothing, at once, when all of it is there.
 # Usage: scripts/setup.sh [--fast-dds]
 #   --fast-dds   also Fast DDS, for the tests and the example with another vendor's DDS (40 MB and a Java runtime)
+# Neither installs clang-tidy: only the CMake preset `tidy` needs it, which no script uses.
 set -euo pipefail
 
 packages=(

@@ -57,30 +57,40 @@ void Bridge::serve(SteadyClock::time_point now) {
   wait_set_.wait(20ms);  // a wait set knows one domain: the other side's commands are looked for so often
 }
 
+template <class T, class Use>
+void Bridge::take_fit(const dds::Reader<T>& reader, Use&& use) {
+  reader.take([&](const T& message) {
+    const std::string reason = unfit(message);
+    if (reason.empty()) return use(message);
+    if (!left_out_) std::fprintf(stderr, "ros_bridge: left out a message that ROS should not see: %s\n", reason.c_str());
+    left_out_ = true;
+  });
+}
+
 void Bridge::pass_out() {
-  tick_.take([this](const msg::Tick& tick) {
+  take_fit(tick_, [this](const msg::Tick& tick) {
     met_ = true;
     over_ = over_ || tick.final_tick;
     clock_out_.write(translator_.clock(tick.time_ns));
   });
-  imu_.take([this](const msg::ImuState& imu) {
+  take_fit(imu_, [this](const msg::ImuState& imu) {
     last_imu_ = imu;
     imu_out_.write(translator_.imu(imu));
   });
-  joints_.take([this](const msg::JointState& joints) {
+  take_fit(joints_, [this](const msg::JointState& joints) {
     last_joints_ = joints;
     joints_out_.write(translator_.joint_state(joints));
   });
-  pose_.take([this](const msg::RobotPose& pose) {
+  take_fit(pose_, [this](const msg::RobotPose& pose) {
     odom_out_.write(translator_.odometry(pose, last_imu_));
     tf_out_.write(translator_.transforms(pose, last_joints_));
   });
-  camera_info_.take([this](const msg::CameraInfo& info) {
+  take_fit(camera_info_, [this](const msg::CameraInfo& info) {
     camera_info_out_.write(translator_.camera_info(info));
     tf_static_out_.write(translator_.camera_transform(info));
     last_info_ = info;
   });
-  camera_image_.take([this](const msg::CameraImage& image) {
+  take_fit(camera_image_, [this](const msg::CameraImage& image) {
     if (!last_info_) return;  // ROS pairs image and info by their stamps: an image that overtook the epoch's info has no partner
     const Image out = translator_.image(image);
     image_out_.write(out);

@@ -39,6 +39,9 @@ class Bridge {
 
  private:
   void pass_out();
+  /// Takes what may be shown to ROS; says once what was the first that may not.
+  template <class T, class Use>
+  void take_fit(const dds::Reader<T>& reader, Use&& use);
   void pass_velocity(SteadyClock::time_point now);
   void ask(std::uint8_t kind, const Drive& drive);
 
@@ -71,7 +74,7 @@ class Bridge {
   std::uint64_t sequence_ = 0;
   VelocityPilot pilot_;
   std::string refusal_;              ///< the last that was printed
-  bool met_ = false, over_ = false;
+  bool met_ = false, over_ = false, left_out_ = false;
 };
 
 }  // namespace constrictor::ros

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
 
+#include "constrictor/reflect.hpp"
 #include "robot/kinematics.hpp"
 
 namespace constrictor::ros {
@@ -41,7 +43,47 @@ std::string numbered(const char* prefix, std::size_t number) {
   return name;
 }
 
+bool sayable(std::int64_t time_ns) { return time_ns >= 0 && time_ns / kSecond_ns <= std::numeric_limits<std::int32_t>::max(); }
+
+bool is_rotation(const msg::Quaternion& q) { return std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 0.01; }
+
+/// What is wrong with any message that has a header.
+template <class T>
+std::string broken(const T& message) {
+  if (auto violation = validate(message)) return *std::move(violation);
+  return sayable(message.header.time_ns) ? "" : "header.time_ns: found " + std::to_string(message.header.time_ns) + ", accepted a time of ROS";
+}
+
 }  // namespace
+
+std::string unfit(const msg::Tick& tick) {
+  if (auto violation = validate(tick)) return *std::move(violation);
+  return sayable(tick.time_ns) ? "" : "time_ns: found " + std::to_string(tick.time_ns) + ", accepted a time of ROS";
+}
+
+std::string unfit(const msg::JointState& joints) { return broken(joints); }
+std::string unfit(const msg::RobotPose& pose) { return broken(pose); }
+
+std::string unfit(const msg::ImuState& imu) {
+  std::string reason = broken(imu);
+  if (reason.empty() && !is_rotation(imu.orientation)) reason = "orientation: found no rotation, accepted a unit quaternion";
+  return reason;
+}
+
+std::string unfit(const msg::CameraInfo& info) {
+  std::string reason = broken(info);
+  if (reason.empty() && !is_rotation(info.X_HC.orientation)) reason = "X_HC.orientation: found no rotation, accepted a unit quaternion";
+  return reason;
+}
+
+std::string unfit(const msg::CameraImage& image) {
+  std::string reason = broken(image);
+  const std::uint32_t bytes = 3u * image.width * image.height;
+  if (!reason.empty()) return reason;
+  if (image.data._length != bytes) return "data: found " + std::to_string(image.data._length) + " bytes, accepted " + std::to_string(bytes);
+  if (image.exposure_tick >= 0 && image.exposure_tick <= image.header.tick) return "";
+  return "exposure_tick: found " + std::to_string(image.exposure_tick) + ", accepted 0 to the tick of the message";
+}
 
 std::string joint_name(std::size_t joint) { return numbered("joint_", joint); }
 std::string module_frame(std::size_t module) { return module == 0 ? "base_link" : numbered("module_", module); }

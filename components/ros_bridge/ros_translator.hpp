@@ -24,12 +24,21 @@ using Odometry = nav_msgs_msg_dds__Odometry_;
 using TFMessage = tf2_msgs_msg_dds__TFMessage_;
 using Twist = geometry_msgs_msg_dds__Twist_;
 
+/// Why a message of the robot must not be shown to ROS; empty if it may: it breaks what the IDL says of it, its time is none that ROS can
+/// say, a rotation is none, an image does not have its pixels. ROS's tools rely on such things and check nothing.
+[[nodiscard]] std::string unfit(const msg::Tick& tick);
+[[nodiscard]] std::string unfit(const msg::JointState& joints);
+[[nodiscard]] std::string unfit(const msg::ImuState& imu);
+[[nodiscard]] std::string unfit(const msg::RobotPose& pose);
+[[nodiscard]] std::string unfit(const msg::CameraInfo& info);
+[[nodiscard]] std::string unfit(const msg::CameraImage& image);
+
 /// Names joints and frames after their place: joint_00 is next to the head.
 [[nodiscard]] std::string joint_name(std::size_t joint);
 /// base_link is module 0.
 [[nodiscard]] std::string module_frame(std::size_t module);
 
-/// Translates. The messages returned point into the translator's own memory (names) and into the argument's (pixels, samples):
+/// Translates what is not unfit. The messages returned point into the translator's own memory (names) and into the argument's (pixels, samples):
 /// they are to be written before either changes.
 class Translator {
  public:

@@ -24,6 +24,11 @@ void save(const std::filesystem::path& file, const msg::CameraImage& image) {
 
 }  // namespace
 
+bool is_whole(const msg::CameraImage& image) {
+  const std::size_t size = std::size_t{3} * image.width * image.height;
+  return size > 0 && image.data._buffer != nullptr && image.data._length == size;
+}
+
 MomentFiles::MomentFiles(const std::filesystem::path& folder, const Moment& moment) {
   char prefix[16];
   std::snprintf(prefix, sizeof prefix, "%07lld_", static_cast<long long>(moment.tick));

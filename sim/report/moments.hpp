@@ -39,12 +39,15 @@ struct MomentFiles {
 /// recovery, in order of time.
 [[nodiscard]] std::vector<Moment> figure_rows(const std::vector<Moment>& moments);
 
+/// Whether an image's data are the RGB pixels that its size promises.
+[[nodiscard]] bool is_whole(const msg::CameraImage& image);
+
 /// Collects the pictures of moments as they become visible: the raw image at once, the processed one of the same exposure and
 /// the scene's as they come.
 struct MomentAlbum {
   std::vector<Moment> moments;
 
-  /// Nothing beyond a bound that no mission reaches, so that the state stays small.
+  /// Images must be whole. Nothing beyond a bound that no mission reaches, so that the state stays small.
   void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera);
   void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image);
   void on_scene(const std::filesystem::path& folder, const msg::CameraImage& image);

@@ -1,5 +1,7 @@
 #include "sim/report/report.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -203,13 +205,21 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.event = event;
   moment.colour = colour;
   moment.state = state_.mission_state;
-  state_.album.add(std::move(moment), folder_, camera_ ? &*camera_ : nullptr);
+  state_.album.add(std::move(moment), folder_, camera_ && report::is_whole(*camera_) ? &*camera_ : nullptr);
 }
 
 void Report::follow_images() {
   if (folder_.empty()) return;
-  if (processed_ && processed_.fresh()) state_.album.on_processed(folder_, *processed_);
-  if (overview_ && overview_.fresh()) state_.album.on_scene(folder_, *overview_);
+  // The camera may be anybody's.
+  const auto whole = [&](const Latest<msg::CameraImage>& image, std::string_view topic) {
+    if (!image || !image.fresh()) return false;
+    if (report::is_whole(*image)) return true;
+    wiring_.count_refusal(fmt::format("{}.data: found {} bytes, accepted {} x {} RGB pixels", topic, image->data._length, image->width, image->height));
+    return false;
+  };
+  static_cast<void>(whole(camera_, topics::kCameraImage.name));  // read at the next moment
+  if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_);
+  if (whole(overview_, topics::kOverviewImage.name)) state_.album.on_scene(folder_, *overview_);
 }
 
 void Report::journal_torques(const Tick& tick) {

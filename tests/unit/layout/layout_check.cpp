@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace constrictor::test {
 namespace {
@@ -45,6 +49,35 @@ const std::regex& ground_truth() {
   static const std::regex words(
       "\\b(kWorldState|kSceneDescription|kTouchedState|kOverviewImage|WorldState|SceneDescription|TouchedState|scenario_file)\\b");
   return words;
+}
+
+/// Type and name of each symbol in the output of `nm`, versions ("@GLIBC_2.17") left out.
+std::vector<std::pair<char, std::string>> symbols_of(const std::string& nm) {
+  static const std::regex line_of("^[0-9a-f ]{16} ([A-Za-z]) ([^@]+).*");
+  std::vector<std::pair<char, std::string>> symbols;
+  std::istringstream lines(nm);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, line_of)) symbols.emplace_back(match[1].str()[0], match[2]);
+  }
+  return symbols;
+}
+
+/// Whether a library may need another one: what the #include lines may name, by whole libraries.
+bool may_link(const Library& library, const Library& other) {
+  using Folders = std::vector<std::string>;
+  static const Folders kBase = {"idl", "components/configuration"};
+  static const Folders kOnRuntime = {"idl", "components/configuration", "components/robot", "components/runtime"};
+  static const std::map<std::string, Folders> kOutsideTheBarrier = {
+      {"idl", {}}, {"components/configuration", {}}, {"components/robot", kBase}, {"components/runtime", kBase},
+      {"components/cli", kOnRuntime}, {"components/ros_bridge", kOnRuntime}};
+  const auto is_one_of = [&other](const Folders& folders) { return std::find(folders.begin(), folders.end(), other.folder) != folders.end(); };
+  if (library.folder == other.folder) return true;
+  const auto outside = kOutsideTheBarrier.find(library.folder);
+  if (outside != kOutsideTheBarrier.end()) return is_one_of(outside->second);
+  const bool both_sim = library.folder.rfind("sim/", 0) == 0 && other.folder.rfind("sim/", 0) == 0;
+  // Of the runtime a component needs what it may include, which is a library of its own.
+  return both_sim || is_one_of(kBase) || other.folder == "components/robot" || other.name == "libconstrictor_component_api.a";
 }
 
 }  // namespace
@@ -88,7 +121,47 @@ std::vector<std::string> source_violations(const fs::path& root) {
   return found;
 }
 
-std::vector<std::string> symbol_violations(const std::string& name, const std::string& nm_output) {
+std::vector<std::string> long_files(const fs::path& root) {
+  std::vector<std::string> found;
+  for (const char* top : {"idl", "components", "sim", "deploy", "examples", "tests"}) {
+    if (!fs::exists(root / top)) continue;
+    const int most = std::string(top) == "tests" ? 500 : 400;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string kind = entry.path().extension().string();
+      if (kind != ".hpp" && kind != ".cpp" && kind != ".idl") continue;
+      std::ifstream stream(entry.path());
+      const auto lines = std::count(std::istreambuf_iterator<char>(stream), {}, '\n');
+      const std::string file = fs::relative(entry.path(), root).string();
+      if (lines > most) found.push_back(file + ": " + std::to_string(lines) + " lines, at most " + std::to_string(most));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<Library> declared_libraries(const fs::path& root) {
+  static const std::regex call("(?:^|\\n)(constrictor_library|constrictor_component|add_library)\\((\\w+)( STATIC)?");
+  std::vector<fs::path> folders = {root / "idl"};
+  for (const char* top : {"components", "sim"}) {
+    for (const auto& entry : fs::directory_iterator(root / top)) folders.push_back(entry.path());
+  }
+  std::sort(folders.begin(), folders.end());
+  std::vector<Library> found;
+  for (const auto& folder : folders) {
+    std::ifstream stream(folder / "CMakeLists.txt");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    for (std::sregex_iterator at(text.begin(), text.end(), call), end; at != end; ++at) {
+      const std::string function = (*at)[1];
+      if (function == "add_library" && !(*at)[3].matched) continue;  // of other kinds
+      const std::string name = (function == "constrictor_component" ? "constrictor_" : "") + (*at)[2].str();
+      found.push_back({fs::relative(folder, root).string(), "lib" + name + ".a", {}});
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> symbol_violations(const Library& library) {
+  const std::string& name = library.name;
   // The runtime and the programs on top of it are there to talk DDS and to look at the clock.
   if (name == "libconstrictor_runtime.a" || name.rfind("libconstrictor_cli", 0) == 0 || name == "libconstrictor_messages.a") return {};
   static const std::array<const char*, 12> kForbidden = {
@@ -96,15 +169,45 @@ std::vector<std::string> symbol_violations(const std::string& name, const std::s
       "_ZNSt6chrono3_V212steady_clock3nowEv", "_ZNSt6chrono3_V212system_clock3nowEv",
       "_ZNSt13random_device9_M_getvalEv"};
   std::vector<std::string> found;
-  std::istringstream lines(nm_output);
-  for (std::string line; std::getline(lines, line);) {
-    const auto at = line.find(" U ");
-    if (at == std::string::npos) continue;
-    const std::string symbol = line.substr(at + 3, line.find('@', at) - at - 3);
+  for (const auto& [kind, symbol] : symbols_of(library.nm)) {
+    if (kind != 'U') continue;
     if (symbol.rfind("dds_", 0) == 0 || symbol.rfind("ddsi_", 0) == 0) found.push_back(name + " needs " + symbol + ": no DDS outside the runtime");
     if (std::find(kForbidden.begin(), kForbidden.end(), symbol) != kForbidden.end()) {
       found.push_back(name + " needs " + symbol + ": time is an argument and random numbers are seeded");
     }
+  }
+  return found;
+}
+
+std::vector<std::string> link_violations(const std::vector<Library>& libraries) {
+  struct Need {
+    const Library* library;
+    std::string symbol;
+  };
+  std::map<std::string, std::vector<const Library*>> owners;
+  std::vector<Need> needs;
+  for (const auto& library : libraries) {
+    std::set<std::string> own;
+    std::set<std::string> needed;
+    for (const auto& [kind, symbol] : symbols_of(library.nm)) {
+      const bool defined = std::string("TDBRVW").find(kind) != std::string::npos;
+      if (kind == 'U') needed.insert(symbol);
+      else if (defined && own.insert(symbol).second) owners[symbol].push_back(&library);
+    }
+    for (const auto& symbol : needed) {
+      if (!own.contains(symbol)) needs.push_back({&library, symbol});
+    }
+  }
+  std::vector<std::string> found;
+  for (const auto& [library, symbol] : needs) {
+    const auto owner = owners.find(symbol);
+    // Of a template that is instantiated in several libraries any copy will do: enough if one may be known.
+    if (owner == owners.end()) continue;
+    const bool allowed = std::any_of(owner->second.begin(), owner->second.end(), [&, of = library](const Library* other) {
+      return may_link(*of, *other);
+    });
+    const Library& other = *owner->second.front();
+    if (!allowed) found.push_back(library->folder + "/" + library->name + " needs " + symbol + " of " + other.folder + "/" + other.name);
   }
   return found;
 }

@@ -3,7 +3,11 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
+#include <utility>
+#include <vector>
 
+#include "constrictor/text.hpp"
 #include "perception/perception.hpp"
 #include "ray_caster.hpp"
 #include "runtime/local_run.hpp"
@@ -79,18 +83,40 @@ class Tasks : public StatefulComponent<std::int64_t> {
   Output<msg::TaskStatus> status_;
 };
 
+/// Changes the hues that count as yellow, of which none is in the picture, and changes them back: each a few ticks before its time.
+class Desk : public StatefulComponent<int> {
+ public:
+  static constexpr std::int64_t kGone = 22, kBack = 43;  // 22: when the image of tick 20 comes; 43: after that of 40
+  Desk(Wiring& wiring, const Setup&) : change_(wiring.output(topics::kParameterChange)) {}
+  void step(const Tick& tick) override {
+    if (tick.index == 10) change("perception.colour.yellow.from_deg", 71.0, kGone);
+    if (tick.index == 30) change("perception.colour.yellow.from_deg", 42.0, kBack);
+  }
+
+ private:
+  void change(const char* name, double value, std::int64_t tick) {
+    msg::ParameterChange message{};
+    set_text(message.source, "test");
+    set_text(message.name, name);
+    message.value = value;
+    message.effective_tick = tick;
+    change_.write(message);
+  }
+  Output<msg::ParameterChange> change_;
+};
+
 template <class T>
 ComponentFactory factory(const char* name) {
   return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<T>(w, s); }};
 }
 
-std::unique_ptr<LocalRun> make_run() {
+std::unique_ptr<LocalRun> make_run(bool with_changes = false) {
   Setup setup;
   setup.robot_file = share_path("components/robot/mamba.yaml");
-  return std::make_unique<LocalRun>(
-      std::vector<ComponentFactory>{factory<Imu>("physics"), factory<Eye>("camera"), factory<Tasks>("navigation"),
-                                    make_perception_factory()},
-      setup);
+  std::vector<ComponentFactory> factories{factory<Imu>("physics"), factory<Eye>("camera"), factory<Tasks>("navigation"),
+                                          make_perception_factory()};
+  if (with_changes) factories.push_back(factory<Desk>("input"));
+  return std::make_unique<LocalRun>(factories, setup);
 }
 
 TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {
@@ -131,6 +157,33 @@ TEST(PerceptionComponent, ARestartChangesNothing) {
     if (i == 11 || i == 33 || i == 34) broken->restart("perception");
   }
   EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
+}
+
+/// Exposures in which the yellow thing was reported, and in which it was not.
+std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& run, std::int64_t ticks, const std::set<std::int64_t>& restarts) {
+  std::pair<std::set<std::int64_t>, std::set<std::int64_t>> seen;
+  run.subscribe<msg::ObjectPercepts>(topics::kObjectPercepts, [&seen](const msg::ObjectPercepts& percepts) {
+    bool yellow = false;
+    for (int i = 0; i < percepts.blob_count; ++i) yellow = yellow || percepts.blobs[i].colour == msg::kColourYellow;
+    (yellow ? seen.first : seen.second).insert(percepts.exposure_tick);
+  });
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    if (restarts.contains(tick)) run.restart("perception");
+    run.advance(1);
+  }
+  return seen;
+}
+
+TEST(PerceptionComponent, ObeysAColourThresholdFromItsTickOnAlsoAfterARestart) {
+  using Exposures = std::set<std::int64_t>;
+  const Exposures before_and_after{0, 5, 10, 45, 50, 55}, between{20, 25, 30, 35, 40};  // the image of tick 15 is broken
+  // Restarts with a change waiting, in force, and taken back.
+  for (const Exposures& restarts : {Exposures{}, Exposures{12, 22}, Exposures{23, 28, 42}, Exposures{44, 50}}) {
+    auto run = make_run(true);
+    const auto seen = yellow_seen(*run, 60, restarts);
+    EXPECT_EQ(seen.first, before_and_after);
+    EXPECT_EQ(seen.second, between);
+  }
 }
 
 TEST(PerceptionComponent, RefusesImagesThatDoNotFitTheCamera) {

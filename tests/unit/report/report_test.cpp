@@ -165,6 +165,16 @@ TEST(Report, PicturesOfAMomentShowThatMomentOrSoonAfter) {
   EXPECT_EQ(brightness("0000120_scene.png"), 150);
 }
 
+// The camera is anybody's: what calls itself 64 x 48 pixels and brings ten bytes is not drawn.
+TEST(Report, ImagesWithoutTheirPixelsAreLeftOut) {
+  test::Story story;
+  story.torn_from_tick = 100;
+  const Told told = tell(story);
+  EXPECT_TRUE(told.files.contains("run/snapshots/0000090_camera.png"));
+  for (const std::string name : {"camera", "processed"}) EXPECT_FALSE(told.files.contains("run/snapshots/0000120_" + name + ".png")) << name;
+  EXPECT_TRUE(told.files.contains("run/figure.png"));
+}
+
 TEST(Report, WithoutAFolderItStillEndsTheRun) {
   constrictor::Setup setup;
   setup.robot_file = share_path("components/robot/mamba.yaml");

@@ -24,6 +24,7 @@ struct Story {
   std::uint8_t level = msg::kAuthorityPlanner;     ///< of whose goals the events are
   double red_drop_distance_m = 0.1;      ///< from the red zone's centre; its radius is 0.3
   std::int64_t mission_end_tick = 420;
+  std::int64_t torn_from_tick = 1'000'000;  ///< from here on images have fewer pixels than their size says
 };
 
 constexpr double kStartX = 1.0, kStartY = 2.0, kStartYaw = 0.5;
@@ -127,9 +128,10 @@ inline ComponentFactory scripted(std::string name, Timing timing, std::function<
 }
 
 /// A picture whose brightness tells its tick.
-inline void write_picture(const Output<msg::CameraImage>& output, const Tick& tick, int width, int height) {
+inline void write_picture(const Output<msg::CameraImage>& output, const Tick& tick, int width, int height, const Story& story) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width * height * 3), static_cast<std::uint8_t>(tick.index & 0xFF));
   for (std::size_t i = 0; i < pixels.size(); i += 7) pixels[i] = static_cast<std::uint8_t>(i & 0xFF);
+  if (tick.index >= story.torn_from_tick) pixels.resize(10);
   msg::CameraImage image{};
   image.width = static_cast<std::uint16_t>(width);
   image.height = static_cast<std::uint16_t>(height);
@@ -184,19 +186,19 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       out.write(mission);
     };
   }));
-  members.push_back(scripted("camera", {5, 2}, [](Wiring& wiring) {
-    return [out = wiring.output(topics::kCameraImage)](const Tick& tick) { write_picture(out, tick, 64, 48); };
+  members.push_back(scripted("camera", {5, 2}, [story](Wiring& wiring) {
+    return [story, out = wiring.output(topics::kCameraImage)](const Tick& tick) { write_picture(out, tick, 64, 48, story); };
   }));
-  members.push_back(scripted("overview", {50, 25}, [](Wiring& wiring) {
-    return [out = wiring.output(topics::kOverviewImage)](const Tick& tick) { write_picture(out, tick, 64, 36); };
+  members.push_back(scripted("overview", {50, 25}, [story](Wiring& wiring) {
+    return [story, out = wiring.output(topics::kOverviewImage)](const Tick& tick) { write_picture(out, tick, 64, 36, story); };
   }));
-  members.push_back(scripted("perception", {5, 1}, [](Wiring& wiring) {
-    return [line = wiring.output(topics::kLinePercept), out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
+  members.push_back(scripted("perception", {5, 1}, [story](Wiring& wiring) {
+    return [story, line = wiring.output(topics::kLinePercept), out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
       msg::LinePercept percept{};
       percept.visible = tick.index % 20 != 0;  // three of four
       for (double* value : {&percept.end_distance_m, &percept.offset_m, &percept.heading_rad, &percept.curvature_1_m, &percept.near_m, &percept.far_m}) *value = std::nan("");
       line.write(percept);
-      write_picture(out, tick, 64, 48);
+      write_picture(out, tick, 64, 48, story);
     };
   }));
   return members;

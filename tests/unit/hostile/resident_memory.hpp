@@ -1,0 +1,18 @@
+// What this process holds of the machine's memory.
+#pragma once
+
+#include <unistd.h>
+
+#include <fstream>
+
+namespace constrictor::test {
+
+inline double resident_mib() {
+  std::ifstream file("/proc/self/statm");
+  long size = 0;
+  long resident = 0;
+  file >> size >> resident;
+  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+}  // namespace constrictor::test
