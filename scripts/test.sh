@@ -24,7 +24,8 @@ fi
 
 ctest --test-dir build/release "${options[@]}" "$@"
 # Memory leaks at exit are OpenCV's and OSMesa's own; everything else counts.
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/support/tsan.suppressions"
 for sanitizer in asan tsan; do
   echo "test: building with $sanitizer"
   cmake --preset "$sanitizer" >/dev/null
