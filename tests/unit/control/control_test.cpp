@@ -64,13 +64,15 @@ void set_u(msg::DesiredTrajectory& desired) {
   for (int k = 5; k <= 7; ++k) desired.shape_rad[k] = 1.047;
 }
 
-LocalRun make_run(Script script) {
+/// Control between a plant and a script; `more`: who else is there.
+template <class Servos = IdealServos>
+LocalRun make_run(Script script, ComponentFactory control = make_control_factory(), std::vector<ComponentFactory> more = {}) {
   Setup setup;
   setup.robot_file = share_path("components/robot/mamba.yaml");
-  return LocalRun({{"physics", [](Wiring& w, const Setup& s) { return std::make_unique<IdealServos>(w, s); }},
-                   make_control_factory(),
-                   {"navigation", [script](Wiring& w, const Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
-                  setup);
+  more.insert(more.begin(), {"physics", [](Wiring& w, const Setup& s) { return std::make_unique<Servos>(w, s); }});
+  more.push_back(std::move(control));
+  more.push_back({"navigation", [script](Wiring& w, const Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }});
+  return LocalRun(more, setup);
 }
 
 /// Largest change of any setpoint from one tick to the next, over a run.
@@ -136,17 +138,13 @@ class Estimate : public StatefulComponent<int> {
 };
 
 TEST(Control, GivesWhatTheRobotPerceivesToAMethodFromOutside) {
-  constrictor::Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
-  const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
-    set_method(desired, "feeler", 1);
-    return true;
-  };
-  LocalRun run({{"physics", [](Wiring& w, const constrictor::Setup& s) { return std::make_unique<TouchingServos>(w, s); }},
-                make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Feeler>(); }}),
-                {"guidance", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<Estimate>(w); }},
-                {"navigation", [script](Wiring& w, const constrictor::Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
-               setup);
+  LocalRun run = make_run<TouchingServos>(
+      [](const Tick&, msg::DesiredTrajectory& desired) {
+        set_method(desired, "feeler", 1);
+        return true;
+      },
+      make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Feeler>(); }}),
+      {{"guidance", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<Estimate>(w); }}});
   run.advance(100);
   EXPECT_TRUE(run.latest(topics::kMotionStatus)->known);
   EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[0], 0.3, 1e-9);
@@ -195,19 +193,14 @@ class HangingInput : public StatefulComponent<int> {
 };
 
 TEST(Control, HoldsWhenNobodySaysAnyMoreWhoHasAuthority) {
-  constrictor::Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
-  const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
-    set_method(desired, "undulation", 1);
-    desired.frequency_hz = 0.7;
-    desired.amplitude_rad = 0.5;
-    return true;
-  };
-  LocalRun run({{"physics", [](Wiring& w, const constrictor::Setup& s) { return std::make_unique<IdealServos>(w, s); }},
-                make_control_factory(),
-                {"input", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<HangingInput>(w); }},
-                {"navigation", [script](Wiring& w, const constrictor::Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }}},
-               setup);
+  LocalRun run = make_run(
+      [](const Tick&, msg::DesiredTrajectory& desired) {
+        set_method(desired, "undulation", 1);
+        desired.frequency_hz = 0.7;
+        desired.amplitude_rad = 0.5;
+        return true;
+      },
+      make_control_factory(), {{"input", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<HangingInput>(w); }}});
   run.advance(340);
   EXPECT_GT(largest_step_rad(run, 5), 1e-4) << "a second or two of silence is no reason";
   run.advance(15);
