@@ -57,6 +57,8 @@ class Host::Impl : private MemberSink, private ConductorSink {
   void take_done(const msg::TickDone& message);
   /// Counts and names a message that is not accepted, in the ComponentStatus of a member here.
   void refuse_message(const std::string& topic, const std::string& reason);
+  /// Whether a message names this process's run, if that is known; otherwise it is refused.
+  [[nodiscard]] bool of_our_run(const char* topic, std::uint64_t named);
   /// Whether it obeys its IDL; otherwise it is refused.
   template <class T>
   [[nodiscard]] bool acceptable(const char* topic, const T& message);

@@ -74,7 +74,7 @@ void Host::Impl::make_endpoints() {
     epoch_reader_.take([&](const msg::EpochStart& start) {
       if (!acceptable(wire::kEpochStart, start)) return;
       // The first run that is heard is the one taken part in: it must be ours.
-      if (run_id() != 0 && start.run_id != run_id()) return refuse_message(wire::kEpochStart, "run_id: of another run");
+      if (!of_our_run(wire::kEpochStart, start.run_id)) return;
       if (start.config_hash != config_hash_) {
         return refuse_message(wire::kEpochStart, fmt::format("config_hash: found '{}', accepted {}", start.config_hash, config_hash_));
       }
@@ -85,7 +85,7 @@ void Host::Impl::make_endpoints() {
   attach(resume_reader_.get(), [this, each] {
     resume_reader_.take([&](const msg::Resume& message) {
       if (!acceptable(wire::kResume, message)) return;
-      if (run_id() != 0 && message.run_id != run_id()) return refuse_message(wire::kResume, "run_id: of another run");
+      if (!of_our_run(wire::kResume, message.run_id)) return;
       each([&](Member& member) {
         if (member.name() != message.component || member.incarnation() != message.incarnation || member.in_epoch()) return;
         if (const auto resumption = dds::from_wire(message)) return member.on_resume(*resumption);
@@ -107,7 +107,7 @@ void Host::Impl::make_endpoints() {
     refused_reader_.take([&](const msg::Refused& message) {
       if (!acceptable(wire::kRefused, message)) return;
       if (message.pid != ::getpid() || message.host != host_name() || message.incarnation != options_.incarnation || !here(message.component)) return;
-      if (run_id() != 0 && message.run_id != run_id()) return refuse_message(wire::kRefused, "run_id: of another run");
+      if (!of_our_run(wire::kRefused, message.run_id)) return;
       std::fprintf(stderr, "%s: the run refuses this process: %s\n", message.component, message.reason);
       exit_status_ = exit_status::kRefused;
     });
@@ -182,6 +182,13 @@ std::uint64_t Host::Impl::run_id() const {
   return begun == members_.end() ? 0 : begun->member->epoch().run_id;
 }
 
+bool Host::Impl::of_our_run(const char* topic, std::uint64_t named) {
+  const std::uint64_t ours = run_id();
+  if (ours == 0 || named == ours) return true;
+  refuse_message(topic, "run_id: of another run");
+  return false;
+}
+
 void Host::Impl::refuse_message(const std::string& topic, const std::string& reason) {
   (plant_ ? plant_ : members_.front().member.get())->refuse(topic + "." + reason);
 }
@@ -235,7 +242,7 @@ void Host::Impl::greet() {
 void Host::Impl::take_hello(const msg::Hello& message) {
   if (!acceptable(wire::kHello, message)) return;
   const Greeting greeting = dds::from_wire(message);
-  if (greeting.run_id != 0 && run_id() != 0 && greeting.run_id != run_id()) return refuse_message(wire::kHello, "run_id: of another run");
+  if (greeting.run_id != 0 && !of_our_run(wire::kHello, greeting.run_id)) return;
   // What is of another run replaces nobody and is waited for by nobody; the conductor tells it so.
   const bool ours = !difference(greeting, greeting_of(members_.front()));
   if (here(greeting.component)) {
