@@ -1,29 +1,46 @@
 #!/usr/bin/env bash
-# Installs what Constrictor needs to build and run on Debian 12. Does nothing, at once, when all of it is there.
-# Usage: scripts/setup.sh [--fast-dds]
-#   --fast-dds   also Fast DDS, for the tests and the example with another vendor's DDS (40 MB and a Java runtime)
-# Neither installs clang-tidy: only the CMake preset `tidy` needs it, which no script uses.
+# Installs the Debian 12 packages that Constrictor needs. Does nothing if they are all installed already.
+# Usage: scripts/setup.sh [GROUP...]
+#   core    (the default) what is needed to build and run the programs
+#   tests   what the tests and benchmarks need in addition, Fast DDS with its Java runtime included
+#   tools   what formatting, static analysis and the documentation need in addition
+# Example: scripts/setup.sh core tests
 set -euo pipefail
 
-packages=(
+core=(
   # build
-  g++ cmake ninja-build ccache pkg-config binutils
+  g++ cmake ninja-build ccache pkg-config
   # communication and messages
   cyclonedds-dev cyclonedds-tools libssl-dev libcereal-dev nlohmann-json3-dev
   # physics, rendering, vision, mathematics
-  libode-dev libosmesa6-dev libopencv-dev libeigen3-dev
+  libode-dev libosmesa6-dev libopencv-core-dev libopencv-imgproc-dev libpng-dev libeigen3-dev
   # configuration, command line, text, logs
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
-  # tests and benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev tmux zsh fish
 )
+tests=(
+  # GoogleTest and Google Benchmark; OpenCV's image files, against which our PNG files are compared
+  libgtest-dev libbenchmark-dev libopencv-imgcodecs-dev
+  # a terminal for `constrictor teleop`, shells for the completion of `constrictor`
+  tmux zsh fish
+  # another vendor's DDS
+  libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
+)
+tools=(clang-format clang-tidy doxygen graphviz shellcheck)
 
-if [ "${1:-}" = --fast-dds ]; then
-  packages+=(libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools)
-fi
+packages=()
+for group in "${@:-core}"; do
+  case "$group" in
+    core) packages+=("${core[@]}") ;;
+    tests) packages+=("${tests[@]}") ;;
+    tools) packages+=("${tools[@]}") ;;
+    --help) sed -n '2,7s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools" >&2; exit 2 ;;
+  esac
+done
 
-# dpkg-query fails when a package is unknown; what counts is what it lists as installed.
-installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null | sed -n 's/^installed //p' || true)
+# dpkg-query fails if a package is unknown; its list of the installed ones is complete all the same.
+installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null |
+            sed -n 's/^installed //p' || true)
 missing=()
 for package in "${packages[@]}"; do
   grep -Fqx "$package" <<<"$installed" || missing+=("$package")
@@ -36,7 +53,7 @@ echo "setup: installing ${missing[*]}"
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo >/dev/null; then
-    echo "setup: these packages are missing and there is no sudo; as root, run: apt-get install ${missing[*]}" >&2
+    echo "setup: sudo is not installed; run as root: apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi
   as_root=(sudo)

@@ -6,22 +6,30 @@
 #include <string>
 #include <string_view>
 
-#include "control/control_parameters.hpp"
+#include "robot/gate_messages.hpp"
 
 namespace constrictor {
 
 Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
     : robot_(load_robot(setup.robot_file)),
-      config_(load_control_config(setup.config_file)),
-      parameters_(wiring, topics::kControlParameters), chain_(robot_), limiter_(robot_, config_.speed_share), gate_(robot_, {0, config_.relax_after_ticks}), wiring_(wiring),
-      registry_(std::move(methods)), trajectory_in_(wiring.latest(topics::kDesiredTrajectory)), joints_in_(wiring.latest(topics::kJointState)),
-      authority_in_(wiring.latest(topics::kAuthority)), contacts_in_(wiring.latest(topics::kContactState)),
-      imu_in_(wiring.latest(topics::kImuState)), line_in_(wiring.latest(topics::kLinePercept)),
-      objects_in_(wiring.latest(topics::kObjectPercepts)), pose_in_(wiring.latest(topics::kRobotPose)),
-      map_in_(wiring.latest(topics::kFieldMap)), command_out_(wiring.output(topics::kJointCommand)),
-      status_out_(wiring.output(topics::kMotionStatus)) {
-  add_parameters(config_, parameters_);
-}
+      config_(load_parameters<ControlConfig>(setup.config_file)),
+      parameters_(wiring, topics::kControlParameters, config_),
+      chain_(robot_),
+      limiter_(robot_, config_.speed_share),
+      gate_(robot_, {0, config_.relax_after_ticks}),
+      wiring_(wiring),
+      registry_(std::move(methods)),
+      trajectory_in_(wiring.latest(topics::kDesiredTrajectory)),
+      joints_in_(wiring.latest(topics::kJointState)),
+      authority_in_(wiring.latest(topics::kAuthority)),
+      contacts_in_(wiring.latest(topics::kContactState)),
+      imu_in_(wiring.latest(topics::kImuState)),
+      line_in_(wiring.latest(topics::kLinePercept)),
+      objects_in_(wiring.latest(topics::kObjectPercepts)),
+      pose_in_(wiring.latest(topics::kRobotPose)),
+      map_in_(wiring.latest(topics::kFieldMap)),
+      command_out_(wiring.output(topics::kJointCommand)),
+      status_out_(wiring.output(topics::kMotionStatus)) {}
 
 msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
   msg::DesiredTrajectory desired{};
@@ -42,7 +50,8 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
 
 Perceived Control::perceived() const {
   const auto newest = [](const auto& input) { return input ? &*input : nullptr; };
-  return {newest(contacts_in_), newest(imu_in_), newest(line_in_), newest(objects_in_), newest(pose_in_), newest(map_in_)};
+  return {newest(contacts_in_), newest(imu_in_),  newest(line_in_),
+          newest(objects_in_),  newest(pose_in_), newest(map_in_)};
 }
 
 void Control::step(const Tick& tick) {
@@ -50,8 +59,8 @@ void Control::step(const Tick& tick) {
   if (!joints_in_) return;
   if (joints_in_->joint_count != robot_.joints.size()) {
     if (joints_in_.fresh()) {
-      wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) + ", accepted " +
-                            std::to_string(robot_.joints.size()));
+      wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) +
+                            ", accepted " + std::to_string(robot_.joints.size()));
     }
     return;
   }
@@ -66,7 +75,8 @@ void Control::step(const Tick& tick) {
   bool known = false;
   const msg::DesiredTrajectory desired = choose(method, known);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_, chain_, config_, desired, measured_rad, torque_nm, commanded_rad, tick.dt_s(), perceived()};
+  const MethodInput input{robot_,    chain_,        config_,     desired,    measured_rad,
+                          torque_nm, commanded_rad, tick.dt_s(), perceived()};
   if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     method->start(input, state_.body);
@@ -84,7 +94,7 @@ void Control::step(const Tick& tick) {
   msg::MotionStatus status{};
   std::snprintf(status.method, sizeof status.method, "%s", desired.method);
   status.motion_id = desired.motion_id;
-  status.known = known;
+  status.accepted = known;
   status.done = known && progress.done;
   status.progress = progress.progress;
   status.phase_rad = state_.body.wave.phase_rad;
@@ -94,15 +104,16 @@ void Control::step(const Tick& tick) {
 msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick) {
   const std::size_t count = robot_.joints.size();
   const GateInstant now{tick.run_id, tick.epoch, tick.index};
-  const GateRefusal refusal =
-      gate_.offer({now.run_id, now.epoch, now.tick, static_cast<std::uint64_t>(tick.index) + 1, wanted.mode, std::span(wanted.position_rad, count),
-                   std::span(wanted.velocity_rad_s, count), std::span(wanted.torque_limit_nm, count)},
-                  now, state_.gate);
-  if (refusal != GateRefusal::kNone) wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal, state_.gate));
+  msg::Header header{};  // as the runtime will fill it in when the command is published
+  header.run_id = now.run_id;
+  header.epoch = now.epoch;
+  header.tick = now.tick;
+  header.sequence_number = static_cast<std::uint64_t>(tick.index) + 1;
+  const GateRefusal refusal = gate_.offer(gate_command(wanted, header), now, state_.gate);
+  if (refusal != GateRefusal::kNone)
+    wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal, state_.gate));
   const GateOrder order =
-      authority_in_ ? SafetyGate::order_of(authority_in_->emergency_stop, level_in_force(authority_in_->level, authority_in_.age_ticks()),
-                                           authority_in_->source, state_.gate)
-                    : GateOrder::kObey;
+      gate_order(authority_in_ ? &*authority_in_ : nullptr, authority_in_ ? authority_in_.age_ticks() : 0, state_.gate);
   const auto& setpoints = gate_.setpoints(std::span(measured_rad).first(count), order, tick.dt_s(), state_.gate);
   msg::JointCommand command = wanted;
   command.mode = state_.gate.mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;
@@ -110,7 +121,7 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
     command.position_rad[j] = setpoints[j].position_rad;
     command.velocity_rad_s[j] = setpoints[j].velocity_rad_s;
     command.torque_limit_nm[j] = setpoints[j].torque_limit_nm;
-    // What comes after a hold begins where the joints are held.
+    // The motion after a hold begins at the held posture.
     if (state_.gate.mode != GateMode::kObeying) state_.limiter.position_rad[j] = setpoints[j].position_rad;
   }
   if (order != GateOrder::kObey) state_.method.clear();
@@ -120,11 +131,13 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
 ComponentFactory make_control_factory() { return make_control_factory({}); }
 
 ComponentFactory make_control_factory(std::vector<MethodMaker> more) {
-  return {"control", [more = std::move(more)](Wiring& wiring, const Setup& setup) {
+  return {"control",
+          [more = std::move(more)](Wiring& wiring, const Setup& setup) {
             MethodRegistry methods;
             for (const auto make : more) methods.add(make());
             return std::make_unique<Control>(wiring, setup, std::move(methods));
-          }, "components/control/control.yaml"};
+          },
+          "components/control/control.yaml", describe_parameters<ControlConfig>};
 }
 
 }  // namespace constrictor

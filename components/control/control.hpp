@@ -1,4 +1,4 @@
-// Control: the desired trajectory to servo setpoints, by the method that the trajectory names.
+// The component: turns the desired trajectory into servo setpoints, by the method that the trajectory names.
 #pragma once
 
 #include <cereal/types/string.hpp>
@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "component/component.hpp"
+#include "component/parameters.hpp"
 #include "control/control_method.hpp"
 #include "robot/safety_gate.hpp"
-#include "runtime/component.hpp"
-#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
@@ -17,7 +17,7 @@ struct ControlState {
   BodyState body;
   LimiterState limiter;
   GateState gate;
-  std::string method;         ///< of the present motion; empty before the first
+  std::string method;  ///< of the present motion; empty before the first motion
   std::uint64_t motion_id = 0;
   ParameterState parameters;
   template <class Archive>
@@ -26,25 +26,27 @@ struct ControlState {
   }
 };
 
-/// Reads DesiredTrajectory and JointState (and for the methods what the robot perceives), writes JointCommand and MotionStatus every tick. Before the first trajectory, with one
-/// that no method accepts, and with one older than `hold_after_ticks` the posture is held; older than `relax_after_ticks` the
-/// joints are let go. Without a JointState of this robot it writes nothing. Every command passes the safety gate: while nobody has
-/// authority after somebody had it, and during an emergency stop, the posture is held whatever the trajectory says.
+/// Reads DesiredTrajectory and JointState, and for the methods the other senses of the robot. Publishes JointCommand
+/// and MotionStatus in every tick, once a JointState of this robot has arrived. Control holds the posture before the
+/// first trajectory, with a trajectory that no method accepts, and with one older than `hold_after_ticks`. It relaxes
+/// the joints when the trajectory is older than `relax_after_ticks`. Every command passes the safety gate: during an
+/// emergency stop, and while no source has authority after one has had it, the gate holds the posture.
 class Control : public StatefulComponent<ControlState> {
  public:
   Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
   void step(const Tick& tick) override;
 
  private:
-  /// The trajectory to obey now, after the rules on age and validity.
+  /// The trajectory to follow now, by the rules on age and validity, and its method.
   [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
   [[nodiscard]] Perceived perceived() const;
-  /// What goes to the servos of a command that control wants.
-  [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick);
+  /// The command for the servos: `wanted` after the safety gate.
+  [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad,
+                                        const Tick& tick);
 
   RobotModel robot_;
   ControlConfig config_;
-  Parameters parameters_;  ///< of config_
+  Parameters parameters_;  ///< rows of config_
   YawChain chain_;
   JointLimiter limiter_;
   SafetyGate gate_;
@@ -65,8 +67,8 @@ class Control : public StatefulComponent<ControlState> {
 
 ComponentFactory make_control_factory();
 
-/// The same with more control methods, for a program with methods of its own (`ComponentFactory` makes one component at a time, but
-/// maybe several: each gets new ones).
+/// The same with additional control methods, for a program with methods of its own. The makers are called for each
+/// component that the factory creates.
 using MethodMaker = std::unique_ptr<ControlMethod> (*)();
 ComponentFactory make_control_factory(std::vector<MethodMaker> more);
 

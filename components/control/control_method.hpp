@@ -1,4 +1,4 @@
-// The interface of control methods: desired trajectory and what the body feels in, joint setpoints out.
+// The interface of control methods. They compute joint setpoints from the desired trajectory and what the body feels.
 #pragma once
 
 #include <array>
@@ -12,14 +12,15 @@
 
 namespace constrictor {
 
-/// What the body does now: the common state of all methods, so that one continues where another left off. Serialisable.
+/// The present motion of the body. All methods share this state, so that one method continues where another one left
+/// off. Serialisable.
 struct BodyState {
   Wave wave;
   double frequency_hz = 0.0;
-  LinkArray shape_rad{};          ///< posture, by yaw joint
-  JointArray residual_rad{};      ///< what is left of an earlier posture, added to the method's own; fades
-  JointArray held_rad{};          ///< posture of "hold"
-  std::array<double, 8> scratch{};  ///< of the present motion's method; zero when a motion starts
+  LinkArray shape_rad{};            ///< posture, one angle for each yaw joint
+  JointArray residual_rad{};        ///< remainder of an earlier posture; it is added to the setpoints and fades
+  JointArray held_rad{};            ///< posture that "hold" keeps
+  std::array<double, 8> scratch{};  ///< for the method's own use; zero when a motion starts
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -31,8 +32,8 @@ struct BodyState {
   }
 };
 
-/// What the robot perceives, for methods that adapt to it (obstacles, grip, terrain). Newest message of each; null before the
-/// first. `header.tick` tells how old it is.
+/// The newest message of each sense, for methods that adapt to obstacles, grip or terrain. Null before the first
+/// message. `header.tick` tells the age of a message.
 struct Perceived {
   const msg::ContactState* contacts = nullptr;
   const msg::ImuState* imu = nullptr;
@@ -42,7 +43,7 @@ struct Perceived {
   const msg::FieldMap* map = nullptr;
 };
 
-/// What a method is given at each step.
+/// The input of a method at each step.
 struct MethodInput {
   const RobotModel& robot;
   const YawChain& chain;
@@ -50,7 +51,7 @@ struct MethodInput {
   const msg::DesiredTrajectory& desired;
   const JointArray& measured_rad;   ///< joint positions
   const JointArray& torque_nm;      ///< joint torques
-  const JointArray& commanded_rad;  ///< last setpoints
+  const JointArray& commanded_rad;  ///< previous setpoints
   double dt_s;                      ///< > 0
   Perceived around{};
 };
@@ -60,28 +61,36 @@ struct MethodProgress {
   double progress = 0.0;  ///< 0..1
 };
 
-/// A control method. It keeps nothing itself: whatever must survive a step is in BodyState (its own part is `scratch`), so a
-/// method can be changed, and a process restarted, in the middle of a motion. Setpoints need not respect the robot's limits:
-/// JointLimiter sees to that. A new one is registered in method_registry.cpp, or given to make_control_factory by a program of its own.
+/// A control method. The object itself keeps no state: whatever must survive a step is in BodyState (`scratch` is the
+/// method's own part). So the method can change, and the process can restart, in the middle of a motion. Setpoints may
+/// exceed the robot's limits: JointLimiter enforces them.
+///
+/// To add a method: write methods/NAME.cpp, which defines `std::unique_ptr<ControlMethod> make_NAME()`, and add NAME to
+/// the list CONTROL_METHODS in CMakeLists.txt. A program of one's own can instead pass its methods to
+/// make_control_factory.
 class ControlMethod {
  public:
   virtual ~ControlMethod() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Whether the trajectory's parameters make sense to this method. One that does not is answered by holding the posture.
+  /// Whether the method can follow this trajectory. If it cannot, control holds the posture.
   [[nodiscard]] virtual bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const;
-  /// Called at the first step of a motion (new motion_id or another method before it).
+  /// Called before the first step of a motion: when motion_id or the method has changed.
   virtual void start(const MethodInput& input, BodyState& body) const;
   /// Fills every joint of `setpoints`.
   virtual MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const = 0;
 };
 
-/// Every method there is, by name.
+/// The methods of CONTROL_METHODS in CMakeLists.txt.
+std::vector<std::unique_ptr<ControlMethod>> built_in_methods();
+
+/// All methods by name.
 class MethodRegistry {
  public:
+  /// Holds the built-in methods.
   MethodRegistry();
-  /// Adds one; of two with one name the newer counts.
+  /// Adds a method. It replaces an earlier one of the same name.
   void add(std::unique_ptr<ControlMethod> method);
-  /// Null if there is none of that name.
+  /// Null if there is no method of this name.
   [[nodiscard]] const ControlMethod* find(std::string_view name) const;
   [[nodiscard]] std::vector<std::string_view> names() const;
 

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/joint_limits.hpp"
+
 namespace constrictor {
-namespace {
-
-double within(const JointModel& joint, double position_rad) { return std::clamp(position_rad, joint.min_rad, joint.max_rad); }
-
-}  // namespace
 
 JointLimiter::JointLimiter(const RobotModel& robot, double speed_share) : robot_(robot), speed_share_(speed_share) {}
 
@@ -18,15 +15,18 @@ msg::JointCommand JointLimiter::limit(const Setpoints& wanted, const JointArray&
   command.joint_count = static_cast<std::uint16_t>(robot_.joints.size());
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const JointModel& joint = robot_.joints[j];
-    if (!state.started) state.position_rad[j] = within(joint, std::isfinite(measured_rad[j]) ? measured_rad[j] : 0.0);
+    if (!state.started)
+      state.position_rad[j] = clamp_position(joint, std::isfinite(measured_rad[j]) ? measured_rad[j] : 0.0);
     const double previous_rad = state.position_rad[j];
-    const double target_rad = std::isfinite(wanted.position_rad[j]) ? within(joint, wanted.position_rad[j]) : previous_rad;
+    const double target_rad =
+        std::isfinite(wanted.position_rad[j]) ? clamp_position(joint, wanted.position_rad[j]) : previous_rad;
     const double step_rad = speed_share_ * joint.max_speed_rad_s * dt_s;
     const double position_rad = std::clamp(target_rad, previous_rad - step_rad, previous_rad + step_rad);
     command.position_rad[j] = position_rad;
     command.velocity_rad_s[j] = (position_rad - previous_rad) / dt_s;
     const double torque_nm = wanted.torque_limit_nm[j];
-    command.torque_limit_nm[j] = std::isfinite(torque_nm) ? std::clamp(torque_nm, 0.0, joint.max_torque_nm) : joint.max_torque_nm;
+    command.torque_limit_nm[j] =
+        std::isfinite(torque_nm) ? std::clamp(torque_nm, 0.0, joint.max_torque_nm) : joint.max_torque_nm;
     state.position_rad[j] = position_rad;
   }
   state.started = true;
@@ -37,7 +37,7 @@ msg::JointCommand JointLimiter::relax(const JointArray& measured_rad, LimiterSta
   msg::JointCommand command{};
   command.joint_count = static_cast<std::uint16_t>(robot_.joints.size());
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
-    if (std::isfinite(measured_rad[j])) state.position_rad[j] = within(robot_.joints[j], measured_rad[j]);
+    if (std::isfinite(measured_rad[j])) state.position_rad[j] = clamp_position(robot_.joints[j], measured_rad[j]);
     command.position_rad[j] = state.position_rad[j];
   }
   state.started = true;

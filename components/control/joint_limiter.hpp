@@ -1,4 +1,4 @@
-// The last step before the servos: no setpoint leaves the robot's limits.
+// Limits the setpoints of the methods to what the joints of the robot can follow.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace constrictor {
 /// A value for each joint of the robot, head to tail; elements beyond the count are zero.
 using JointArray = std::array<double, msg::kMaxJoints>;
 
-/// Setpoints of all joints as a method wants them.
+/// The setpoints of all joints that a method demands.
 struct Setpoints {
   JointArray position_rad{};
   JointArray torque_limit_nm{};
@@ -28,17 +28,18 @@ struct LimiterState {
   }
 };
 
-/// Bounds position, rate and torque of every setpoint by the robot's model. The first setpoint starts at the measured posture,
-/// so that nothing jumps when control takes over. A wanted value that is not finite leaves that joint's setpoint where it was
-/// (torque limit: the robot's own).
+/// Limits position, rate and torque of every setpoint to those of the robot's model. The first setpoint starts at the
+/// measured posture, so that the body does not jump when control starts. Where a demanded position is not finite, the
+/// joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies.
 class JointLimiter {
  public:
-  /// `speed_share`: part of the servos' maximum speed that a setpoint may use, 0..1.
+  /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1.
   JointLimiter(const RobotModel& robot, double speed_share);
 
-  /// `measured_rad`: joint positions, used at the first call only. `dt_s` > 0.
-  msg::JointCommand limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s, LimiterState& state) const;
-  /// Lets go: no torque, setpoints follow the measured posture.
+  /// `measured_rad`: joint positions, used in the first call only. `dt_s` > 0.
+  msg::JointCommand limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s,
+                          LimiterState& state) const;
+  /// Relaxes the joints: no torque; the setpoints follow the measured posture.
   msg::JointCommand relax(const JointArray& measured_rad, LimiterState& state) const;
 
  private:

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "control/control_method.hpp"
-#include "control/methods/methods.hpp"
 
 namespace constrictor {
 
@@ -10,20 +9,14 @@ bool ControlMethod::accepts(const msg::DesiredTrajectory& desired, const YawChai
   for (std::size_t k = 0; k < desired.shape_count; ++k) {
     if (!std::isfinite(desired.shape_rad[k])) return false;
   }
-  return std::isfinite(desired.frequency_hz) && std::isfinite(desired.amplitude_rad) && std::isfinite(desired.wavelength_m) &&
-         std::isfinite(desired.curvature_1_m) && std::isfinite(desired.speed_m_s) && std::isfinite(desired.squeeze_rad);
+  return std::isfinite(desired.frequency_hz) && std::isfinite(desired.amplitude_rad) &&
+         std::isfinite(desired.wavelength_m) && std::isfinite(desired.curvature_1_m) &&
+         std::isfinite(desired.speed_m_s) && std::isfinite(desired.squeeze_rad);
 }
 
 void ControlMethod::start(const MethodInput&, BodyState&) const {}
 
-MethodRegistry::MethodRegistry() {
-  methods_.push_back(make_hold());
-  methods_.push_back(make_relax());
-  methods_.push_back(make_undulation());
-  methods_.push_back(make_bend());
-  methods_.push_back(make_wrap());
-  methods_.push_back(make_squeeze());
-}
+MethodRegistry::MethodRegistry() : methods_(built_in_methods()) {}
 
 void MethodRegistry::add(std::unique_ptr<ControlMethod> method) {
   std::erase_if(methods_, [&](const auto& known) { return known->name() == method->name(); });

@@ -8,7 +8,7 @@ namespace constrictor {
 
 namespace {
 
-/// True if on this posture the coordinate along the head's direction is not the arc length.
+/// Whether, on this posture, the coordinate along the head's direction differs from the arc length.
 bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
   constexpr double kAlike_m = 0.03;
   const LinkArray x = chain.coordinates(chain.headings(shape_rad));
@@ -26,7 +26,7 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   const ControlConfig& c = input.config;
   const double dt_s = input.dt_s;
   Wave& wave = body.wave;
-  // On a bent posture the two fields differ by whole wavelengths: the wave fades before one becomes the other.
+  // On a bent posture the two fields differ by whole wavelengths. The wave fades before its field changes.
   const bool fades = wave.field != field && fields_differ(input.chain, body.shape_rad);
   const double amplitude_rad = fades ? 0.0 : input.desired.amplitude_rad;
   wave.amplitude_rad = approach(wave.amplitude_rad, amplitude_rad, c.amplitude_rate_rad_s * dt_s);
@@ -34,7 +34,8 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   wave.wavelength_m = approach(wave.wavelength_m, input.desired.wavelength_m, c.wavelength_rate_m_s * dt_s);
   wave.curvature_1_m = approach(wave.curvature_1_m, input.desired.curvature_1_m, c.curvature_rate_1_ms * dt_s);
   body.frequency_hz = approach(body.frequency_hz, input.desired.frequency_hz, c.frequency_rate_hz_s * dt_s);
-  wave.phase_rad = std::remainder(wave.phase_rad + 2.0 * std::numbers::pi * body.frequency_hz * dt_s, 2.0 * std::numbers::pi);
+  wave.phase_rad =
+      std::remainder(wave.phase_rad + 2.0 * std::numbers::pi * body.frequency_hz * dt_s, 2.0 * std::numbers::pi);
 }
 
 double advance_shape(const MethodInput& input, const LinkArray& target_rad, double rate_rad_s, BodyState& body) {

@@ -73,7 +73,9 @@ LinkArray YawChain::slid(const LinkArray& shape_rad, double distance_m) const {
     const double at = static_cast<double>(k) + distance_m / link_length_m_;
     const double lower = std::floor(at);
     const double share = at - lower;
-    auto value = [&](double index) { return index >= 0.0 && index < count ? shape_rad[static_cast<std::size_t>(index)] : 0.0; };
+    auto value = [&](double index) {
+      return index >= 0.0 && index < count ? shape_rad[static_cast<std::size_t>(index)] : 0.0;
+    };
     out[k] = (1.0 - share) * value(lower) + share * value(lower + 1.0);
   }
   return out;

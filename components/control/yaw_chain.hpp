@@ -1,4 +1,4 @@
-// The robot seen from above as a chain of yaw links, and the travelling wave that rides on a posture of it.
+// The robot from above, as a chain of yaw links, and the travelling wave on a posture of this chain.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace constrictor {
 
-/// A value for each yaw joint or link, head to tail; elements beyond the count are zero. A chain of n joints has n + 1 links.
+/// One value for each yaw joint or link, head to tail; elements beyond the count are 0. A chain of n joints has n + 1
+/// links.
 using LinkArray = std::array<double, msg::kMaxJoints>;
 
 /// Lateral undulation on a posture.
@@ -19,15 +20,15 @@ struct Wave {
   double wavelength_m = 1.0;
   double curvature_1_m = 0.0;  ///< of the path, positive left
   double phase_rad = 0.0;
-  /// 1: the wave's argument is X along the head's direction (arms of a U undulate in parallel); 0: it is the arc length along the
-  /// body (which follows itself round bends).
+  /// The argument of the wave. 1: the coordinate X along the head's direction, so that the arms of a U undulate in
+  /// parallel. 0: the arc length along the body, so that the body follows itself round bends.
   double field = 1.0;
 };
 
-/// How strongly each link takes part in the wave.
+/// How strongly each link takes part in the wave. The defaults are in ControlConfig.
 struct WaveWeights {
-  std::vector<double> head{0.0, 0.5, 0.8};  ///< first links; the rest 1. A still head keeps the camera on the mean heading
-  double rigid_bend_rad = 1.047;            ///< a link between two joints of the posture bent by this or more does not undulate
+  std::vector<double> head;     ///< share of the amplitude in the first links; the rest 1
+  double rigid_bend_rad = 0.0;  ///< a link between two joints of the posture bent by this or more does not undulate
 };
 
 /// Planar kinematics of the yaw links. Link k lies between yaw joints k - 1 and k; link 0 carries the head.
@@ -53,11 +54,12 @@ class YawChain {
 
   /// Yaw joint angles of the wave on the posture:
   /// H_k = Theta_k + kappa X_k + A w_k cos(2 pi X_k / lambda + phase), q_k = H_k - H_{k+1}.
-  /// Source: serpenoid curve (Hirose) sampled at rigid links; FACTS of the project for the weights and the common X of a U.
+  /// Source: serpenoid curve (Hirose) sampled at rigid links. The weights, and the common X of both arms of a U, are
+  /// this project's own.
   [[nodiscard]] LinkArray joint_angles(const LinkArray& shape_rad, const Wave& wave, const WaveWeights& weights) const;
 
-  /// A posture moved along the body towards the head by `distance_m` (negative: towards the tail): joint k takes the angle
-  /// that the posture has at k + distance / link length, linear between joints, zero beyond its ends.
+  /// A posture that was moved along the body by `distance_m` towards the head (negative: towards the tail). Joint k
+  /// takes the angle of the posture at k + distance / link length: linear between joints, 0 beyond the ends.
   [[nodiscard]] LinkArray slid(const LinkArray& shape_rad, double distance_m) const;
 
  private:

@@ -1,4 +1,4 @@
-// Builds the map from percepts and touch, and corrects the pose by what is recognised.
+// Builds the map from percepts and touches, and corrects the pose by the landmarks and by the line.
 #pragma once
 
 #include "constrictor/messages.hpp"
@@ -9,20 +9,26 @@
 
 namespace constrictor::guidance {
 
-/// Modules in the head's frame, head to tail.
+/// Poses of the modules in the head's frame, head to tail.
 using BodyChain = std::vector<PlanarPose>;
 
-/// Works on a FieldState and a PoseFilter owned by the caller. `exposure` is where the head was when the image was taken,
-/// relative to where it is now (its pose now is zero), so that percepts are not smeared by motion and delay.
+/// [m] radius of an object whose width has not been measured.
+inline constexpr double kDefaultRadius_m = 0.085;
+
+/// Works on a FieldState and a PoseFilter that the caller owns. `exposure` is the pose of the head at the exposure of
+/// the image in the frame of the head now, so that neither motion nor delay distorts the map.
 class FieldMapper {
  public:
   FieldMapper(FieldState& state, PoseFilter& filter, const RobotModel& model, const GuidanceConfig& config);
 
-  /// Percepts with NaN range refresh a known landmark but place nothing.
-  void objects(const msg::ObjectPercepts& percepts, const Pose2& exposure, std::int64_t tick);
-  void line(const msg::LinePercept& percept, const Pose2& exposure, std::int64_t tick, double period_s);
+  /// A percept with a range updates its landmark, or creates one. A percept with the range NaN only refreshes the time
+  /// at which its landmark was seen.
+  void objects(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, std::int64_t tick);
+  /// Maps the points of the line and corrects the pose by points that are in the map already.
+  void line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick, double period_s);
+  /// Keeps contacts that belong neither to the ground nor to the robot itself, and marks the objects that they confirm.
   void touch(const msg::ContactState& contacts, const BodyChain& chain, std::int64_t tick, double period_s);
-  /// The object in the U moves with the body.
+  /// Moves the carried object with the base of the U.
   void carry(const msg::TaskStatus& task, const BodyChain& chain, std::int64_t tick);
 
   void fill(msg::FieldMap& map) const;
@@ -30,12 +36,17 @@ class FieldMapper {
  private:
   [[nodiscard]] Eigen::Vector2d position(const Landmark& landmark) const;
   [[nodiscard]] double sd(const Landmark& landmark) const;
-  void place(const msg::Blob& blob, const Pose2& exposure, std::int64_t tick, std::vector<bool>& used);
-  void glimpse(const msg::Blob& blob, const Pose2& exposure, std::int64_t tick);
+  /// A blob with a range: updates, moves or creates its landmark. `used`: landmarks that have a blob in this image.
+  void place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used);
+  /// A blob without a range.
+  void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);
+  /// Takes the landmark out of the pose filter and keeps its place and standard deviation in the landmark itself.
   void release_slot(Landmark& landmark);
+  /// Whether a point touches another module than `module` or its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
+  /// Where the centre of an object of this radius lies in the U, in the frame of the head.
   [[nodiscard]] Eigen::Vector2d base_of_u(const BodyChain& chain, double radius_m) const;
 
   FieldState& state_;

@@ -1,4 +1,4 @@
-// What guidance remembers of the world. Plain data, serialisable.
+// The map as guidance keeps it. Plain data, serialisable.
 #pragma once
 
 #include <cereal/types/deque.hpp>
@@ -9,16 +9,16 @@
 
 namespace constrictor::guidance {
 
-/// An object or zone. Its place is in the pose filter (`slot`), or here while it is carried.
+/// An object or zone. Its place is in the pose filter; while it is carried, its place is here.
 struct Landmark {
   std::uint16_t handle = 0;
   std::uint8_t colour = 0;
   std::uint8_t kind = 0;
-  std::int32_t slot = -1;     ///< landmark of the pose filter; -1: not in it
+  std::int32_t slot = -1;                   ///< number of the landmark in the pose filter; -1: none
   double x_m = 0.0, y_m = 0.0, sd_m = 0.0;  ///< in M, while slot is -1
-  double radius_m = 0.0;      ///< running mean; 0: not known
-  std::int32_t hits = 0;      ///< percepts that belonged to it, at most 1000
-  std::int32_t strays = 0;    ///< successive percepts that show it elsewhere
+  double radius_m = 0.0;                    ///< running mean; 0: unknown
+  std::int32_t hits = 0;                    ///< number of percepts that belonged to it, at most 1000
+  std::int32_t strays = 0;                  ///< number of successive percepts that showed it at another place
   bool felt = false;
   bool carried = false;
   std::int64_t last_seen_tick = 0;
@@ -28,7 +28,7 @@ struct Landmark {
   }
 };
 
-/// A contact with something that is neither the ground nor the robot, in M.
+/// A contact with neither the ground nor the robot itself, in M.
 struct Felt {
   double x_m = 0.0, y_m = 0.0, force_n = 0.0;
   std::uint8_t module_index = 0;
@@ -44,9 +44,9 @@ struct FieldState {
   std::uint16_t next_handle = 1;
   bool carrying = false;
   std::uint8_t line_colour = 0;
-  std::vector<double> line_x_m, line_y_m;      ///< in M, in order of discovery
-  std::vector<std::int64_t> line_tick;         ///< of discovery
-  std::deque<Felt> felt;                       ///< oldest first
+  std::vector<double> line_x_m, line_y_m;  ///< points in M, in the order of their discovery
+  std::vector<std::int64_t> line_tick;     ///< tick of each discovery
+  std::deque<Felt> felt;                   ///< the oldest first
   template <class Archive>
   void serialize(Archive& archive) {
     archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt);

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "guidance/guidance_parameters.hpp"
-#include "guidance/planar.hpp"
 #include "guidance/plausible.hpp"
 
 namespace constrictor {
 namespace {
 
-using guidance::Pose2;
-
 constexpr std::int64_t kMapPeriodTicks = 5;
-constexpr std::size_t kTrackTicks = 110;  // covers the speed's window and any camera's delay
+constexpr std::size_t kTrackTicks = 110;  // covers the window of the speed and the delay of any camera
 
 double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
@@ -22,9 +18,10 @@ double yaw_of(const msg::Quaternion& q) {
 }  // namespace
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
-    : wiring_(wiring), model_(load_robot(setup.robot_file)),
-      config_(guidance::load_guidance_config(setup.config_file)),
-      parameters_(wiring, topics::kGuidanceParameters),
+    : wiring_(wiring),
+      model_(load_robot(setup.robot_file)),
+      config_(load_parameters<guidance::GuidanceConfig>(setup.config_file)),
+      parameters_(wiring, topics::kGuidanceParameters, config_),
       joints_(wiring.latest(topics::kJointState)),
       imu_(wiring.latest(topics::kImuState)),
       contacts_(wiring.latest(topics::kContactState)),
@@ -32,9 +29,7 @@ Guidance::Guidance(Wiring& wiring, const Setup& setup)
       objects_(wiring.latest(topics::kObjectPercepts)),
       task_(wiring.latest(topics::kTaskStatus)),
       pose_(wiring.output(topics::kRobotPose)),
-      map_(wiring.output(topics::kFieldMap)) {
-  guidance::add_parameters(config_, parameters_);
-}
+      map_(wiring.output(topics::kFieldMap)) {}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   guidance::OdometryInput input;
@@ -43,18 +38,18 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   input.yaw_rad = yaw_of(imu_->orientation);
   if (!std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
-  // Rolled over, it cannot tell the ground from a wall: nothing but the body's own motion counts then.
+  // A robot that has rolled over cannot tell the ground from a wall. Then only the motion of the body counts.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && contacts_ && !guidance::implausible(*contacts_) && contacts_->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
     for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
-    // what pushes from the side; touches of the robot's own modules cancel in the sum
+    // Pushes from the side. Touches between the robot's own modules cancel in the sum.
     const int count = std::min<int>(contacts_->contact_count, msg::kMaxContacts);
     for (int i = 0; i < count; ++i) {
       const msg::Contact& contact = contacts_->contacts[i];
       if (contact.module_index >= chain.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
-      input.push_n += guidance::turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
+      input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
   }
   const guidance::HeadStep step = guidance::advance_odometry(state_.odometry, model_, config_.odometry, input);
@@ -69,30 +64,29 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
 }
 
 void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {
-  Pose2 last;
+  PlanarPose last;
   if (!state_.track_tick.empty()) {
-    last = {state_.track_x_m.back(), state_.track_y_m.back(), state_.track_yaw_rad.back()};
+    last = {{state_.track_x_m.back(), state_.track_y_m.back()}, state_.track_yaw_rad.back()};
   }
-  const Eigen::Vector2d p = last.position() + guidance::turned(step_m, last.yaw_rad + 0.5 * turn_rad);
+  const Eigen::Vector2d p = last.p + turned(step_m, last.yaw_rad + 0.5 * turn_rad);
   state_.track_tick.push_back(tick);
   state_.track_x_m.push_back(p.x());
   state_.track_y_m.push_back(p.y());
-  state_.track_yaw_rad.push_back(guidance::wrapped(last.yaw_rad + turn_rad));
+  state_.track_yaw_rad.push_back(wrap_angle_by_shift(last.yaw_rad + turn_rad));
   if (state_.track_tick.size() > kTrackTicks) {
     state_.track_tick.erase(state_.track_tick.begin());
     for (auto* track : {&state_.track_x_m, &state_.track_y_m, &state_.track_yaw_rad}) track->erase(track->begin());
   }
 }
 
-Pose2 Guidance::past(std::int64_t tick) const {
+PlanarPose Guidance::past(std::int64_t tick) const {
   if (state_.track_tick.empty()) return {};
   const auto found = std::lower_bound(state_.track_tick.begin(), state_.track_tick.end(), tick);
   const std::size_t i = found == state_.track_tick.end() ? state_.track_tick.size() - 1
                                                          : static_cast<std::size_t>(found - state_.track_tick.begin());
-  const Pose2 then{state_.track_x_m[i], state_.track_y_m[i], state_.track_yaw_rad[i]};
-  const Pose2 now{state_.track_x_m.back(), state_.track_y_m.back(), state_.track_yaw_rad.back()};
-  const Eigen::Vector2d p = guidance::from_parent(now, then.position());
-  return {p.x(), p.y(), guidance::wrapped(then.yaw_rad - now.yaw_rad)};
+  const PlanarPose then{{state_.track_x_m[i], state_.track_y_m[i]}, state_.track_yaw_rad[i]};
+  const PlanarPose now{{state_.track_x_m.back(), state_.track_y_m.back()}, state_.track_yaw_rad.back()};
+  return {now.to_local(then.p), wrap_angle_by_shift(then.yaw_rad - now.yaw_rad)};
 }
 
 double Guidance::speed_m_s(double period_s) const {
@@ -102,11 +96,12 @@ double Guidance::speed_m_s(double period_s) const {
   const auto from = std::lower_bound(state_.track_tick.begin(), state_.track_tick.end(), newest - ticks);
   const auto i = static_cast<std::size_t>(from - state_.track_tick.begin());
   if (newest == state_.track_tick[i]) return 0.0;
-  // along the mean course, so that swaying adds nothing
+  // Measured along the mean course, so that the sway of the head adds nothing.
   Eigen::Vector2d course = Eigen::Vector2d::Zero();
-  for (std::size_t k = i; k < state_.track_tick.size(); ++k) course += guidance::along(state_.track_yaw_rad[k]);
+  for (std::size_t k = i; k < state_.track_tick.size(); ++k) course += along(state_.track_yaw_rad[k]);
   if (course.norm() < 1e-6) return 0.0;
-  const Eigen::Vector2d moved(state_.track_x_m.back() - state_.track_x_m[i], state_.track_y_m.back() - state_.track_y_m[i]);
+  const Eigen::Vector2d moved(state_.track_x_m.back() - state_.track_x_m[i],
+                              state_.track_y_m.back() - state_.track_y_m[i]);
   return moved.dot(course.normalized()) / (static_cast<double>(newest - state_.track_tick[i]) * period_s);
 }
 
@@ -140,12 +135,12 @@ void Guidance::step(const Tick& tick) {
     if (contacts) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
   }
 
-  const Pose2 estimate = filter.pose();
+  const PlanarPose estimate = filter.pose();
   msg::RobotPose pose{};
-  pose.x_m = estimate.x_m;
-  pose.y_m = estimate.y_m;
+  pose.x_m = estimate.p.x();
+  pose.y_m = estimate.p.y();
   pose.yaw_rad = estimate.yaw_rad;
-  pose.body_yaw_rad = guidance::wrapped(estimate.yaw_rad + state_.body_turn_rad);
+  pose.body_yaw_rad = wrap_angle_by_shift(estimate.yaw_rad + state_.body_turn_rad);
   pose.speed_m_s = speed_m_s(tick.period_s());
   const Eigen::Matrix3d covariance = filter.pose_covariance();
   for (int i = 0; i < 3; ++i) {
@@ -162,7 +157,7 @@ void Guidance::step(const Tick& tick) {
 
 ComponentFactory make_guidance_factory() {
   return {"guidance", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Guidance>(wiring, setup); },
-          "components/guidance/guidance.yaml"};
+          "components/guidance/guidance.yaml", describe_parameters<guidance::GuidanceConfig>};
 }
 
 }  // namespace constrictor

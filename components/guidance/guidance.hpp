@@ -1,35 +1,37 @@
-// The component: where the head is, and what is around it.
+// The component: estimates the pose of the head and keeps the map.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "component/component.hpp"
+#include "component/parameters.hpp"
 #include "guidance/field_mapper.hpp"
-#include "runtime/component.hpp"
-#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
 struct GuidanceState {
-  std::int64_t last_tick = 0;          ///< of the samples last used
+  std::int64_t last_tick = 0;  ///< tick of the joints and of the IMU sample that were used last
   guidance::OdometryState odometry;
   guidance::PoseFilterState filter;
-  /// Dead reckoning alone, by tick, oldest first: relates poses of different ticks whatever the filter corrected since.
+  /// Dead reckoning alone, by tick, the oldest first. It relates the poses of different ticks to each other,
+  /// independently of later corrections by the filter.
   std::vector<std::int64_t> track_tick;
   std::vector<double> track_x_m, track_y_m, track_yaw_rad;
   guidance::FieldState field;
-  double body_turn_rad = 0.0;          ///< mean heading of the modules relative to the head's
+  double body_turn_rad = 0.0;  ///< mean heading of the modules relative to the head
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
+    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
+            parameters);
   }
 };
 
-/// Estimates the head's pose in M from the body's motion (odometry on a skin that does not slip sideways), the IMU's
-/// yaw and recognised landmarks; keeps the map. Writes the pose every tick, from the first: before joints and IMU were
-/// seen it is the start, with zero covariance. While no new plausible joint or IMU sample comes the pose stays; the next one is
-/// taken over the whole time since.
+/// Estimates the pose of the head in M from the motion of the body (odometry on a skin that hardly slips sideways), the
+/// yaw of the IMU, and recognised landmarks; keeps the map. Publishes the pose in every tick. Before the first joint
+/// and IMU samples it is the start pose with zero covariance. Without new plausible joint and IMU samples the pose
+/// stays; the next samples then count for the whole time that has passed.
 class Guidance : public StatefulComponent<GuidanceState> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);
@@ -38,13 +40,14 @@ class Guidance : public StatefulComponent<GuidanceState> {
   [[nodiscard]] const GuidanceState& state() const { return state_; }
 
  private:
-  /// Whether a message has come that a robot can have; one that none can have is counted as refused.
+  /// Whether a new message has arrived and is plausible. An implausible message is counted as a refusal.
   template <class Message, class... Limits>
   bool believed(const Latest<Message>& input, const char* topic, Limits... limits);
   void dead_reckon(const Tick& tick, const guidance::BodyChain& chain);
+  /// Appends a step to the track of dead-reckoned poses.
   void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
-  /// Where the head was at a tick, seen from where it is now.
-  [[nodiscard]] guidance::Pose2 past(std::int64_t tick) const;
+  /// Pose of the head at an earlier tick, in the frame of the head now.
+  [[nodiscard]] PlanarPose past(std::int64_t tick) const;
   [[nodiscard]] double speed_m_s(double period_s) const;
 
   Wiring& wiring_;

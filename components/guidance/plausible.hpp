@@ -1,4 +1,5 @@
-// What guidance believes of its inputs. Its estimates integrate them: one absurd value, finite or not, would stay for ever.
+// Rejects messages that no robot can produce. The estimates of guidance integrate their inputs: a single absurd value,
+// finite or not, would stay in them for ever.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +10,14 @@
 
 namespace constrictor::guidance {
 
-/// True if each of the values lies within ±bound. NaN does not.
+/// Whether every value lies within -bound to bound. NaN does not.
 inline bool all_within(const double* values, std::size_t count, double bound) {
   return std::all_of(values, values + count, [bound](double v) { return std::abs(v) <= bound; });
 }
 
-// Each: what is wrong with a message, by field; null if nothing is.
+// Each function returns the field that is wrong and what is accepted there; null if the message is plausible.
 
-/// The first `count` joints: no angle beyond a turn, no rate that no servo reaches.
+/// The robot has `count` joints. No angle may exceed a full turn, no rate the speed of any servo.
 inline const char* implausible(const msg::JointState& joints, std::size_t count) {
   if (joints.joint_count != count) return "joint_count: not this robot's";
   if (!all_within(joints.position_rad, count, 6.3)) return "position_rad: accepted -6.3 to 6.3";
@@ -24,9 +25,11 @@ inline const char* implausible(const msg::JointState& joints, std::size_t count)
   return nullptr;
 }
 
-/// No force that would break the robot.
+/// No force may be greater than one that would break the robot.
 inline const char* implausible(const msg::ContactState& contacts) {
-  const auto bounded = [](const msg::Vector3& f) { return std::abs(f.x) <= 1e4 && std::abs(f.y) <= 1e4 && std::abs(f.z) <= 1e4; };
+  const auto bounded = [](const msg::Vector3& f) {
+    return std::abs(f.x) <= 1e4 && std::abs(f.y) <= 1e4 && std::abs(f.z) <= 1e4;
+  };
   const std::size_t modules = std::min<std::size_t>(contacts.module_count, msg::kMaxModules);
   const std::size_t touches = std::min<std::size_t>(contacts.contact_count, msg::kMaxContacts);
   if (!std::all_of(contacts.force_n, contacts.force_n + modules, bounded)) return "force_n: accepted -1e4 to 1e4";
@@ -38,21 +41,22 @@ inline const char* implausible(const msg::ContactState& contacts) {
   return nullptr;
 }
 
-/// A unit quaternion, nearly.
+/// The orientation must be a unit quaternion, with some tolerance.
 inline const char* implausible(const msg::ImuState& imu) {
   const auto& q = imu.orientation;
   const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   return square > 0.5 && square < 2.0 ? nullptr : "orientation: accepted a unit quaternion";
 }
 
-/// NaN says "unknown"; what is known lies within sight (at the horizon distances grow without meaning much).
+/// NaN means "unknown". Known values lie within sight; close to the horizon, distances are large and inaccurate.
 inline bool in_sight(double value) { return std::isnan(value) || std::abs(value) <= 1e4; }
 
 inline const char* implausible(const msg::LinePercept& line) {
   const std::size_t points = std::min<std::size_t>(line.point_count, std::size(line.x_m));
-  const bool seen = in_sight(line.end_distance_m) && in_sight(line.lookahead_m) && in_sight(line.offset_m) && in_sight(line.heading_rad) &&
-                    in_sight(line.curvature_1_m) && in_sight(line.near_m) && in_sight(line.far_m) &&
-                    std::all_of(line.x_m, line.x_m + points, in_sight) && std::all_of(line.y_m, line.y_m + points, in_sight);
+  const bool seen = in_sight(line.end_distance_m) && in_sight(line.lookahead_m) && in_sight(line.offset_m) &&
+                    in_sight(line.heading_rad) && in_sight(line.curvature_1_m) && in_sight(line.near_m) &&
+                    in_sight(line.far_m) && std::all_of(line.x_m, line.x_m + points, in_sight) &&
+                    std::all_of(line.y_m, line.y_m + points, in_sight);
   return seen ? nullptr : "a number: accepted NaN and -1e4 to 1e4";
 }
 

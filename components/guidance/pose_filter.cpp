@@ -3,17 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "guidance/planar.hpp"
-
 namespace constrictor::guidance {
-
-Eigen::Vector2d to_parent(const Pose2& pose, const Eigen::Vector2d& p) {
-  return pose.position() + turned(p, pose.yaw_rad);
-}
-
-Eigen::Vector2d from_parent(const Pose2& pose, const Eigen::Vector2d& p) {
-  return turned(p - pose.position(), -pose.yaw_rad);
-}
 
 Eigen::Matrix3d PoseFilter::pose_covariance() const { return covariance().topLeftCorner<3, 3>(); }
 
@@ -27,11 +17,11 @@ Eigen::Matrix2d PoseFilter::landmark_covariance(std::size_t index) const {
 }
 
 void PoseFilter::predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise) {
-  const double yaw = state_.mean[2] + 0.5 * turn_rad;  // of the middle of the step
+  const double yaw = state_.mean[2] + 0.5 * turn_rad;  // in the middle of the step
   const Eigen::Vector2d step = turned(step_m, yaw);
   state_.mean[0] += step.x();
   state_.mean[1] += step.y();
-  state_.mean[2] = wrapped(state_.mean[2] + turn_rad);
+  state_.mean[2] = wrap_angle_by_shift(state_.mean[2] + turn_rad);
 
   Matrix F = Matrix::Identity(size(), size());
   F(0, 2) = -step.y();
@@ -47,7 +37,7 @@ void PoseFilter::observation(std::size_t index, Matrix& H, Eigen::Vector2d& expe
   const double c = std::cos(state_.mean[2]), s = std::sin(state_.mean[2]);
   Eigen::Matrix2d R_t;
   R_t << c, s, -s, c;
-  expected = from_parent(pose(), landmark(index));
+  expected = pose().to_local(landmark(index));
   H = Matrix::Zero(2, size());
   H.leftCols<2>() = -R_t;
   H(0, 2) = expected.y();
@@ -78,8 +68,8 @@ void PoseFilter::correct(const Matrix& H, const Vector& innovation, const Matrix
   const Vector change = K * innovation;
   if (!change.allFinite()) return;
   mean() += change;
-  state_.mean[2] = wrapped(state_.mean[2]);
-  // Joseph's form keeps the covariance symmetric and positive
+  state_.mean[2] = wrap_angle_by_shift(state_.mean[2]);
+  // Joseph's form keeps the covariance symmetric and positive.
   const Matrix I_KH = Matrix::Identity(size(), size()) - K * H;
   covariance() = I_KH * P * I_KH.transpose() + K * noise * K.transpose();
 }

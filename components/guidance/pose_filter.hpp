@@ -1,4 +1,4 @@
-// Extended Kalman filter of the head's pose and of landmarks seen from it.
+// Extended Kalman filter for the pose of the head and for landmarks that are seen from it.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,16 +6,15 @@
 #include <optional>
 #include <vector>
 
+#include "robot/planar.hpp"
+
 namespace constrictor::guidance {
 
-struct Pose2 {
-  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
-  [[nodiscard]] Eigen::Vector2d position() const { return {x_m, y_m}; }
-};
-
-/// `p` of a frame at `pose`, in that pose's parent frame; and the reverse.
-Eigen::Vector2d to_parent(const Pose2& pose, const Eigen::Vector2d& p);
-Eigen::Vector2d from_parent(const Pose2& pose, const Eigen::Vector2d& p);
+/// A point of the frame at `pose` in the parent frame. Like PlanarPose::to_parent, but the sum is rounded in another
+/// order, on which the hashes of recorded runs depend.
+inline Eigen::Vector2d to_parent(const PlanarPose& pose, const Eigen::Vector2d& p) {
+  return pose.p + turned(p, pose.yaw_rad);
+}
 
 /// State of the filter: x, y, yaw of the head in M, then x, y of each landmark; and its covariance, row-major.
 struct PoseFilterState {
@@ -27,13 +26,13 @@ struct PoseFilterState {
   }
 };
 
-/// Simultaneous localisation and mapping with full covariance (Smith, Self and Cheeseman, 1990). Landmarks are numbered from
-/// 0; removing one renumbers those behind it.
+/// Simultaneous localisation and mapping with full covariance. Landmarks are numbered from 0; removing one renumbers
+/// those after it. Source: Smith, Self and Cheeseman, "Estimating uncertain spatial relationships in robotics", 1990.
 class PoseFilter {
  public:
   explicit PoseFilter(PoseFilterState& state) : state_(state) {}
 
-  [[nodiscard]] Pose2 pose() const { return {state_.mean[0], state_.mean[1], state_.mean[2]}; }
+  [[nodiscard]] PlanarPose pose() const { return {{state_.mean[0], state_.mean[1]}, state_.mean[2]}; }
   [[nodiscard]] Eigen::Matrix3d pose_covariance() const;
   [[nodiscard]] std::size_t landmark_count() const { return (state_.mean.size() - 3) / 2; }
   [[nodiscard]] Eigen::Vector2d landmark(std::size_t index) const;
@@ -45,14 +44,14 @@ class PoseFilter {
   /// Squared Mahalanobis distance of a landmark seen at `z_m` in the head's frame.
   [[nodiscard]] double distance2(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const;
   void observe(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
-  /// Adds a landmark at `z_m` in the head's frame; its number is landmark_count() - 1 after that.
+  /// Adds a landmark at `z_m` in the head's frame. Its number is the previous landmark_count().
   void add(const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
   void remove(std::size_t index);
-  /// The landmark may have been moved: its variance grows by `variance_m2`, up to 0.25 m2.
+  /// Increases the variance of a landmark that may have been moved by `variance_m2`, up to 0.25 m2.
   void loosen(std::size_t index, double variance_m2);
 
-  /// The head lies `residual_m` off a known line with unit normal `normal` (in M), measured at a point `arm_m` (in M) from
-  /// the head: pulls the pose so that the residual vanishes.
+  /// The head lies `residual_m` off a known line with unit normal `normal` (in M), measured at a point `arm_m` (in M)
+  /// from the head: pulls the pose so that the residual vanishes.
   void observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m, double variance_m2);
 
  private:

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 
+#include "component/task_parameters.hpp"
 #include "constrictor/text.hpp"
-#include "runtime/topics.hpp"
+#include "constrictor/topics.hpp"
 
 namespace constrictor {
 namespace {
 constexpr std::uint64_t kMaxOwnGoal = 0xffffffffu;
-constexpr std::size_t kMaxSources = 64;  // at a time; the dead are forgotten
-constexpr std::size_t kKeptForOperators = 16;  // of these
-constexpr std::uint64_t kRemembered = 64;  // numbers of a source, in bits
+constexpr std::size_t kMaxSources = 64;        // at a time; dead sources are forgotten
+constexpr std::size_t kKeptForOperators = 16;  // of kMaxSources
+constexpr std::uint64_t kRemembered = 64;      // sequence numbers of a source with a known decision
 
 bool is_readable(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
@@ -18,29 +19,29 @@ bool is_readable(const std::string& name) {
 
 }  // namespace
 
-Ruling Arbiter::refuse(const std::string& reason) {
+Decision Arbiter::refuse(const std::string& reason) {
   ++state_.refused;
   state_.refusal = reason;
-  state_.refused_source = state_.ruled_source;
-  state_.refused_sequence = state_.ruled_sequence;
-  if (const auto known = state_.sources.find(state_.ruled_source); known != state_.sources.end()) {
-    if (known->second.sequence == state_.ruled_sequence) known->second.granted &= ~std::uint64_t{1};
+  state_.refused_source = state_.answered_source;
+  state_.refused_sequence = state_.answered_sequence;
+  if (const auto known = state_.sources.find(state_.answered_source); known != state_.sources.end()) {
+    if (known->second.sequence == state_.answered_sequence) known->second.granted &= ~std::uint64_t{1};
   }
-  return {Ruling::kRefused};
+  return {Decision::kRefused};
 }
 
-Ruling Arbiter::refuse(const msg::Request& request, const std::string& reason) {
+Decision Arbiter::refuse(const msg::Request& request, const std::string& reason) {
   note(request);
   return refuse(reason);
 }
 
 void Arbiter::note(const msg::Request& request) {
   const std::string name = text_of(request.source);
-  state_.ruled_source = is_readable(name) ? name : "?";  // it goes to people's terminals
-  state_.ruled_sequence = request.header.sequence_number;
+  state_.answered_source = is_readable(name) ? name : "?";  // people read it on terminals
+  state_.answered_sequence = request.header.sequence_number;
 }
 
-/// Who loses authority and is dead is not needed any more.
+/// A dead holder is forgotten when it loses authority.
 void Arbiter::forget_gone_holder() {
   const auto holder = state_.sources.find(state_.holder);
   if (holder != state_.sources.end() && holder->second.gone) state_.sources.erase(holder);
@@ -53,9 +54,9 @@ void Arbiter::leave_to_nobody() {
 }
 
 void Arbiter::hold(const msg::Request& request, Source& source) {
-  if (state_.holder != state_.ruled_source) forget_gone_holder();
+  if (state_.holder != state_.answered_source) forget_gone_holder();
   state_.level = request.level;
-  state_.holder = state_.ruled_source;
+  state_.holder = state_.answered_source;
   source.detached = request.detached;
 }
 
@@ -64,26 +65,29 @@ bool Arbiter::holder_is_detached() const {
   return holder != state_.sources.end() && holder->second.detached;
 }
 
-Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
+Decision Arbiter::decide(const msg::Request& request, bool built_in) {
   const std::string name = text_of(request.source);
   note(request);
-  if (request.kind == msg::kRequestEmergencyStop) return stop(state_.ruled_source);
-  if (!is_readable(name)) return refuse("source: found nothing or unprintable characters, accepted a name without blanks");
-  // Values that the runtime's validation has let through are none of the enumerations' (outside requests may come by other ways).
+  if (request.kind == msg::kRequestEmergencyStop) return stop(state_.answered_source);
+  if (!is_readable(name))
+    return refuse("source: found nothing or unprintable characters, accepted a name without blanks");
+  // The request need not have passed the validation of the runtime.
   if (built_in ? request.level != msg::kAuthorityPlanner
                : request.level != msg::kAuthorityExternal && request.level != msg::kAuthorityOperator) {
     return refuse("level of " + name + ": found " + std::to_string(request.level) +
                   (built_in ? ", accepted 1" : ", accepted 2 (external planner) or 3 (operator)"));
   }
-  // The built-in planner's name is its own before it has spoken, too.
-  if (!built_in && name == topics::kPlannerRequest.writer) return refuse("source " + name + ": that name is the built-in planner's");
+  // The name is reserved for the built-in planner before its first request, too.
+  if (!built_in && name == topics::kPlannerRequest.writer)
+    return refuse("source " + name + ": the name is reserved for the built-in planner");
   const auto known = state_.sources.find(name);
   if (known != state_.sources.end() && (known->second.index == 0) != built_in) {
-    return refuse("source " + name + ": that name is the " + (built_in ? "name of somebody outside" : "built-in planner's"));
+    return refuse("source " + name + ": the name is " +
+                  (built_in ? "used by a client" : "reserved for the built-in planner"));
   }
   const std::size_t room = kMaxSources - (request.level == msg::kAuthorityExternal ? kKeptForOperators : 0);
   if (known == state_.sources.end() && state_.sources.size() >= room) {
-    return refuse("source " + name + ": there are " + std::to_string(room) + " already");
+    return refuse("source " + name + ": there are " + std::to_string(room) + " sources already");
   }
   const auto [entry, first] = state_.sources.try_emplace(name);
   Source& source = entry->second;
@@ -91,25 +95,30 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
   const std::uint64_t number = request.header.sequence_number;
   if (number <= source.sequence) {
     const std::uint64_t age = source.sequence - number;
-    if (age < kRemembered && (source.ruled >> age & 1) != 0) return {Ruling::kRepeated, 0, (source.granted >> age & 1) != 0};
+    if (age < kRemembered && (source.decided >> age & 1) != 0)
+      return {Decision::kRepeated, 0, (source.granted >> age & 1) != 0};
     return refuse("sequence_number of " + name + ": found " + std::to_string(number) + ", accepted more than " +
                   std::to_string(source.sequence));
   }
   const std::uint64_t shift = number - source.sequence;
-  source.ruled = (shift < kRemembered ? source.ruled << shift : 0) | 1;
-  source.granted = (shift < kRemembered ? source.granted << shift : 0) | 1;  // until it is refused
+  source.decided = (shift < kRemembered ? source.decided << shift : 0) | 1;
+  source.granted = (shift < kRemembered ? source.granted << shift : 0) | 1;  // unless it is refused below
   source.sequence = number;
 
   switch (request.kind) {
-    case msg::kRequestClearStop: return clear_stop(request);
+    case msg::kRequestClearStop:
+      return clear_stop(request);
     case msg::kRequestTask:
     case msg::kRequestTake:
     case msg::kRequestRelease:
-    case msg::kRequestMotion: break;
+    case msg::kRequestMotion:
+      break;
     case msg::kRequestParameter:
-      if (request.level < state_.level) return refuse(name + ": authority is with " + state_.holder + ", of a higher level");
-      return {Ruling::kSet};
-    default: return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 6");
+      if (request.level < state_.level)
+        return refuse(name + ": authority is with " + state_.holder + ", of a higher level");
+      return {Decision::kSet};
+    default:
+      return refuse("kind of " + name + ": found " + std::to_string(request.kind) + ", accepted 0 to 6");
   }
   if (state_.stopped) return refuse(name + ": the emergency stop of " + state_.stopper + " is latched");
   if (request.kind == msg::kRequestRelease) return release(request);
@@ -123,24 +132,24 @@ Ruling Arbiter::decide(const msg::Request& request, bool built_in) {
                     std::to_string(msg::kMotionCount - 1));
     }
     hold(request, source);
-    return {Ruling::kMove};
+    return {Decision::kMove};
   }
   const bool takes_over = !holds && state_.level != msg::kAuthorityNone;
   hold(request, source);
-  return {takes_over ? Ruling::kCancelAll : Ruling::kNothing};
+  return {takes_over ? Decision::kCancelAll : Decision::kNothing};
 }
 
-Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
+Decision Arbiter::decide_task(const msg::Request& request, Source& source) {
   const std::string name = request.source;
   std::uint64_t goal = request.goal_id;
   if (request.command == msg::kCommandStart) {
     if (goal == 0) goal = source.last_goal + 1;
-    if (request.task == msg::kTaskNone || request.task >= msg::kTaskCount) {
-      return refuse("task of " + name + ": found " + std::to_string(request.task) + ", accepted 1 to " + std::to_string(msg::kTaskCount - 1));
-    }
+    // Before the request takes authority: a task that cannot start must not end the running one.
+    const std::string problem = task_parameter_refusal(request.task, request.parameters, request.path);
+    if (!problem.empty()) return refuse(name + ": " + problem);
     if (goal <= source.last_goal || goal > kMaxOwnGoal) {
-      return refuse("goal_id of " + name + ": found " + std::to_string(goal) + ", accepted " + std::to_string(source.last_goal + 1) +
-                    " to " + std::to_string(kMaxOwnGoal));
+      return refuse("goal_id of " + name + ": found " + std::to_string(goal) + ", accepted " +
+                    std::to_string(source.last_goal + 1) + " to " + std::to_string(kMaxOwnGoal));
     }
     source.last_goal = goal;
   } else if (request.command != msg::kCommandCancel) {
@@ -150,49 +159,50 @@ Ruling Arbiter::decide_task(const msg::Request& request, Source& source) {
   }
   const bool takes_over = state_.holder != name && state_.level != msg::kAuthorityNone;
   hold(request, source);
-  if (takes_over && request.command == msg::kCommandCancel) return {Ruling::kCancelAll};  // what runs is another's
-  return {Ruling::kForward, mapped_goal_id(request.level, source.index, goal)};
+  if (takes_over && request.command == msg::kCommandCancel)
+    return {Decision::kCancelAll};  // the running task belongs to another source
+  return {Decision::kForward, mapped_goal_id(request.level, source.index, goal)};
 }
 
-Ruling Arbiter::stop(const std::string& source) {
+Decision Arbiter::stop(const std::string& source) {
   state_.stopped = true;
   state_.stopper = source.empty() ? "?" : source;
-  return {Ruling::kCancelAll};
+  return {Decision::kCancelAll};
 }
 
-Ruling Arbiter::clear_stop(const msg::Request& request) {
+Decision Arbiter::clear_stop(const msg::Request& request) {
   const std::string name = request.source;
-  if (!state_.stopped) return refuse("clear stop of " + name + ": there is no emergency stop");
+  if (!state_.stopped) return refuse("clear stop of " + name + ": no emergency stop is latched");
   if (request.level < msg::kAuthorityOperator && name != state_.stopper) {
     return refuse("clear stop of " + name + ": accepted from an operator or from " + state_.stopper);
   }
   state_.stopped = false;
-  leave_to_nobody();  // no motion begins by itself: somebody must ask anew
-  return {Ruling::kNothing};
+  leave_to_nobody();  // no motion begins by itself: a source must take authority again
+  return {Decision::kNothing};
 }
 
-Ruling Arbiter::release(const msg::Request& request) {
+Decision Arbiter::release(const msg::Request& request) {
   const std::string name = request.source;
   const bool for_another = holder_is_detached() && request.level >= state_.level;
   if (state_.holder != name && !for_another) {
     return refuse("release of " + name + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
   }
   leave_to_nobody();
-  return {Ruling::kCancelAll};
+  return {Decision::kCancelAll};
 }
 
-Ruling Arbiter::decide_outside(const msg::Request& request, const WriterId& writer) {
+Decision Arbiter::decide_client(const msg::Request& request, const WriterId& writer) {
   const std::string name = text_of(request.source);
-  const auto meet = [&] {
+  const auto store_writer = [&] {
     const auto known = state_.sources.find(name);
     if (known == state_.sources.end() || known->second.index == 0) return;
     known->second.writer = writer;
     known->second.gone = false;
   };
-  meet();
-  const Ruling ruling = decide(request, false);
-  meet();  // its first request
-  return ruling;
+  store_writer();
+  const Decision decision = decide(request, false);
+  store_writer();  // of a source whose first request this is
+  return decision;
 }
 
 bool Arbiter::has_another_writer(const std::string& source, const WriterId& writer) const {
@@ -208,18 +218,19 @@ std::vector<LivingSource> Arbiter::living() const {
   return living;
 }
 
-Ruling Arbiter::on_death(const std::string& source) {
+Decision Arbiter::on_death(const std::string& source) {
   const auto known = state_.sources.find(source);
-  if (known == state_.sources.end() || known->second.index == 0) return {Ruling::kNothing};
+  if (known == state_.sources.end() || known->second.index == 0) return {Decision::kNothing};
   if (known->second.detached && state_.holder == source) {
     known->second.gone = true;
-    known->second.sequence = known->second.ruled = known->second.granted = 0;  // whoever takes the name counts from 1
-    return {Ruling::kNothing};
+    known->second.sequence = known->second.decided = known->second.granted =
+        0;  // the next source of this name counts from 1
+    return {Decision::kNothing};
   }
   state_.sources.erase(known);
-  if (state_.holder != source) return {Ruling::kNothing};
+  if (state_.holder != source) return {Decision::kNothing};
   leave_to_nobody();
-  return {Ruling::kCancelAll};
+  return {Decision::kCancelAll};
 }
 
 }  // namespace constrictor

@@ -13,7 +13,7 @@ constexpr std::int64_t kStale_ticks = 50;
 
 }  // namespace
 
-Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests> outside)
+Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<ClientRequests> client_requests)
     : planner_requests_(wiring.events(topics::kPlannerRequest)),
       command_(wiring.output(topics::kTaskCommand)),
       authority_(wiring.output(topics::kAuthority)),
@@ -23,7 +23,7 @@ Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests
       parameters_in_{wiring.latest(topics::kNavigationParameters), wiring.latest(topics::kControlParameters),
                      wiring.latest(topics::kPerceptionParameters), wiring.latest(topics::kGuidanceParameters)},
       planned_(load_planned_changes(setup.config_file)),
-      outside_(outside ? std::move(outside) : wiring.outside_requests()) {}
+      client_requests_(client_requests ? std::move(client_requests) : wiring.client_requests()) {}
 
 void Input::step(const Tick& tick) {
   commands_left_ = topics::kTaskCommand.max_per_tick;
@@ -35,8 +35,8 @@ void Input::step(const Tick& tick) {
   const std::string holder_before = state_.arbiter.holder;
   const bool stopped_before = state_.arbiter.stopped;
   bool changed = set_planned_parameters(tick);
-  if (outside_) {
-    for (const auto& item : outside_->latch(arbiter.living())) {
+  if (client_requests_) {
+    for (const auto& item : client_requests_->latch(arbiter.living())) {
       changed = true;
       if (!item.refusal.empty()) {
         answer(item.request, [&] { return arbiter.refuse(item.request, item.refusal); });
@@ -44,9 +44,10 @@ void Input::step(const Tick& tick) {
         continue;
       }
       const bool another = item.writer != WriterId{} && arbiter.has_another_writer(item.source, item.writer);
-      // Who speaks through another writer is another process: the former of that name is dead. A death that comes after that is old.
+      // A source that sends through another writer is another process, and the former process of its name is dead. A
+      // death that is reported after that belongs to the former process.
       if (item.died != another) obey(arbiter.on_death(item.source), item.request);
-      if (!item.died) answer(item.request, [&] { return arbiter.decide_outside(item.request, item.writer); });
+      if (!item.died) answer(item.request, [&] { return arbiter.decide_client(item.request, item.writer); });
     }
   }
   for (const auto& request : planner_requests_) {
@@ -54,61 +55,76 @@ void Input::step(const Tick& tick) {
     changed = true;
     answer(request, [&] {
       if (age_ticks <= kStale_ticks) return arbiter.decide_planner(request);
-      return arbiter.refuse(request, "request of planner: found " + std::to_string(age_ticks) + " ticks old, accepted " + std::to_string(kStale_ticks));
+      return arbiter.refuse(request, "request of planner: found " + std::to_string(age_ticks) +
+                                         " ticks old, accepted " + std::to_string(kStale_ticks));
     });
   }
   if (motion_) motion_out_.write(*motion_);
   changed = changed || state_.arbiter.level != level_before || state_.arbiter.holder != holder_before ||
             state_.arbiter.stopped != stopped_before;
-  const bool due = state_.last_authority_tick < 0 || tick.index - state_.last_authority_tick >= kAuthorityInterval_ticks;
+  const bool due =
+      state_.last_authority_tick < 0 || tick.index - state_.last_authority_tick >= kAuthorityInterval_ticks;
   if (changed || due) publish_authority(tick);
 }
 
 template <class Decide>
 void Input::answer(const msg::Request& request, Decide&& decide) {
   const std::uint64_t refused_before = state_.arbiter.refused;
-  const Ruling ruling = decide();
-  obey(ruling, request);  // may still refuse, for what the arbiter does not know
+  const Decision decision = decide();
+  obey(decision, request);  // may refuse for reasons that the arbiter does not know
   msg::RequestAnswer answer{};
-  set_text(answer.source, state_.arbiter.ruled_source);
+  set_text(answer.source, state_.arbiter.answered_source);
   answer.request_sequence = request.header.sequence_number;
-  answer.granted = ruling.kind == Ruling::kRepeated ? ruling.granted : state_.arbiter.refused == refused_before;
-  if (answer.granted) answer.goal_id = ruling.goal_id;
-  else set_text(answer.reason, ruling.kind == Ruling::kRepeated ? "was refused before" : state_.arbiter.refusal);
+  answer.granted = decision.kind == Decision::kRepeated ? decision.granted : state_.arbiter.refused == refused_before;
+  if (answer.granted) answer.goal_id = decision.goal_id;
+  else
+    set_text(answer.reason,
+             decision.kind == Decision::kRepeated ? "this request was refused before" : state_.arbiter.refusal);
   answer_out_.write(answer);
 }
 
-void Input::obey(const Ruling& ruling, const msg::Request& request) {
-  switch (ruling.kind) {
-    case Ruling::kNothing:
-    case Ruling::kRepeated:
-    case Ruling::kRefused: break;
-    case Ruling::kCancelAll: cancel_running(); break;
-    case Ruling::kMove: forward_motion(request); break;
-    case Ruling::kSet: set_parameter(request); break;
-    case Ruling::kForward: forward_task(ruling, request); break;
+void Input::obey(const Decision& decision, const msg::Request& request) {
+  switch (decision.kind) {
+    case Decision::kNothing:
+    case Decision::kRepeated:
+    case Decision::kRefused:
+      break;
+    case Decision::kCancelAll:
+      cancel_running();
+      break;
+    case Decision::kMove:
+      forward_motion(request);
+      break;
+    case Decision::kSet:
+      set_parameter(request);
+      break;
+    case Decision::kForward:
+      forward_task(decision, request);
+      break;
   }
 }
 
-void Input::forward_task(const Ruling& ruling, const msg::Request& request) {
+void Input::forward_task(const Decision& decision, const msg::Request& request) {
   if (commands_left_ <= 1) {
-    Arbiter(state_.arbiter).refuse(request, "more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
+    Arbiter(state_.arbiter)
+        .refuse(request,
+                "more than " + std::to_string(topics::kTaskCommand.max_per_tick - 1) + " task commands in a tick");
     return;
   }
   --commands_left_;
   msg::TaskCommand command{};
-  command.goal_id = ruling.goal_id;
+  command.goal_id = decision.goal_id;
   command.command = request.command;
   command.task = request.task;
   command.parameters = request.parameters;
   command.path = request.path;
   command_.write(command);
   if (request.command == msg::kCommandStart) {
-    state_.last_goal = state_.running_goal = ruling.goal_id;
+    state_.last_goal = state_.running_goal = decision.goal_id;
     state_.running_task = request.task;
-    state_.moving = false;  // the task ends it
+    state_.moving = false;  // the task ends the motion
     motion_.reset();
-  } else if (ruling.goal_id == state_.running_goal) {
+  } else if (decision.goal_id == state_.running_goal) {
     state_.running_goal = 0;
   }
 }
@@ -123,26 +139,28 @@ void Input::forward_motion(const msg::Request& request) {
   motion.angle_rad = request.angle_rad;
   motion_ = motion;
   state_.moving = true;
-  state_.running_goal = 0;  // the motion ends it
+  state_.running_goal = 0;  // the motion ends the task
 }
 
 void Input::set_parameter(const msg::Request& request) {
   if (changes_left_ == 0) {
-    Arbiter(state_.arbiter).refuse(request, "more than " + std::to_string(topics::kParameterChange.max_per_tick) + " changes of parameters in a tick");
+    Arbiter(state_.arbiter)
+        .refuse(request,
+                "more than " + std::to_string(topics::kParameterChange.max_per_tick) + " parameter changes in a tick");
     return;
   }
   std::vector<const msg::ParameterList*> lists;
   for (const auto& list : parameters_in_) lists.push_back(list ? &*list : nullptr);
-  const auto ruling = ParameterDesk(state_.desk).rule(request, lists, now_);
-  if (const auto* refusal = std::get_if<std::string>(&ruling)) {
+  const auto decision = ParameterArbiter(state_.parameters).decide(request, lists, now_);
+  if (const auto* refusal = std::get_if<std::string>(&decision)) {
     Arbiter(state_.arbiter).refuse(request, *refusal);
     return;
   }
   --changes_left_;
-  parameter_out_.write(std::get<msg::ParameterChange>(ruling));
+  parameter_out_.write(std::get<msg::ParameterChange>(decision));
 }
 
-/// They are asked for at the last moment, so that the tick at which they are written is the same in every run.
+/// The changes are requested one tick before their own, so that every run writes them at the same tick.
 bool Input::set_planned_parameters(const Tick& tick) {
   bool any = false;
   for (const auto& change : planned_) {
@@ -176,23 +194,25 @@ void Input::cancel_running() {
 void Input::publish_authority(const Tick& tick) {
   state_.last_authority_tick = tick.index;
   msg::Authority authority{};
-  authority.level = state_.arbiter.stopped ? msg::kAuthorityStop : state_.arbiter.level;
+  authority.level = state_.arbiter.stopped ? msg::kAuthorityEmergencyStop : state_.arbiter.level;
   set_text(authority.source, state_.arbiter.stopped ? state_.arbiter.stopper : state_.arbiter.holder);
   authority.goal_id = state_.last_goal;
   authority.refused_count = state_.arbiter.refused;
   set_text(authority.refusal, state_.arbiter.refusal);
   set_text(authority.refused_source, state_.arbiter.refused_source);
   authority.refused_sequence = state_.arbiter.refused_sequence;
-  set_text(authority.ruled_source, state_.arbiter.ruled_source);
-  authority.ruled_sequence = state_.arbiter.ruled_sequence;
+  set_text(authority.answered_source, state_.arbiter.answered_source);
+  authority.answered_sequence = state_.arbiter.answered_sequence;
   authority.emergency_stop = state_.arbiter.stopped;
   authority_.write(authority);
 }
 
-ComponentFactory make_input_factory(std::shared_ptr<OutsideRequests> outside) {
-  return {"input", [outside = std::move(outside)](Wiring& wiring, const Setup& setup) {
-            return std::make_unique<Input>(wiring, setup, outside);
-          }, "components/input/input.yaml"};
+ComponentFactory make_input_factory(std::shared_ptr<ClientRequests> requests) {
+  return {"input",
+          [requests = std::move(requests)](Wiring& wiring, const Setup& setup) {
+            return std::make_unique<Input>(wiring, setup, requests);
+          },
+          "components/input/input.yaml"};
 }
 
 }  // namespace constrictor

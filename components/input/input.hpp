@@ -1,49 +1,49 @@
-// The paper's input layer: the one member that listens to planners and operators.
+// The paper's input layer: the only member that takes requests from planners and operators.
 #pragma once
 
 #include <memory>
 #include <optional>
 
+#include "component/client_requests.hpp"
+#include "component/component.hpp"
 #include "input/arbiter.hpp"
-#include "input/parameter_desk.hpp"
-#include "runtime/component.hpp"
-#include "runtime/outside_requests.hpp"
+#include "input/parameter_arbiter.hpp"
 
 namespace constrictor {
 
 struct InputState {
   ArbiterState arbiter;
-  std::uint64_t last_goal = 0;      ///< last goal started, as on task/command
-  std::uint64_t running_goal = 0;   ///< the same until it is cancelled; 0: none
+  std::uint64_t last_goal = 0;     ///< id of the last started goal on task/command
+  std::uint64_t running_goal = 0;  ///< id of the goal that may still run; 0: none
   std::uint8_t running_task = msg::kTaskNone;
-  bool moving = false;              ///< a direct motion is in force
+  bool moving = false;  ///< a direct motion is in force
   std::int64_t last_authority_tick = -1;
-  ParameterDeskState desk;
+  ParameterArbiterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick, desk);
+    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick, parameters);
   }
 };
 
-/// Reads planner/request and what came from outside; writes task/command, motion/command, parameter/change, authority, and an answer
-/// to each request. Outside requests are ruled
-/// on first, in the order of OutsideRequests::latch, then the planner's in the order of their sequence numbers. At most three
-/// task commands a tick are forwarded, so that a cancel always finds room; the rest is refused and counted. Of direct motions the
-/// last of a tick counts. A planner request older than a second is refused as stale.
+/// Reads planner/request and the requests of clients; writes task/command, motion/command, parameter/change, authority,
+/// and an answer to each request. The decisions on clients' requests come first, in the order of ClientRequests::latch,
+/// then those on the planner's requests in the order of their sequence numbers. At most three task commands are sent in
+/// a tick, so that a cancel always finds room; further ones are refused. Of several direct motions in a tick the last
+/// one counts. A planner request that is older than 50 ticks is refused.
 class Input : public StatefulComponent<InputState> {
  public:
-  Input(Wiring& wiring, const Setup& setup, std::shared_ptr<OutsideRequests> outside = nullptr);
+  Input(Wiring& wiring, const Setup& setup, std::shared_ptr<ClientRequests> client_requests = nullptr);
   void step(const Tick& tick) override;
 
  private:
-  /// Carries out the ruling that `decide()` makes, and answers the request.
+  /// Obeys the decision that `decide()` returns, and answers the request.
   template <class Decide>
   void answer(const msg::Request& request, Decide&& decide);
-  void obey(const Ruling& ruling, const msg::Request& request);
-  void forward_task(const Ruling& ruling, const msg::Request& request);
+  void obey(const Decision& decision, const msg::Request& request);
+  void forward_task(const Decision& decision, const msg::Request& request);
   void forward_motion(const msg::Request& request);
   void set_parameter(const msg::Request& request);
-  /// Those of input.yaml whose tick comes next; true if there were any.
+  /// Requests the changes of input.yaml whose tick comes next; true if there were any.
   bool set_planned_parameters(const Tick& tick);
   void cancel_running();
   void publish_authority(const Tick& tick);
@@ -56,14 +56,14 @@ class Input : public StatefulComponent<InputState> {
   Output<msg::RequestAnswer> answer_out_;
   std::vector<Latest<msg::ParameterList>> parameters_in_;
   std::vector<PlannedChange> planned_;
-  std::shared_ptr<OutsideRequests> outside_;
-  int commands_left_ = 0;
-  int changes_left_ = 0;
-  std::int64_t now_ = 0;  ///< tick of the present step
-  std::optional<msg::MotionCommand> motion_;  ///< of the present step
+  std::shared_ptr<ClientRequests> client_requests_;
+  int commands_left_ = 0;                     ///< task commands that may still be sent in this step
+  int changes_left_ = 0;                      ///< parameter changes that may still be sent in this step
+  std::int64_t now_ = 0;                      ///< tick of the present step
+  std::optional<msg::MotionCommand> motion_;  ///< to be written at the end of the present step
 };
 
-/// `outside`: where requests from outside the run come in; null: the runtime's own latch, fed by the topic `request`.
-ComponentFactory make_input_factory(std::shared_ptr<OutsideRequests> outside = nullptr);
+/// `client_requests`: where the requests of clients arrive; null: the runtime fills them from the topic `request`.
+ComponentFactory make_input_factory(std::shared_ptr<ClientRequests> client_requests = nullptr);
 
 }  // namespace constrictor

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "navigation/motions.hpp"
@@ -12,11 +11,13 @@ namespace {
 
 constexpr double kHeadRate_rad_s = 0.5;
 
-/// The wrapped body as a grip holds an object: its posture, by yaw joint, and the cap of its base.
-Grip held(const NavigationConfig& config, const GripSense& sense, const Grip& grip, const DirectMotionState& state) {
+/// The grip by which the motions keep a wrapped body in its posture and cap the torque of its base, although no object
+/// was felt.
+Grip posture_grip(const NavigationConfig& config, const GripSense& sense, const Grip& grip,
+                  const DirectMotionState& state) {
   Grip now = grip;
   if (grip.carrying || state.wrapped_side == 0.0) return now;
-  now.carrying = true;  // for the motions' sake only: nobody felt an object
+  now.carrying = true;  // makes the motions keep the posture
   now.side = state.wrapped_side;
   now.shape_rad = sense.open_shape(now.side, config.grip.base_angle_rad);
   if (state.squeezed) {
@@ -27,14 +28,6 @@ Grip held(const NavigationConfig& config, const GripSense& sense, const Grip& gr
   }
   now.hold_torque_nm = state.squeezed ? config.grip.hold_torque_nm : 0.0;
   return now;
-}
-
-void set_method(const char* method, TaskOutput& output) { std::snprintf(output.desired.method, sizeof output.desired.method, "%s", method); }
-
-void set_u(const NavigationConfig& config, const GripSense& sense, double side, TaskOutput& output) {
-  const auto shape = sense.open_shape(side, config.grip.base_angle_rad);
-  output.desired.shape_count = static_cast<std::uint16_t>(sense.yaw_joint_count());
-  std::copy_n(shape.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
 }
 
 }  // namespace
@@ -53,19 +46,22 @@ void begin_motion(const msg::MotionCommand& command, DirectMotionState& state, G
       state.squeezed = false;
       grip.pregrasped = grip.carrying = false;
       break;
-    case msg::kMotionSqueeze: state.squeezed = state.wrapped_side != 0.0; break;
+    case msg::kMotionSqueeze:
+      state.squeezed = state.wrapped_side != 0.0;
+      break;
     case msg::kMotionOpen:
       state.wrapped_side = 0.0;
       state.squeezed = false;
       grip.pregrasped = grip.carrying = false;
       break;
-    default: break;
+    default:
+      break;
   }
 }
 
-void step_motion(const NavigationConfig& config, const GripSense& sense, const Grip& grip,
-                 DirectMotionState& state, TaskOutput& output) {
-  const Grip body = held(config, sense, grip, state);
+void step_motion(const NavigationConfig& config, const GripSense& sense, const Grip& grip, DirectMotionState& state,
+                 TaskOutput& output) {
+  const Grip body = posture_grip(config, sense, grip, state);
   output.new_motion = std::exchange(state.begins, false);
   switch (state.motion) {
     case msg::kMotionDrive: {
@@ -81,11 +77,7 @@ void step_motion(const NavigationConfig& config, const GripSense& sense, const G
       break;
     case msg::kMotionWrap:
       output.phase = "wrap";
-      undulate(config.grasp.wrap, 0.0, 1.0, grip, output);
-      set_method("wrap", output);
-      set_u(config, sense, state.wrapped_side, output);
-      output.desired.wrap_side = state.wrapped_side;
-      output.desired.speed_m_s = config.grasp.wrap_speed_m_s;
+      wrap_round(config, sense, config.grasp.wrap, state.wrapped_side, config.grasp.wrap_speed_m_s, grip, output);
       break;
     case msg::kMotionSqueeze:
       output.phase = "squeeze";
@@ -93,11 +85,7 @@ void step_motion(const NavigationConfig& config, const GripSense& sense, const G
         stand(body, output);
         break;
       }
-      undulate(config.grasp.squeeze, 0.0, 1.0, grip, output);
-      set_method("squeeze", output);
-      set_u(config, sense, state.wrapped_side, output);
-      output.desired.squeeze_rad = config.grasp.squeeze_max_rad;
-      output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
+      squeeze_u(config, sense, state.wrapped_side, grip, output);
       break;
     case msg::kMotionOpen:
       output.phase = "open";

@@ -1,4 +1,4 @@
-// What an operator or external planner asks the body to do now, outside of any task.
+// Direct motions: an operator or external planner moves the body without a task.
 #pragma once
 
 #include "navigation/task.hpp"
@@ -7,26 +7,26 @@ namespace constrictor {
 
 /// The direct motion in force.
 struct DirectMotionState {
-  bool active = false;         ///< a direct motion, and no task, says what the body does
+  bool active = false;  ///< a direct motion, and no task, moves the body
   std::uint8_t motion = msg::kMotionStand;
   double frequency_hz = 0.0;
   double curvature_1_m = 0.0;
   double angle_rad = 0.0;
-  double wrapped_side = 0.0;   ///< +1, -1: the body was wrapped to that side and not opened since; 0: straight
+  double wrapped_side = 0.0;  ///< the body is wrapped to this side: +1 left, -1 right; 0: it is straight
   bool squeezed = false;
-  bool begins = false;         ///< the present step is its first
+  bool begins = false;  ///< the present step is the first of this motion
   template <class Archive>
   void serialize(Archive& archive) {
     archive(active, motion, frequency_hz, curvature_1_m, angle_rad, wrapped_side, squeezed, begins);
   }
 };
 
-/// Takes a command over. Whatever ran before has ended. `open` lets go of what a task has grasped, `wrap` begins anew.
+/// Begins the motion of a command; the caller has ended the running task. Both open and wrap release a held object.
 void begin_motion(const msg::MotionCommand& command, DirectMotionState& state, Grip& grip);
 
-/// The trajectory of the present motion. Squeezing and driving wrapped cap the torque of the U's base joints, so that the body
-/// neither jams nor lets go.
-void step_motion(const NavigationConfig& config, const GripSense& sense, const Grip& grip,
-                 DirectMotionState& state, TaskOutput& output);
+/// Sets the trajectory of the present motion. A squeezed body keeps a torque cap on the base joints of the U, so that
+/// it neither jams nor releases the object.
+void step_motion(const NavigationConfig& config, const GripSense& sense, const Grip& grip, DirectMotionState& state,
+                 TaskOutput& output);
 
 }  // namespace constrictor

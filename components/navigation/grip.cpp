@@ -61,7 +61,7 @@ int GripSense::touching_modules(const std::vector<Touch>& touches) const {
 }
 
 Eigen::Vector2d GripSense::held_object_H(const std::vector<Pose2>& body, double radius_m) const {
-  // The apex is the middle base joint; the mouth lies along the mean direction of the arms.
+  // The apex A is the middle joint of the base. The mouth of the U lies in the mean direction of its arms.
   const std::size_t apex = base_joints_[base_joints_.size() / 2];
   const Eigen::Vector2d p_HA = body[apex].p - 0.5 * robot_.module_length_m * body[apex].forward();
   Eigen::Vector2d mouth{0.0, 0.0};
@@ -87,7 +87,7 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
     shape[k] = joints.position_rad[yaw_joints_[k]] + side * config_.hold_margin_rad;
     closed_rad += shape[k] - side * config_.base_angle_rad;
   }
-  // The joints beside the base stay open by as much as the squeeze opened them, so that the arms are parallel.
+  // The joints beside the base keep the angle to which the squeeze has opened them, so that the arms are parallel.
   const double beside_rad = 0.5 * config_.opening_share * closed_rad;
   const auto first = static_cast<std::size_t>(config_.base_first_joint);
   const std::size_t after = first + base_joints_.size();

@@ -1,4 +1,4 @@
-// What the body holds, and whether it still does.
+// The object in the U of the body, and the monitor that reports its loss.
 #pragma once
 
 #include <array>
@@ -10,21 +10,21 @@
 
 namespace constrictor {
 
-/// What the robot knows of its own posture and grasp between tasks.
+/// State of the grasp, kept from task to task.
 struct Grip {
-  bool pregrasped = false;    ///< the object lies beside the body, ready to be wrapped
-  bool carrying = false;      ///< an object is held in the U
-  double side = 0.0;          ///< +1: the object is on the left of the head's part of the body, -1: on the right
+  bool pregrasped = false;  ///< an object lies beside the body, which can be wrapped round it
+  bool carrying = false;    ///< an object is held in the U
+  double side = 0.0;        ///< of the head's part of the body on which the object lies: +1 left, -1 right
   std::uint8_t colour = 0;
   std::uint16_t handle = 0;
-  double radius_m = 0.085;    ///< of the object
-  double hold_torque_nm = 0.0; ///< cap of the base joints while carrying
-  Eigen::Vector2d p_MO{0.0, 0.0};  ///< [m] where the object was felt
-  std::array<double, msg::kMaxJoints> shape_rad{};  ///< posture that holds it, by yaw joint
-  // filters of the loss monitor
-  double torque_nm = 0.0;
-  double contact_share = 1.0;
-  double below_s = 0.0;
+  double radius_m = 0.085;                          ///< of the object
+  double hold_torque_nm = 0.0;                      ///< cap of the base joints while carrying
+  Eigen::Vector2d p_MO{0.0, 0.0};                   ///< [m] where the body touched the object
+  std::array<double, msg::kMaxJoints> shape_rad{};  ///< posture that holds the object, by yaw joint
+  // State of the loss monitor.
+  double torque_nm = 0.0;      ///< filtered mean closing torque of the base joints
+  double contact_share = 1.0;  ///< filtered share of time in which the base touches something
+  double below_s = 0.0;        ///< time for which both have been below their thresholds
   template <class Archive>
   void serialize(Archive& archive) {
     archive(pregrasped, carrying, side, colour, handle, radius_m, hold_torque_nm, p_MO.x(), p_MO.y());
@@ -33,36 +33,36 @@ struct Grip {
   }
 };
 
-/// The base of the U seen in the joints and modules of one robot.
+/// Which joints and modules of a robot form the base of the U, and what they measure.
 class GripSense {
  public:
   GripSense(const RobotModel& robot, const GripConfig& config);
 
-  /// Posture of the open U towards `side`, by yaw joint.
+  /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.
   [[nodiscard]] std::array<double, msg::kMaxJoints> open_shape(double side, double angle_rad) const;
-  /// [Nm] largest and mean closing torque of the base joints.
+  /// [Nm] largest and mean torque by which the base joints close the U.
   [[nodiscard]] double largest_closing_nm(const msg::JointState& joints, double side) const;
   [[nodiscard]] double mean_closing_nm(const msg::JointState& joints, double side) const;
   /// True if the module belongs to the base.
   [[nodiscard]] bool is_base_module(std::size_t module) const;
-  /// True for these and the two modules on either side.
+  /// True for the modules of the base and for two more on either side.
   [[nodiscard]] bool is_near_base(std::size_t module) const;
-  /// [N] sum of the touches on base modules.
+  /// [N] sum of the touches on modules of the base.
   [[nodiscard]] double base_force_n(const std::vector<Touch>& touches) const;
-  /// [N] sum of the touches in the middle of the base: on the modules between its first and last joint.
+  /// [N] sum of the touches in the middle of the base: on modules between its first and its last joint.
   [[nodiscard]] double apex_force_n(const std::vector<Touch>& touches) const;
-  /// Number of modules that touch what lies inside the U.
+  /// Number of modules with a touch.
   [[nodiscard]] int touching_modules(const std::vector<Touch>& touches) const;
-  /// Where an object of this radius sits against the base, in the head's frame.
+  /// Centre of an object of this radius that touches the base, in the head's frame.
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<Pose2>& body, double radius_m) const;
-  /// [m] how far the held object lies beside the head's course while the U goes straight, positive left.
+  /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left.
   [[nodiscard]] double held_aside_m(const Grip& grip) const;
-  /// Posture by yaw joint as measured, the base closed further by the hold margin.
+  /// Posture that holds the object, by yaw joint: the measured angles, with the base closed by the hold margin more.
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, double side) const;
 
-  /// Watches a grasp over `dt_s`. True when it is lost: neither torque nor touch for a while.
+  /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while.
   bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const;
-  /// Starts the watch afresh.
+  /// Resets the loss monitor at the beginning of a grasp.
   void hold_starts(Grip& grip) const;
 
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
@@ -70,7 +70,7 @@ class GripSense {
  private:
   const RobotModel& robot_;
   const GripConfig& config_;
-  std::vector<std::size_t> yaw_joints_;
+  std::vector<std::size_t> yaw_joints_;   ///< indices among all joints
   std::vector<std::size_t> base_joints_;  ///< indices among all joints
 };
 

@@ -1,4 +1,6 @@
 #include "navigation/navigation.hpp"
 #include "runtime/component_main.hpp"
 
-int main(int argc, char** argv) { return constrictor::component_main(argc, argv, constrictor::make_navigation_factory()); }
+int main(int argc, char** argv) {
+  return constrictor::component_main(argc, argv, constrictor::make_navigation_factory());
+}

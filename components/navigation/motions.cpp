@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "constrictor/text.hpp"
 
 namespace constrictor {
 namespace {
 
-void set_method(const char* method, TaskOutput& output) {
+/// Begins a new trajectory for this method.
+void begin(const char* method, TaskOutput& output) {
   output.desired = {};
   output.desired.wavelength_m = 1.0;
-  std::snprintf(output.desired.method, sizeof output.desired.method, "%s", method);
+  set_text(output.desired.method, method);
 }
 
 void set_posture(const Grip& grip, TaskOutput& output) {
@@ -24,6 +26,12 @@ void set_posture(const Grip& grip, TaskOutput& output) {
   output.desired.torque_limit_nm = grip.hold_torque_nm;
 }
 
+void set_open_u(const NavigationConfig& config, const GripSense& sense, double side, TaskOutput& output) {
+  const auto shape_rad = sense.open_shape(side, config.grip.base_angle_rad);
+  output.desired.shape_count = static_cast<std::uint16_t>(sense.yaw_joint_count());
+  std::copy_n(shape_rad.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
+}
+
 void set_gait(const Gait& gait, double curvature_1_m, double direction, TaskOutput& output) {
   output.desired.frequency_hz = direction * gait.frequency_hz;
   output.desired.amplitude_rad = gait.amplitude_rad;
@@ -34,19 +42,19 @@ void set_gait(const Gait& gait, double curvature_1_m, double direction, TaskOutp
 }  // namespace
 
 void stand(const Grip& grip, TaskOutput& output) {
-  set_method("hold", output);
+  begin("hold", output);
   set_posture(grip, output);
 }
 
 void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
-  set_method("undulation", output);
+  begin("undulation", output);
   set_gait(gait, curvature_1_m, direction, output);
   set_posture(grip, output);
 }
 
-void undulate_on(const Gait& gait, double curvature_1_m, double direction, const std::array<double, msg::kMaxJoints>& shape_rad,
-                 std::size_t shape_count, TaskOutput& output) {
-  set_method("undulation", output);
+void undulate_on(const Gait& gait, double curvature_1_m, double direction,
+                 const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output) {
+  begin("undulation", output);
   set_gait(gait, curvature_1_m, direction, output);
   output.desired.shape_count = static_cast<std::uint16_t>(shape_count);
   for (std::size_t k = 0; k < shape_count; ++k) output.desired.shape_rad[k] = shape_rad[k];
@@ -54,14 +62,34 @@ void undulate_on(const Gait& gait, double curvature_1_m, double direction, const
 
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output) {
   constexpr std::uint16_t kHeadJoints = 3;
-  set_method("bend", output);
+  begin("bend", output);
   set_posture(grip, output);
   output.desired.shape_rate_rad_s = rate_rad_s;
   if (output.desired.shape_count < kHeadJoints) output.desired.shape_count = kHeadJoints;
   for (std::size_t k = 0; k < kHeadJoints; ++k) output.desired.shape_rad[k] += each_rad;
 }
 
-const Gait& present_gait(const NavigationConfig& config, const Grip& grip) { return grip.carrying ? config.carry : config.travel; }
+void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,
+                const Grip& grip, TaskOutput& output) {
+  undulate(gait, 0.0, 1.0, grip, output);
+  set_text(output.desired.method, "wrap");
+  set_open_u(config, sense, side, output);
+  output.desired.wrap_side = side;
+  output.desired.speed_m_s = speed_m_s;
+}
+
+void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
+               TaskOutput& output) {
+  undulate(config.grasp.squeeze, 0.0, 1.0, grip, output);
+  set_text(output.desired.method, "squeeze");
+  set_open_u(config, sense, side, output);
+  output.desired.squeeze_rad = config.grasp.squeeze_max_rad;
+  output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
+}
+
+const Gait& present_gait(const NavigationConfig& config, const Grip& grip) {
+  return grip.carrying ? config.carry : config.travel;
+}
 
 double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
   const Pose2 X_MP{p_M, yaw_rad};
@@ -84,6 +112,8 @@ double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M) {
   return nearest_m;
 }
 
-double angle_between(double to_rad, double from_rad) { return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi); }
+double angle_between(double to_rad, double from_rad) {
+  return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
 
 }  // namespace constrictor

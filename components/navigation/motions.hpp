@@ -1,4 +1,4 @@
-// The motions that tasks ask control for.
+// The motions that tasks and direct motions ask control for. Each function replaces the whole desired trajectory.
 #pragma once
 
 #include "navigation/task.hpp"
@@ -7,29 +7,38 @@ namespace constrictor {
 
 /// Stands still in the present posture.
 void stand(const Grip& grip, TaskOutput& output);
-/// Undulates along a path of this curvature: straight, or in the U that holds an object. `direction` +1 forwards, -1 backwards.
+/// Undulates along a path of this curvature, straight or in the U that holds an object. `direction`: +1 forwards, -1
+/// backwards.
 void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output);
-/// The same on a posture given by yaw joint.
-void undulate_on(const Gait& gait, double curvature_1_m, double direction, const std::array<double, msg::kMaxJoints>& shape_rad,
-                 std::size_t shape_count, TaskOutput& output);
-/// Bends the three yaw joints next to the head, each by `each_rad` (positive left), the rest straight or the U's.
+/// The same in a given posture: angles of the first `shape_count` yaw joints.
+void undulate_on(const Gait& gait, double curvature_1_m, double direction,
+                 const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output);
+/// Bends the three yaw joints next to the head by `each_rad` each, positive left. The other joints are straight, or
+/// hold the object.
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
-/// The gait for the body's present load.
+/// Wraps the body round the object on `side` (+1 left, -1 right): the arc slides along the body at `speed_m_s`.
+void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,
+                const Grip& grip, TaskOutput& output);
+/// Closes the base of the wrapped body with a limited torque while the body drives on.
+void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
+               TaskOutput& output);
+
+/// The gait for a body with or without an object.
 const Gait& present_gait(const NavigationConfig& config, const Grip& grip);
 
-/// [m] lateral error of a path in M through `p_M` with heading `yaw_rad`, seen from the head: the path's lateral position at
-/// `lookahead_m` along the path beyond the head's foot point; positive left.
+/// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
+/// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.
 double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m);
 
-/// [s] length of a gait period, in which the head sways once.
+/// [s] one period of the gait, in which the head sways once.
 double gait_period_s(const Gait& gait);
 
-/// [rad] heading in M of the body once it is straight: the mean of its modules'.
+/// [rad] heading in M that the body will have once it is straight: the mean heading of its modules.
 double body_course_rad(const TaskInput& input);
-/// [m] from a place in M to the middle line of the nearest module.
+/// [m] from a point in M to the middle line of the nearest module.
 double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M);
 
-/// Difference of two angles within (-pi, pi].
+/// Difference of two angles, from -pi to pi.
 double angle_between(double to_rad, double from_rad);
 
 }  // namespace constrictor

@@ -1,11 +1,10 @@
 #include "navigation/navigation.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "component/task_parameters.hpp"
 #include "constrictor/text.hpp"
 #include "navigation/motions.hpp"
-#include "navigation/navigation_parameters.hpp"
 
 namespace constrictor {
 
@@ -30,16 +29,23 @@ void GoalState::set_parameters(const msg::TaskParameters& p) {
 }
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
-    : wiring_(wiring), robot_(load_robot(setup.robot_file)),
-      config_(load_navigation_config(setup.config_file)),
-      parameters_(wiring, topics::kNavigationParameters), grip_sense_(robot_, config_.grip), commands_in_(wiring.events(topics::kTaskCommand)),
-      line_in_(wiring.latest(topics::kLinePercept)), objects_in_(wiring.latest(topics::kObjectPercepts)),
-      pose_in_(wiring.latest(topics::kRobotPose)), map_in_(wiring.latest(topics::kFieldMap)),
-      joints_in_(wiring.latest(topics::kJointState)), contacts_in_(wiring.latest(topics::kContactState)),
-      motion_in_(wiring.latest(topics::kMotionStatus)), direct_in_(wiring.events(topics::kMotionCommand)), trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
-      status_out_(wiring.output(topics::kTaskStatus)), event_out_(wiring.output(topics::kTaskEvent)) {
-  add_parameters(config_, parameters_);
-}
+    : wiring_(wiring),
+      robot_(load_robot(setup.robot_file)),
+      config_(load_parameters<NavigationConfig>(setup.config_file)),
+      parameters_(wiring, topics::kNavigationParameters, config_),
+      grip_sense_(robot_, config_.grip),
+      commands_in_(wiring.events(topics::kTaskCommand)),
+      line_in_(wiring.latest(topics::kLinePercept)),
+      objects_in_(wiring.latest(topics::kObjectPercepts)),
+      pose_in_(wiring.latest(topics::kRobotPose)),
+      map_in_(wiring.latest(topics::kFieldMap)),
+      joints_in_(wiring.latest(topics::kJointState)),
+      contacts_in_(wiring.latest(topics::kContactState)),
+      motion_in_(wiring.latest(topics::kMotionStatus)),
+      direct_in_(wiring.events(topics::kMotionCommand)),
+      trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
+      status_out_(wiring.output(topics::kTaskStatus)),
+      event_out_(wiring.output(topics::kTaskEvent)) {}
 
 bool Navigation::senses_ready() const {
   return joints_in_ && pose_in_ && contacts_in_ && joints_in_.age_ticks() <= config_.stale_after_ticks &&
@@ -56,45 +62,52 @@ void Navigation::step(const Tick& tick) {
                           std::to_string(robot_.joints.size()));
   }
   if (!senses_ready()) {
-    answer_blindly();
+    take_commands_without_senses();
     write_trajectory(output);
     write_status(output);
     return;
   }
   const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
-  // The pose is of the tick before, and the tasks take it for the present one. Things are placed by poses that are late by as much,
-  // so that they are right as seen from X_MH: what the robot does in one tick cancels. Filed under its own tick it would not.
-  remember_pose(tick.index, X_MH, state_.things);
-  if (objects_in_ && objects_in_.fresh()) watch_objects(config_.object, *objects_in_, state_.things);
+  // The pose is one tick old, and the tasks use it as the present one. It is therefore stored under the present tick,
+  // so that the positions of objects are late by the same tick and are right relative to X_MH.
+  remember_pose(tick.index, X_MH, state_.sightings);
+  if (objects_in_ && objects_in_.fresh()) update_object_tracker(config_.object, *objects_in_, state_.sightings);
 
   const std::vector<Pose2> body = planar_body(robot_, *joints_in_);
   const std::vector<Touch> touches = lateral_touches(robot_, body, *contacts_in_, config_.grip.touch_force_n);
-  const msg::TaskParameters none{};
-  const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->known && motion_in_->done;
-  const auto input = [&](const msg::TaskParameters& parameters) {
-    return TaskInput{tick, robot_, config_, grip_sense_, parameters, X_MH,
-                     line_in_ && line_in_.fresh() ? &*line_in_ : nullptr, objects_in_ && objects_in_.fresh(), state_.things,
-                     map_in_ ? &*map_in_ : nullptr, *joints_in_, body, touches, done};
-  };
-  take_commands(input(none));
+  const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->accepted && motion_in_->done;
+  TaskInput input{tick,
+                  robot_,
+                  config_,
+                  grip_sense_,
+                  msg::TaskParameters{},
+                  X_MH,
+                  line_in_ && line_in_.fresh() ? &*line_in_ : nullptr,
+                  objects_in_ && objects_in_.fresh(),
+                  state_.sightings,
+                  map_in_ ? &*map_in_ : nullptr,
+                  *joints_in_,
+                  body,
+                  touches,
+                  done};
+  take_commands(input);
   take_direct_motions();
-  const msg::TaskParameters parameters = state_.goal.parameters();
-  const TaskInput present = input(parameters);
+  input.parameters = state_.goal.parameters();
   if (state_.task) {
-    run_task(present, output);
+    run_task(input, output);
   } else if (state_.direct.active) {
     step_motion(config_, grip_sense_, state_.grip, state_.direct, output);
     state_.goal.phase = output.phase;
   }
-  watch_grip(present, output);
+  monitor_grip(input, output);
   write_trajectory(output);
   write_status(output);
 }
 
-void Navigation::answer_blindly() {
+void Navigation::take_commands_without_senses() {
   for (const auto& command : commands_in_) {
     if (command.command == msg::kCommandStart) {
-      write_refusal(command, "joints, contacts or pose are missing or stale");
+      write_refusal(command, "the joints, the contacts or the pose are missing or stale");
     } else {
       cancel(command);
     }
@@ -113,7 +126,8 @@ void Navigation::take_commands(const TaskInput& input) {
 }
 
 void Navigation::cancel(const msg::TaskCommand& command) {
-  if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0)) end_goal(msg::kGoalCancelled, "cancelled");
+  if (state_.task && (command.goal_id == state_.goal.goal_id || command.goal_id == 0))
+    end_goal(msg::kGoalCancelled, "cancelled");
 }
 
 void Navigation::take_direct_motions() {
@@ -123,30 +137,28 @@ void Navigation::take_direct_motions() {
   }
 }
 
-void Navigation::start_goal(const msg::TaskCommand& command, const TaskInput& senses) {
-  const TaskInput input{senses.tick, senses.robot, senses.config, senses.grip_sense, command.parameters, senses.X_MH, senses.line,
-                        senses.image, senses.things, senses.map, senses.joints, senses.body, senses.touches, senses.motion_done, &command.path};
+void Navigation::start_goal(const msg::TaskCommand& command, TaskInput input) {
+  input.parameters = command.parameters;
+  input.path = &command.path;
   std::unique_ptr<Task> task = make_task(command.task);
-  const std::string refusal = task ? task->refusal(input, state_.grip) : "no such task";
+  std::string refusal = task_parameter_refusal(command.task, command.parameters, command.path);
+  if (refusal.empty()) refusal = task ? task->refusal(input, state_.grip) : "this robot's navigation lacks the task";
+  const auto set_goal = [&](std::uint8_t goal_state) {
+    state_.goal = {};
+    state_.goal.goal_id = command.goal_id;
+    state_.goal.task = command.task;
+    state_.goal.state = goal_state;
+    state_.goal.set_parameters(command.parameters);
+    state_.goal.reason = refusal;
+  };
   if (!refusal.empty()) {
     write_refusal(command, refusal);
-    if (!state_.task) {
-      state_.goal = {};
-      state_.goal.goal_id = command.goal_id;
-      state_.goal.task = command.task;
-      state_.goal.state = msg::kGoalRefused;
-      state_.goal.set_parameters(command.parameters);
-      state_.goal.reason = refusal;
-    }
+    if (!state_.task) set_goal(msg::kGoalRefused);
     return;
   }
   if (state_.task) end_goal(msg::kGoalPreempted, "another task was started");
   state_.direct = {};
-  state_.goal = {};
-  state_.goal.goal_id = command.goal_id;
-  state_.goal.task = command.task;
-  state_.goal.state = msg::kGoalRunning;
-  state_.goal.set_parameters(command.parameters);
+  set_goal(msg::kGoalRunning);
   state_.task = std::move(task);
   state_.task->start(input, state_.grip);
   write_event(msg::kEventNone, msg::kGoalRunning, 0, 0, "accepted");
@@ -162,11 +174,12 @@ void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
   if (output.state != msg::kGoalRunning) end_goal(output.state, output.reason);
 }
 
-void Navigation::watch_grip(const TaskInput& input, TaskOutput& output) {
+void Navigation::monitor_grip(const TaskInput& input, TaskOutput& output) {
   Grip& grip = state_.grip;
   if (!grip.carrying || !grip_sense_.lost(input.joints, input.touches, input.tick.dt_s(), grip)) return;
   grip.carrying = false;
-  write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle, "base torque and touch below threshold");
+  write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle,
+              "torque and touch of the base are below their thresholds");
   if (state_.task) end_goal(msg::kGoalAborted, "object grasp lost");
   stand(grip, output);
 }
@@ -213,7 +226,7 @@ void Navigation::write_status(const TaskOutput& output) {
   msg::TaskStatus status{};
   status.goal_id = state_.goal.goal_id;
   status.task = state_.goal.task;
-  status.state = state_.goal.state;
+  status.goal_state = state_.goal.state;
   status.progress = state_.goal.progress;
   status.parameters = state_.goal.parameters();
   status.carrying = state_.grip.carrying;
@@ -225,7 +238,7 @@ void Navigation::write_status(const TaskOutput& output) {
 
 ComponentFactory make_navigation_factory() {
   return {"navigation", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Navigation>(wiring, setup); },
-          "components/navigation/navigation.yaml"};
+          "components/navigation/navigation.yaml", describe_parameters<NavigationConfig>};
 }
 
 }  // namespace constrictor

@@ -1,17 +1,17 @@
-// Navigation: the paper's task layer. Decides where, when and how the robot should move; one goal at a time.
+// Navigation: the paper's task layer. It decides where, when and how the robot moves. One goal runs at a time.
 #pragma once
 
 #include <cereal/types/string.hpp>
 #include <memory>
 #include <string>
 
+#include "component/parameters.hpp"
 #include "navigation/direct_motion.hpp"
 #include "navigation/task.hpp"
-#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
-/// The goal that runs, or ran last.
+/// The running goal, or the last one.
 struct GoalState {
   std::uint64_t goal_id = 0;
   std::uint8_t task = msg::kTaskNone;
@@ -30,39 +30,40 @@ struct GoalState {
   void set_parameters(const msg::TaskParameters& parameters);
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(goal_id, task, state, line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s, progress,
-            phase, reason);
+    archive(goal_id, task, state, line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s,
+            progress, phase, reason);
   }
 };
 
 struct NavigationState {
   GoalState goal;
-  std::unique_ptr<Task> task;   ///< of the running goal; null otherwise
+  std::unique_ptr<Task> task;  ///< of the running goal; null without one
   Grip grip;
-  ObjectWatchState things;
+  ObjectTrackerState sightings;
   std::uint64_t motion_id = 0;
-  std::string method;           ///< of the motion asked for last
+  std::string method;  ///< control method of the newest motion
   DirectMotionState direct;
   ParameterState parameters;
 
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, things, motion_id, method, direct, parameters, task != nullptr, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, parameters, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, things, motion_id, method, direct, parameters, has_task, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, parameters, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }
 };
 
-/// Reads TaskCommand, percepts, pose, map, joints, contacts and MotionStatus; writes DesiredTrajectory and TaskStatus every tick and
-/// TaskEvent on occurrence. A goal is answered once (accepted or refused with a reason) and each accepted one ends once. Without a
-/// goal, and while pose or joints are missing or stale, the robot stands still in its posture, holding what it holds.
+/// Reads TaskCommand, MotionCommand, percepts, pose, map, joints, contacts and MotionStatus; writes DesiredTrajectory
+/// and TaskStatus every tick and TaskEvent on occurrence. Each goal is answered once, accepted or refused with a
+/// reason, and each accepted goal ends once. Without a goal, and while pose, joints or contacts are missing or stale,
+/// the robot stands still in its posture and keeps hold of an object.
 class Navigation : public StatefulComponent<NavigationState> {
  public:
   Navigation(Wiring& wiring, const Setup& setup);
@@ -70,16 +71,19 @@ class Navigation : public StatefulComponent<NavigationState> {
 
  private:
   [[nodiscard]] bool senses_ready() const;
-  /// Without senses nothing can start; what ends a task or asks for a motion is obeyed all the same.
-  void answer_blindly();
+  /// Takes the commands while pose, joints or contacts are missing: refuses new tasks; obeys cancels and direct
+  /// motions.
+  void take_commands_without_senses();
   void take_commands(const TaskInput& input);
   void cancel(const msg::TaskCommand& command);
   void take_direct_motions();
-  void start_goal(const msg::TaskCommand& command, const TaskInput& input);
+  void start_goal(const msg::TaskCommand& command, TaskInput input);
   void run_task(const TaskInput& input, TaskOutput& output);
-  void watch_grip(const TaskInput& input, TaskOutput& output);
+  /// Reports the loss of a held object and aborts the running goal.
+  void monitor_grip(const TaskInput& input, TaskOutput& output);
   void end_goal(std::uint8_t state, const std::string& reason);
-  void write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle, const std::string& detail);
+  void write_event(std::uint8_t event, std::uint8_t goal_state, std::uint8_t colour, std::uint16_t handle,
+                   const std::string& detail);
   void write_refusal(const msg::TaskCommand& command, const std::string& reason);
   void write_trajectory(const TaskOutput& output);
   void write_status(const TaskOutput& output);

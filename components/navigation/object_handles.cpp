@@ -6,7 +6,7 @@
 namespace constrictor {
 namespace {
 
-std::span<const msg::MapObject> things_of(const TaskInput& input) {
+std::span<const msg::MapObject> landmarks_of(const TaskInput& input) {
   if (!input.map) return {};
   return {input.map->objects, std::min<std::size_t>(input.map->object_count, msg::kMaxMapObjects)};
 }
@@ -14,15 +14,15 @@ std::span<const msg::MapObject> things_of(const TaskInput& input) {
 }  // namespace
 
 std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour) {
-  if (colour >= msg::kColourCount || !input.things.objects[colour].known) return 0;
+  if (colour >= msg::kColourCount || !input.sightings.objects[colour].known) return 0;
   std::uint16_t handle = 0;
   double nearest_m = input.config.object.jump_m;
-  for (const auto& thing : things_of(input)) {
-    if (thing.kind != msg::kBlobObject || thing.colour != colour) continue;
-    const double apart_m = (Eigen::Vector2d(thing.x_m, thing.y_m) - input.things.objects[colour].p_M()).norm();
+  for (const auto& landmark : landmarks_of(input)) {
+    if (landmark.kind != msg::kBlobObject || landmark.colour != colour) continue;
+    const double apart_m = (Eigen::Vector2d(landmark.x_m, landmark.y_m) - input.sightings.objects[colour].p_M()).norm();
     if (apart_m >= nearest_m) continue;
     nearest_m = apart_m;
-    handle = thing.handle;
+    handle = landmark.handle;
   }
   return handle;
 }
@@ -35,11 +35,12 @@ bool is_named(const TaskInput& input) {
 std::string handle_refusal(const TaskInput& input) {
   const std::uint16_t named = input.parameters.object_handle;
   const std::uint8_t colour = input.parameters.object_colour;
-  const auto meant = [&](const msg::MapObject& thing) {
-    return thing.kind == msg::kBlobObject && thing.handle == named && (colour == msg::kColourUnknown || thing.colour == colour);
+  const auto meant = [&](const msg::MapObject& landmark) {
+    return landmark.kind == msg::kBlobObject && landmark.handle == named &&
+           (colour == msg::kColourUnknown || landmark.colour == colour);
   };
-  const auto things = things_of(input);
-  if (named == 0 || std::any_of(things.begin(), things.end(), meant)) return {};
+  const auto landmarks = landmarks_of(input);
+  if (named == 0 || std::any_of(landmarks.begin(), landmarks.end(), meant)) return {};
   return "object_handle: found " + std::to_string(named) + ", accepted 0 or an object of this colour in the map";
 }
 

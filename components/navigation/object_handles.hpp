@@ -1,4 +1,4 @@
-// The paper's object handle: which object of a colour is meant. It is that of guidance's map, made from percepts and touch.
+// The paper's object handle tells which object of a colour a goal means. It is the handle of guidance's map.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,15 @@
 
 namespace constrictor {
 
-/// Handle of the map's object of this colour that is where navigation saw it last; 0: the map has none there (yet).
+/// Handle of the map's object of this colour at the place where navigation saw the object last; 0: the map has no
+/// object there.
 [[nodiscard]] std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour);
 
-/// Whether what was seen last of the goal's colour is the object that the goal names; a goal that names none means any.
+/// Whether the last seen object of the goal's colour is the object that the goal names. A goal without a handle means
+/// any object of its colour.
 [[nodiscard]] bool is_named(const TaskInput& input);
 
-/// Why a goal that names an object cannot be accepted: the map has no such object of the goal's colour. Empty: it can.
+/// Why a goal is refused that names an object: the map has no object of this handle and colour. Empty: it is accepted.
 [[nodiscard]] std::string handle_refusal(const TaskInput& input);
 
 }  // namespace constrictor

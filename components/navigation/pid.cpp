@@ -17,8 +17,9 @@ double pid_step(const PidGains& gains, double error, double dt_s, PidState& stat
   const double proportional = gains.kp * error + gains.kd * state.derivative;
   const double integral = state.integral + error * dt_s;
   const double output = proportional + gains.ki * integral;
-  // Integrate only if that does not push a saturated output further out.
-  const bool winds_up = (output > gains.limit && error * gains.ki > 0.0) || (output < -gains.limit && error * gains.ki < 0.0);
+  // Do not integrate an error that pushes a saturated output further beyond its limit.
+  const bool winds_up =
+      (output > gains.limit && error * gains.ki > 0.0) || (output < -gains.limit && error * gains.ki < 0.0);
   if (!winds_up) state.integral = integral;
   return std::clamp(proportional + gains.ki * state.integral, -gains.limit, gains.limit);
 }

@@ -11,14 +11,14 @@ std::vector<Pose2> planar_body(const RobotModel& robot, const msg::JointState& j
   std::vector<Pose2> body;
   body.reserve(robot.module_count);
   for (const PlanarPose& pose : planar_module_poses(robot, {joints.position_rad, robot.joints.size()})) {
-    body.push_back({{pose.x_m, pose.y_m}, pose.yaw_rad});
+    body.push_back({pose.p, pose.yaw_rad});
   }
   return body;
 }
 
-std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Pose2>& body, const msg::ContactState& contacts,
-                                   double min_force_n) {
-  constexpr double kSteepest = 0.7;        // vertical part of a lateral normal
+std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Pose2>& body,
+                                   const msg::ContactState& contacts, double min_force_n) {
+  constexpr double kSteepest = 0.7;  // vertical component of the steepest lateral normal
   constexpr double kSelfTolerance_m = 0.015;
   const double half_m = 0.5 * robot.module_length_m;
   std::vector<Touch> touches;

@@ -1,4 +1,4 @@
-// Pose in the plane with its frame's axes.
+// A pose in the plane, with the axes of its frame.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// From a cross-track error to the curvature of the undulation: a PI controller on the error averaged over a gait period.
+// Steering: a PID controller from a cross-track error, averaged over a gait period, to the curvature of the path.
 #pragma once
 
 #include <cereal/types/deque.hpp>
@@ -19,15 +19,15 @@ struct SteeringState {
   }
 };
 
-/// Averages an error over one period of the gait, because the head sways with it, and turns it into a curvature.
+/// Averages an error over one gait period, because the head sways with the gait, and computes a curvature from it.
 class Steering {
  public:
   explicit Steering(const PidGains& gains) : gains_(gains) {}
-  /// A new observation of the error. Observations older than `period_s` are forgotten. Non-finite ones are ignored.
+  /// Adds an observation of the error and discards those older than `period_s`. A non-finite error is ignored.
   void observe(double time_s, double error, double period_s, SteeringState& state) const;
-  /// Mean of the observations; 0 without any.
+  /// Mean of the observations; 0 without observations.
   [[nodiscard]] static double mean_error(const SteeringState& state);
-  /// [1/m] curvature now.
+  /// [1/m] curvature for the present mean error; advances the PID by `dt_s`.
   double curvature(double dt_s, SteeringState& state) const;
 
  private:

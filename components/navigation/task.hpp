@@ -9,71 +9,83 @@
 #include <string>
 #include <vector>
 
+#include "component/component.hpp"
 #include "navigation/grip.hpp"
-#include "navigation/line_watch.hpp"
+#include "navigation/line_tracker.hpp"
 #include "navigation/navigation_config.hpp"
-#include "navigation/object_watch.hpp"
+#include "navigation/object_tracker.hpp"
 #include "navigation/planar_body.hpp"
-#include "runtime/component.hpp"
 
 namespace constrictor {
 
-/// What a task is given at each step.
+/// What a task receives at each step.
 struct TaskInput {
   const Tick& tick;
   const RobotModel& robot;
   const NavigationConfig& config;
   const GripSense& grip_sense;
-  const msg::TaskParameters& parameters;
-  Pose2 X_MH;                          ///< the head in the map
-  const msg::LinePercept* line;        ///< a new percept; null if none came since the previous step
-  bool image;                          ///< new object percepts came since the previous step
-  const ObjectWatchState& things;      ///< what is known of objects and zones
-  const msg::FieldMap* map;            ///< null before the first
+  msg::TaskParameters parameters;       ///< of the goal
+  Pose2 X_MH;                           ///< the head in the map
+  const msg::LinePercept* line;         ///< null if no line percept arrived since the previous step
+  bool new_percepts;                    ///< object percepts arrived since the previous step
+  const ObjectTrackerState& sightings;  ///< the objects and zones seen so far, by colour
+  const msg::FieldMap* map;             ///< null until guidance has written the first map
   const msg::JointState& joints;
-  const std::vector<Pose2>& body;      ///< modules in the head's frame
-  const std::vector<Touch>& touches;   ///< lateral, neither ground nor self
-  bool motion_done;                    ///< control has finished the motion that was asked for last
-  const msg::Path* path = nullptr;     ///< at a goal's start: of its command
+  const std::vector<Pose2>& body;     ///< modules in the head's frame, head first
+  const std::vector<Touch>& touches;  ///< contacts from the side, without the ground's and the robot's own
+  bool motion_done;                   ///< control has finished the newest motion
+  const msg::Path* path = nullptr;    ///< of the command; only in refusal() and start()
 };
 
+/// An event of the tables, with the object, zone or line that it is about.
 struct EventRecord {
   std::uint8_t event = msg::kEventNone;
   std::uint8_t colour = msg::kColourUnknown;
-  std::uint16_t handle = 0;
+  std::uint16_t handle = 0;  ///< in guidance's map; 0: the event is not about an object, or the map does not have it
 };
 
-/// What a task answers.
+/// What a step of a task results in.
 struct TaskOutput {
-  msg::DesiredTrajectory desired{};   ///< without motion_id
-  bool new_motion = false;            ///< the motion begins afresh although its method is the same as before
+  msg::DesiredTrajectory desired{};  ///< the caller fills in motion_id
+  bool new_motion = false;           ///< the motion starts again, although its method is the same as before
   std::vector<EventRecord> events;
-  std::uint8_t state = msg::kGoalRunning;  ///< or kGoalSucceeded, kGoalAborted: the goal ends with this step
-  std::string reason;                 ///< why aborted
-  double progress = 0.0;              ///< 0..1
-  const char* phase = "";             ///< for people
-  double cross_track_m = std::numeric_limits<double>::quiet_NaN();  ///< of a path being followed
+  std::uint8_t state = msg::kGoalRunning;  ///< kGoalSucceeded and kGoalAborted end the goal with this step
+  std::string reason;                      ///< why the goal was aborted
+  double progress = 0.0;                   ///< 0 to 1
+  const char* phase = "";                  ///< name of the present part of the task, for people
+  double cross_track_m = std::numeric_limits<double>::quiet_NaN();  ///< [m] head from the path; NaN: no path
 
   void emit(std::uint8_t event, std::uint8_t colour = msg::kColourUnknown, std::uint16_t handle = 0) {
     events.push_back({event, colour, handle});
   }
-  void succeed() { state = msg::kGoalSucceeded; progress = 1.0; }
-  void abort(std::string why) { state = msg::kGoalAborted; reason = std::move(why); }
+  void succeed() {
+    state = msg::kGoalSucceeded;
+    progress = 1.0;
+  }
+  void abort(std::string why) {
+    state = msg::kGoalAborted;
+    reason = std::move(why);
+  }
 };
 
-/// One of the tasks. Made for a goal, stepped at every tick until the goal ends.
+/// One of the tasks. It is made for a goal and stepped at every tick until the goal ends.
 class Task {
  public:
   virtual ~Task() = default;
-  /// Why this goal cannot be accepted; empty: it can. Nothing has happened yet.
-  [[nodiscard]] virtual std::string refusal(const TaskInput& input, const Grip& grip) const = 0;
+  /// Why the robot cannot do this goal now; empty: it can. The parameters are complete (task_parameter_refusal). Called
+  /// before start(), and changes nothing.
+  [[nodiscard]] virtual std::string refusal(const TaskInput& input, const Grip& grip) const {
+    static_cast<void>(input);
+    static_cast<void>(grip);
+    return {};
+  }
   virtual void start(const TaskInput& input, Grip& grip) = 0;
   virtual void step(const TaskInput& input, Grip& grip, TaskOutput& output) = 0;
   [[nodiscard]] virtual std::string save() const = 0;
   virtual void load(const std::string& bytes) = 0;
 };
 
-/// A task whose whole memory is one serialisable struct.
+/// A task whose whole state is one serialisable struct.
 template <class State>
 class StatefulTask : public Task {
  public:
@@ -93,16 +105,8 @@ class StatefulTask : public Task {
   State state_{};
 };
 
-std::unique_ptr<Task> make_follow_line();
-std::unique_ptr<Task> make_search_object();
-std::unique_ptr<Task> make_track_object();
-std::unique_ptr<Task> make_pregrasp();
-std::unique_ptr<Task> make_grasp();
-std::unique_ptr<Task> make_drop();
-std::unique_ptr<Task> make_rotate();
-std::unique_ptr<Task> make_explore();
-std::unique_ptr<Task> make_follow_path();
-/// By kTask…; null for kTaskNone and unknown numbers.
-std::unique_ptr<Task> make_task(std::uint8_t kind);
+/// A new task of the kind kTask…; null for kTaskNone and unknown numbers. The kinds are registered in
+/// task_registry.cpp.
+std::unique_ptr<Task> make_task(std::uint8_t task);
 
 }  // namespace constrictor

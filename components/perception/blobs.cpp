@@ -12,8 +12,8 @@ namespace constrictor::perception {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPaths = 9;               // lines of sight along which an edge is looked for
-constexpr double kMaxGapPixels = 3.0;   // holes in a region
+constexpr int kPaths = 9;              // number of lines of sight along which an edge is searched
+constexpr double kMaxGapPixels = 3.0;  // widest hole in a region that is passed over
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -21,17 +21,21 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-/// Measures one region. Azimuths and ranges are from the camera until `finish` moves them to the head.
+/// Measures one region. Azimuths and ranges are relative to the camera; `finish` converts them to the head.
 class Gauge {
  public:
   Gauge(const cv::Mat& rgb, const Regions& regions, std::size_t index, const GroundCamera& camera,
         const PerceptionConfig& config)
-      : rgb_(rgb), regions_(regions), region_(regions.regions[index]), id_(static_cast<std::uint8_t>(index + 1)),
-        camera_(camera), config_(config) {
+      : rgb_(rgb),
+        regions_(regions),
+        region_(regions.regions[index]),
+        id_(static_cast<std::uint8_t>(index + 1)),
+        camera_(camera),
+        config_(config) {
     if (region_.standing()) find_sides();
   }
 
-  /// The part that stands up; `on_zone`: its lower edge melts into a zone of the same colour.
+  /// The part that stands upright. `on_zone`: a zone of the same colour adjoins its lower edge.
   std::optional<msg::Blob> object(bool on_zone) const {
     msg::Blob blob = box(region_.standing_first, region_.standing_last);
     const double left = left_, right = right_;
@@ -44,7 +48,7 @@ class Gauge {
     return finish(blob, left, right, range_m);
   }
 
-  /// The part that lies flat: the whole region, or what lies beside the object.
+  /// The part that lies flat: the whole region, or the part beside the object.
   std::optional<msg::Blob> zone() const {
     double right = 1e9, left = -1e9, lateral_min = 1e9, lateral_max = -1e9;
     for (int v = region_.v_min; v <= region_.v_max; ++v) {
@@ -77,7 +81,7 @@ class Gauge {
     return result;
   }
 
-  /// Pixels beside the object, and whether the flat part reaches nearer than the object does.
+  /// The pixels beside the object, and whether the flat part reaches nearer than the object.
   void flat_part(int& pixels, bool& nearer) const {
     pixels = 0;
     int lowest = 0, object_lowest = 0;
@@ -105,8 +109,8 @@ class Gauge {
     return (right_open_ || a > right_ - margin) && (left_open_ || a < left_ + margin);
   }
 
-  /// Whether a flat region at the image's border could be the foot of an object whose upper part is out of view: with the
-  /// camera tilted, upright edges lean outwards in the image.
+  /// Whether a flat region at the image's border could be the foot of an object whose upper part is out of view: with
+  /// the camera tilted, upright edges lean outwards in the image.
   [[nodiscard]] bool may_be_object(const msg::Blob& blob, double left, double right) const {
     if (blob.cut_top) return true;
     if (blob.cut_left == blob.cut_right) return false;
@@ -139,7 +143,7 @@ class Gauge {
     return blob;
   }
 
-  /// Azimuths of an object's sides, where they pass the horizon: there they are clear of anything flat.
+  /// Azimuths of an object's sides at the horizon, where nothing flat can hide them.
   void find_sides() {
     std::vector<double> lefts, rights;
     const double middle = 0.5 * (region_.standing_first + region_.standing_last + 1);
@@ -155,12 +159,12 @@ class Gauge {
     if (lefts.empty() || rights.empty()) return;
     left_ = median(lefts);
     right_ = median(rights);
-    // beyond the image's border it goes on
+    // The object continues beyond the border of the image.
     left_open_ = region_.standing_first == 0;
     right_open_ = region_.standing_last == camera_.width() - 1;
   }
 
-  /// Image of the vertical plane of an azimuth: a point on the horizon and the direction downwards.
+  /// The vertical plane of an azimuth in the image: a point on the horizon and the direction downwards.
   [[nodiscard]] bool plane(double azimuth_rad, Eigen::Vector2d& horizon, Eigen::Vector2d& down) const {
     const Eigen::Vector3d along(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
     const auto far = camera_.pixel(Eigen::Vector3d(camera_.position() + 100.0 * along));
@@ -172,7 +176,7 @@ class Gauge {
   }
 
   /// [m] horizontal distance of the lower edge from the camera around the middle azimuth; NaN if cut or hidden.
-  /// `cut`: by the image's border or the robot's own head.
+  /// `cut`: the border of the image or the robot's own head cuts it.
   [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const {
     std::vector<double> ranges;
     int lost = 0, cuts = 0;
@@ -180,7 +184,7 @@ class Gauge {
       const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
       Eigen::Vector2d start, down;
       if (!plane(right + share * (left - right), start, down)) continue;
-      // a plane whose horizon lies above the image is entered at the image's border
+      // If the horizon lies above the image, the walk begins at the border of the image.
       if (start.y() < 0.0 && down.y() > 1e-3) start += (0.01 - start.y()) / down.y() * down;
       const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, down, region_.standing() ? kMaxGapPixels : 1e9);
       if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
@@ -211,7 +215,7 @@ class Gauge {
     return ranges.empty() ? kNan : median(ranges);
   }
 
-  /// Bearing, range and width as a round thing between two tangents has them, moved from the camera to the head.
+  /// Bearing, range and width of a round object between two tangents, converted from the camera to the head.
   [[nodiscard]] std::optional<msg::Blob> finish(msg::Blob blob, double left, double right, double range_m) const {
     const double middle = 0.5 * (left + right);
     blob.bearing_rad = middle;

@@ -29,7 +29,7 @@ ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 *
   for (int ri = 0; ri < 64; ++ri) {
     for (int gi = 0; gi < 64; ++gi) {
       for (int bi = 0; bi < 64; ++bi) {
-        // the centre of the cell
+        // The colour at the centre of the cell.
         const double r = (ri * 4 + 1.5) / 255.0, g = (gi * 4 + 1.5) / 255.0, b = (bi * 4 + 1.5) / 255.0;
         const double largest = std::max({r, g, b});
         const double chroma = largest - std::min({r, g, b});

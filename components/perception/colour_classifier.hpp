@@ -1,4 +1,4 @@
-// Which of the known colours a pixel has, whatever the strength of the light.
+// Assigns one of the known colours to each pixel, independently of the strength of the light.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace constrictor::perception {
 
-/// Labels pixels by hue where they are coloured enough. Hue and saturation do not change with the strength of a neutral
-/// light or in a shadow; a smallest chroma keeps the noise of dark pixels out.
+/// Labels pixels by their hue if they are coloured enough. Hue and saturation change neither with the strength of
+/// neutral light nor in a shadow. A minimum chroma excludes the noise of dark pixels.
 class ColourClassifier {
  public:
   explicit ColourClassifier(const PerceptionConfig& config);
@@ -27,7 +27,7 @@ class ColourClassifier {
   static std::size_t index(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
     return (std::size_t{r} >> 2) << 12 | (std::size_t{g} >> 2) << 6 | std::size_t{b} >> 2;
   }
-  std::vector<std::uint8_t> table_;  ///< by the 6 upper bits of red, green and blue
+  std::vector<std::uint8_t> table_;  ///< indexed by the upper 6 bits of red, green and blue
 };
 
 }  // namespace constrictor::perception

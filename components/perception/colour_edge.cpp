@@ -19,11 +19,16 @@ std::uint8_t id_at(const cv::Mat& ids, const Eigen::Vector2d& p) {
 
 double strength(std::uint8_t colour, double r, double g, double b) {
   switch (colour) {
-    case msg::kColourGreen: return g - 0.5 * (r + b);
-    case msg::kColourRed: return r - 0.5 * (g + b);
-    case msg::kColourBlue: return b - 0.5 * (r + g);
-    case msg::kColourYellow: return 0.5 * (r + g) - b;
-    default: return 0.0;
+    case msg::kColourGreen:
+      return g - 0.5 * (r + b);
+    case msg::kColourRed:
+      return r - 0.5 * (g + b);
+    case msg::kColourBlue:
+      return b - 0.5 * (r + g);
+    case msg::kColourYellow:
+      return 0.5 * (r + g) - b;
+    default:
+      return 0.0;
   }
 }
 
@@ -80,7 +85,7 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& c
     }
   }
 
-  // levels well inside and well outside, then the half-way crossing between them
+  // The levels well inside and well outside, then the point half-way between them.
   double level_in = -1e9, level_out = 1e9;
   if (last - first >= 6.0) {
     level_in = (value(last - 5.0) + value(last - 4.0) + value(last - 3.0)) / 3.0;

@@ -10,9 +10,8 @@ Eigen::Matrix3d rotation_from(const msg::Quaternion& q) {
   if (!std::isfinite(norm) || norm < 1e-9) return Eigen::Matrix3d::Identity();
   const double w = q.w / norm, x = q.x / norm, y = q.y / norm, z = q.z / norm;
   Eigen::Matrix3d R;
-  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+      2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
   return R;
 }
 
@@ -29,16 +28,16 @@ GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& o
   p_HC_ = Eigen::Vector3d(p.x, p.y, p.z);
   R_GC_ = R_GH * R_HC_;
   p_GC_ = R_GH * p_HC_ + Eigen::Vector3d(0, 0, head_height_m);
-  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // a head that lies on its side still sees something
+  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the head lies on its side
 }
 
 bool GroundCamera::own_head(double u, double v) const {
   if (head_.radius_m <= 0.0) return false;
   const Eigen::Vector3d d = (R_HC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0)).normalized();
-  // least distance between the ray and the capsule's axis; the margin is two pixels at a tenth of a metre
+  // Least distance between the ray and the axis of the capsule. The margin is two pixels at a distance of 0.1 m.
   const double margin_m = 0.2 / fx_;
   double s = std::clamp(p_HC_.x(), -head_.half_length_m, head_.half_length_m), t = 0.0;
-  for (int i = 0; i < 4; ++i) {  // alternating projection onto segment and ray
+  for (int i = 0; i < 4; ++i) {  // projects onto the segment and the ray in turn
     t = std::max(0.0, (Eigen::Vector3d(s, 0.0, 0.0) - p_HC_).dot(d));
     s = std::clamp(p_HC_.x() + t * d.x(), -head_.half_length_m, head_.half_length_m);
   }

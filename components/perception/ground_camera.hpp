@@ -1,4 +1,4 @@
-// Where a pixel looks: the pin-hole camera of the head above the ground plane.
+// Projection between the pixels of the head's pin-hole camera and the ground plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,27 +11,27 @@ namespace constrictor::perception {
 /// Rotation matrix of a unit quaternion (normalised here; identity if it is zero or not finite).
 Eigen::Matrix3d rotation_from(const msg::Quaternion& orientation);
 
-/// The head module as a capsule along its x axis, for what of it the camera sees. Zero radius: nothing.
+/// The head module as a capsule along its x axis: the camera sees part of it. With radius 0 it sees nothing of it.
 struct HeadShape {
   double half_length_m = 0.0;  ///< of the capsule's straight part
   double radius_m = 0.0;
 };
 
 /// A pin-hole camera at a known height and attitude above flat ground. Frame G: origin on the ground below the head's
-/// centre, x forward along the head's yaw, y left, z up. Pixel coordinates (u, v) are continuous: the centre of the first
-/// pixel is (0.5, 0.5).
+/// centre, x forward along the head's yaw, y left, z up. Pixel coordinates (u, v) are continuous: the centre of the
+/// first pixel is (0.5, 0.5).
 class GroundCamera {
  public:
-  /// `orientation` is the head's (ImuState); its yaw is taken out. `head_height_m` is that of the head's centre.
+  /// `orientation`: of the head (ImuState); its yaw is ignored. `head_height_m`: height of the head's centre.
   GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
                const HeadShape& head = {});
 
-  /// Direction in G (not normalised) in which a pixel looks.
+  /// Direction of the ray through a pixel, in G, not normalised.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const {
     return R_GC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
   }
 
-  /// Whether the robot's own head is in the way at a pixel, or within about two pixels of it.
+  /// Whether the robot's own head covers a pixel, or a place within about two pixels of it.
   [[nodiscard]] bool own_head(double u, double v) const;
 
   /// Ground point seen at a pixel; none at or above the horizon, or beyond `max_range_m` from the camera.
@@ -46,7 +46,7 @@ class GroundCamera {
   /// Row of the horizon at column u; +-1e9 if the camera looks straight up or down.
   [[nodiscard]] double horizon_row(double u) const;
 
-  /// [m] extent on the ground, across the view, of one pixel at a range; and along the view.
+  /// [m] size of a pixel on the ground at a range: across the line of sight, and along it.
   [[nodiscard]] double pixel_across_m(double range_m) const { return range_m / fx_; }
   [[nodiscard]] double pixel_along_m(double range_m) const {
     return (range_m * range_m + height_m() * height_m()) / (fy_ * height_m());

@@ -5,6 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "constrictor/image.hpp"
 #include "perception/blobs.hpp"
 #include "perception/line_fit.hpp"
 #include "perception/line_tracer.hpp"
@@ -36,7 +37,8 @@ msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, doubl
     line.near_m = std::min(line.near_m, point.p.x());
     line.far_m = std::max(line.far_m, point.p.x());
   }
-  const std::size_t count = std::min<std::size_t>(trace.points.size(), static_cast<std::size_t>(msg::kMaxPerceptPoints));
+  const std::size_t count =
+      std::min<std::size_t>(trace.points.size(), static_cast<std::size_t>(msg::kMaxPerceptPoints));
   line.point_count = static_cast<std::uint16_t>(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = count > 1 ? i * (trace.points.size() - 1) / (count - 1) : 0;
@@ -50,14 +52,14 @@ msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, doubl
 
 std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& info) {
   if (image.width != info.width || image.height != info.height) {
-    return cv::format("size: found %d x %d, accepted %d x %d, as camera/info says", image.width, image.height, info.width, info.height);
+    return cv::format("size: found %d x %d, accepted %d x %d, as camera/info says", image.width, image.height,
+                      info.width, info.height);
   }
-  if (image.width < 32 || image.height < 24) return cv::format("size: found %d x %d, accepted 32 x 24 or more", image.width, image.height);
-  const std::size_t bytes = std::size_t{3} * image.width * image.height;
-  if (image.data._length != bytes || image.data._buffer == nullptr) {
-    return cv::format("data: found %u bytes, accepted %d x %d x 3 = %zu", image.data._length, image.width, image.height, bytes);
-  }
-  const bool finite = std::isfinite(info.fx) && std::isfinite(info.fy) && std::isfinite(info.cx) && std::isfinite(info.cy);
+  if (image.width < 32 || image.height < 24)
+    return cv::format("size: found %d x %d, accepted 32 x 24 or more", image.width, image.height);
+  if (const std::string violation = image_violation(image); !violation.empty()) return violation;
+  const bool finite =
+      std::isfinite(info.fx) && std::isfinite(info.fy) && std::isfinite(info.cx) && std::isfinite(info.cy);
   if (!finite || info.fx <= 0.0 || info.fy <= 0.0) return "not used: camera/info has no focal length above 0";
   return {};
 }
@@ -68,7 +70,7 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
 
 Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) const {
   cv::Mat smooth, labels;
-  // far things on the ground are flat: they bear more smoothing along the rows than across them
+  // Distant regions on the ground are flat in the image. Smoothing along the rows harms them less than across the rows.
   cv::GaussianBlur(rgb, smooth, {7, 3}, 1.5, 0.7);
   classifier_.classify(smooth, labels);
   const Regions regions = find_regions(labels, camera, config_, line_colour);

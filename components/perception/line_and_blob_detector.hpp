@@ -11,22 +11,22 @@
 
 namespace constrictor::perception {
 
-/// What is wrong with an image or its camera model; empty: nothing.
+/// The mistake in an image or in its camera model; empty if there is none.
 [[nodiscard]] std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& info);
 
 struct Percepts {
   msg::LinePercept line{};
   msg::ObjectPercepts objects{};
-  cv::Mat picture;  ///< RGB, the dimmed image with what was found
+  cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it
 };
 
-/// Finds the line, objects and zones of an image by the camera's model. Holds tables only: the result depends on nothing
-/// but the arguments of `detect`.
+/// Finds the line, the objects and the zones in an image, by the camera's model. It keeps tables only: the result
+/// depends on the arguments of `detect` alone.
 class LineAndBlobDetector {
  public:
   explicit LineAndBlobDetector(const PerceptionConfig& config);
 
-  /// `rgb`: CV_8UC3 of the camera's size. exposure_tick and headers of the percepts stay for the caller to fill.
+  /// `rgb`: CV_8UC3 of the camera's size. The caller fills in exposure_tick and the headers of the percepts.
   [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) const;
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }

@@ -8,11 +8,11 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kHalfWindow_m = 0.40;      // of the line on either side of the lookahead
+constexpr double kHalfWindow_m = 0.40;  // of the line on either side of the lookahead
 constexpr double kCurvaturePrior_1_m = 1.5;
 constexpr int kIterations = 4;
 
-/// The traced line as a function of its length, and where it passes the lookahead.
+/// The traced line as a function of its length, and the place where it passes the lookahead distance.
 std::size_t anchor_index(const LineTrace& trace, double lookahead_m, double& reached_m) {
   const auto& points = trace.points;
   std::size_t best = 0;
@@ -36,7 +36,7 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
   if (points.size() < 4) return fit;
   const std::size_t anchor = anchor_index(trace, lookahead_m, fit.lookahead_m);
 
-  // window of the line around the anchor
+  // The part of the line around the anchor.
   std::size_t first = anchor, last = anchor;
   double behind_m = 0.0, ahead_m = 0.0;
   while (first > 0 && behind_m < kHalfWindow_m) {
@@ -49,9 +49,10 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
   }
   if (last - first < 3) return fit;
 
-  // frame along the line at the anchor; turned once more after the first fit
+  // A frame along the line at the anchor. It is turned once more after the first fit.
   const Eigen::Vector2d origin = points[anchor].p;
-  Eigen::Vector2d t = (points[std::min(last, anchor + 3)].p - points[anchor >= first + 3 ? anchor - 3 : first].p).normalized();
+  Eigen::Vector2d t =
+      (points[std::min(last, anchor + 3)].p - points[anchor >= first + 3 ? anchor - 3 : first].p).normalized();
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   for (int turn = 0; turn < 2; ++turn) {
     const Eigen::Vector2d n(-t.y(), t.x());
@@ -71,7 +72,7 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
       A(0, 0) += 1e-9;
       A(1, 1) += 1e-9;
       c = A.ldlt().solve(b);
-      // Tukey's biweight on residuals in units of their own expected error
+      // Tukey's biweight of residuals in units of their expected error.
       std::vector<double> residual(weight.size());
       for (std::size_t i = first; i <= last; ++i) {
         const Eigen::Vector2d d = points[i].p - origin;
@@ -92,7 +93,7 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
     }
   }
 
-  // where the parabola passes x = lookahead: Newton from the anchor
+  // Newton's method finds where the parabola passes x = lookahead, from the anchor.
   const Eigen::Vector2d n(-t.y(), t.x());
   double s = 0.0;
   for (int i = 0; i < 5; ++i) {

@@ -7,15 +7,15 @@ namespace constrictor::perception {
 
 struct LineFit {
   bool valid = false;
-  double lookahead_m = 0.0;    ///< the wanted one, or the nearest at which the line was seen
+  double lookahead_m = 0.0;    ///< the requested distance, or the nearest one at which the line was seen
   double offset_m = 0.0;       ///< lateral position there, positive left
   double heading_rad = 0.0;    ///< relative to x, positive left
   double curvature_1_m = 0.0;  ///< positive bends left
 };
 
-/// Robust parabola (iteratively reweighted least squares with Tukey's biweight) through the points around the lookahead, in
-/// a frame along the line there, so that a line that crosses the view is as good as one that leads ahead. Short pieces pull
-/// the curvature to zero (prior of 1.5 /m).
+/// Robust parabola (iteratively reweighted least squares with Tukey's biweight) through the points around the
+/// lookahead, in a frame along the line there. So a line that crosses the view is fitted as well as one that leads
+/// ahead. For short pieces the curvature tends to zero (prior of 1.5 1/m).
 LineFit fit_line(const LineTrace& trace, double lookahead_m);
 
 }  // namespace constrictor::perception

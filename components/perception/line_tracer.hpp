@@ -1,4 +1,4 @@
-// Follows the line over the ground plane, from cross-section to cross-section.
+// Traces the line over the ground plane, from cross-section to cross-section.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,7 +8,7 @@
 
 namespace constrictor::perception {
 
-/// The line as it was traced, from near to far. Points in G.
+/// The traced line, from near to far. Points in G.
 struct LineTrace {
   struct Point {
     Eigen::Vector2d p;
@@ -19,9 +19,10 @@ struct LineTrace {
   Eigen::Vector2d end = Eigen::Vector2d::Zero();  ///< valid if end_visible
 };
 
-/// Traces the line of `colour` in the label image. At each step it takes the cross-section of the expected width across the
-/// course so far; where a standing thing hides one edge, the other one and the line's width count; where it hides both,
-/// the course is continued. So an object on the line does not bend it. No points: no line.
+/// Traces the line of `colour` in the label image. Each step looks at the cross-section of the expected width across
+/// the course so far. Where an upright object hides one edge, the other edge and the width of the line give the centre;
+/// where it hides both edges, the course is continued. So an object on the line does not bend the trace. The result has
+/// no points if there is no line.
 LineTrace trace_line(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera,
                      const PerceptionConfig& config, std::uint8_t colour);
 

@@ -3,20 +3,19 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "perception/perception_parameters.hpp"
 #include "robot/robot_model.hpp"
 
 namespace constrictor {
 namespace {
 
-constexpr std::size_t kAttitudes = 32;  // ticks; longer than any camera's delay
+constexpr std::size_t kAttitudes = 32;  // [ticks] longer than the delay of any camera
 
 }  // namespace
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
-    : config_(perception::load_perception_config(setup.config_file)),
+    : config_(load_parameters<perception::PerceptionConfig>(setup.config_file)),
       wiring_(wiring),
-      parameters_(wiring, topics::kPerceptionParameters),
+      parameters_(wiring, topics::kPerceptionParameters, config_),
       detector_(config_),
       image_(wiring.latest(topics::kCameraImage)),
       info_(wiring.latest(topics::kCameraInfo)),
@@ -25,9 +24,8 @@ Perception::Perception(Wiring& wiring, const Setup& setup)
       line_(wiring.output(topics::kLinePercept)),
       objects_(wiring.output(topics::kObjectPercepts)),
       processed_(wiring.output(topics::kProcessedImage)) {
-  perception::add_parameters(config_, parameters_);
   const RobotModel robot = load_robot(setup.robot_file);
-  // the robot lies on its modules: the head's centre is one radius above the ground
+  // The robot lies on its modules: the centre of the head is one radius above the ground.
   head_height_m_ = robot.module_radius_m;
   head_ = {0.5 * robot.module_length_m, robot.module_radius_m};
 }
@@ -37,7 +35,8 @@ msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
   for (const Attitude& a : state_.attitudes) {
     if (nearest == nullptr || std::abs(a.tick - tick) < std::abs(nearest->tick - tick)) nearest = &a;
   }
-  return nearest ? msg::Quaternion{nearest->w, nearest->x, nearest->y, nearest->z} : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
+  return nearest ? msg::Quaternion{nearest->w, nearest->x, nearest->y, nearest->z}
+                 : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
 }
 
 void Perception::step(const Tick& tick) {
@@ -56,7 +55,7 @@ void Perception::step(const Tick& tick) {
   }
   ++state_.images;
 
-  // the matrix only views the message's pixels; the detector does not write to them
+  // The matrix is a view of the message's pixels. The detector does not write to them.
   const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
   const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_, head_);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
@@ -78,9 +77,8 @@ void Perception::step(const Tick& tick) {
 }
 
 ComponentFactory make_perception_factory() {
-  return {"perception",
-          [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); },
-          "components/perception/perception.yaml"};
+  return {"perception", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); },
+          "components/perception/perception.yaml", describe_parameters<perception::PerceptionConfig>};
 }
 
 }  // namespace constrictor

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <deque>
 
+#include "component/component.hpp"
+#include "component/parameters.hpp"
 #include "perception/line_and_blob_detector.hpp"
-#include "runtime/component.hpp"
-#include "runtime/parameters.hpp"
 
 namespace constrictor {
 
-/// The head's attitude at a tick.
+/// Attitude of the head at a tick: unit quaternion from head to world.
 struct Attitude {
   std::int64_t tick = 0;
   double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
@@ -22,9 +22,9 @@ struct Attitude {
 };
 
 struct PerceptionState {
-  std::deque<Attitude> attitudes;   ///< of the last ticks, oldest first
-  std::uint8_t line_colour = 0;     ///< in use; 0: the configured one
-  std::uint64_t images = 0;         ///< worked on
+  std::deque<Attitude> attitudes;  ///< of the last ticks, the oldest first
+  std::uint8_t line_colour = 0;    ///< named by a task; 0: no task has named one
+  std::uint64_t images = 0;        ///< number of processed images
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
@@ -32,8 +32,9 @@ struct PerceptionState {
   }
 };
 
-/// Works on each new image with the attitude that the head had when it was exposed. Writes nothing before the first image
-/// and camera model. The colour of the line is the last one that a task named.
+/// Processes each new image with the attitude that the head had when the image was exposed. Publishes nothing before
+/// the first image and the first camera model. The line has the colour that a task named last; before that, the colour
+/// of the configuration.
 class Perception : public StatefulComponent<PerceptionState> {
  public:
   Perception(Wiring& wiring, const Setup& setup);

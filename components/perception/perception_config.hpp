@@ -1,39 +1,64 @@
-// Parameters of perception, read from perception.yaml.
+// The parameters of perception: one row each. perception.yaml and the table in README.md follow from the rows.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <string_view>
+#include <string>
+#include <vector>
 
+#include "configuration/parameter_set.hpp"
+#include "constrictor/constants.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor::perception {
 
-/// Hues of one colour; from > to passes through 0.
+/// Hues of one colour. If `from_deg` is greater than `to_deg`, the range passes through 0.
 struct HueRange {
   double from_deg = 0.0;
   double to_deg = 0.0;
 };
 
-struct PerceptionConfig {
-  std::uint8_t line_colour = msg::kColourBlue;
-  double line_width_m = 0.05;
-  double lookahead_m = 0.35;
-  double line_max_range_m = 2.0;
-  double line_max_gap_m = 0.35;
-  double object_height_m = 0.15;
-  int min_area_pixels = 14;
-  double blob_max_range_m = 6.0;
-  double min_chroma = 0.075;
-  double min_saturation = 0.33;
-  std::array<HueRange, msg::kColourCount> hues{{{}, {85, 165}, {340, 18}, {195, 262}, {42, 72}}};
+struct PerceptionConfig : ParameterSet {
+  std::uint8_t line_colour = add(line_colour, "line.colour", msg::kColourBlue, colour_names(),
+                                 "Colour of the line until a task names another");
+  double line_width_m = add(line_width_m, "line.width_m", 0.05, "m", {0.01, 0.3}, Changes::kWhileRunning,
+                            "Expected width of the line; half to twice of it is accepted");
+  double lookahead_m =
+      add(lookahead_m, "line.lookahead_m", 0.35, "m", {0.1, 2.0}, Changes::kWhileRunning,
+          "Distance at which offset, heading and curvature of the line are given, if it is seen there");
+  double line_max_range_m = add(line_max_range_m, "line.max_range_m", 2.0, "m", {0.2, 10.0}, Changes::kWhileRunning,
+                                "The line is not traced beyond this distance");
+  double line_max_gap_m = add(line_max_gap_m, "line.max_gap_m", 0.35, "m", {0.0, 2.0}, Changes::kWhileRunning,
+                              "Longest hidden stretch of the line that is bridged");
+  double object_height_m = add(object_height_m, "object.height_m", 0.15, "m", {0.02, 2.0}, Changes::kWhileRunning,
+                               "Height of objects; gives their range when their lower edge is hidden");
+  int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, Changes::kWhileRunning,
+                            "Smaller blobs are ignored");
+  double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, Changes::kWhileRunning,
+                                "More distant objects and zones are not reported");
+  double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, Changes::kWhileRunning,
+                          "Least difference between the channels of a coloured pixel (full scale: 1)");
+  double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, Changes::kWhileRunning,
+                              "Least ratio of that difference to the largest channel of a coloured pixel");
+  std::array<HueRange, msg::kColourCount> hues{
+      HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
+      add_hues(msg::kColourBlue, 195.0, 262.0), add_hues(msg::kColourYellow, 42.0, 72.0)};
+
+ private:
+  /// By number; "unknown" has no name here, because no file may ask for it.
+  static std::vector<std::string> colour_names() {
+    std::vector<std::string> names = names_of(constants::kColour, msg::kColourGreen);
+    names.insert(names.begin(), "");
+    return names;
+  }
+  HueRange add_hues(std::uint8_t colour, double from_deg, double to_deg) {
+    const std::string name = name_of(constants::kColour, colour);
+    const std::string key = "colour." + name;
+    return {add(hues[colour].from_deg, key + ".from_deg", from_deg, "deg", {0.0, 360.0}, Changes::kWhileRunning,
+                "First hue of " + name + " (0 red, 120 green, 240 blue)"),
+            add(hues[colour].to_deg, key + ".to_deg", to_deg, "deg", {0.0, 360.0}, Changes::kWhileRunning,
+                "Last hue of " + name + "; the range passes through 0 if it is less than the first")};
+  }
 };
-
-/// Names of the colours by their number ("unknown", "green", "red", "blue", "yellow").
-inline constexpr std::array<std::string_view, msg::kColourCount> kColourNames{"unknown", "green", "red", "blue", "yellow"};
-
-/// Throws ConfigurationError.
-PerceptionConfig load_perception_config(const std::filesystem::path& file);
 
 }  // namespace constrictor::perception

@@ -51,8 +51,8 @@ void draw_blob(cv::Mat& picture, const msg::Blob& blob) {
 
 }  // namespace
 
-cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera, const msg::LinePercept& line,
-                      const msg::ObjectPercepts& objects) {
+cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera,
+                      const msg::LinePercept& line, const msg::ObjectPercepts& objects) {
   cv::Mat picture(rgb.size(), CV_8UC3);
   for (int v = 0; v < rgb.rows; ++v) {
     const cv::Vec3b* in = rgb.ptr<cv::Vec3b>(v);
@@ -60,7 +60,8 @@ cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCam
     cv::Vec3b* out = picture.ptr<cv::Vec3b>(v);
     for (int u = 0; u < rgb.cols; ++u) {
       for (int c = 0; c < 3; ++c) {
-        out[u][c] = static_cast<std::uint8_t>(label[u] == 0 ? in[u][c] * 2 / 5 : (in[u][c] + 2 * kPaint[label[u]][c]) / 4);
+        out[u][c] =
+            static_cast<std::uint8_t>(label[u] == 0 ? in[u][c] * 2 / 5 : (in[u][c] + 2 * kPaint[label[u]][c]) / 4);
       }
     }
   }

@@ -1,4 +1,4 @@
-// The processed picture: what perception found, drawn over the dimmed image.
+// The processed image: the percepts, drawn over the dimmed camera image.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,9 +7,9 @@
 
 namespace constrictor::perception {
 
-/// Dimmed `rgb` with the pixels of known colours, the horizon, the line's points and end, the blobs' boxes with kind and
-/// range.
-cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera, const msg::LinePercept& line,
-                      const msg::ObjectPercepts& objects);
+/// The dimmed `rgb` with the pixels of known colours, the horizon, the points and the end of the line, and the boxes of
+/// the blobs with kind and range.
+cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera,
+                      const msg::LinePercept& line, const msg::ObjectPercepts& objects);
 
 }  // namespace constrictor::perception

@@ -9,7 +9,7 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr int kSpeckPixels = 4;        // fragments below this are dropped before fragments are joined
+constexpr int kSpeckPixels = 4;           // smaller fragments are dropped before fragments are joined
 constexpr std::size_t kMaxRegions = 250;  // ids are bytes
 constexpr double kHorizonMarginPixels = 1.0;
 
@@ -18,7 +18,7 @@ struct Fragment {
   int component = 0;
 };
 
-/// True if two fragments of one colour lie close enough together to be one thing that noise or a thin occlusion cut.
+/// Whether two fragments of one colour are so close together that noise or a thin object in front has split one region.
 bool adjoin(const Region& a, const Region& b) {
   const int larger = std::max({a.u_max - a.u_min, a.v_max - a.v_min, b.u_max - b.u_min, b.v_max - b.v_min});
   const int reach = 2 + std::min(4, larger / 10);
@@ -38,7 +38,7 @@ void merge_into(Region& a, const Region& b) {
 void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Regions& out) {
   cv::Mat mask, components, stats, centroids;
   cv::compare(labels, colour, mask, cv::CMP_EQ);
-  // fills the pinholes that noise makes
+  // Fills the small holes that noise makes.
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
   const int count = cv::connectedComponentsWithStats(mask, components, stats, centroids, 8, CV_16U);
 
@@ -59,7 +59,7 @@ void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Region
                    [](const Fragment& a, const Fragment& b) { return a.region.area > b.region.area; });
   fragments.resize(std::min<std::size_t>(fragments.size(), 64));
 
-  // each fragment joins the first larger group that it adjoins
+  // Each fragment joins the first larger group that it adjoins.
   std::vector<int> group(fragments.size(), -1);
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     if (group[i] >= 0) continue;
@@ -95,7 +95,8 @@ void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Region
   }
 }
 
-/// A thin region squeezed between larger ones of other colours is their blurred border, not a thing.
+/// Whether a region is only the blurred border between larger regions of other colours: it is thin and lies between
+/// them.
 bool is_fringe(const Regions& all, std::size_t index) {
   const Region& region = all.regions[index];
   const int length = std::max(region.u_max - region.u_min, region.v_max - region.v_min) + 1;
@@ -137,7 +138,8 @@ void find_standing_columns(const cv::Mat& ids, std::uint8_t id, const GroundCame
   region.standing_bottom = region.v_min;
   for (int v = region.v_min; v <= region.v_max; ++v) {
     int count = 0;
-    for (int u = region.standing_first; u <= region.standing_last; ++u) count += ids.at<std::uint8_t>(v, u) == id ? 1 : 0;
+    for (int u = region.standing_first; u <= region.standing_last; ++u)
+      count += ids.at<std::uint8_t>(v, u) == id ? 1 : 0;
     if (5 * count >= 3 * (region.standing_last - region.standing_first + 1)) region.standing_bottom = v;
   }
 }
@@ -166,20 +168,21 @@ bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camer
     points.push_back(*right);
   }
   if (points.empty()) return false;
-  // longest extent: from any point to the farthest, and from there to the farthest again
+  // The longest extent: from any point to the farthest point, and from there to the farthest point again.
   const auto farthest_from = [&](const Eigen::Vector2d& p) {
     return *std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
       return (a - p).squaredNorm() < (b - p).squaredNorm();
     });
   };
   const Eigen::Vector2d end = farthest_from(points.front());
-  // one or two rows of far away ground have no shape
-  if (region.area <= 3 * std::max(region.u_max - region.u_min + 1, region.v_max - region.v_min + 1) && nearest_m > 0.7) {
+  // One or two rows of distant ground have no shape.
+  if (region.area <= 3 * std::max(region.u_max - region.u_min + 1, region.v_max - region.v_min + 1) &&
+      nearest_m > 0.7) {
     return true;
   }
   const double length_m = std::max((farthest_from(end) - end).norm(), 1e-3);
   const double thickness_m = area_m2 / length_m;
-  const double aspect = 0.785 * length_m * length_m / std::max(area_m2, 1e-6);  // 1: a disc
+  const double aspect = 0.785 * length_m * length_m / std::max(area_m2, 1e-6);  // 1 for a disc
   return thickness_m < 2.0 * line_width_m + 2.5 * camera.pixel_across_m(nearest_m) || aspect > 2.5;
 }
 

@@ -1,4 +1,4 @@
-// Connected regions of one colour in the label image, and whether they stand up from the ground.
+// Connected regions of one colour in the label image, and whether they stand upright on the ground.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct Region {
   std::uint8_t colour = msg::kColourUnknown;
   int area = 0;  ///< [pixel]
   int u_min = 0, v_min = 0, u_max = 0, v_max = 0;
-  /// Columns in which it reaches above the horizon: what does so stands up, because the ground nowhere does. The camera
-  /// is lower than the top of every object. first > last: none.
+  /// First and last column in which the region reaches above the horizon; first > last: there is none. Such a region
+  /// stands upright: flat ground never rises above the horizon, and the camera is lower than the top of every object.
   int standing_first = 0, standing_last = -1;
-  int standing_bottom = -1;  ///< last row, from the top, that still has most of the standing part's width
-  bool line = false;  ///< elongated on the ground and of the line's colour
+  int standing_bottom = -1;  ///< lowest row in which the standing part still has most of its width
+  bool line = false;         ///< elongated on the ground and of the line's colour
 
   [[nodiscard]] bool standing() const { return standing_last > standing_first; }
 };

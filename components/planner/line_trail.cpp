@@ -6,18 +6,18 @@
 
 namespace constrictor {
 namespace {
-constexpr double kSpacing_m = 0.3;
-constexpr double kNewGround_m = 0.45;
-constexpr double kFrontier_m = 1.5;
-constexpr std::size_t kMostCrumbs = 400;  // 120 m of line
+constexpr double kSpacing_m = 0.3;       // between recorded points
+constexpr double kNewGround_m = 0.45;    // from every recorded point
+constexpr double kFrontier_m = 1.5;      // radius of the frontier's neighbourhood
+constexpr std::size_t kMaxPoints = 400;  // 120 m of line
 
-/// A point of frame G at a pose, in M.
+/// A point of frame G, for the head at `pose`, in M.
 LinePoint in_map(const msg::RobotPose& pose, double x_m, double y_m) {
   const double c = std::cos(pose.yaw_rad);
   const double s = std::sin(pose.yaw_rad);
   return {pose.x_m + c * x_m - s * y_m, pose.y_m + s * x_m + c * y_m, true};
 }
-/// The farthest point of the line in view, in M.
+/// The farthest visible point of the line, in M.
 LinePoint farthest(const msg::LinePercept& line, const msg::RobotPose& pose) {
   const std::size_t count = std::min<std::size_t>(line.point_count, msg::kMaxPerceptPoints);
   if (!line.visible || count == 0) return {};
@@ -30,25 +30,27 @@ LinePoint farthest(const msg::LinePercept& line, const msg::RobotPose& pose) {
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
-const Crumb* LineTrail::nearest(double x_m, double y_m) const {
-  const Crumb* best = nullptr;
+const TrailPoint* LineTrail::nearest(double x_m, double y_m) const {
+  const TrailPoint* best = nullptr;
   double best_m = 0.0;
-  for (const Crumb& crumb : crumbs_) {
-    const double distance_m = std::hypot(crumb.x_m - x_m, crumb.y_m - y_m);
+  for (const TrailPoint& point : points_) {
+    const double distance_m = std::hypot(point.x_m - x_m, point.y_m - y_m);
     if (best && distance_m >= best_m) continue;
-    best = &crumb;
+    best = &point;
     best_m = distance_m;
   }
   return best;
 }
 
 void LineTrail::record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound) {
-  if (!line.visible || !std::isfinite(line.offset_m) || !std::isfinite(line.heading_rad) || !std::isfinite(line.lookahead_m)) return;
-  const auto [x_m, y_m, at_all] = in_map(pose, line.lookahead_m, line.offset_m);
-  const Crumb* known = nearest(x_m, y_m);
+  if (!line.visible || !std::isfinite(line.offset_m) || !std::isfinite(line.heading_rad) ||
+      !std::isfinite(line.lookahead_m))
+    return;
+  const auto [x_m, y_m, known_point] = in_map(pose, line.lookahead_m, line.offset_m);
+  const TrailPoint* known = nearest(x_m, y_m);
   if (known && std::hypot(known->x_m - x_m, known->y_m - y_m) < kSpacing_m) return;
-  if (crumbs_.size() >= kMostCrumbs) crumbs_.erase(crumbs_.begin());
-  crumbs_.push_back({x_m, y_m, wrapped(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
+  if (points_.size() >= kMaxPoints) points_.erase(points_.begin());
+  points_.push_back({x_m, y_m, wrapped(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
   if (outbound) frontier_ = {x_m, y_m, true};
 }
 
@@ -61,37 +63,38 @@ void LineTrail::note_beyond(const msg::LinePercept& line, const msg::RobotPose& 
   if (point.known && at_frontier(point.x_m, point.y_m)) beyond_ = point;
 }
 
-bool LineTrail::leads_on(const msg::LinePercept& line, const msg::RobotPose& pose) const {
+bool LineTrail::leads_to_new_ground(const msg::LinePercept& line, const msg::RobotPose& pose) const {
   const LinePoint point = farthest(line, pose);
   if (!point.known || !at_frontier(point.x_m, point.y_m)) return false;
-  const Crumb* known = nearest(point.x_m, point.y_m);
+  const TrailPoint* known = nearest(point.x_m, point.y_m);
   return std::hypot(known->x_m - point.x_m, known->y_m - point.y_m) > kNewGround_m;
 }
 
 std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool outbound) const {
-  const Crumb* crumb = nearest(pose.x_m, pose.y_m);
-  if (!crumb) return std::nullopt;
-  return wrapped(crumb->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
+  const TrailPoint* point = nearest(pose.x_m, pose.y_m);
+  if (!point) return std::nullopt;
+  return wrapped(point->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
 }
 
 std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound) const {
   constexpr double kBeside_m = 0.5;
   constexpr double kJoinAhead_m = 0.6;
   constexpr double kArrived_m = 0.3;
-  const Crumb* crumb = nearest(pose.x_m, pose.y_m);
-  if (!crumb) return std::nullopt;
-  if (outbound && beyond_.known && at_frontier(pose.x_m, pose.y_m) && std::hypot(beyond_.x_m - pose.x_m, beyond_.y_m - pose.y_m) > kArrived_m) {
+  const TrailPoint* point = nearest(pose.x_m, pose.y_m);
+  if (!point) return std::nullopt;
+  if (outbound && beyond_.known && at_frontier(pose.x_m, pose.y_m) &&
+      std::hypot(beyond_.x_m - pose.x_m, beyond_.y_m - pose.y_m) > kArrived_m) {
     return std::atan2(beyond_.y_m - pose.y_m, beyond_.x_m - pose.x_m);
   }
-  if (std::hypot(crumb->x_m - pose.x_m, crumb->y_m - pose.y_m) < kBeside_m) return direction_rad(pose, outbound);
+  if (std::hypot(point->x_m - pose.x_m, point->y_m - pose.y_m) < kBeside_m) return direction_rad(pose, outbound);
   const double way = outbound ? kJoinAhead_m : -kJoinAhead_m;
-  const double x_m = crumb->x_m + way * std::cos(crumb->outbound_rad);
-  const double y_m = crumb->y_m + way * std::sin(crumb->outbound_rad);
+  const double x_m = point->x_m + way * std::cos(point->outbound_rad);
+  const double y_m = point->y_m + way * std::sin(point->outbound_rad);
   return std::atan2(y_m - pose.y_m, x_m - pose.x_m);
 }
 
 void LineTrail::reverse() {
-  for (Crumb& crumb : crumbs_) crumb.outbound_rad = wrapped(crumb.outbound_rad + std::numbers::pi);
+  for (TrailPoint& point : points_) point.outbound_rad = wrapped(point.outbound_rad + std::numbers::pi);
   frontier_.known = beyond_.known = false;
 }
 

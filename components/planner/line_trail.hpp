@@ -1,4 +1,4 @@
-// Where the line was seen and which way along it leads to the objects: the planner's memory for the way back.
+// The planner's memory of the line: where it was seen, and which direction along it leads to the objects.
 #pragma once
 
 #include <cereal/types/vector.hpp>
@@ -9,8 +9,8 @@
 
 namespace constrictor {
 
-/// A point of the line in the map's frame M with the direction that leads to the objects there.
-struct Crumb {
+/// A point of the line in the map's frame M, with the direction that leads along the line to the objects.
+struct TrailPoint {
   double x_m = 0.0;
   double y_m = 0.0;
   double outbound_rad = 0.0;
@@ -31,41 +31,43 @@ struct LinePoint {
   }
 };
 
-/// Made while a line is followed, from percepts and the pose estimate: directions come from where the robot has been, not from
-/// anything known beforehand.
+/// Recorded from percepts and pose estimates while the robot follows the line. The directions follow from the robot's
+/// own way; nothing is known in advance. "Outbound" is the direction towards the objects.
 class LineTrail {
  public:
-  /// Takes the line at the lookahead of a percept seen from `pose`; `outbound` says which way it is being followed. Places known
-  /// already (within 0.3 m) keep their direction. Ignores percepts without a visible line.
+  /// Adds the point of the line at the lookahead of a percept taken at `pose`. `outbound`: the robot follows the line
+  /// towards the objects. Known points (within 0.3 m) keep their direction. A percept without a visible line is
+  /// ignored.
   void record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound);
-  /// Remembers the farthest point of the line in view if it lies where the line was last followed outbound, or beyond.
+  /// Stores the farthest visible point of the line if it lies near, or beyond, the last point followed outbound.
   void note_beyond(const msg::LinePercept& line, const msg::RobotPose& pose);
-  /// Whether the line in view leads on over new ground, beyond where it was last followed outbound: after a bend, in any direction.
-  [[nodiscard]] bool leads_on(const msg::LinePercept& line, const msg::RobotPose& pose) const;
-  /// [rad] in M, direction along the line next to the pose that leads to the objects (or back); empty: no line known yet.
+  /// Whether the visible line continues, in any direction, over new ground beyond the last point followed outbound.
+  [[nodiscard]] bool leads_to_new_ground(const msg::LinePercept& line, const msg::RobotPose& pose) const;
+  /// [rad] in M, direction of the line beside the pose, towards the objects or back; empty: no point of the line is
+  /// known.
   [[nodiscard]] std::optional<double> direction_rad(const msg::RobotPose& pose, bool outbound) const;
-  /// [rad] heading in M that leads along the line in that direction; from beside it, towards a place a little further along, where
-  /// it is best joined; outbound from where it was lost behind a bend, towards where it was seen last.
+  /// [rad] heading in M that leads along the line in that direction. Away from the line: towards a point of the line a
+  /// little further on. Outbound, where the line was lost behind a bend: towards its last visible point.
   [[nodiscard]] std::optional<double> heading_rad(const msg::RobotPose& pose, bool outbound) const;
-  /// It was the wrong way: every direction is the opposite.
+  /// Turns every direction round: the robot has followed the line the wrong way.
   void reverse();
-  [[nodiscard]] bool empty() const { return crumbs_.empty(); }
+  [[nodiscard]] bool empty() const { return points_.empty(); }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(crumbs_, frontier_, beyond_);
+    archive(points_, frontier_, beyond_);
   }
 
  private:
-  [[nodiscard]] const Crumb* nearest(double x_m, double y_m) const;
-  /// Whether a point of M is about the frontier.
+  [[nodiscard]] const TrailPoint* nearest(double x_m, double y_m) const;
+  /// Whether a point of M is near the frontier.
   [[nodiscard]] bool at_frontier(double x_m, double y_m) const;
-  std::vector<Crumb> crumbs_;
-  LinePoint frontier_;  ///< the newest crumb made outbound
-  LinePoint beyond_;    ///< the newest point of the line seen there or beyond
+  std::vector<TrailPoint> points_;
+  LinePoint frontier_;  ///< the newest point recorded outbound
+  LinePoint beyond_;    ///< the newest visible point of the line near the frontier or beyond
 };
 
-/// Angle wrapped into [-pi, pi].
+/// An angle wrapped into [-pi, pi].
 double wrapped(double angle_rad);
 
 }  // namespace constrictor

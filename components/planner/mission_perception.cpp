@@ -1,4 +1,4 @@
-// What the mission planner makes of percepts, pose and map, and the requests that follow from it.
+// How the mission planner uses percepts, pose and map, and which tasks it requests.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@ namespace {
 
 using enum MissionState;
 
-/// Nearest blob of a colour and kind for which `accept` holds.
+/// The nearest blob for which `accept` is true.
 template <class Accept>
 const msg::Blob* nearest(const msg::ObjectPercepts& percepts, Accept accept) {
   const msg::Blob* best = nullptr;
@@ -22,15 +22,16 @@ const msg::Blob* nearest(const msg::ObjectPercepts& percepts, Accept accept) {
   return best;
 }
 
-const msg::MapObject* nearest_in_map(const msg::FieldMap& map, std::uint8_t colour, std::uint8_t kind, double x_m, double y_m) {
+const msg::MapObject* nearest_landmark(const msg::FieldMap& map, std::uint8_t colour, std::uint8_t kind, double x_m,
+                                       double y_m) {
   const msg::MapObject* best = nullptr;
   double best_m = 0.0;
   for (std::size_t i = 0; i < std::min<std::size_t>(map.object_count, msg::kMaxMapObjects); ++i) {
-    const auto& thing = map.objects[i];
-    if (thing.colour != colour || thing.kind != kind) continue;
-    const double distance_m = std::hypot(thing.x_m - x_m, thing.y_m - y_m);
+    const auto& landmark = map.objects[i];
+    if (landmark.colour != colour || landmark.kind != kind) continue;
+    const double distance_m = std::hypot(landmark.x_m - x_m, landmark.y_m - y_m);
     if (best && distance_m >= best_m) continue;
-    best = &thing;
+    best = &landmark;
     best_m = distance_m;
   }
   return best;
@@ -43,47 +44,54 @@ void count(std::uint16_t& images, bool seen) {
 }  // namespace
 
 void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
-  if (!inputs.fresh_percepts || !inputs.line || !inputs.objects) return;
+  if (!inputs.new_percepts || !inputs.line || !inputs.objects) return;
   const std::uint8_t wanted = colour();
   const auto* object = nearest(*inputs.objects, [&](const msg::Blob& blob) {
-    return blob.colour == wanted && blob.kind == msg::kBlobObject && !is_delivered(blob, inputs);
+    return wanted != msg::kColourUnknown && blob.colour == wanted && blob.kind == msg::kBlobObject &&
+           !is_delivered(blob, inputs);
   });
-  const auto* zone = nearest(*inputs.objects, [&](const msg::Blob& blob) { return blob.colour == wanted && blob.kind == msg::kBlobZone; });
+  const auto* zone = nearest(
+      *inputs.objects, [&](const msg::Blob& blob) { return blob.colour == wanted && blob.kind == msg::kBlobZone; });
   const auto* any_zone = nearest(*inputs.objects, [](const msg::Blob& blob) { return blob.kind == msg::kBlobZone; });
   count(memory_.object_images, object && object->range_m <= config_.object_range_m);
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
   count(memory_.line_images, inputs.line->visible && inputs.line->colour == config_.line_colour);
   if (any_zone && any_zone->range_m < 2.0) memory_.zone_seen_s = memory_.active_s;
-  if (inputs.pose && !holding() && inputs.line->colour == config_.line_colour) memory_.trail.note_beyond(*inputs.line, *inputs.pose);
-  // The head looks along the course only once the line has been followed for a moment.
+  if (inputs.pose && !holding() && inputs.line->colour == config_.line_colour)
+    memory_.trail.note_beyond(*inputs.line, *inputs.pose);
+  // At the beginning of a state the head may still look aside.
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
-  if (follows && inputs.pose && memory_.line_images >= config_.confirm_images && memory_.active_s - memory_.entered_s > 1.0) {
+  if (follows && inputs.pose && memory_.line_images >= config_.confirm_images &&
+      memory_.active_s - memory_.entered_s > 1.0) {
     memory_.trail.record(*inputs.line, *inputs.pose, memory_.state == kFollowLine);
   }
 }
 
-// An object of a colour that was dropped before and stands on its zone is not to be fetched again.
+// An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
-  const auto end = config_.sequence.begin() + std::min<std::ptrdiff_t>(memory_.object_index, std::ssize(config_.sequence));
+  const auto end =
+      config_.sequence.begin() + std::min<std::ptrdiff_t>(memory_.object_index, std::ssize(config_.sequence));
   if (std::find(config_.sequence.begin(), end, blob.colour) == end) return false;
   if (!inputs.pose || !inputs.map) return false;
   const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
   const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
   const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
-  const auto* zone = nearest_in_map(*inputs.map, blob.colour, msg::kBlobZone, x_m, y_m);
+  const auto* zone = nearest_landmark(*inputs.map, blob.colour, msg::kBlobZone, x_m, y_m);
   return zone && std::hypot(zone->x_m - x_m, zone->y_m - y_m) < config_.on_zone_m;
 }
 
-std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) const {
+std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (inputs.map && searches()) {
-    const auto* thing = nearest_in_map(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
-    if (thing) {
-      const double dx_m = thing->x_m - pose.x_m;
-      const double dy_m = thing->y_m - pose.y_m;
+  if (inputs.map && searches() && colour() != msg::kColourUnknown) {
+    const auto* landmark =
+        nearest_landmark(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
+    if (landmark) {
+      const double dx_m = landmark->x_m - pose.x_m;
+      const double dy_m = landmark->y_m - pose.y_m;
       const double distance_m = std::hypot(dx_m, dy_m);
-      if (distance_m > 0.3 && distance_m < config_.remembered_range_m) return wrapped(std::atan2(dy_m, dx_m) - course_rad(pose));
+      if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
+        return wrapped(std::atan2(dy_m, dx_m) - course_rad(pose));
     }
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
@@ -91,29 +99,30 @@ std::optional<double> MissionPlanner::to_turn_rad(const PlannerInputs& inputs) c
   return wrapped(*heading_rad - course_rad(pose));
 }
 
-bool MissionPlanner::leads_right(const PlannerInputs& inputs) const {
+bool MissionPlanner::leads_wanted_way(const PlannerInputs& inputs) const {
   if (!inputs.pose) return true;
-  if (leads_on(inputs)) return true;
+  if (leads_to_new_ground(inputs)) return true;
   const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
   return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
 }
 
-bool MissionPlanner::leads_on(const PlannerInputs& inputs) const {
-  return !holding() && inputs.line && inputs.pose && memory_.trail.leads_on(*inputs.line, *inputs.pose);
+bool MissionPlanner::leads_to_new_ground(const PlannerInputs& inputs) const {
+  return !holding() && inputs.line && inputs.pose && memory_.trail.leads_to_new_ground(*inputs.line, *inputs.pose);
 }
 
 bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
-  const auto turn_rad = to_turn_rad(inputs);
+  const auto turn_rad = wanted_turn_rad(inputs);
   if (!turn_rad) return false;
   const bool past = memory_.direction == msg::kDirectionLeft ? *turn_rad < 0.0 : *turn_rad > 0.0;
   return std::abs(*turn_rad) < 0.2 || (past && std::abs(*turn_rad) < config_.aligned_rad);
 }
 
-// While an empty body turns on the spot it is curled up: its course lags behind the head's turn.
+// A body without an object curls up while it turns on the spot: its course lags behind the head.
 bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
-  if (!leads_right(inputs)) return false;
-  if (leads_on(inputs)) return true;
-  const bool curled = !holding() && inputs.pose && std::abs(wrapped(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
+  if (!leads_wanted_way(inputs)) return false;
+  if (leads_to_new_ground(inputs)) return true;
+  const bool curled = !holding() && inputs.pose &&
+                      std::abs(wrapped(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
   return !curled;
 }
 
@@ -124,16 +133,22 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
   auto& parameters = wanted.parameters;
   parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
   switch (wanted.task) {
-    case msg::kTaskFollowLine: parameters.line_colour = config_.line_colour; break;
-    case msg::kTaskDrop: parameters.drop_zone_colour = colour(); break;
+    case msg::kTaskFollowLine:
+      parameters.line_colour = config_.line_colour;
+      break;
+    case msg::kTaskDrop:
+      parameters.drop_zone_colour = colour();
+      break;
     case msg::kTaskRotate: {
       parameters.line_colour = config_.line_colour;
-      memory_.direction = side_for(to_turn_rad(inputs).value_or(1.0), inputs);
+      memory_.direction = side_for(wanted_turn_rad(inputs).value_or(1.0), inputs);
       parameters.direction = memory_.direction;
       parameters.timeout_s = scaled_s(config_.turn_round_s);
       break;
     }
-    case msg::kTaskNone: choose_search(inputs, wanted); break;
+    case msg::kTaskNone:
+      choose_search(inputs, wanted);
+      break;
     default:
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
@@ -145,15 +160,15 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
 std::uint8_t MissionPlanner::side_for(double turn_rad, const PlannerInputs& inputs) const {
   constexpr double kEitherWay_rad = 2.0;
   constexpr double kBeside_m = 1.5;
-  double aside_m = 0.0;  // of the nearest zone, positive left
+  double aside_m = 0.0;  // lateral position of the nearest zone, positive left
   double nearest_m = kBeside_m;
   if (!holding() && inputs.map && inputs.pose && std::abs(turn_rad) > kEitherWay_rad) {
     for (std::size_t i = 0; i < std::min<std::size_t>(inputs.map->object_count, msg::kMaxMapObjects); ++i) {
-      const auto& thing = inputs.map->objects[i];
-      const double dx_m = thing.x_m - inputs.pose->x_m;
-      const double dy_m = thing.y_m - inputs.pose->y_m;
+      const auto& landmark = inputs.map->objects[i];
+      const double dx_m = landmark.x_m - inputs.pose->x_m;
+      const double dy_m = landmark.y_m - inputs.pose->y_m;
       const double distance_m = std::hypot(dx_m, dy_m);
-      if (thing.kind != msg::kBlobZone || distance_m >= nearest_m) continue;
+      if (landmark.kind != msg::kBlobZone || distance_m >= nearest_m) continue;
       nearest_m = distance_m;
       aside_m = -std::sin(inputs.pose->body_yaw_rad) * dx_m + std::cos(inputs.pose->body_yaw_rad) * dy_m;
     }
@@ -164,24 +179,25 @@ std::uint8_t MissionPlanner::side_for(double turn_rad, const PlannerInputs& inpu
 
 Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) const {
   constexpr double kAhead_rad = 0.25;
-  constexpr double kBend_rad = 0.7;  // beyond it a turn on the spot is the shorter way
+  constexpr double kBend_rad = 0.7;  // for larger angles, turning on the spot is faster
   const std::uint8_t side = side_for(turn_rad, inputs);
   if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
   return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
 }
 
-// By memory at first: turn towards what is remembered, go there. Where that did not help, left, right, forwards and back in turn.
+// Most attempts go by memory: turn towards the remembered place and go there. The others, and all attempts without a
+// memory, alternate between turning left, turning right, forwards and backwards.
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
   const unsigned attempt = memory_.searches++;
-  const auto turn_rad = to_turn_rad(inputs);
-  memory_.guided = turn_rad.has_value() && attempt % 16 < 12;
+  const auto turn_rad = wanted_turn_rad(inputs);
+  memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12;
   Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
-  if (memory_.guided) {
+  if (memory_.search_by_memory) {
     move = move_for(*turn_rad, inputs);
   } else if (attempt % 2 == 1) {
     move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
   }
-  memory_.searching = move.task;
+  memory_.search_task = move.task;
   memory_.direction = move.direction;
   wanted.task = move.task;
   wanted.parameters.line_colour = config_.line_colour;

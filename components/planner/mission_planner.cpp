@@ -8,9 +8,9 @@ namespace {
 
 using enum MissionState;
 
-/// The planner's goals as the input layer numbers them: first source of level planner.
+/// Goal ids of the built-in planner on task/command: `input` adds this to the planner's own numbers.
 constexpr std::uint64_t kGoalBase = static_cast<std::uint64_t>(msg::kAuthorityPlanner) << 48;
-/// [s] for which navigation may still show an older goal, or a contradiction about what is held may last.
+/// [s] for which navigation may still report an older goal, or contradict the state about a held object.
 constexpr double kPatience_s = 2.0;
 
 bool turns(MissionState state) { return state == kTurnRound || state == kTurnBack; }
@@ -18,6 +18,7 @@ bool turns(MissionState state) { return state == kTurnRound || state == kTurnBac
 }  // namespace
 
 std::uint8_t MissionPlanner::colour() const {
+  if (config_.sequence.empty()) return msg::kColourUnknown;
   const std::size_t last = config_.sequence.size() - 1;
   return config_.sequence[std::min<std::size_t>(memory_.object_index, last)];
 }
@@ -30,23 +31,24 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (!may_command(inputs)) return std::nullopt;
   if (memory_.state == kDone) return std::nullopt;
   memory_.active_s += elapsed_s;
-  // A contradiction about the object is judged over time: navigation's word and the state change at different ticks.
-  const bool contradicts = inputs.status && memory_.asked && inputs.status->goal_id == kGoalBase + memory_.goals &&
+  // Navigation's report about a held object and the state change at different ticks, so a short contradiction is
+  // normal.
+  const bool contradicts = inputs.status && memory_.requested && inputs.status->goal_id == kGoalBase + memory_.goals &&
                            inputs.status->carrying != holding();
-  memory_.unlike_s = contradicts ? memory_.unlike_s + elapsed_s : 0.0;
+  memory_.contradiction_s = contradicts ? memory_.contradiction_s + elapsed_s : 0.0;
   count_percepts(inputs);
-  if (memory_.asked) {
+  if (memory_.requested) {
     if (const auto to = next(inputs)) enter(*to);
   }
-  if (memory_.state == kFailed && memory_.goals > 0) {  // nobody looks after the robot any more
+  if (memory_.state == kFailed && memory_.goals > 0) {  // no state will end the running task any more
     WantedTask cancel;
     cancel.goal_id = memory_.goals;
     cancel.command = msg::kCommandCancel;
     return cancel;
   }
-  if (memory_.asked || memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
-  memory_.asked = true;
-  memory_.asked_s = memory_.active_s;
+  if (memory_.requested || memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
+  memory_.requested = true;
+  memory_.requested_s = memory_.active_s;
   return task_of_state(inputs);
 }
 
@@ -55,11 +57,11 @@ void MissionPlanner::enter(MissionState state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
   }
-  if (state == kGrasp) memory_.way_known = true;
+  if (state == kGrasp) memory_.direction_known = true;
   if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
-  memory_.asked = false;
-  memory_.unlike_s = 0.0;
+  memory_.requested = false;
+  memory_.contradiction_s = 0.0;
 }
 
 bool MissionPlanner::may_command(const PlannerInputs& inputs) {
@@ -69,7 +71,7 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
   if (inputs.authority->emergency_stop) {
     memory_.stopped = true;
   } else if (others) {
-    memory_.stopped = false;  // whoever holds authority now hands over by releasing it
+    memory_.stopped = false;  // the holder of authority will release it to the planner
   }
   if (memory_.stopped || others) {
     memory_.suspended = true;
@@ -79,11 +81,11 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
   return true;
 }
 
-// Anything may have happened meanwhile: what depends on where the body lies begins again with looking.
+// The robot may be anywhere after a suspension: the mission continues with a search.
 void MissionPlanner::resume(const PlannerInputs& inputs) {
   memory_.suspended = false;
   skip_delivered();
-  if (memory_.object_index >= config_.sequence.size()) {
+  if (!config_.sequence.empty() && memory_.object_index >= config_.sequence.size()) {
     enter(kDone);
     return;
   }
@@ -95,7 +97,7 @@ void MissionPlanner::resume(const PlannerInputs& inputs) {
   } else {
     enter(kTurnRound);
   }
-  memory_.asked = false;
+  memory_.requested = false;
 }
 
 MissionState MissionPlanner::fail(const std::string& reason) {
@@ -105,7 +107,8 @@ MissionState MissionPlanner::fail(const std::string& reason) {
 
 MissionState MissionPlanner::recover(MissionState to) {
   if (memory_.recoveries >= config_.max_recoveries) {
-    return fail("more than " + std::to_string(config_.max_recoveries) + " recoveries, the last in state " + name_of(memory_.state));
+    return fail("more than " + std::to_string(config_.max_recoveries) + " recoveries, the last in state " +
+                name_of(memory_.state));
   }
   ++memory_.recoveries;
   return to;
@@ -118,7 +121,8 @@ MissionState MissionPlanner::delivered() {
 }
 
 void MissionPlanner::skip_delivered() {
-  while (memory_.object_index < config_.sequence.size() && (memory_.delivered >> memory_.object_index & 1u) != 0) ++memory_.object_index;
+  while (memory_.object_index < config_.sequence.size() && (memory_.delivered >> memory_.object_index & 1u) != 0)
+    ++memory_.object_index;
 }
 
 void MissionPlanner::note_deliveries(const PlannerInputs& inputs) {
@@ -135,7 +139,7 @@ void MissionPlanner::note_deliveries(const PlannerInputs& inputs) {
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
   for (const auto* event : inputs.events) {
     const bool own = event->goal_id == kGoalBase + memory_.goals;
-    // The loss of a grasp is about the body, not about a goal: it counts also if it crossed a new request.
+    // The loss of an object may belong to the previous goal, if the event crossed a new request.
     const bool loss = holding() && event->event == msg::kEventObjectGraspLost && event->goal_id > kGoalBase &&
                       event->goal_id <= kGoalBase + memory_.goals;
     if (!own && !loss) continue;
@@ -150,30 +154,33 @@ std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
 
 std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs) {
   if (event.event == msg::kEventEndOfLine) return end_of_line(inputs);
-  if (event.event == msg::kEventObjectReached || event.event == msg::kEventObjectPregrasped) memory_.object_handle = event.object_handle;
+  if (event.event == msg::kEventObjectReached || event.event == msg::kEventObjectPregrasped)
+    memory_.object_handle = event.object_handle;
   for (const auto& loss : row_of(memory_.state).losses) {
     if (loss.event != msg::kEventNone && loss.event == event.event) return recover(loss.to);
   }
   return std::nullopt;
 }
 
-// Zones lie where the mission began: an end of the line with zones about is the wrong one for an empty robot. Once an object was
-// found the way is known, and what ends is the stump behind which the search turned.
+// Zones lie where the mission began. An end of the line with zones nearby is therefore the wrong end for a robot
+// without an object. Once an object was found, the direction is known, and the end belongs to a short piece of line
+// behind the robot.
 std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inputs) {
   if (memory_.state != kFollowLine && memory_.state != kTransport) return std::nullopt;
   const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
-  if (zones_about && memory_.way_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
+  if (zones_about && memory_.direction_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
   memory_.line_ended_s = memory_.active_s;
   if (memory_.state == kTransport) return recover(kSearchLine);
-  if (!zones_about) return kSearchObject;
-  if (leads_right(inputs)) memory_.trail.reverse();
+  if (!zones_about) return config_.sequence.empty() ? kDone : kSearchObject;
+  if (leads_wanted_way(inputs)) memory_.trail.reverse();
   return recover(kTurnRound);
 }
 
 std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state) {
   const StateRow& row = row_of(memory_.state);
   if (goal_state == msg::kGoalSucceeded) return memory_.state == kDrop ? delivered() : row.succeeded;
-  const bool failed = goal_state == msg::kGoalAborted || goal_state == msg::kGoalRefused || goal_state == msg::kGoalCancelled;
+  const bool failed =
+      goal_state == msg::kGoalAborted || goal_state == msg::kGoalRefused || goal_state == msg::kGoalCancelled;
   if (!failed) return std::nullopt;
   return turns(memory_.state) ? row.failed : recover(row.failed);
 }
@@ -182,45 +189,49 @@ std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& 
   if (!inputs.status) return std::nullopt;
   const auto& status = *inputs.status;
   if (status.goal_id != kGoalBase + memory_.goals) {
-    // The request was refused, or something else took navigation over: ask again.
-    if (memory_.active_s - memory_.asked_s > kPatience_s) return recover(memory_.state);
+    // The request was refused, or navigation runs another goal: request the task again.
+    if (memory_.active_s - memory_.requested_s > kPatience_s) return recover(memory_.state);
     return std::nullopt;
   }
-  if (const auto to = next_by_goal_state(status.state)) return to;
-  // While grasping and dropping, what is held changes within the state.
-  if (memory_.unlike_s < kPatience_s || memory_.state == kGrasp || memory_.state == kDrop) return std::nullopt;
+  if (const auto to = next_by_goal_state(status.goal_state)) return to;
+  // During grasp and drop, `carrying` changes within the state.
+  if (memory_.contradiction_s < kPatience_s || memory_.state == kGrasp || memory_.state == kDrop) return std::nullopt;
   return recover(status.carrying ? kSearchLine : kSearchObject);
 }
 
 std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs& inputs) {
   const bool object = memory_.object_images >= config_.confirm_images;
   const bool zone = memory_.zone_images >= config_.confirm_images;
-  // Just after the line's end only its own stump can be in view.
+  // Just after the end of the line, only the end piece of the same line can be in view.
   const bool line = memory_.line_images >= config_.confirm_images &&
                     memory_.active_s - memory_.line_ended_s > scaled_s(config_.after_end_s);
   switch (memory_.state) {
     case kSearchLineOrObject:
       if (object) return kTrackObject;
-      return line && may_follow(inputs) ? std::optional(kFollowLine) : std::nullopt;  // else the search turns towards its wanted way
-    case kFollowLine: return object ? std::optional(kTrackObject) : std::nullopt;
+      return line && may_follow(inputs) ? std::optional(kFollowLine)
+                                        : std::nullopt;  // otherwise the search turns towards the wanted direction
+    case kFollowLine:
+      return object ? std::optional(kTrackObject) : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
-      if (line) return leads_right(inputs) ? kTransport : recover(kTurnBack);
+      if (line) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);
       return std::nullopt;
-    case kTransport: return zone ? std::optional(kDrop) : std::nullopt;
+    case kTransport:
+      return zone ? std::optional(kDrop) : std::nullopt;
     case kTurnRound:
     case kTurnBack: {
       if (zone && holding()) return kDrop;
       if (line && may_follow(inputs)) return holding() ? kTransport : kFollowLine;
       return has_turned(inputs) ? std::optional(row_of(memory_.state).succeeded) : std::nullopt;
     }
-    default: return std::nullopt;
+    default:
+      return std::nullopt;
   }
 }
 
 std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& inputs) {
   if (memory_.active_s > config_.mission_timeout_s) {
-    return fail("the mission's time is over in state " + std::string(name_of(memory_.state)));
+    return fail("the time limit of the mission passed in state " + std::string(name_of(memory_.state)));
   }
   const double in_state_s = memory_.active_s - memory_.entered_s;
   if (searches()) {
@@ -228,17 +239,18 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
       memory_.entered_s = memory_.active_s;
       return recover(memory_.state);
     }
-    const bool exploring = memory_.searching == msg::kTaskExplore;
-    const double asked_for_s = memory_.active_s - memory_.asked_s;
-    if (asked_for_s > scaled_s(exploring ? config_.explore_s : config_.rotate_s)) return memory_.state;
-    if (!memory_.guided) return std::nullopt;
+    const bool exploring = memory_.search_task == msg::kTaskExplore;
+    const double requested_for_s = memory_.active_s - memory_.requested_s;
+    if (requested_for_s > scaled_s(exploring ? config_.explore_s : config_.rotate_s)) return memory_.state;
+    if (!memory_.search_by_memory) return std::nullopt;
     if (!exploring) return has_turned(inputs) ? std::optional(memory_.state) : std::nullopt;
-    const auto turn_rad = to_turn_rad(inputs);
-    const bool astray = turn_rad && asked_for_s > kPatience_s && std::abs(*turn_rad) > config_.aligned_rad;
+    const auto turn_rad = wanted_turn_rad(inputs);
+    const bool astray = turn_rad && requested_for_s > kPatience_s && std::abs(*turn_rad) > config_.aligned_rad;
     return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);
-  if (turns(memory_.state)) return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
+  if (turns(memory_.state))
+    return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
   const double limit_s = follows ? scaled_s(config_.follow_timeout_s) : config_.task_timeout_s;
   return in_state_s > limit_s ? std::optional(recover(row.failed)) : std::nullopt;

@@ -4,26 +4,44 @@ namespace constrictor {
 namespace {
 
 using enum MissionState;
+using Losses = std::array<EventTransition, 2>;
 
-constexpr EventTransition kNothing{};
-constexpr EventTransition kGraspLost{msg::kEventObjectGraspLost, kSearchObject};
+constexpr EventTransition kObject{msg::kEventObjectLost, kSearchObject};
+constexpr EventTransition kPregrasped{msg::kEventObjectPregraspLost, kSearchObject};
+constexpr EventTransition kGrasped{msg::kEventObjectGraspLost, kSearchObject};
+constexpr EventTransition kLine{msg::kEventLineLost, kSearchLineOrObject};
+constexpr EventTransition kLineWithObject{msg::kEventLineLost, kSearchLine};
 
 // clang-format off
 constexpr std::array<StateRow, kMissionStates> kTable{{
-    // state              name                        task                    holding succeeded            failed
-    {kSearchLineOrObject, "search line or object",    msg::kTaskNone,         false, kSearchLineOrObject, kSearchLineOrObject, {kNothing, kNothing}},
-    {kFollowLine,         "follow line",              msg::kTaskFollowLine,   false, kSearchObject,       kSearchLineOrObject, {EventTransition{msg::kEventLineLost, kSearchLineOrObject}, kNothing}},
-    {kSearchObject,       "search object",            msg::kTaskSearchObject, false, kTrackObject,        kSearchLineOrObject, {kNothing, kNothing}},
-    {kTrackObject,        "track object",             msg::kTaskTrackObject,  false, kPregrasp,           kSearchObject,       {EventTransition{msg::kEventObjectLost, kSearchObject}, kNothing}},
-    {kPregrasp,           "pregrasp",                 msg::kTaskPregrasp,     false, kGrasp,              kSearchObject,       {EventTransition{msg::kEventObjectPregraspLost, kSearchObject}, kNothing}},
-    {kGrasp,              "grasp",                    msg::kTaskGrasp,        false, kSearchLine,         kSearchObject,       {kGraspLost, EventTransition{msg::kEventObjectPregraspLost, kSearchObject}}},
-    {kSearchLine,         "search line",              msg::kTaskNone,         true,  kSearchLine,         kSearchLine,         {kGraspLost, kNothing}},
-    {kTransport,          "follow line to drop zone", msg::kTaskFollowLine,   true,  kSearchLine,         kSearchLine,         {kGraspLost, EventTransition{msg::kEventLineLost, kSearchLine}}},
-    {kDrop,               "drop",                     msg::kTaskDrop,         true,  kTurnRound,          kSearchLine,         {kGraspLost, kNothing}},
-    {kTurnRound,          "turn round",               msg::kTaskRotate,       false, kSearchLineOrObject, kSearchLineOrObject, {kNothing, kNothing}},
-    {kTurnBack,           "turn back",                msg::kTaskRotate,       true,  kSearchLine,         kSearchLine,         {kGraspLost, kNothing}},
-    {kDone,               "done",                     msg::kTaskNone,         false, kDone,               kDone,               {kNothing, kNothing}},
-    {kFailed,             "failed",                   msg::kTaskNone,         false, kFailed,             kFailed,             {kNothing, kNothing}},
+    // state              name                        task                    holding
+    //                        succeeded            failed               losses
+    {kSearchLineOrObject, "search line or object",    msg::kTaskNone,         false,
+                              kSearchLineOrObject, kSearchLineOrObject, {}},
+    {kFollowLine,         "follow line",              msg::kTaskFollowLine,   false,
+                              kSearchObject,       kSearchLineOrObject, Losses{kLine}},
+    {kSearchObject,       "search object",            msg::kTaskSearchObject, false,
+                              kTrackObject,        kSearchLineOrObject, {}},
+    {kTrackObject,        "track object",             msg::kTaskTrackObject,  false,
+                              kPregrasp,           kSearchObject,       Losses{kObject}},
+    {kPregrasp,           "pregrasp",                 msg::kTaskPregrasp,     false,
+                              kGrasp,              kSearchObject,       Losses{kPregrasped}},
+    {kGrasp,              "grasp",                    msg::kTaskGrasp,        false,
+                              kSearchLine,         kSearchObject,       Losses{kGrasped, kPregrasped}},
+    {kSearchLine,         "search line",              msg::kTaskNone,         true,
+                              kSearchLine,         kSearchLine,         Losses{kGrasped}},
+    {kTransport,          "follow line to drop zone", msg::kTaskFollowLine,   true,
+                              kSearchLine,         kSearchLine,         Losses{kGrasped, kLineWithObject}},
+    {kDrop,               "drop",                     msg::kTaskDrop,         true,
+                              kTurnRound,          kSearchLine,         Losses{kGrasped}},
+    {kTurnRound,          "turn round",               msg::kTaskRotate,       false,
+                              kSearchLineOrObject, kSearchLineOrObject, {}},
+    {kTurnBack,           "turn back",                msg::kTaskRotate,       true,
+                              kSearchLine,         kSearchLine,         Losses{kGrasped}},
+    {kDone,               "done",                     msg::kTaskNone,         false,
+                              kDone,               kDone,               {}},
+    {kFailed,             "failed",                   msg::kTaskNone,         false,
+                              kFailed,             kFailed,             {}},
 }};
 // clang-format on
 

@@ -1,4 +1,4 @@
-// The states of Fig. 3 and how they follow one another, as a table.
+// The states of Fig. 3 and their transitions, as a table.
 #pragma once
 
 #include <array>
@@ -8,40 +8,40 @@
 
 namespace constrictor {
 
-/// States of the mission. The numbers are serialised and index the table.
+/// States of the mission. Their numbers are serialised and index the table.
 enum class MissionState : std::uint8_t {
-  kSearchLineOrObject,  ///< start and after a loss, empty: explore and turn until line or object is seen
-  kFollowLine,          ///< towards the objects
-  kSearchObject,        ///< look around for the object of the wanted colour
-  kTrackObject,         ///< approach it
+  kSearchLineOrObject,  ///< without an object: explore and turn until the line or the object is seen
+  kFollowLine,          ///< follow the line towards the objects
+  kSearchObject,        ///< look for the object of the wanted colour
+  kTrackObject,         ///< approach the object
   kPregrasp,
   kGrasp,
-  kSearchLine,          ///< holding the object: explore and turn until line or drop zone is seen
-  kTransport,           ///< holding the object: follow the line until the drop zone is found
+  kSearchLine,  ///< with the object: explore and turn until the line or the drop zone is seen
+  kTransport,   ///< with the object: follow the line until the drop zone is found
   kDrop,
-  kTurnRound,           ///< empty, facing away from the objects: turn
-  kTurnBack,            ///< holding the object, facing away from the drop zones: turn
+  kTurnRound,  ///< without an object, facing away from the objects: turn
+  kTurnBack,   ///< with the object, facing away from the drop zones: turn
   kDone,
   kFailed,
 };
 constexpr std::size_t kMissionStates = 13;
 
-/// Where an event of navigation leads.
+/// The state that follows an event of navigation.
 struct EventTransition {
   std::uint8_t event = msg::kEventNone;
   MissionState to = MissionState::kFailed;
 };
 
-/// One state: what it asks navigation for, and where it goes. Every way but `succeeded` counts as a recovery, except from the two
-/// turns, whose end is normal.
+/// One state: its task and the states that follow it. Every transition except `succeeded` counts as a recovery; the two
+/// turns end normally in both ways.
 struct StateRow {
   MissionState state;
   const char* name;        ///< for messages and reports
-  std::uint8_t task;       ///< kTask…; kTaskNone: the searches for the line, which choose between explore and rotate
-  bool holding;            ///< the body is believed to hold an object
-  MissionState succeeded;  ///< the task's goal ended well
-  MissionState failed;     ///< its goal was refused, aborted or cancelled, or the state's time is over
-  std::array<EventTransition, 2> losses;  ///< events that end the state before its goal does
+  std::uint8_t task;       ///< kTask…; kTaskNone: a search, which chooses between explore and rotate
+  bool holding;            ///< the body holds an object, as far as the planner knows
+  MissionState succeeded;  ///< next state if the goal of the task succeeded
+  MissionState failed;     ///< next state if the goal was refused, aborted or cancelled, or the state timed out
+  std::array<EventTransition, 2> losses;  ///< events that end the state before its goal ends
 };
 
 /// The row of a state.

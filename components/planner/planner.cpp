@@ -7,7 +7,7 @@
 namespace constrictor {
 
 Planner::Planner(Wiring& wiring, const Setup& setup)
-    : config_(load_planner_config(setup.config_file)),
+    : config_(load_planner_config(setup.config_file, setup.mission)),
       planner_(config_, state_.mission),
       line_(wiring.latest(topics::kLinePercept)),
       objects_(wiring.latest(topics::kObjectPercepts)),
@@ -24,7 +24,7 @@ void Planner::step(const Tick& tick) {
   inputs.time_s = tick.time_s();
   if (line_) inputs.line = &*line_;
   if (objects_) inputs.objects = &*objects_;
-  inputs.fresh_percepts = objects_.has_value() && objects_.fresh();
+  inputs.new_percepts = objects_.has_value() && objects_.fresh();
   if (pose_) inputs.pose = &*pose_;
   if (map_) inputs.map = &*map_;
   if (status_) inputs.status = &*status_;
@@ -43,7 +43,7 @@ void Planner::step(const Tick& tick) {
   }
   const auto& memory = state_.mission;
   msg::MissionStatus mission{};
-  mission.mission = memory.state == MissionState::kDone     ? msg::kMissionSucceeded
+  mission.outcome = memory.state == MissionState::kDone     ? msg::kMissionSucceeded
                     : memory.state == MissionState::kFailed ? msg::kMissionFailed
                                                             : msg::kMissionRunning;
   set_text(mission.state, memory.suspended ? "suspended" : name_of(memory.state));
@@ -57,7 +57,7 @@ void Planner::step(const Tick& tick) {
 
 ComponentFactory make_planner_factory() {
   return {"planner", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Planner>(wiring, setup); },
-          "components/planner/planner.yaml"};
+          "components/planner/planner.yaml", describe_parameters<PlannerConfig>};
 }
 
 }  // namespace constrictor

@@ -1,8 +1,8 @@
-// The built-in planner as a component: MissionPlanner on DDS topics.
+// The built-in planner as a component: it connects MissionPlanner with its topics.
 #pragma once
 
+#include "component/component.hpp"
 #include "planner/mission_planner.hpp"
-#include "runtime/component.hpp"
 
 namespace constrictor {
 
@@ -14,6 +14,8 @@ struct PlannerState {
   }
 };
 
+/// Reads percepts, pose, map, events, status and authority; writes a Request for each task and MissionStatus every
+/// tick.
 class Planner : public StatefulComponent<PlannerState> {
  public:
   Planner(Wiring& wiring, const Setup& setup);

@@ -1,35 +1,86 @@
-// Parameters of the planner; see planner.yaml.
+// The parameters of the planner: one row each. planner.yaml and the table in README.md follow from the rows.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <vector>
+
+#include "configuration/parameter_set.hpp"
+#include "constrictor/constants.hpp"
 
 namespace constrictor {
 
-struct PlannerConfig {
-  std::vector<std::uint8_t> sequence;     ///< colours of the objects, in the order of retrieval
-  std::uint8_t line_colour = 0;
-  int confirm_images = 3;                 ///< consecutive images in which a thing must be seen
-  double object_range_m = 1.6;            ///< an object nearer than this is approached
-  double zone_range_m = 1.2;              ///< a drop zone nearer than this is dropped on
-  double on_zone_m = 0.6;                 ///< an object nearer than this to the zone on which one of its colour was dropped is left alone
-  double remembered_range_m = 2.5;        ///< an object or zone of the map nearer than this is searched for where it was
-  double aligned_rad = 1.0;               ///< the head faces the wanted way along the line within this angle
-  double straight_rad = 0.6;              ///< of head against body, beyond which the body is too curled to follow a line
-  double explore_s = 12.0;                ///< [s] exploring before something else is tried
-  double rotate_s = 10.0;                 ///< [s] turning before something else is tried
-  double after_end_s = 8.0;               ///< [s] for which the line is not taken again after its end
-  double turn_round_s = 20.0;             ///< [s] turning back after a drop
-  double search_timeout_s = 180.0;        ///< [s] searching for the line until that counts as a recovery
-  double task_timeout_s = 240.0;          ///< [s] search object, track, pregrasp, grasp, drop
-  double follow_timeout_s = 120.0;        ///< [s] following a line
-  double mission_timeout_s = 3600.0;      ///< [s]
-  double holding_factor = 4.0;            ///< how much longer searching, turning and following may take with an object
-  int max_recoveries = 60;
+/// The names of colours by their constants; kColourUnknown is not accepted.
+inline std::vector<std::string> colour_names() {
+  auto names = names_of(constants::kColour);
+  names[msg::kColourUnknown].clear();
+  return names;
+}
+
+struct PlannerConfig : ParameterSet {
+  std::vector<std::uint8_t> sequence =
+      add(sequence, "sequence", {msg::kColourGreen, msg::kColourRed}, colour_names(), {0, 16},
+          "Colours of the objects in the order of retrieval, unless the scenario states a mission. The planner drops "
+          "each object on the zone of its colour; without colours it follows the line to its end");
+  std::uint8_t line_colour = add(line_colour, "line_colour", msg::kColourBlue, colour_names(),
+                                 "Colour of the line that the robot follows, unless the scenario states a mission");
+  int confirm_images = add(confirm_images, "confirm_images", 3, "images", {1, 100}, Changes::kAtStart,
+                           "Consecutive images that must show the line, an object or a zone");
+  double object_range_m = add(object_range_m, "object_range_m", 1.6, "m", {0.2, 20}, Changes::kAtStart,
+                              "The robot approaches an object that is nearer than this");
+  double zone_range_m = add(zone_range_m, "zone_range_m", 1.7, "m", {0.2, 20}, Changes::kAtStart,
+                            "The robot drops an object on a zone that is nearer than this");
+  double on_zone_m =
+      add(on_zone_m, "on_zone_m", 0.6, "m", {0, 5}, Changes::kAtStart,
+          "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
+  double remembered_range_m = add(remembered_range_m, "remembered_range_m", 2.5, "m", {0.3, 100}, Changes::kAtStart,
+                                  "A search returns to an object or zone of the map that is nearer than this");
+  double aligned_rad = add(aligned_rad, "aligned_rad", 1.0, "rad", {0.05, 1.5}, Changes::kAtStart,
+                           "The robot faces the wanted direction along the line within this angle");
+  double straight_rad = add(straight_rad, "straight_rad", 0.6, "rad", {0.05, 1.5}, Changes::kAtStart,
+                            "A body whose head points away from it by more than this is too curled to follow a line");
+  double explore_s = add(explore_s, "explore_s", 8.0, "s", {1, 600}, Changes::kAtStart,
+                         "A search tries something else after exploring for this time");
+  double rotate_s = add(rotate_s, "rotate_s", 10.0, "s", {1, 600}, Changes::kAtStart,
+                        "A search tries something else after turning for this time");
+  double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, Changes::kAtStart,
+                           "The planner ignores the line for this time after its end");
+  double turn_round_s = add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, Changes::kAtStart,
+                            "Longest time of turning back after a drop");
+  double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, Changes::kAtStart,
+                                "A search for the line counts as a recovery after this time");
+  double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, Changes::kAtStart,
+                              "Time limit of search object, track, pregrasp, grasp and drop, each");
+  double follow_timeout_s = add(follow_timeout_s, "follow_timeout_s", 120.0, "s", {1, 3600}, Changes::kAtStart,
+                                "Time limit of following the line in one direction");
+  double mission_timeout_s = add(mission_timeout_s, "mission_timeout_s", 3600.0, "s", {1, 86400}, Changes::kAtStart,
+                                 "Time limit of the mission");
+  double holding_factor = add(holding_factor, "holding_factor", 4.0, "", {1, 20}, Changes::kAtStart,
+                              "Factor on the time limits of searching, turning and following with an object");
+  int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, Changes::kAtStart,
+                           "The mission fails after more recoveries than this");
+
+  /// Checks what spans several rows. Throws ConfigurationError.
+  void complete(const Configuration& root) const {
+    if (std::find(sequence.begin(), sequence.end(), line_colour) == sequence.end()) return;
+    throw root.error("sequence", "found the line's colour, accepted other colours");
+  }
 };
 
-/// Reads and checks a planner file. Throws ConfigurationError.
-PlannerConfig load_planner_config(const std::filesystem::path& file);
+/// The configuration from the planner's file, with `sequence` and `line_colour` of the mission, which is YAML on one
+/// line (Setup::mission). An empty mission leaves the values of the file. Throws ConfigurationError.
+[[nodiscard]] inline PlannerConfig load_planner_config(const std::filesystem::path& file, const std::string& mission) {
+  auto config = load_parameters<PlannerConfig>(file);
+  if (mission.empty()) return config;
+  Configuration root = Configuration::parse(mission, "--mission");
+  const std::vector<std::string> colours = names_of(constants::kColour, msg::kColourGreen);
+  config.sequence.clear();
+  for (const std::string& colour : root.texts("sequence", colours))
+    config.sequence.push_back(*value_of(constants::kColour, colour));
+  config.line_colour = *value_of(constants::kColour, root.text("line_colour", colours));
+  config.complete(root);
+  root.finish();
+  return config;
+}
 
 }  // namespace constrictor

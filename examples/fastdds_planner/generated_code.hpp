@@ -1,4 +1,6 @@
-// Included before fastddsgen's sources: version 2.3 names the constants of array bounds without their namespace there.
+// Included before the sources that fastddsgen 2.3 generates: they use constants in array bounds without the namespace.
 #pragma once
-namespace constrictor { namespace msg {} }
+namespace constrictor {
+namespace msg {}
+}  // namespace constrictor
 using namespace constrictor::msg;

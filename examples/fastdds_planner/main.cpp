@@ -1,5 +1,5 @@
-// fastdds_planner: retrieves the objects as an external planner on Fast DDS. It knows Constrictor by its IDL files and idl/README.md
-// alone: no header and no library of it is used here.
+// fastdds_planner: retrieves the objects as an external planner on Fast DDS. It uses the IDL files of Constrictor and
+// the contract in idl/README.md, but none of its headers and libraries.
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,25 +28,25 @@ using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-/// A name of this process's own: another process under the same name would count as another source, and this one as dead.
+/// Source name. It contains the process id: if another process uses the same name, `input` regards this one as dead.
 const std::string kName = "fastdds_planner." + std::to_string(::getpid());
 
 struct Options {
   std::uint32_t domain = 0;
   std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
-  double at_s = 5.0;      ///< simulated time at which it takes the mission over,
-  std::size_t after = 0;  ///< and how many objects others must have delivered by then
+  double at_s = 5.0;      ///< [s] simulated time at which the planner takes the mission over
+  std::size_t after = 0;  ///< number of objects that other planners must have delivered before
 };
 
-/// Exits with status 64 if the arguments are not understood.
+/// Exits with status 64 if the arguments are wrong.
 Options parse(int argc, char** argv) {
   const auto usage = [](int status) {
     std::fprintf(status ? stderr : stdout,
                  "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS] [--after N]\n"
-                 "  --domain  as `constrictor run` prints it\n"
+                 "  --domain  DDS domain of the run, as `constrictor run` prints it\n"
                  "  --order   colours in the order of retrieval: green, red, blue, yellow (default green,red)\n"
-                 "  --at      simulated time at which it takes the mission over (default 5)\n"
-                 "  --after   number of objects that others must have delivered by then (default 0)\n");
+                 "  --at      simulated time in s at which the planner takes the mission over (default 5)\n"
+                 "  --after   number of objects that other planners must have delivered before (default 0)\n");
     std::exit(status);
   };
   Options options;
@@ -79,7 +79,7 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-/// The robot as a planner sees it: topics in, requests out, `Retrieval` between.
+/// Connects the topics and requests of the run with the logic of `Retrieval`.
 class Planner {
  public:
   explicit Planner(const Options& options)
@@ -87,41 +87,47 @@ class Planner {
     requests_ = participant_.write<msg::RequestPubSubType>("request", 32);
     pose_ = participant_.read<msg::RobotPosePubSubType>("guidance/pose", false, 1, [this](const msg::RobotPose& pose) {
       now_s_ = static_cast<double>(pose.header().time_ns()) * 1e-9;
-      logic_.locate({pose.x_m(), pose.y_m(), pose.yaw_rad(), pose.body_yaw_rad()});
+      logic_.take(retrieval::Pose{pose.x_m(), pose.y_m(), pose.yaw_rad(), pose.body_yaw_rad()});
     });
     participant_.read<msg::LinePerceptPubSubType>("perception/line", false, 8, [this](const msg::LinePercept& line) {
-      logic_.see({line.visible() && line.colour() == msg::kColourBlue, line.lookahead_m(), line.offset_m(), line.heading_rad()});
+      logic_.take(retrieval::Line{line.visible() && line.colour() == msg::kColourBlue, line.lookahead_m(),
+                                  line.offset_m(), line.heading_rad()});
     });
-    participant_.read<msg::ObjectPerceptsPubSubType>("perception/objects", false, 8, [this](const msg::ObjectPercepts& percepts) {
-      std::vector<retrieval::Thing> things;
+    participant_.read<
+        msg::ObjectPerceptsPubSubType>("perception/objects", false, 8, [this](const msg::ObjectPercepts& percepts) {
+      std::vector<retrieval::Percept> percepts_in_view;
       for (std::size_t i = 0; i < std::min<std::size_t>(percepts.blob_count(), percepts.blobs().size()); ++i) {
         const auto& blob = percepts.blobs()[i];
         if (blob.kind() == msg::kBlobUndecided) continue;
-        things.push_back({blob.colour(), blob.kind() == msg::kBlobZone, blob.range_m(), blob.bearing_rad()});
+        percepts_in_view.push_back({blob.colour(), blob.kind() == msg::kBlobZone, blob.range_m(), blob.bearing_rad()});
       }
-      logic_.see(things);
+      logic_.take(percepts_in_view);
     });
     participant_.read<msg::AuthorityPubSubType>("authority", true, 8, [this](const msg::Authority& authority) {
       mine_ = authority.level() == msg::kAuthorityExternal && std::string(authority.source()) == kName;
     });
-    participant_.read<msg::RequestAnswerPubSubType>("request/answer", true, 288, [this](const msg::RequestAnswer& answer) {
-      if (std::string(answer.source()) != kName) return;
-      unanswered_.erase(answer.request_sequence());
-      if (answer.granted()) return;
-      std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence()), answer.reason().c_str());
-    });
+    participant_.read<msg::RequestAnswerPubSubType>(
+        "request/answer", true, 288, [this](const msg::RequestAnswer& answer) {
+          if (std::string(answer.source()) != kName) return;
+          unanswered_.erase(answer.request_sequence());
+          if (answer.granted()) return;
+          std::printf("request %llu was refused: %s\n", static_cast<unsigned long long>(answer.request_sequence()),
+                      answer.reason().c_str());
+        });
     participant_.read<msg::TaskStatusPubSubType>("task/status", false, 1, [this](const msg::TaskStatus& status) {
-      logic_.know({own(status.goal_id()), status.task(), status.state(), status.carrying()});
+      logic_.take(retrieval::GoalStatus{own(status.goal_id()), status.task(), status.goal_state(), status.carrying()});
     });
-    // Every event counts, also those of before we came: they say what was delivered already.
+    // Reliable and from the beginning of the epoch: the events tell what was delivered before this planner started.
     participant_.read<msg::TaskEventPubSubType>("task/event", true, 512, [this](const msg::TaskEvent& event) {
-      if (event.event() != msg::kEventNone) std::printf("event %d of task %d, colour %d\n", event.event(), event.task(), event.colour());
-      logic_.hear({own(event.goal_id()), event.event(), event.goal_state(), event.colour()});
+      if (event.event() != msg::kEventNone)
+        std::printf("event %d of task %d, colour %d\n", event.event(), event.task(), event.colour());
+      logic_.take(retrieval::GoalEvent{own(event.goal_id()), event.event(), event.goal_state(), event.colour()});
     });
-    participant_.read<msg::TickPubSubType>("barrier/tick", true, 8, [this](const msg::Tick& tick) { over_ = over_ || tick.final_tick(); });
+    participant_.read<msg::TickPubSubType>("barrier/tick", true, 8,
+                                           [this](const msg::Tick& tick) { over_ = over_ || tick.final_tick(); });
   }
 
-  /// Until everything is delivered (0), the run ends without (1), or somebody sends SIGTERM (1).
+  /// Returns 0 when all objects are delivered, 1 if the run ends before or after SIGTERM or Ctrl-C.
   int run() {
     while (!g_stop && !gone()) {
       participant_.wait(0.2);
@@ -144,7 +150,7 @@ class Planner {
         std::printf("at %.1f s: everything is delivered, %d setbacks\n", now_s_, logic_.setbacks());
         msg::Request release = request(msg::kRequestRelease);
         send(release);
-        while (mine_ && !gone() && !g_stop) {  // until the release has arrived
+        while (mine_ && !gone() && !g_stop) {  // until `input` has released authority
           participant_.wait(0.2);
           repeat_unanswered();
         }
@@ -155,21 +161,24 @@ class Planner {
   }
 
  private:
-  /// The run has ended, or its processes died.
+  /// True if the run has ended, or its processes are dead.
   bool gone() const {
     eprosima::fastdds::dds::SubscriptionMatchedStatus writers;
     pose_->get_subscription_matched_status(writers);
     return over_ || (now_s_ >= 0 && writers.current_count == 0);
   }
-  /// `input` hears only what is written after it and we have found each other.
+  /// True once `input` has been discovered. It does not receive requests that were written before.
   bool connected() const {
     eprosima::fastdds::dds::PublicationMatchedStatus readers;
     requests_->get_publication_matched_status(readers);
     return readers.current_count > 0;
   }
 
-  /// A goal's id on task/event and task/status is (level << 48) + (number of the source << 32) + our own.
-  std::uint64_t own(std::uint64_t goal) const { return mine_ && goal >> 48 == msg::kAuthorityExternal ? goal & 0xffffffffu : 0; }
+  /// This planner's own number of a goal; 0: a goal of another source. The id on task/event and task/status is
+  /// (level << 48) + (number of the source << 32) + own number.
+  std::uint64_t own(std::uint64_t goal) const {
+    return mine_ && goal >> 48 == msg::kAuthorityExternal ? goal & 0xffffffffu : 0;
+  }
 
   msg::Request request(std::uint8_t kind) {
     msg::Request request;
@@ -186,29 +195,31 @@ class Planner {
     if (!requests_->write(&request)) throw std::runtime_error("cannot write a request");
     std::fflush(stdout);
   }
-  /// What is not answered is said again, under its number: `input` hears nothing while its process is being restarted.
+  /// Repeats unanswered requests under their numbers: `input` receives nothing while its process restarts.
   void repeat_unanswered() {
-    for (auto& [number, wish] : unanswered_) {
-      if (Clock::now() - wish.said < std::chrono::milliseconds(500)) continue;
-      requests_->write(&wish.request);
-      wish.said = Clock::now();
+    for (auto& [number, unanswered] : unanswered_) {
+      if (Clock::now() - unanswered.written < std::chrono::milliseconds(500)) continue;
+      requests_->write(&unanswered.request);
+      unanswered.written = Clock::now();
     }
   }
   void send(const retrieval::Order& order) {
-    std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task, static_cast<unsigned long long>(order.goal));
-    msg::Request wish = request(msg::kRequestTask);
-    wish.command(msg::kCommandStart);
-    wish.goal_id(order.goal);
-    wish.task(order.task);
-    auto& parameters = wish.parameters();
+    std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task,
+                static_cast<unsigned long long>(order.goal));
+    msg::Request task = request(msg::kRequestTask);
+    task.command(msg::kCommandStart);
+    task.goal_id(order.goal);
+    task.task(order.task);
+    auto& parameters = task.parameters();
     parameters.line_colour(order.line_colour);
     parameters.object_colour(order.object_colour);
     parameters.drop_zone_colour(order.zone_colour);
     parameters.direction(order.direction);
     if (order.timeout_s > 0) parameters.timeout_s(order.timeout_s);
-    wish.path().point_count(static_cast<std::uint16_t>(order.path.size()));
-    for (std::size_t i = 0; i < order.path.size(); ++i) std::tie(wish.path().x_m()[i], wish.path().y_m()[i]) = order.path[i];
-    send(wish);
+    task.path().point_count(static_cast<std::uint16_t>(order.path.size()));
+    for (std::size_t i = 0; i < order.path.size(); ++i)
+      std::tie(task.path().x_m()[i], task.path().y_m()[i]) = order.path[i];
+    send(task);
   }
 
   Options options_;
@@ -218,7 +229,7 @@ class Planner {
   eprosima::fastdds::dds::DataReader* pose_ = nullptr;
   struct Unanswered {
     msg::Request request;
-    Clock::time_point said;
+    Clock::time_point written;  ///< last time
   };
   std::map<std::uint64_t, Unanswered> unanswered_;  // by number
   std::uint64_t sequence_ = 0;

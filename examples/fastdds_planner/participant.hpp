@@ -1,6 +1,9 @@
-// Fast DDS set up so that it meets Constrictor's processes: the only part of this example that is about the vendor.
+// Settings with which Fast DDS discovers the processes of Constrictor: the only part of this example that depends on
+// the vendor.
 #pragma once
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -10,8 +13,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 
 #include <functional>
 #include <memory>
@@ -29,7 +30,7 @@ T* made(T* entity, const std::string& what) {
   return entity;
 }
 
-/// A participant with readers that are served by `wait`, and writers.
+/// A participant with writers, and with readers whose samples `wait` delivers.
 class Participant {
  public:
   /// `domain` as `constrictor run` prints it. `address`: of the interface on which the robot's processes are.
@@ -37,17 +38,19 @@ class Participant {
     namespace rtps = eprosima::fastrtps::rtps;
     fdds::DomainParticipantQos qos;
     qos.name(name);
-    // Constrictor speaks UDP on the loopback interface without multicast. Fast DDS would use shared memory and multicast there.
+    // On one host Constrictor uses UDP on the loopback interface without multicast. By default Fast DDS would use
+    // shared memory and multicast there.
     qos.transport().use_builtin_transports = false;
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList.push_back(address);
-    udp->maxInitialPeersRange = 120;  // participants without multicast are found by number; a run has a dozen
+    udp->maxInitialPeersRange = 120;  // without multicast a participant is found by its number; a run has about twelve
     qos.transport().user_transports.push_back(udp);
     rtps::Locator_t peer;
     peer.kind = LOCATOR_KIND_UDPv4;
     rtps::IPLocator::setIPv4(peer, address);
     qos.wire_protocol().builtin.initialPeersList.push_back(peer);
-    participant_ = made(fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos), "a participant");
+    participant_ =
+        made(fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos), "a participant");
     subscriber_ = made(participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT), "a subscriber");
     publisher_ = made(participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT), "a publisher");
   }
@@ -58,8 +61,9 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Calls `use` with every sample of a topic. `PubSubType` is fastddsgen's class for the message. `depth` samples are kept until
-  /// `wait` takes them; `every`: none may be lost on the way (reliable, and what was written before we came).
+  /// Calls `use` for each sample of a topic. `PubSubType` is fastddsgen's class for the message. The reader keeps
+  /// `depth` samples until `wait` takes them. `every`: reliable, and with the samples that writers keep for late
+  /// readers.
   template <class PubSubType, class Use>
   fdds::DataReader* read(const std::string& topic, bool every, int depth, Use use) {
     fdds::DataReaderQos qos;
@@ -81,7 +85,7 @@ class Participant {
     return reader;
   }
 
-  /// A reliable writer. `lease`: the robot is to notice within half a second if we die.
+  /// A reliable writer. `lease`: `input` regards the source as dead half a second after the end of this process.
   template <class PubSubType>
   fdds::DataWriter* write(const std::string& topic, int depth, bool lease = true) {
     fdds::DataWriterQos qos;
@@ -99,10 +103,11 @@ class Participant {
     return made(publisher_->create_datawriter(find_topic<PubSubType>(topic), qos), "a writer of " + topic);
   }
 
-  /// Waits for messages, at most so long, and serves every reader.
+  /// Waits for samples, at most `bound_s` seconds, and delivers those of every reader.
   void wait(double bound_s) {
     fdds::ConditionSeq triggered;
-    wait_set_.wait(triggered, {static_cast<std::int32_t>(bound_s), static_cast<std::uint32_t>((bound_s - static_cast<std::int32_t>(bound_s)) * 1e9)});
+    wait_set_.wait(triggered, {static_cast<std::int32_t>(bound_s),
+                               static_cast<std::uint32_t>((bound_s - static_cast<std::int32_t>(bound_s)) * 1e9)});
     for (const auto& take : takers_) take();
   }
 
@@ -110,7 +115,8 @@ class Participant {
   template <class PubSubType>
   fdds::Topic* find_topic(const std::string& name) {
     fdds::TypeSupport type(new PubSubType());
-    // Cyclone DDS 0.10 cannot read Fast DDS's type information and would not match: names are enough, the types are final.
+    // Cyclone DDS 0.10 cannot read the type information of Fast DDS and would not match. Type names suffice, because
+    // the types are final.
     type->auto_fill_type_information(false);
     type->auto_fill_type_object(false);
     participant_->register_type(type);

@@ -1,4 +1,4 @@
-// Where two messages of one type differ.
+// The first difference between two messages of one type.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::string value_text(const T& value) {
   }
 }
 
-/// Visits `a` and finds the same field in `b` by its offset: both are of one plain struct.
+/// Visits the fields of `a` and finds the same field of `b` at the same offset.
 template <class Message>
 struct Comparer {
   const Message& a;
@@ -74,7 +74,8 @@ struct Comparer {
   void operator()(const FieldInfo& info, const char (&text)[N]) {
     const std::string left(text, ::strnlen(text, N));
     const std::string right(twin(text), ::strnlen(twin(text), N));
-    if (!found && left != right) found = FieldDifference{join_path(prefix, info.name), "'" + left + "'", "'" + right + "'"};
+    if (!found && left != right)
+      found = FieldDifference{join_path(prefix, info.name), "'" + left + "'", "'" + right + "'"};
   }
   void operator()(const FieldInfo& info, const dds_sequence_octet& left) {
     const dds_sequence_octet& right = twin(left);
@@ -82,7 +83,8 @@ struct Comparer {
     if (found) return;
     for (std::uint32_t i = 0; i < std::min(left._length, right._length); ++i) {
       if (left._buffer[i] == right._buffer[i]) continue;
-      found = FieldDifference{path + "[" + std::to_string(i) + "]", std::to_string(left._buffer[i]), std::to_string(right._buffer[i])};
+      found = FieldDifference{path + "[" + std::to_string(i) + "]", std::to_string(left._buffer[i]),
+                              std::to_string(right._buffer[i])};
       return;
     }
     if (left._length != right._length) {
@@ -93,7 +95,7 @@ struct Comparer {
 
 }  // namespace reflect
 
-/// Empty if the messages are equal bit for bit (so -0.0 differs from 0.0, and a NaN equals itself).
+/// Empty if the messages are equal bit for bit: -0.0 differs from 0.0, and a NaN equals itself.
 template <Described T>
 [[nodiscard]] std::optional<FieldDifference> first_difference(const T& a, const T& b) {
   reflect::Comparer<T> comparer{a, b, {}, {}};

@@ -1,4 +1,4 @@
-// Messages as JSON, for people and tools. Include it in .cpp files only: the JSON library is heavy.
+// Messages as JSON, for people and tools. Include it in .cpp files only, because the JSON library compiles slowly.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace constrictor {
 
-/// JSON as text. What is not UTF-8 in a string (a message may hold any bytes) becomes U+FFFD; dump() alone would throw.
+/// JSON as text. Bytes of a message that are not UTF-8 become U+FFFD; dump() alone would throw an exception.
 template <class Json>
 std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -27,7 +27,7 @@ struct JsonWriter {
       Description<T>::visit(value, inner);
       return std::move(inner.json);
     } else {
-      // JSON has no NaN; what is unknown is null there, and so is what is not finite.
+      // JSON has neither NaN nor infinity: such numbers become null.
       if constexpr (std::is_floating_point_v<T>) {
         if (!std::isfinite(value)) return nullptr;
       }
@@ -54,7 +54,7 @@ struct JsonWriter {
 
 }  // namespace reflect
 
-/// All fields in order. Arrays are whole; a sequence of bytes only tells its length.
+/// All fields in order. Arrays are complete; of a sequence of bytes only the length is written.
 template <Described T>
 [[nodiscard]] nlohmann::ordered_json to_json(const T& message) {
   return reflect::JsonWriter::value_of(message);

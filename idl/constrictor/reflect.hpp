@@ -1,7 +1,6 @@
-// What can be done with any message by its description: validation, deterministic bytes, deep copies, hashes.
+// What works on any message by its description: validation, deterministic bytes, deep copies.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +17,9 @@
 namespace constrictor {
 
 template <class T>
-concept Described = requires { Description<std::remove_const_t<T>>::kName; };
+concept Described = requires {
+  Description<std::remove_const_t<T>>::kName;
+};
 
 namespace reflect {
 
@@ -29,7 +30,7 @@ inline constexpr bool is_octets = std::is_same_v<std::remove_cv_t<T>, dds_sequen
 std::string violation(const FieldInfo& info, std::ptrdiff_t index, double found);
 std::string violation(const FieldInfo& info, const char* found_and_accepted);
 
-/// True if a number obeys its annotations.
+/// Whether a number is within the limits that the IDL states for its field.
 template <class T>
 bool acceptable(const FieldInfo& info, T value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -50,22 +51,27 @@ struct Validator {
     } else if constexpr (!std::is_same_v<T, bool>) {
       if (!acceptable(info, value)) found = violation(info, index, static_cast<double>(value));
     } else {
-      // A byte that is neither 0 nor 1 is not a bool: look at it without reading it as one.
-      if (*reinterpret_cast<const unsigned char*>(&value) > 1) found = violation(info, "found neither 0 nor 1, accepted a boolean");
+      // Reading a bool whose byte is neither 0 nor 1 is undefined, so the byte itself is checked.
+      if (*reinterpret_cast<const unsigned char*>(&value) > 1)
+        found = violation(info, "found neither 0 nor 1, accepted a boolean");
     }
   }
   template <class T>
-  void operator()(const FieldInfo& info, const T& value) { check(info, value, -1); }
+  void operator()(const FieldInfo& info, const T& value) {
+    check(info, value, -1);
+  }
   template <class T, std::size_t N>
   void operator()(const FieldInfo& info, const T (&values)[N]) {
     for (std::size_t i = 0; i < N && !found; ++i) check(info, values[i], static_cast<std::ptrdiff_t>(i));
   }
   template <std::size_t N>
   void operator()(const FieldInfo& info, const char (&text)[N]) {
-    if (!found && std::memchr(text, '\0', N) == nullptr) found = violation(info, "found text without an end, accepted a shorter one");
+    if (!found && std::memchr(text, '\0', N) == nullptr)
+      found = violation(info, "found text without an end, accepted a shorter one");
   }
   void operator()(const FieldInfo& info, const dds_sequence_octet& octets) {
-    if (!found && octets._length > 0 && !octets._buffer) found = violation(info, "found a length without bytes, accepted bytes");
+    if (!found && octets._length > 0 && !octets._buffer)
+      found = violation(info, "found a length without bytes, accepted bytes");
   }
 };
 
@@ -108,7 +114,7 @@ struct ByteReader {
       ok = false;
       return;
     }
-    if (size > 0) std::memcpy(data, bytes.data(), size);  // of nothing even the address may be none
+    if (size > 0) std::memcpy(data, bytes.data(), size);  // memcpy requires non-null pointers even for size 0
     bytes = bytes.subspan(size);
   }
   template <class T>
@@ -163,8 +169,8 @@ struct OctetsFinder {
 
 }  // namespace reflect
 
-/// The first field that breaks what the IDL says of it, as text with what was found and what is accepted; empty if none.
-/// Floating-point fields must be finite, or NaN where their comment says so; no heap is used when all is well.
+/// The first field that violates the IDL, as text with the found and the accepted value; empty if there is none.
+/// Floating-point fields must be finite, or NaN where their comment allows it. A valid message costs no heap memory.
 template <Described T>
 [[nodiscard]] std::optional<std::string> validate(const T& message) {
   reflect::Validator validator;
@@ -178,7 +184,7 @@ void canonical_bytes(const T& message, std::string& bytes) {
   Description<T>::visit(message, reflect::ByteWriter{bytes});
 }
 
-/// A message from its canonical bytes; null if they are not exactly one message of this type.
+/// The message that has these canonical bytes; null if they are not exactly one message of this type.
 template <Described T>
 [[nodiscard]] std::shared_ptr<const T> parse_shared(std::span<const std::byte> bytes) {
   auto owned = std::make_shared<reflect::Owned<T>>();
@@ -203,25 +209,5 @@ template <Described T>
   }
   return std::shared_ptr<const T>(owned, &owned->message);
 }
-
-
-/// SHA-256 over bytes given in pieces.
-class Sha256 {
- public:
-  using Digest = std::array<std::uint8_t, 32>;
-  Sha256();
-  ~Sha256();
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
-  void update(std::span<const std::byte> bytes);
-  /// The digest; afterwards the object begins a new one.
-  [[nodiscard]] Digest finish();
-
- private:
-  void* context_;
-};
-
-/// Lower-case hexadecimal text.
-std::string hex(std::span<const std::uint8_t> bytes);
 
 }  // namespace constrictor

@@ -1,7 +1,8 @@
-#include "idl_parser.hpp"
+#include "idl/generator/idl_parser.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <stdexcept>
 
 namespace constrictor::describe {
@@ -12,7 +13,7 @@ struct Token {
   int line = 0;
 };
 
-/// Tokens, and the `//` comments by line.
+/// The tokens of a file, and its `//` comments by line.
 struct Lexed {
   std::vector<Token> tokens;
   std::map<int, std::string> comments;
@@ -55,7 +56,8 @@ Lexed lex(const std::string& text) {
 
 class Parser {
  public:
-  Parser(std::string path, Lexed lexed, Model& model) : path_(std::move(path)), lexed_(std::move(lexed)), model_(model) {}
+  Parser(std::string path, Lexed lexed, Model& model)
+      : path_(std::move(path)), lexed_(std::move(lexed)), model_(model) {}
 
   void run() {
     while (at_ < lexed_.tokens.size()) {
@@ -91,6 +93,7 @@ class Parser {
     if (const std::string found = next(); found != text) fail("'" + found + "', accepted '" + text + "'");
   }
   [[nodiscard]] int line() const { return lexed_.tokens[at_ - 1].line; }
+  [[nodiscard]] std::string file_name() const { return path_.substr(path_.find_last_of('/') + 1); }
 
   std::uint32_t number(const std::string& text) {
     for (const auto& known : model_.constants) {
@@ -106,7 +109,7 @@ class Parser {
   void constant() {
     const std::string type = next();
     if (type != "long" && type != "octet") fail("const " + type + "; accepted: long, octet");
-    Constant constant{next(), type == "long" ? "int" : "std::uint8_t", 0};
+    Constant constant{next(), type == "long" ? "int" : "std::uint8_t", 0, file_name(), line()};
     expect("=");
     constant.value = number(next());
     expect(";");
@@ -125,7 +128,7 @@ class Parser {
   void structure() {
     Struct parsed;
     parsed.comment = comment_above(line());
-    parsed.file = path_.substr(path_.find_last_of('/') + 1);
+    parsed.file = file_name();
     parsed.name = next();
     expect("{");
     while (peek() != "}") parsed.fields.push_back(field());
@@ -195,7 +198,8 @@ class Parser {
       field.is_sequence = true;
       field.type = "std::uint8_t";
     } else {
-      const bool known = std::any_of(model_.structs.begin(), model_.structs.end(), [&](const Struct& s) { return s.name == word; });
+      const bool known =
+          std::any_of(model_.structs.begin(), model_.structs.end(), [&](const Struct& s) { return s.name == word; });
       if (!known) fail("type '" + word + "', which is not defined before");
       field.is_struct = true;
       field.type = word;
@@ -204,6 +208,7 @@ class Parser {
 
   Field field() {
     Field parsed;
+    parsed.comment = comment_above(lexed_.tokens[at_].line);
     annotations(parsed);
     type(parsed);
     parsed.name = next();
@@ -214,8 +219,8 @@ class Parser {
       expect("]");
     }
     expect(";");
-    const auto trailing = lexed_.comments.find(line());
-    if (trailing != lexed_.comments.end()) parsed.comment = trailing->second;
+    const auto behind = lexed_.comments.find(line());
+    if (behind != lexed_.comments.end()) parsed.comment += (parsed.comment.empty() ? "" : " ") + behind->second;
     return parsed;
   }
 

@@ -1,18 +1,22 @@
-// constrictor_describe OUTPUT FILE.idl...: writes the header that gives every message its C++ name and a description of its
-// fields, from which validation, hashing, comparison, JSON and the tools derive.
-#include <openssl/sha.h>
-
-#include <cstdio>
+// constrictor_describe FOLDER FILE.idl...: writes two headers into FOLDER.
+//   messages.hpp     C++ names of messages and constants, and descriptions from which validation, hashing, comparison,
+//                    JSON and the tools are derived
+//   descriptors.hpp  the DDS topic descriptor of each message, for code that makes DDS readers and writers
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
-#include "idl_parser.hpp"
+#include "constrictor/sha256.hpp"
+#include "idl/generator/constant_groups.hpp"
+#include "idl/generator/idl_parser.hpp"
 
 namespace {
 
 using namespace constrictor::describe;
+namespace fs = std::filesystem;
+
+constexpr const char* kMade = "// Made by constrictor_describe from the IDL files. Do not edit.\n#pragma once\n\n";
 
 std::string read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -20,6 +24,13 @@ std::string read(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   return std::move(text).str();
+}
+
+void write(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
 std::string quoted(const std::string& text) {
@@ -37,15 +48,44 @@ std::string unit_of(const std::string& comment) {
   return comment.substr(1, comment.find(']') - 1);
 }
 
-void write_struct(std::ostream& out, const Struct& s) {
+/// The range of a field: as @range says, else the values of its group of constants.
+std::string range_of(const Field& field, const ConstantGroup* group) {
+  if (field.has_range) return "true, " + field.min + ", " + field.max;
+  if (group) return "true, 0, " + std::to_string(group->names.size() - 1);
+  return "false, 0, 0";
+}
+
+void write_groups(std::ostream& out, const std::vector<ConstantGroup>& groups) {
+  out << "namespace constrictor::msg {\n\n";
+  for (const auto& group : groups) {
+    out << "inline constexpr std::uint8_t " << group.prefix << "Count = " << group.names.size() << ";\n";
+  }
+  out << "\n}  // namespace constrictor::msg\n\nnamespace constrictor::constants {\n\n";
+  for (const auto& group : groups) {
+    out << "inline constexpr const char* " << group.prefix << "Names[] = {";
+    for (const auto& name : group.names) out << quoted(name) << ", ";
+    out << "};\ninline constexpr ConstantGroup " << group.prefix << "{" << quoted(group.prefix) << ", " << group.prefix
+        << "Names};\n";
+  }
+  out << "\n/// Every group.\ninline constexpr const ConstantGroup* kAll[] = {";
+  for (const auto& group : groups) out << "&" << group.prefix << ", ";
+  out << "};\n\n}  // namespace constrictor::constants\n\n";
+}
+
+void write_struct(std::ostream& out, const Struct& s, const std::vector<ConstantGroup>& groups) {
   out << "template <>\nstruct Description<msg::" << s.name << "> {\n"
       << "  static constexpr const char* kName = " << quoted(s.name) << ";\n"
       << "  static constexpr const char* kFile = " << quoted(s.file) << ";\n"
       << "  static constexpr const char* kDoc = " << quoted(s.comment) << ";\n";
   for (const auto& f : s.fields) {
-    out << "  static constexpr FieldInfo k_" << f.name << "{" << quoted(f.name) << ", " << quoted(unit_of(f.comment)) << ", "
-        << quoted(f.comment) << ", " << (f.has_range ? "true, " + f.min + ", " + f.max : "false, 0, 0") << ", "
-        << (f.comment.find("NaN") != std::string::npos ? "true" : "false") << ", " << (f.is_key ? "true" : "false") << "};\n";
+    const ConstantGroup* group = nullptr;
+    for (const auto& each : groups) {
+      if (each.prefix == group_of(f)) group = &each;
+    }
+    out << "  static constexpr FieldInfo k_" << f.name << "{" << quoted(f.name) << ", " << quoted(unit_of(f.comment))
+        << ", " << quoted(f.comment) << ", " << range_of(f, group) << ", "
+        << (f.comment.find("NaN") != std::string::npos ? "true" : "false") << ", " << (f.is_key ? "true" : "false")
+        << ", " << (group ? "&constants::" + group->prefix : "nullptr") << "};\n";
   }
   out << "  /// Calls visitor(FieldInfo, field) for each field in order.\n"
       << "  template <class Message, class Visitor>\n  static void visit(Message& message, Visitor&& visitor) {\n";
@@ -53,55 +93,63 @@ void write_struct(std::ostream& out, const Struct& s) {
   out << "  }\n};\n\n";
 }
 
-std::string hash_of(const std::string& bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  std::string hex;
-  for (const unsigned char byte : digest) {
-    char pair[3];
-    std::snprintf(pair, sizeof(pair), "%02x", byte);
-    hex += pair;
+std::string messages_header(const Model& model, const std::vector<std::string>& files, const std::string& hash) {
+  const std::vector<ConstantGroup> groups = constant_groups(model);
+  std::ostringstream out;
+  out << kMade << "#include <cstdint>\n#include <string_view>\n\n#include \"constrictor/description.hpp\"\n";
+  for (const auto& file : files) out << "#include \"" << fs::path(file).stem().string() << ".h\"\n";
+  out << "\nnamespace constrictor::msg {\n\n";
+  for (const auto& c : model.constants) {
+    out << "inline constexpr " << c.type << " " << c.name << " = " << c.value << ";\n";
   }
-  return hex;
+  out << "\n";
+  for (const auto& s : model.structs) {
+    out << "using " << s.name << " = ::constrictor_msg_" << s.name << ";  ///< " << s.comment << "\n";
+  }
+  out << "\n/// SHA-256 of the IDL files: processes of one run have the same.\n"
+      << "inline constexpr std::string_view kIdlHash = " << quoted(hash) << ";\n\n}  // namespace constrictor::msg\n\n";
+  write_groups(out, groups);
+  out << "namespace constrictor {\n\n";
+  for (const auto& s : model.structs) write_struct(out, s, groups);
+  out << "/// Every struct of the IDL files, in order.\nusing AllMessages = TypeList<";
+  for (std::size_t i = 0; i < model.structs.size(); ++i) out << (i ? ", " : "") << "msg::" << model.structs[i].name;
+  out << ">;\n\n}  // namespace constrictor\n";
+  return out.str();
+}
+
+std::string descriptors_header(const Model& model) {
+  std::ostringstream out;
+  out << kMade << "#include \"constrictor/messages.hpp\"\n\nnamespace constrictor::dds {\n\n"
+      << "/// The DDS topic descriptor that idlc made for a message type.\n"
+      << "template <class Message>\nconst dds_topic_descriptor_t& descriptor();\n\n";
+  for (const auto& s : model.structs) {
+    out << "template <>\ninline const dds_topic_descriptor_t& descriptor<msg::" << s.name
+        << ">() {\n  return constrictor_msg_" << s.name << "_desc;\n}\n";
+  }
+  out << "\n}  // namespace constrictor::dds\n";
+  return out.str();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::cerr << "usage: constrictor_describe OUTPUT.hpp FILE.idl...\n";
+    std::cerr << "usage: constrictor_describe FOLDER FILE.idl...\n";
     return 64;
   }
   try {
+    const fs::path folder = argv[1];
+    const std::vector<std::string> files(argv + 2, argv + argc);
     Model model;
     std::string all;
-    std::ostringstream out;
-    out << "// Made by constrictor_describe from the IDL files. Do not edit.\n#pragma once\n\n#include <cstdint>\n#include <string_view>\n\n";
-    for (int i = 2; i < argc; ++i) {
-      const std::string text = read(argv[i]);
-      parse_idl(argv[i], text, model);
+    for (const auto& file : files) {
+      const std::string text = read(file);
+      parse_idl(file, text, model);
       all += text;
-      out << "#include \"" << std::filesystem::path(argv[i]).stem().string() << ".h\"\n";
     }
-    out << "\nnamespace constrictor::msg {\n\n";
-    for (const auto& c : model.constants) out << "inline constexpr " << c.type << " " << c.name << " = " << c.value << ";\n";
-    out << "\n";
-    for (const auto& s : model.structs) out << "using " << s.name << " = ::constrictor_msg_" << s.name << ";  ///< " << s.comment << "\n";
-    out << "\n/// SHA-256 of the IDL files: processes with different ones do not talk.\n"
-        << "inline constexpr std::string_view kIdlHash = \"" << hash_of(all) << "\";\n\n}  // namespace constrictor::msg\n\n"
-        << "namespace constrictor {\n\n"
-        << "/// What the IDL says of one field.\nstruct FieldInfo {\n  const char* name;\n  const char* unit;  ///< without brackets; may be empty\n"
-        << "  const char* doc;\n  bool has_range;\n  double min;\n  double max;\n  bool nan_allowed;  ///< NaN means \"unknown\" here\n  bool is_key;\n};\n\n"
-        << "/// Name, documentation and fields of a message type.\ntemplate <class Message>\nstruct Description;\n\n";
-    for (const auto& s : model.structs) write_struct(out, s);
-    out << "template <class... Messages>\nstruct TypeList {};\n/// Every struct of the IDL files, in order.\nusing AllMessages = TypeList<";
-    for (std::size_t i = 0; i < model.structs.size(); ++i) out << (i ? ", " : "") << "msg::" << model.structs[i].name;
-    out << ">;\n\n";
-    out << "}  // namespace constrictor\n";
-    std::filesystem::create_directories(std::filesystem::path(argv[1]).parent_path());
-    std::ofstream file(argv[1], std::ios::binary);
-    file << out.str();
-    if (!file.flush()) throw std::runtime_error(std::string(argv[1]) + ": cannot be written");
+    const std::string hash = constrictor::hex(constrictor::sha256(std::as_bytes(std::span(all))));
+    write(folder / "messages.hpp", messages_header(model, files, hash));
+    write(folder / "descriptors.hpp", descriptors_header(model));
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";

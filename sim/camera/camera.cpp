@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "configuration/configuration.hpp"
-#include "sim/render/scene_messages.hpp"
+#include "sim/render/image_message.hpp"
+#include "sim/render/scene_from_messages.hpp"
 
 namespace constrictor {
 
@@ -26,20 +26,18 @@ Camera::Camera(Wiring& wiring, const Setup& setup)
     : model_(load_robot(setup.robot_file).camera),
       timing_{static_cast<std::uint16_t>(model_.period_ticks), static_cast<std::uint16_t>(model_.latency_ticks)},
       X_HC_(camera_mount(model_)),
+      config_(load_parameters<CameraConfig>(setup.config_file)),
       seed_(setup.component_seed()),
       world_(wiring.latest(topics::kWorldState)),
       description_(wiring.latest(topics::kSceneDescription)),
       info_(wiring.output(topics::kCameraInfo)),
-      image_(wiring.output(topics::kCameraImage)) {
-  auto file = Configuration::load(setup.config_file);
-  options_.shadow_map_size = static_cast<int>(file.integer("shadow_map_size", 0, 4096));
-  options_.module_segments = static_cast<int>(file.integer("module_segments", 8, 64));
-  shadow_radius_m_ = file.number("shadow_radius_m", {0.5, 20.0});
-  file.finish();
-}
+      image_(wiring.output(topics::kCameraImage)) {}
 
 void Camera::build(const msg::SceneDescription& description) {
-  renderer_ = std::make_unique<Renderer>(scene_of(description), options_);
+  RenderOptions options;
+  options.shadow_map_size = config_.shadow_map_size;
+  options.module_segments = config_.module_segments;
+  renderer_ = std::make_unique<Renderer>(scene_of(description), options);
   noise_ = std::make_unique<PixelNoise>(description.camera_noise_sd, seed_);
 }
 
@@ -65,26 +63,19 @@ void Camera::step(const Tick& tick) {
   const ScenePoses poses = poses_of(*world_);
   PinholeCamera camera = camera_intrinsics(model_);
   camera.X_WC = poses.X_WModule.front() * X_HC_;
-  // Shadows matter where the robot looks and acts: in front of it.
-  const Eigen::Vector3d ahead = camera.X_WC.translation() + 0.6 * shadow_radius_m_ * camera.X_WC.linear().col(2);
-  rgb_ = renderer_->draw(poses, camera, {ahead.head<2>(), shadow_radius_m_});
+  // The shadow region is in front of the robot, where it looks and acts.
+  const Eigen::Vector3d ahead = camera.X_WC.translation() + 0.6 * config_.shadow_radius_m * camera.X_WC.linear().col(2);
+  rgb_ = renderer_->draw(poses, camera, {ahead.head<2>(), config_.shadow_radius_m});
   noise_->add(rgb_, world_->header.tick);
 
   if (state_.frames == 0) write_info(tick);
-  msg::CameraImage image{};
-  image.width = static_cast<std::uint16_t>(camera.width);
-  image.height = static_cast<std::uint16_t>(camera.height);
-  image.exposure_tick = world_->header.tick;
-  image.data._buffer = rgb_.data();
-  image.data._length = static_cast<std::uint32_t>(rgb_.size());
-  image.data._maximum = image.data._length;
-  image_.write(image);
+  image_.write(image_message(camera, rgb_, world_->header.tick));
   ++state_.frames;
 }
 
 ComponentFactory make_camera_factory() {
   return {"camera", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Camera>(wiring, setup); },
-          "sim/camera/camera.yaml"};
+          "sim/camera/camera.yaml", describe_parameters<CameraConfig>};
 }
 
 }  // namespace constrictor

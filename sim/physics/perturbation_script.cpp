@@ -16,13 +16,16 @@ void PerturbationScript::apply(World& world, double time_s) {
   for (std::size_t i = 0; i < perturbations_.size(); ++i) {
     const ScenarioPerturbation& perturbation = perturbations_[i];
     if (std::isnan(began_s_[i])) {
-      const Eigen::Vector3d moved = world.object_pose(perturbation.object).translation() - start_m_[perturbation.object];
+      const Eigen::Vector3d moved =
+          world.object_pose(perturbation.object).translation() - start_m_[perturbation.object];
       const bool due = std::isnan(perturbation.at_s) ? moved.head<2>().norm() > perturbation.displaced_m
                                                      : time_s >= perturbation.at_s;
       if (due) began_s_[i] = time_s;
     }
-    // Not yet begun compares false, too. The small time keeps rounding from adding a tick.
-    if (time_s - began_s_[i] < perturbation.duration_s - 1e-9) world.apply_force(perturbation.object, perturbation.force_n);
+    // The comparison is false if the perturbation has not begun (NaN). The small time prevents that rounding adds a
+    // tick.
+    if (time_s - began_s_[i] < perturbation.duration_s - 1e-9)
+      world.apply_force(perturbation.object, perturbation.force_n);
   }
 }
 

@@ -1,4 +1,4 @@
-// The scripted forces of a scenario: when each begins and ends.
+// The scripted forces of a scenario on objects.
 #pragma once
 
 #include <limits>
@@ -12,13 +12,13 @@ class PerturbationScript {
  public:
   explicit PerturbationScript(const Scenario& scenario);
 
-  /// Applies what acts at this time to the world's objects. Called once a tick, before World::advance.
+  /// Applies the forces that act at this time. Call it once a tick, before World::advance.
   void apply(World& world, double time_s);
 
  private:
   std::vector<ScenarioPerturbation> perturbations_;
-  std::vector<Eigen::Vector3d> start_m_;   ///< of each object, at the first call
-  std::vector<double> began_s_;            ///< by perturbation; NaN: not yet
+  std::vector<Eigen::Vector3d> start_m_;  ///< position of each object at the start, in W
+  std::vector<double> began_s_;           ///< when each perturbation began; NaN: not yet
 };
 
 }  // namespace constrictor

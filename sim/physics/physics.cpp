@@ -4,22 +4,23 @@
 #include <span>
 #include <string>
 
-#include "runtime/share.hpp"
-#include "sim/physics/scene_message.hpp"
-#include "sim/scenario/scenario_file.hpp"
+#include "component/data_path.hpp"
+#include "robot/gate_messages.hpp"
+#include "sim/physics/scene_description.hpp"
+#include "sim/scenario_loader/scenario_file.hpp"
 
 namespace constrictor {
 namespace {
 
 std::filesystem::path or_default(const std::filesystem::path& file, const char* fallback) {
-  return file.empty() ? share_path(fallback) : file;
+  return file.empty() ? data_path(fallback) : file;
 }
 
 }  // namespace
 
 Physics::Physics(Wiring& wiring, const Setup& setup)
-    : Physics(wiring, setup, load_physics_config(setup.config_file),
-              load_robot(or_default(setup.robot_file, "components/robot/mamba.yaml")),
+    : Physics(wiring, setup, load_parameters<PhysicsConfig>(setup.config_file),
+              load_robot(or_default(setup.robot_file, "components/lib/robot/mamba.yaml")),
               load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed)) {}
 
 Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot,
@@ -45,7 +46,7 @@ Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const
 
 void Physics::sample(const Tick&) {
   if (!scene_written_) {
-    scene_.write(scene_message(world_.scenario(), world_.robot()));
+    scene_.write(scene_description(world_.scenario(), world_.robot()));
     scene_written_ = true;
   }
   joint_state_.write(sensors_.joints(world_));
@@ -55,23 +56,19 @@ void Physics::sample(const Tick&) {
   contact_state_.write(felt);
   touched_state_.write(touched);
   imu_state_.write(sensors_.imu(world_, config_.period_s()));
-  world_state_.write(world_message(world_));
+  world_state_.write(constrictor::world_state(world_));
 }
 
 void Physics::obey(const Tick& tick) {
   if (command_) {
     const std::uint64_t refused_before = refused_count(gate_state_);
-    const std::size_t count = std::min<std::size_t>(command_->joint_count, msg::kMaxJoints);
-    const msg::Header& header = command_->header;
     const GateRefusal refusal =
-        gate_.offer({header.run_id, header.epoch, header.tick, header.sequence_number, command_->mode, std::span(command_->position_rad, count),
-                     std::span(command_->velocity_rad_s, count), std::span(command_->torque_limit_nm, count)},
-                    {tick.run_id, tick.epoch, tick.index}, gate_state_);
-    if (refused_count(gate_state_) != refused_before) wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
+        gate_.offer(gate_command(*command_, command_->header), {tick.run_id, tick.epoch, tick.index}, gate_state_);
+    if (refused_count(gate_state_) != refused_before)
+      wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
   }
-  const GateOrder order = authority_ ? SafetyGate::order_of(authority_->emergency_stop, level_in_force(authority_->level, authority_.age_ticks()),
-                                                            authority_->source, gate_state_)
-                                     : GateOrder::kObey;
+  const GateOrder order =
+      gate_order(authority_ ? &*authority_ : nullptr, authority_ ? authority_.age_ticks() : 0, gate_state_);
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
   const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
@@ -90,7 +87,7 @@ void Physics::step(const Tick& tick) {
 
 ComponentFactory make_physics_factory() {
   return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Physics>(wiring, setup); },
-          "sim/physics/physics.yaml"};
+          "sim/physics/physics.yaml", describe_parameters<PhysicsConfig>};
 }
 
 }  // namespace constrictor

@@ -1,8 +1,9 @@
-// The simulated plant: owns the joints, and with them the run's time. Loads the robot and one scene of a scenario, obeys
-// JointCommand, publishes what the robot's sensors measure and, for the simulation only, the truth.
+// The component `physics`, the simulated plant. It owns the joints and therefore the time of the run. It loads the
+// robot and a scenario, obeys JointCommand, and publishes the measurements of the robot's sensors and, for the
+// simulation only, ground truth.
 #pragma once
 
-#include "runtime/component.hpp"
+#include "component/component.hpp"
 #include "sim/physics/perturbation_script.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/physics/sensors.hpp"
@@ -15,9 +16,10 @@ class Physics final : public Plant {
   Physics(Wiring& wiring, const Setup& setup);
 
   void sample(const Tick& tick) override;
-  /// Before the first command, when commands are stale or refused, and when nobody has authority: holds the posture (SafetyGate).
+  /// Holds the posture (SafetyGate) before the first command, when commands are stale or refused, and when nobody has
+  /// authority.
   void step(const Tick& tick) override;
-  [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns; }
+  [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_state_; }

@@ -25,7 +25,7 @@ void add(msg::Vector3& sum, const Eigen::Vector3d& v) {
   sum.z += v.z();
 }
 
-/// Heading of the x axis in the ground plane.
+/// [rad] yaw of the x axis in the ground plane.
 double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
@@ -33,7 +33,11 @@ double yaw_of(const Eigen::Quaterniond& q) {
 }  // namespace
 
 Sensors::Sensors(const RobotModel& robot, std::uint64_t seed, bool noise)
-    : robot_(robot), noise_(noise), joint_random_(seed, "joints"), contact_random_(seed, "contacts"), imu_random_(seed, "imu") {}
+    : robot_(robot),
+      noise_(noise),
+      joint_random_(seed, "joints"),
+      contact_random_(seed, "contacts"),
+      imu_random_(seed, "imu") {}
 
 Eigen::Vector3d Sensors::noisy(const Eigen::Vector3d& value, double sd, Random& random) const {
   if (!noise_ || sd == 0.0) return value;
@@ -89,7 +93,7 @@ msg::ImuState Sensors::imu(const World& world, double elapsed_s) {
   return state;
 }
 
-msg::WorldState world_message(const World& world) {
+msg::WorldState world_state(const World& world) {
   msg::WorldState state{};
   state.module_count = static_cast<std::uint16_t>(world.module_count());
   for (std::size_t i = 0; i < world.module_count(); ++i) state.module_poses[i] = pose3(world.module_pose(i));

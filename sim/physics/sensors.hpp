@@ -1,24 +1,26 @@
-// The robot's own sensors in the simulated world, with the noise of the robot file, and the ground truth that only the simulation
-// publishes.
+// The robot's sensors in the simulated world, with the noise of the robot file, and the ground truth that only the
+// simulation publishes.
 #pragma once
 
 #include "constrictor/messages.hpp"
 #include "robot/robot_model.hpp"
-#include "sim/scenario/random.hpp"
+#include "sim/scenario_loader/random.hpp"
 #include "sim/world/world.hpp"
 
 namespace constrictor {
 
-/// Each sensor draws from a stream of its own. Rates of joints carry no noise of their own.
+/// Each sensor has its own random stream. Rates of joints have no noise.
 class Sensors {
  public:
-  /// `seed` of the epoch and component; with `noise` false every reading is exact.
+  /// `seed` is Setup::component_seed(). If `noise` is false, every reading is exact.
   Sensors(const RobotModel& robot, std::uint64_t seed, bool noise);
 
   [[nodiscard]] msg::JointState joints(const World& world);
-  /// ContactState and TouchedState in the same order. Contacts beyond the messages' room are left out, the weakest first.
+  /// Fills ContactState and TouchedState in the same order. If there are more contacts than a message can hold, the
+  /// weakest ones are left out.
   void contacts(const World& world, msg::ContactState& felt, msg::TouchedState& touched);
-  /// `elapsed_s` since the previous reading: the yaw's drift grows with its root. Yaw counts from the first reading.
+  /// `elapsed_s` is the time since the previous reading; the drift of the yaw grows with its square root. The yaw is
+  /// relative to the first reading.
   [[nodiscard]] msg::ImuState imu(const World& world, double elapsed_s);
 
  private:
@@ -34,6 +36,6 @@ class Sensors {
   double yaw_drift_rad_ = 0.0;
 };
 
-[[nodiscard]] msg::WorldState world_message(const World& world);
+[[nodiscard]] msg::WorldState world_state(const World& world);
 
 }  // namespace constrictor

@@ -7,14 +7,14 @@
 namespace constrictor {
 namespace {
 
-/// llvmpipe compiles shaders for the CPU it finds; these make it compile the same everywhere. Set before main, while there is
-/// one thread. What the environment already says stays, but for the cache: Mesa 22.3 reuses machine code that was compiled for
-/// another vector width, which corrupts memory.
+/// llvmpipe compiles shaders for the CPU of the machine; these variables make it compile the same code everywhere. They
+/// are set before main, while there is only one thread. Values in the environment take precedence, except for the
+/// cache: Mesa 22.3 reuses cached machine code that was compiled for another vector width, which corrupts memory.
 const bool environment_is_set = [] {
   ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 0);
-  ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);  // above all no FMA, which changes last bits
-  ::setenv("LP_NUM_THREADS", "0", 0);                  // draws in the caller's thread: same bytes, least CPU time
+  ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);  // without FMA, which changes the last bits
+  ::setenv("LP_NUM_THREADS", "0", 0);  // draw in the thread of the caller: the same bytes with the least CPU time
   return true;
 }();
 
@@ -28,7 +28,7 @@ GLuint compile(GLenum kind, const char* source) {
     std::array<char, 2048> log{};
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
     glDeleteShader(shader);
-    throw std::runtime_error(std::string("shader does not compile: ") + log.data());
+    throw std::runtime_error(std::string("renderer: a shader does not compile: ") + log.data());
   }
   return shader;
 }
@@ -36,17 +36,29 @@ GLuint compile(GLenum kind, const char* source) {
 }  // namespace
 
 GlContext::GlContext() {
-  if (!environment_is_set) throw std::runtime_error("renderer used before main");
-  static constexpr std::array<int, 13> kAttributes{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE,
-                                                   OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                                                   OSMESA_CONTEXT_MINOR_VERSION, 3, 0, 0, 0};
+  if (!environment_is_set) throw std::runtime_error("renderer: used before main");
+  static constexpr std::array<int, 13> kAttributes{OSMESA_FORMAT,
+                                                   OSMESA_RGBA,
+                                                   OSMESA_DEPTH_BITS,
+                                                   0,
+                                                   OSMESA_PROFILE,
+                                                   OSMESA_CORE_PROFILE,
+                                                   OSMESA_CONTEXT_MAJOR_VERSION,
+                                                   3,
+                                                   OSMESA_CONTEXT_MINOR_VERSION,
+                                                   3,
+                                                   0,
+                                                   0,
+                                                   0};
   context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
-  if (context_ == nullptr) throw std::runtime_error("OSMesa gives no OpenGL 3.3 core context");
+  if (context_ == nullptr)
+    throw std::runtime_error(
+        "renderer: OSMesa offers no OpenGL 3.3 core context (is the package libosmesa6 installed?)");
 }
 
 ContextScope::ContextScope(GlContext& context) {
   if (OSMesaMakeCurrent(context.context_, context.window_.data(), GL_UNSIGNED_BYTE, 4, 4) != GL_TRUE) {
-    throw std::runtime_error("OSMesa cannot make its context current");
+    throw std::runtime_error("renderer: OSMesa cannot make its context current");
   }
 }
 
@@ -62,7 +74,7 @@ GlProgram build_program(const char* vertex_source, const char* fragment_source) 
   if (ok != GL_TRUE) {
     std::array<char, 2048> log{};
     glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error(std::string("shader program does not link: ") + log.data());
+    throw std::runtime_error(std::string("renderer: a shader program does not link: ") + log.data());
   }
   return program;
 }

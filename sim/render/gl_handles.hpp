@@ -1,8 +1,11 @@
-// Move-only owners of an OSMesa context and of OpenGL names. A name is freed with its context current.
+// Move-only owners of an OSMesa context and of OpenGL names (textures, buffers, ...). Free a name while its context is
+// current.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES  // NOLINT: OSMesa exports the functions, no loader is needed
 #include <GL/osmesa.h>
+
+// After osmesa.h: it uses the types of GL/gl.h without including it.
 #include <GL/glext.h>
 
 #include <array>
@@ -10,8 +13,8 @@
 
 namespace constrictor {
 
-/// An OSMesa context of OpenGL 3.3 core. It is current in the calling thread only while a ContextScope lives, so a renderer
-/// may be used from any thread, one at a time.
+/// An OSMesa context of OpenGL 3.3 core. It is current in the calling thread only while a ContextScope exists, so a
+/// renderer may be used from several threads, one at a time.
 class GlContext {
  public:
   GlContext();
@@ -22,7 +25,7 @@ class GlContext {
  private:
   friend class ContextScope;
   OSMesaContext context_ = nullptr;
-  // Drawing goes to framebuffer objects; OSMesa wants a window of its own all the same.
+  // The renderer draws into framebuffer objects, but OSMesa requires a window.
   std::array<unsigned char, 4 * 4 * 4> window_{};
 };
 
@@ -58,23 +61,43 @@ class GlName {
 };
 
 struct BufferTraits {
-  static GLuint create() { GLuint n = 0; glGenBuffers(1, &n); return n; }
+  static GLuint create() {
+    GLuint n = 0;
+    glGenBuffers(1, &n);
+    return n;
+  }
   static void destroy(GLuint n) { glDeleteBuffers(1, &n); }
 };
 struct VertexArrayTraits {
-  static GLuint create() { GLuint n = 0; glGenVertexArrays(1, &n); return n; }
+  static GLuint create() {
+    GLuint n = 0;
+    glGenVertexArrays(1, &n);
+    return n;
+  }
   static void destroy(GLuint n) { glDeleteVertexArrays(1, &n); }
 };
 struct TextureTraits {
-  static GLuint create() { GLuint n = 0; glGenTextures(1, &n); return n; }
+  static GLuint create() {
+    GLuint n = 0;
+    glGenTextures(1, &n);
+    return n;
+  }
   static void destroy(GLuint n) { glDeleteTextures(1, &n); }
 };
 struct FramebufferTraits {
-  static GLuint create() { GLuint n = 0; glGenFramebuffers(1, &n); return n; }
+  static GLuint create() {
+    GLuint n = 0;
+    glGenFramebuffers(1, &n);
+    return n;
+  }
   static void destroy(GLuint n) { glDeleteFramebuffers(1, &n); }
 };
 struct RenderbufferTraits {
-  static GLuint create() { GLuint n = 0; glGenRenderbuffers(1, &n); return n; }
+  static GLuint create() {
+    GLuint n = 0;
+    glGenRenderbuffers(1, &n);
+    return n;
+  }
   static void destroy(GLuint n) { glDeleteRenderbuffers(1, &n); }
 };
 struct ProgramTraits {
@@ -88,10 +111,10 @@ using GlFramebuffer = GlName<FramebufferTraits>;
 using GlRenderbuffer = GlName<RenderbufferTraits>;
 using GlProgram = GlName<ProgramTraits>;
 
-/// Compiles and links. Throws std::runtime_error with the compiler's message.
+/// Compiles and links a shader program. Throws std::runtime_error with the message of the compiler.
 GlProgram build_program(const char* vertex_source, const char* fragment_source);
 
-/// Throws std::runtime_error if OpenGL has an error pending.
+/// Throws std::runtime_error if OpenGL has a pending error. `doing` names the activity in the message.
 void check_gl(const char* doing);
 
 }  // namespace constrictor

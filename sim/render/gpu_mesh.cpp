@@ -21,13 +21,17 @@ GpuMesh upload(const Mesh& mesh, bool instanced) {
   gpu.index_count = static_cast<GLsizei>(mesh.indices.size());
   glBindVertexArray(gpu.array.get());
   glBindBuffer(GL_ARRAY_BUFFER, gpu.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)), mesh.vertices.data(), GL_STATIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)), mesh.vertices.data(),
+               GL_STATIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gpu.indices.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(), GL_STATIC_DRAW);
-  const auto attribute = [](GLuint location, GLint count, std::size_t stride_floats, std::size_t offset_floats, GLuint divisor) {
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
+               mesh.indices.data(), GL_STATIC_DRAW);
+  const auto attribute = [](GLuint location, GLint count, std::size_t stride_floats, std::size_t offset_floats,
+                            GLuint divisor) {
     glEnableVertexAttribArray(location);
-    glVertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
-                          reinterpret_cast<const void*>(offset_floats * sizeof(float)));  // an offset by OpenGL's convention
+    glVertexAttribPointer(
+        location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
+        reinterpret_cast<const void*>(offset_floats * sizeof(float)));  // OpenGL expects the offset as a pointer
     glVertexAttribDivisor(location, divisor);
   };
   attribute(0, 3, Mesh::kFloatsPerVertex, 0, 0);

@@ -4,23 +4,19 @@
 #include <array>
 #include <cstddef>
 
+#include "sim/render/splitmix64.hpp"
+
 namespace constrictor {
 namespace {
 
-std::uint64_t mix(std::uint64_t x) {  // splitmix64
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31);
-}
-
-/// -1 to 1 at a lattice point.
+/// A pseudo-random number from -1 to 1 for a lattice point.
 double lattice(int x, int y, int octave) {
-  const auto key = static_cast<std::uint64_t>(x) | static_cast<std::uint64_t>(y) << 20 | static_cast<std::uint64_t>(octave) << 40;
-  return static_cast<double>(mix(key) >> 11) * 0x1p-52 - 1.0;
+  const auto key =
+      static_cast<std::uint64_t>(x) | static_cast<std::uint64_t>(y) << 20 | static_cast<std::uint64_t>(octave) << 40;
+  return static_cast<double>(splitmix64(key) >> 11) * 0x1p-52 - 1.0;
 }
 
-/// Value noise with `cells` lattice cells along the tile, periodic.
+/// Value noise with `cells` lattice cells along the edge of the tile. It is periodic.
 double value_noise(int x, int y, int cells, int octave) {
   const int cell = kGroundTextureSize / cells;
   const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
@@ -38,10 +34,13 @@ double value_noise(int x, int y, int cells, int octave) {
 }  // namespace
 
 std::vector<std::uint8_t> make_ground_texture() {
-  struct Octave { int cells; double weight; };
+  struct Octave {
+    int cells;
+    double weight;
+  };
   constexpr std::array<Octave, 5> kOctaves{{{8, 5.0}, {16, 4.0}, {64, 4.0}, {256, 4.0}, {1024, 6.0}}};
   constexpr int kTexelsPerMetre = static_cast<int>(kGroundTextureSize / kGroundTextureExtent_m);
-  constexpr double kJoint = 15.0;  // how much darker a joint is
+  constexpr double kJoint = 15.0;  // by which a joint is darker
   std::vector<std::uint8_t> texture(static_cast<std::size_t>(kGroundTextureSize) * kGroundTextureSize);
   for (int y = 0; y < kGroundTextureSize; ++y) {
     for (int x = 0; x < kGroundTextureSize; ++x) {

@@ -11,17 +11,16 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 std::uint32_t Mesh::add(const Vector3d& p, const Vector3d& n, double shade) {
-  for (const double value : {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), shade}) vertices.push_back(static_cast<float>(value));
+  for (const double value : {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), shade})
+    vertices.push_back(static_cast<float>(value));
   return static_cast<std::uint32_t>(vertices.size() / kFloatsPerVertex - 1);
 }
 
-void Mesh::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  indices.insert(indices.end(), {a, b, c});
-}
+void Mesh::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { indices.insert(indices.end(), {a, b, c}); }
 
 namespace {
 
-/// A ring of a body of revolution about x: position and normal in the plane of x and radius.
+/// A ring of a body of revolution about x. Position and normal are in the plane of x and radius.
 struct Ring {
   double x, radius, normal_x, normal_radius, shade;
 };
@@ -33,7 +32,8 @@ Mesh revolve(const std::vector<Ring>& rings, int segments) {
       const double angle = 2.0 * pi * s / segments;
       const double c = std::cos(angle);
       const double d = std::sin(angle);
-      mesh.add({ring.x, ring.radius * c, ring.radius * d}, {ring.normal_x, ring.normal_radius * c, ring.normal_radius * d}, ring.shade);
+      mesh.add({ring.x, ring.radius * c, ring.radius * d},
+               {ring.normal_x, ring.normal_radius * c, ring.normal_radius * d}, ring.shade);
     }
   }
   const auto columns = static_cast<std::uint32_t>(segments + 1);
@@ -48,18 +48,19 @@ Mesh revolve(const std::vector<Ring>& rings, int segments) {
   return mesh;
 }
 
-/// Half of a module, from the front's tip to the shell's end, for x > 0.
+/// The front half of a module (x > 0), from its tip to the end of the shell.
 std::vector<Ring> front_half(double length_m, double radius_m, int rings, bool head) {
   constexpr double kJointShade = 0.4;
-  constexpr double kJointRadius = 0.84;   // of the module's
-  constexpr double kShellEnd = 0.78;      // of half the module's length
+  constexpr double kJointRadius = 0.84;  // relative to the radius of the module
+  constexpr double kShellEnd = 0.78;     // relative to half the length of the module
   constexpr double kBevelEnd = 0.90;
   const double ball_radius = head ? radius_m : kJointRadius * radius_m;
   const double shade = head ? 1.0 : kJointShade;
   std::vector<Ring> half;
   for (int i = 0; i <= rings; ++i) {
     const double angle = pi / 2.0 * (1.0 - static_cast<double>(i) / rings);
-    half.push_back({length_m / 2 + ball_radius * std::sin(angle), ball_radius * std::cos(angle), std::sin(angle), std::cos(angle), shade});
+    half.push_back({length_m / 2 + ball_radius * std::sin(angle), ball_radius * std::cos(angle), std::sin(angle),
+                    std::cos(angle), shade});
   }
   if (!head) {
     const double bevel_x = kBevelEnd * length_m / 2;
@@ -145,7 +146,7 @@ Mesh make_ribbon(const std::vector<Vector2d>& line_m, double width_m) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector2d in = i > 0 ? (points[i] - points[i - 1]).normalized() : (points[1] - points[0]).normalized();
     const Vector2d out = i + 1 < points.size() ? (points[i + 1] - points[i]).normalized() : in;
-    // Mitre: the corner lies on both offset lines; bounded, so that a hairpin has no spike.
+    // The corner of a mitre lies on both offset lines. Its length is bounded, so that a hairpin has no spike.
     const Vector2d bisector = left_of(in) + left_of(out);
     const double length = bisector.norm();
     const Vector2d normal = length > 1e-6 ? Vector2d(bisector / length) : left_of(in);
@@ -167,7 +168,8 @@ Mesh make_disc(const Vector2d& centre_m, double radius_m, int segments) {
   const std::uint32_t centre = mesh.add({centre_m.x(), centre_m.y(), 0}, {0, 0, 1});
   for (int s = 0; s <= segments; ++s) {
     const double angle = 2.0 * pi * s / segments;
-    const std::uint32_t v = mesh.add({centre_m.x() + radius_m * std::cos(angle), centre_m.y() + radius_m * std::sin(angle), 0}, {0, 0, 1});
+    const std::uint32_t v =
+        mesh.add({centre_m.x() + radius_m * std::cos(angle), centre_m.y() + radius_m * std::sin(angle), 0}, {0, 0, 1});
     if (s > 0) mesh.triangle(centre, v - 1, v);
   }
   return mesh;

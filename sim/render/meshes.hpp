@@ -1,4 +1,4 @@
-// Triangle meshes of unit shapes, of the line's ribbon and of discs.
+// Triangle meshes of the robot's modules, unit solids, the line and zones.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,8 @@
 
 namespace constrictor {
 
-/// Positions and normals interleaved (x y z nx ny nz shade), triangles counter-clockwise seen from outside. `shade` scales the
-/// colour, so that one mesh can have darker parts.
+/// Vertices are x y z nx ny nz shade; `shade` scales the colour, so that one mesh can have darker parts. Triangles are
+/// counter-clockwise as seen from outside.
 struct Mesh {
   static constexpr int kFloatsPerVertex = 7;
   std::vector<float> vertices;
@@ -18,20 +18,20 @@ struct Mesh {
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 };
 
-/// A snake module along x around the origin: a shell of radius `radius_m` between two dark balls at the joints, `length_m`
-/// apart. The balls are a little thinner than the capsule that the physics knows, so that the joints can be seen.
+/// A module along x around the origin: a shell of radius `radius_m` between two dark balls at the joints, which are
+/// `length_m` apart. The balls are thinner than the capsule of the physics, so that the joints are visible.
 Mesh make_module(double length_m, double radius_m, int segments, int rings);
 /// The first module: its front (+x) is the full half sphere.
 Mesh make_head(double length_m, double radius_m, int segments, int rings);
-/// Radius 1, height 1, axis z, centred.
+/// A cylinder of radius 1 and height 1 about z; the origin is its centre.
 Mesh make_cylinder(int segments);
-/// Extents 1, centred.
+/// A cube of edge 1; the origin is its centre.
 Mesh make_box();
-/// Flat ribbon around a polyline on z = 0, mitred at its corners.
+/// A flat ribbon along a polyline on z = 0, mitred at its corners.
 Mesh make_ribbon(const std::vector<Eigen::Vector2d>& line_m, double width_m);
-/// Flat disc on z = 0.
+/// A flat disc on z = 0.
 Mesh make_disc(const Eigen::Vector2d& centre_m, double radius_m, int segments);
-/// Square on z = 0 around the origin.
+/// A square on z = 0 around the origin.
 Mesh make_square(double half_extent_m);
 
 }  // namespace constrictor

@@ -1,4 +1,5 @@
-// Sensor noise of a camera: zero-mean Gaussian on every channel of every pixel, a pure function of seed and tick.
+// Sensor noise of a camera: zero-mean Gaussian noise on every channel of every pixel. It is a pure function of seed and
+// tick.
 #pragma once
 
 #include <array>
@@ -7,11 +8,12 @@
 
 namespace constrictor {
 
-/// Adds noise from a table of normal deviates at counter-based random indices: no state, so a restarted camera repeats its
-/// frames, and no libm. The deviates are sums of 12 uniform numbers (Irwin-Hall), bounded at 6 standard deviations.
+/// Adds normal deviates from a table at random indices that depend on a counter. It has no state, so a restarted camera
+/// repeats its frames, and it does not use libm. The deviates are sums of 12 uniform numbers (Irwin-Hall distribution),
+/// bounded at 6 standard deviations.
 class PixelNoise {
  public:
-  /// `standard_deviation` relative to full scale 1; 0 turns the noise off.
+  /// `standard_deviation` is relative to the full scale of a channel; 0 turns the noise off.
   PixelNoise(double standard_deviation, std::uint64_t seed);
   void add(std::vector<std::uint8_t>& rgb, std::int64_t tick) const;
 

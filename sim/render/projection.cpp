@@ -18,7 +18,7 @@ Eigen::Matrix4f clip_from_world(const PinholeCamera& camera, double near_m, doub
 }
 
 Eigen::Matrix4f shadow_from_world(const Eigen::Vector3d& to_light, const ShadowRegion& region, int map_size) {
-  constexpr double kDepth_m = 10.0;  // half of the depth covered
+  constexpr double kDepth_m = 10.0;                                           // half of the depth covered
   const Eigen::Isometry3d X_WL = look_at(to_light, Eigen::Vector3d::Zero());  // only its rotation is used
   const Eigen::Matrix3d R_LW = X_WL.linear().transpose();
   Eigen::Vector3d centre = R_LW * Eigen::Vector3d(region.centre_m.x(), region.centre_m.y(), 0.0);

@@ -1,4 +1,5 @@
-// Matrices of the camera and of the light. Clip space is OpenGL's; rows of the framebuffer run from the image's top.
+// Matrices of the camera and of the light, into OpenGL's clip space. The first row of the framebuffer is the top of the
+// image.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,10 +9,12 @@
 
 namespace constrictor {
 
-/// Clip space from the world for a pin-hole camera. Window row 0 is the image's first row, so front faces appear clockwise.
+/// Clip space from the world for a pin-hole camera. Because the first row of the framebuffer is the top of the image,
+/// front faces appear clockwise.
 Eigen::Matrix4f clip_from_world(const PinholeCamera& camera, double near_m, double far_m);
 
-/// Orthographic light space that covers the region; it moves in whole texels, so that shadows do not shimmer.
+/// Orthographic clip space of the light that covers the region. It moves in whole texels, so that shadows do not
+/// shimmer.
 Eigen::Matrix4f shadow_from_world(const Eigen::Vector3d& to_light, const ShadowRegion& region, int map_size);
 
 }  // namespace constrictor

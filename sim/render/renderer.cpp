@@ -10,6 +10,7 @@
 #include "sim/render/ground_texture.hpp"
 #include "sim/render/meshes.hpp"
 #include "sim/render/projection.hpp"
+#include "sim/render/render_targets.hpp"
 #include "sim/render/shaders.hpp"
 
 namespace constrictor {
@@ -46,49 +47,48 @@ void set_uniform(const GlProgram& program, const char* name, int value) {
   glUniform1i(glGetUniformLocation(program.get(), name), value);
 }
 
-GlFramebuffer make_framebuffer() { return GlFramebuffer::create(); }
-
 }  // namespace
 
 class Renderer::Implementation {
  public:
   Implementation(const Scene& scene, const RenderOptions& options);
   ~Implementation() {
-    // The names below are freed while this scope keeps the context current.
+    // OpenGL's objects must be freed while the context is current; this scope keeps it current until they are.
     last_scope_.emplace(context_);
   }
-  const std::vector<std::uint8_t>& draw(const ScenePoses& poses, const PinholeCamera& camera, const ShadowRegion& region);
+  const std::vector<std::uint8_t>& draw(const ScenePoses& poses, const PinholeCamera& camera,
+                                        const ShadowRegion& region);
 
  private:
   void build_meshes();
   void build_textures();
-  void resize(int width, int height);
   void place(const ScenePoses& poses);
   void draw_shadow_map(const Eigen::Matrix4f& shadow);
   void draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow);
-  void read_back(int width, int height);
   void draw_solids();
 
   Scene scene_;
   RenderOptions options_;
   GlContext context_;
-  // Order matters at destruction: the scope is destroyed after the names (declared before them), before the context.
+  // The order of the members matters: the scope is destroyed after the OpenGL objects below it and before the context.
   std::optional<ContextScope> last_scope_;
   GlProgram solid_program_, flat_program_, depth_program_;
   GpuMesh head_, modules_, cylinders_, boxes_;
   std::vector<Flat> flats_;  // painted in this order
-  GlTexture pattern_, shadow_map_;
-  GlFramebuffer shadow_framebuffer_, draw_framebuffer_, resolve_framebuffer_;
-  GlRenderbuffer colour_buffer_, depth_buffer_, resolve_buffer_;
-  int width_ = 0;
-  int height_ = 0;
+  GlTexture pattern_;
+  ShadowMap shadow_map_;
+  ImageTarget target_;
   std::vector<Instance> head_instances_, module_instances_, cylinder_instances_, box_instances_;
-  std::vector<std::uint8_t> rgba_, rgb_;
 };
 
-Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options) : scene_(scene), options_(options) {
-  if (options.samples != 1 && options.samples != 4) throw std::runtime_error("renderer: samples must be 1 or 4");
-  if (scene.X_WObstacle.size() != scene.obstacles.size()) throw std::runtime_error("renderer: a pose is needed for each obstacle");
+Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options)
+    : scene_(scene), options_(options) {
+  if (options.samples != 1 && options.samples != 4) {
+    throw std::runtime_error("renderer: samples: found " + std::to_string(options.samples) + ", accepted 1 or 4");
+  }
+  if (scene.X_WObstacle.size() != scene.obstacles.size())
+    throw std::runtime_error("renderer: found " + std::to_string(scene.X_WObstacle.size()) + " poses, accepted " +
+                             std::to_string(scene.obstacles.size()) + " (one for each obstacle)");
   const ContextScope scope(context_);
   const std::string lighting = shaders::lighting(options.shadow_taps);
   solid_program_ = build_program(shaders::kSolidVertex, (lighting + shaders::kSolidFragment).c_str());
@@ -96,6 +96,7 @@ Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions
   depth_program_ = build_program(shaders::kSolidVertex, shaders::kDepthFragment);
   build_meshes();
   build_textures();
+  shadow_map_.build(options.shadow_map_size);
   check_gl("building the scene");
 }
 
@@ -106,7 +107,8 @@ void Renderer::Implementation::build_meshes() {
   cylinders_ = upload(make_cylinder(48), true);
   boxes_ = upload(make_box(), true);
   flats_.push_back({upload(make_square(kGroundHalfExtent_m), false), scene_.ground_colour, 1.0F});
-  for (const Disc& zone : scene_.zones) flats_.push_back({upload(make_disc(zone.centre_m, zone.radius_m, 64), false), zone.colour, 0.5F});
+  for (const Disc& zone : scene_.zones)
+    flats_.push_back({upload(make_disc(zone.centre_m, zone.radius_m, 64), false), zone.colour, 0.5F});
   const Mesh ribbon = make_ribbon(scene_.line_m, scene_.line_width_m);
   if (!ribbon.indices.empty()) flats_.push_back({upload(ribbon, false), scene_.line_colour, 0.3F});
 }
@@ -115,62 +117,11 @@ void Renderer::Implementation::build_textures() {
   const std::vector<std::uint8_t> texels = make_ground_texture();
   pattern_ = GlTexture::create();
   glBindTexture(GL_TEXTURE_2D, pattern_.get());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kGroundTextureSize, kGroundTextureSize, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kGroundTextureSize, kGroundTextureSize, 0, GL_RED, GL_UNSIGNED_BYTE,
+               texels.data());
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-
-  // Without shadows a map of one texel that is never drawn into stands for "lit everywhere".
-  const int size = options_.shadow_map_size > 0 ? options_.shadow_map_size : 1;
-  shadow_map_ = GlTexture::create();
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.get());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size, size, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  constexpr std::array<float, 4> kLit{1.0F, 1.0F, 1.0F, 1.0F};
-  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, kLit.data());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  shadow_framebuffer_ = make_framebuffer();
-  glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map_.get(), 0);
-  glDrawBuffer(GL_NONE);
-  glReadBuffer(GL_NONE);
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no shadow map");
-  glClearDepth(1.0);
-  glClear(GL_DEPTH_BUFFER_BIT);
-}
-
-void Renderer::Implementation::resize(int width, int height) {
-  if (width == width_ && height == height_) return;
-  width_ = width;
-  height_ = height;
-  const int samples = options_.samples > 1 ? options_.samples : 0;
-  colour_buffer_ = GlRenderbuffer::create();
-  glBindRenderbuffer(GL_RENDERBUFFER, colour_buffer_.get());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
-  depth_buffer_ = GlRenderbuffer::create();
-  glBindRenderbuffer(GL_RENDERBUFFER, depth_buffer_.get());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width, height);
-  draw_framebuffer_ = make_framebuffer();
-  glBindFramebuffer(GL_FRAMEBUFFER, draw_framebuffer_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_buffer_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_buffer_.get());
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no framebuffer");
-  if (samples > 0) {
-    resolve_buffer_ = GlRenderbuffer::create();
-    glBindRenderbuffer(GL_RENDERBUFFER, resolve_buffer_.get());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-    resolve_framebuffer_ = make_framebuffer();
-    glBindFramebuffer(GL_FRAMEBUFFER, resolve_framebuffer_.get());
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolve_buffer_.get());
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) throw std::runtime_error("renderer: no framebuffer");
-  }
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  rgba_.resize(4 * pixels);
-  rgb_.resize(3 * pixels);
 }
 
 void Renderer::Implementation::place(const ScenePoses& poses) {
@@ -180,7 +131,8 @@ void Renderer::Implementation::place(const ScenePoses& poses) {
   box_instances_.clear();
   for (std::size_t i = 0; i < poses.X_WModule.size(); ++i) {
     const Rgb& colour = i == 0 ? kHead : i % 2 == 1 ? kDarkModule : kGreyModule;
-    (i == 0 ? head_instances_ : module_instances_).push_back(make_instance(poses.X_WModule[i], Eigen::Vector3d::Ones(), colour, 0.15));
+    (i == 0 ? head_instances_ : module_instances_)
+        .push_back(make_instance(poses.X_WModule[i], Eigen::Vector3d::Ones(), colour, 0.15));
   }
   if (options_.head_camera_m && !poses.X_WModule.empty()) {
     const Eigen::Isometry3d X_WBox = poses.X_WModule[0] * Eigen::Translation3d(*options_.head_camera_m);
@@ -193,7 +145,8 @@ void Renderer::Implementation::place(const ScenePoses& poses) {
     auto& instances = solid.shape == SolidShape::kBox ? box_instances_ : cylinder_instances_;
     instances.push_back(make_instance(X_W, solid.size_m, solid.colour, 0.05));
   };
-  for (std::size_t i = 0; i < scene_.objects.size() && i < poses.X_WObject.size(); ++i) place_solid(scene_.objects[i], poses.X_WObject[i]);
+  for (std::size_t i = 0; i < scene_.objects.size() && i < poses.X_WObject.size(); ++i)
+    place_solid(scene_.objects[i], poses.X_WObject[i]);
   for (std::size_t i = 0; i < scene_.obstacles.size(); ++i) place_solid(scene_.obstacles[i], scene_.X_WObstacle[i]);
   set_instances(head_, head_instances_);
   set_instances(modules_, module_instances_);
@@ -211,7 +164,7 @@ void Renderer::Implementation::draw_solids() {
 
 void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
   if (options_.shadow_map_size == 0) return;
-  glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_map_.framebuffer().get());
   glViewport(0, 0, options_.shadow_map_size, options_.shadow_map_size);
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
@@ -228,7 +181,7 @@ void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
 }
 
 void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow) {
-  glBindFramebuffer(GL_FRAMEBUFFER, draw_framebuffer_.get());
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer().get());
   glViewport(0, 0, camera.width, camera.height);
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
@@ -240,7 +193,7 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eig
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, pattern_.get());
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.get());
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture().get());
 
   const Eigen::Matrix4f clip = clip_from_world(camera, kNear_m, kFar_m);
   const auto use = [&](const GlProgram& program) {
@@ -253,13 +206,15 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eig
     set_uniform(program, "ambient", static_cast<float>(scene_.light.ambient));
     set_uniform(program, "eye", Eigen::Vector3f(camera.X_WC.translation().cast<float>()));
     set_uniform(program, "horizon", kHorizon);
-    if (options_.shadow_map_size > 0) set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(options_.shadow_map_size));
+    if (options_.shadow_map_size > 0)
+      set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(options_.shadow_map_size));
   };
   use(solid_program_);
   set_uniform(solid_program_, "normal_offset", 0.006F);
   draw_solids();
 
-  // Nothing lies below the ground: painted in order behind the solids, without depth of its own.
+  // The flat surfaces lie on the ground, and nothing lies below it. They are painted in order behind the solids and do
+  // not write depths, so that surfaces at the same height do not flicker.
   use(flat_program_);
   set_uniform(flat_program_, "pattern", 0);
   set_uniform(flat_program_, "texture_scale", static_cast<float>(1.0 / kGroundTextureExtent_m));
@@ -272,37 +227,26 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eig
   }
 }
 
-void Renderer::Implementation::read_back(int width, int height) {
-  if (options_.samples > 1) {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, draw_framebuffer_.get());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolve_framebuffer_.get());
-    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolve_framebuffer_.get());
-  }
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba_.data());
-  for (std::size_t pixel = 0, count = rgb_.size() / 3; pixel < count; ++pixel) {
-    for (std::size_t channel = 0; channel < 3; ++channel) rgb_[3 * pixel + channel] = rgba_[4 * pixel + channel];
-  }
-}
-
 const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses& poses, const PinholeCamera& camera,
                                                                 const ShadowRegion& region) {
   const ContextScope scope(context_);
-  resize(camera.width, camera.height);
+  target_.resize(camera.width, camera.height, options_.samples);
   place(poses);
-  const Eigen::Matrix4f shadow = shadow_from_world(scene_.light.direction, region, options_.shadow_map_size > 0 ? options_.shadow_map_size : 1);
+  const Eigen::Matrix4f shadow =
+      shadow_from_world(scene_.light.direction, region, options_.shadow_map_size > 0 ? options_.shadow_map_size : 1);
   draw_shadow_map(shadow);
   draw_image(camera, shadow);
-  read_back(camera.width, camera.height);
+  const std::vector<std::uint8_t>& rgb = target_.read();
   check_gl("drawing");
-  return rgb_;
+  return rgb;
 }
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options)
     : implementation_(std::make_unique<Implementation>(scene, options)) {}
 Renderer::~Renderer() = default;
 
-const std::vector<std::uint8_t>& Renderer::draw(const ScenePoses& poses, const PinholeCamera& camera, const ShadowRegion& region) {
+const std::vector<std::uint8_t>& Renderer::draw(const ScenePoses& poses, const PinholeCamera& camera,
+                                                const ShadowRegion& region) {
   return implementation_->draw(poses, camera, region);
 }
 

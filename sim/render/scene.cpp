@@ -19,7 +19,7 @@ PinholeCamera make_pinhole(int width, int height, double horizontal_fov_rad) {
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
   const Eigen::Vector3d z = (target - eye).normalized();
   Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ());
-  if (x.norm() < 1e-9) x = -Eigen::Vector3d::UnitY();  // straight down: the image's top is +x of the world
+  if (x.norm() < 1e-9) x = -Eigen::Vector3d::UnitY();  // looking straight down, the top of the image is +x of W
   x.normalize();
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
   X_WC.linear().col(0) = x;
@@ -31,8 +31,11 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& tar
 
 Rgb colour_reflectance(std::uint8_t colour) {
   // Order of msg::kColour…: unknown, green, red, blue, yellow.
-  static constexpr std::array<Rgb, 5> kReflectance{
-      {{0.35F, 0.35F, 0.35F}, {0.04F, 0.50F, 0.09F}, {0.62F, 0.03F, 0.03F}, {0.03F, 0.13F, 0.62F}, {0.80F, 0.58F, 0.03F}}};
+  static constexpr std::array<Rgb, 5> kReflectance{{{0.35F, 0.35F, 0.35F},
+                                                    {0.04F, 0.50F, 0.09F},
+                                                    {0.62F, 0.03F, 0.03F},
+                                                    {0.03F, 0.13F, 0.62F},
+                                                    {0.80F, 0.58F, 0.03F}}};
   return kReflectance[colour < kReflectance.size() ? colour : 0];
 }
 

@@ -1,4 +1,5 @@
-// What the renderer draws: plain values in the world frame W (z up, ground at z = 0), free of messages and of OpenGL.
+// The values that the renderer draws, in the world frame W (z up, ground at z = 0). They contain neither messages nor
+// OpenGL.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,7 +18,7 @@ struct Rgb {
 
 enum class SolidShape { kCylinder, kBox };
 
-/// An object, wall or peg. Its frame sits at its centre, z along a cylinder's axis.
+/// An object, wall or peg. The origin of its frame is its centre; z is the axis of a cylinder.
 struct Solid {
   SolidShape shape = SolidShape::kCylinder;
   Eigen::Vector3d size_m{0.1, 0.1, 0.1};  ///< cylinder: radius, radius, height; box: extents
@@ -37,12 +38,12 @@ struct Light {
   double ambient = 0.35;                       ///< 0 to 1
 };
 
-/// All that does not move during an epoch.
+/// The part of the scene that does not change during an epoch.
 struct Scene {
-  double module_length_m = 0.089;  ///< joint to joint
+  double module_length_m = 0.089;  ///< [m] from joint to joint
   double module_radius_m = 0.035;
-  std::vector<Solid> objects;      ///< posed by ScenePoses::objects
-  std::vector<Solid> obstacles;    ///< walls and pegs
+  std::vector<Solid> objects;    ///< their poses are ScenePoses::X_WObject
+  std::vector<Solid> obstacles;  ///< walls and pegs
   std::vector<Eigen::Isometry3d> X_WObstacle;
   std::vector<Disc> zones;
   std::vector<Eigen::Vector2d> line_m;  ///< centre line of the ribbon
@@ -52,14 +53,14 @@ struct Scene {
   Light light;
 };
 
-/// All that moves.
+/// The poses of the bodies that move.
 struct ScenePoses {
-  std::vector<Eigen::Isometry3d> X_WModule;  ///< head first; x forward, at the module's centre
+  std::vector<Eigen::Isometry3d> X_WModule;  ///< head first; x forward, origin at the centre of the module
   std::vector<Eigen::Isometry3d> X_WObject;  ///< in the order of Scene::objects
 };
 
-/// Pin-hole camera: u = fx X/Z + cx, v = fy Y/Z + cy for a point (X, Y, Z) of the camera's frame C (z along the view, x right,
-/// y down). Pixel centres lie at +0.5, the origin is the top left corner.
+/// Pin-hole camera: u = fx X/Z + cx, v = fy Y/Z + cy for a point (X, Y, Z) of the camera's frame C (z along the view, x
+/// right, y down). Pixel centres lie at +0.5, the origin is the top left corner.
 struct PinholeCamera {
   int width = 320;
   int height = 240;
@@ -70,7 +71,7 @@ struct PinholeCamera {
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
 };
 
-/// Square pixels, principal point at the middle.
+/// A camera with square pixels and the principal point in the middle.
 [[nodiscard]] PinholeCamera make_pinhole(int width, int height, double horizontal_fov_rad);
 
 /// The pose of a camera at `eye` that looks at `target`, both in W, with the image upright.

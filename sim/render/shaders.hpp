@@ -1,4 +1,5 @@
-// Shader sources. Arithmetic only: no pow, exp or trigonometry, whose last bits a software renderer may choose by CPU.
+// Shader sources. They use arithmetic and square roots only: the last bits of pow, exp and trigonometric functions may
+// depend on the CPU in a software renderer.
 #pragma once
 
 #include <string>
@@ -34,7 +35,7 @@ void main() {
 }
 )";
 
-/// Ground, zones, line: all on z = 0.
+/// Ground, zones and line, which all lie on z = 0.
 inline constexpr const char* kFlatVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 uniform mat4 clip_from_world;
@@ -55,7 +56,7 @@ inline constexpr const char* kDepthFragment = R"(#version 330 core
 void main() {}
 )";
 
-/// What both kinds of surface share. `shadow_taps` is 1 (hardware's bilinear comparison) or 3 (3 x 3 of them).
+/// Code for both kinds of surface. `shadow_taps` is 1 (one bilinear comparison) or 3 (3 x 3 comparisons).
 inline std::string lighting(int shadow_taps) {
   return "#version 330 core\n#define TAPS " + std::to_string(shadow_taps) + R"(
 uniform sampler2DShadow shadow_map;
@@ -79,7 +80,7 @@ float lit() {
   return sum / 9.0;
 #endif
 }
-// Distance fades towards the horizon; square root stands for the display's gamma.
+// Distant surfaces fade towards the colour of the horizon. The square root is the gamma of the display.
 vec4 finish(vec3 radiance) {
   vec3 ray = world - eye;
   float distance2 = dot(ray, ray);

@@ -10,14 +10,15 @@ namespace constrictor {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-PinholeCamera fit_view(const std::vector<Vector3d>& points_m, double heading_rad, double elevation_rad, double horizontal_fov_rad,
-                       int width, int height, double margin) {
+PinholeCamera fit_view(const std::vector<Vector3d>& points_m, double heading_rad, double elevation_rad,
+                       double horizontal_fov_rad, int width, int height, double margin) {
   PinholeCamera camera = make_pinhole(width, height, horizontal_fov_rad);
-  const Vector3d forward(std::cos(heading_rad) * std::cos(elevation_rad), std::sin(heading_rad) * std::cos(elevation_rad), -std::sin(elevation_rad));
+  const Vector3d forward(std::cos(heading_rad) * std::cos(elevation_rad),
+                         std::sin(heading_rad) * std::cos(elevation_rad), -std::sin(elevation_rad));
   camera.X_WC = look_at(Vector3d::Zero(), forward);
   if (points_m.empty()) return camera;
-  // A point (x, y, z) seen from (a, b, -d) lies inside the border lines |x - a| <= s (z + d): each border is reached first by
-  // one point, and the nearest camera touches two opposite borders of the tighter direction.
+  // A point (x, y, z) seen from (a, b, -d) is in the picture if |x - a| <= s (z + d). Each border is reached by one
+  // point first. In the direction that has less room, the nearest camera has a point on both opposite borders.
   const double slope_x = (0.5 - margin) * width / camera.fx;
   const double slope_y = (0.5 - margin) * height / camera.fy;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -30,7 +31,7 @@ PinholeCamera fit_view(const std::vector<Vector3d>& points_m, double heading_rad
     high = std::min(high, c.y() + slope_y * c.z());
   }
   const double distance = std::max((right - left) / (2.0 * slope_x), (low - high) / (2.0 * slope_y));
-  // Where there is room, as much is left free on one side as on the other.
+  // In the other direction the free room is the same on both sides.
   const auto centred = [&](int axis, double from, double to) {
     for (int i = 0; i < 50; ++i) {
       const double middle = (from + to) / 2.0;

@@ -5,39 +5,47 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
+
+#include "sim/report/png.hpp"
 
 namespace constrictor::report {
 namespace {
 
-// Drawn at twice its size and reduced: that smooths OpenCV's stroke fonts.
+// The figure is drawn at twice its size and then reduced, which smooths the stroke fonts of OpenCV.
 constexpr int kScale = 2;
 constexpr int kMargin = 24;
 constexpr int kGap = 10;
 constexpr int kPanelHeight = 180;
 constexpr std::array<int, 5> kColumnWidths{150, 320, 240, 240, 362};  // caption, scene, camera, processed, torque
 constexpr int kHeaderHeight = 104;
+constexpr int kFailureHeight = 24;  // of the line that names why the mission did not succeed
 const cv::Scalar kInk(45, 40, 38);
 const cv::Scalar kGreyInk(125, 120, 118);
+const cv::Scalar kRedInk(40, 40, 190);
 const cv::Scalar kFaint(228, 226, 225);
 const cv::Scalar kFrame(196, 192, 190);
 
 cv::Scalar display_colour(std::uint8_t colour) {
-  static const std::array<cv::Scalar, 5> kColours{cv::Scalar(150, 150, 150), cv::Scalar(72, 160, 44), cv::Scalar(48, 48, 205),
-                                                  cv::Scalar(200, 96, 40), cv::Scalar(30, 175, 225)};
+  static const std::array<cv::Scalar, 5> kColours{cv::Scalar(150, 150, 150), cv::Scalar(72, 160, 44),
+                                                  cv::Scalar(48, 48, 205), cv::Scalar(200, 96, 40),
+                                                  cv::Scalar(30, 175, 225)};
   return kColours[colour < kColours.size() ? colour : 0];
 }
 
-cv::Point scaled(double x, double y) { return {static_cast<int>(std::lround(x * kScale)), static_cast<int>(std::lround(y * kScale))}; }
-cv::Rect scaled_rect(int x, int y, int width, int height) { return {x * kScale, y * kScale, width * kScale, height * kScale}; }
+cv::Point scaled(double x, double y) {
+  return {static_cast<int>(std::lround(x * kScale)), static_cast<int>(std::lround(y * kScale))};
+}
+cv::Rect scaled_rect(int x, int y, int width, int height) {
+  return {x * kScale, y * kScale, width * kScale, height * kScale};
+}
 
 enum class Align { kLeft, kCentre, kRight };
 
 /// Text with its baseline at y. `size` 1 gives capitals of about 11 pixels in the final figure.
-void text(cv::Mat& canvas, const std::string& words, double x, double y, double size, const cv::Scalar& colour, bool bold = false,
-          Align align = Align::kLeft) {
+void text(cv::Mat& canvas, const std::string& words, double x, double y, double size, const cv::Scalar& colour,
+          bool bold = false, Align align = Align::kLeft) {
   const double font_scale = 0.5 * size * kScale;
   const int thickness = std::max(1, static_cast<int>(std::lround((bold ? 1.6 : 1.0) * size * kScale * 0.75)));
   int baseline = 0;
@@ -49,6 +57,18 @@ void text(cv::Mat& canvas, const std::string& words, double x, double y, double 
   cv::putText(canvas, words, origin, font, font_scale, colour, thickness, cv::LINE_AA);
 }
 
+/// `words`, cut at the end and marked with "..." if they are wider than `width` pixels of the final figure.
+std::string fitted(std::string words, double size, double width) {
+  const auto too_wide = [&](const std::string& candidate) {
+    int baseline = 0;
+    const cv::Size extent = cv::getTextSize(candidate, cv::FONT_HERSHEY_SIMPLEX, 0.5 * size * kScale, 1, &baseline);
+    return extent.width > width * kScale;
+  };
+  if (!too_wide(words)) return words;
+  while (!words.empty() && too_wide(words + "...")) words.pop_back();
+  return words + "...";
+}
+
 std::string number(double value, int decimals) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
@@ -57,13 +77,12 @@ std::string number(double value, int decimals) {
 
 void picture(cv::Mat& canvas, const std::filesystem::path& file, int x, int y, int width) {
   const cv::Rect frame = scaled_rect(x, y, width, kPanelHeight);
-  cv::Mat image;
-  if (!file.empty() && std::filesystem::exists(file)) image = cv::imread(file.string(), cv::IMREAD_COLOR);
+  const cv::Mat image = read_png(file);
   if (image.empty()) {
     cv::rectangle(canvas, frame, kFaint, cv::FILLED);
     text(canvas, "no image", x + width / 2.0, y + kPanelHeight / 2.0 + 4, 0.85, kGreyInk, false, Align::kCentre);
   } else {
-    // Cut to the panel's shape, never stretched.
+    // The image is cut to the shape of the panel, never stretched.
     const double wanted = static_cast<double>(width) / kPanelHeight;
     const double have = static_cast<double>(image.cols) / image.rows;
     cv::Rect part(0, 0, image.cols, image.rows);
@@ -80,10 +99,11 @@ void picture(cv::Mat& canvas, const std::filesystem::path& file, int x, int y, i
   cv::rectangle(canvas, frame, kFrame, kScale / 2);
 }
 
-/// Colour of a joint's line: from a warm head to a cool tail.
+/// Colour of a joint's curve: from red at the head to blue at the tail.
 cv::Scalar joint_colour(std::size_t joint, std::size_t count) {
   const double t = count > 1 ? static_cast<double>(joint) / static_cast<double>(count - 1) : 0.0;
-  static const std::array<cv::Vec3d, 4> kStops{cv::Vec3d(40, 60, 215), cv::Vec3d(40, 165, 235), cv::Vec3d(150, 160, 60), cv::Vec3d(170, 75, 60)};
+  static const std::array<cv::Vec3d, 4> kStops{cv::Vec3d(40, 60, 215), cv::Vec3d(40, 165, 235), cv::Vec3d(150, 160, 60),
+                                               cv::Vec3d(170, 75, 60)};
   const double at = t * (kStops.size() - 1);
   const std::size_t i = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
   const cv::Vec3d mixed = kStops[i] + (kStops[i + 1] - kStops[i]) * (at - static_cast<double>(i));
@@ -91,34 +111,40 @@ cv::Scalar joint_colour(std::size_t joint, std::size_t count) {
 }
 
 struct Axes {
-  int x, y, width, height;  // of the plot's inside
+  int x, y, width, height;  // of the area inside the frame
   double from_s, to_s, limit_nm;
   [[nodiscard]] cv::Point at(double time_s, double torque_nm) const {
-    return scaled(x + (time_s - from_s) / (to_s - from_s) * width, y + height * (0.5 - 0.5 * std::clamp(torque_nm / limit_nm, -1.0, 1.0)));
+    return scaled(x + (time_s - from_s) / (to_s - from_s) * width,
+                  y + height * (0.5 - 0.5 * std::clamp(torque_nm / limit_nm, -1.0, 1.0)));
   }
 };
 
-void torque_plot(cv::Mat& canvas, const TorqueSeries& torques, double limit_nm, double moment_s, double window_s, int left, int top, int width) {
+void torque_plot(cv::Mat& canvas, const TorqueSeries& torques, double limit_nm, double moment_s, double window_s,
+                 int left, int top, int width) {
   Axes axes{left + 30, top + 4, width - 34, kPanelHeight - 24, 0.0, 0.0, limit_nm};
-  // The moment stands at four fifths of the window; at the run's start the window begins at zero.
+  // The moment is at four fifths of the window; early in the run the window begins at zero.
   axes.from_s = std::max(0.0, moment_s - 0.8 * window_s);
   axes.to_s = axes.from_s + window_s;
   cv::rectangle(canvas, scaled_rect(axes.x, axes.y, axes.width, axes.height), cv::Scalar(252, 252, 252), cv::FILLED);
   const double step_nm = limit_nm > 4.0 ? 2.0 : 1.0;
   for (double value = -std::floor(limit_nm / step_nm) * step_nm; value <= limit_nm + 1e-9; value += step_nm) {
-    cv::line(canvas, axes.at(axes.from_s, value), axes.at(axes.to_s, value), std::abs(value) < 1e-9 ? kFrame : kFaint, kScale / 2, cv::LINE_AA);
-    text(canvas, number(value, 0), axes.x - 5, axes.at(axes.from_s, value).y / static_cast<double>(kScale) + 4, 0.72, kGreyInk, false, Align::kRight);
+    cv::line(canvas, axes.at(axes.from_s, value), axes.at(axes.to_s, value), std::abs(value) < 1e-9 ? kFrame : kFaint,
+             kScale / 2, cv::LINE_AA);
+    text(canvas, number(value, 0), axes.x - 5, axes.at(axes.from_s, value).y / static_cast<double>(kScale) + 4, 0.72,
+         kGreyInk, false, Align::kRight);
   }
   const double step_s = window_s > 20.0 ? 10.0 : 5.0;
   for (double time = std::ceil(axes.from_s / step_s) * step_s; time <= axes.to_s + 1e-9; time += step_s) {
     cv::line(canvas, axes.at(time, -limit_nm), axes.at(time, limit_nm), kFaint, kScale / 2, cv::LINE_AA);
     const bool last = time > axes.to_s - 0.05 * window_s;
-    text(canvas, number(time, 0) + (last ? " s" : ""), axes.at(time, 0).x / static_cast<double>(kScale) + (last ? 4 : 0),
-         axes.y + axes.height + 15, 0.72, kGreyInk, false, last ? Align::kRight : Align::kCentre);
+    text(canvas, number(time, 0) + (last ? " s" : ""),
+         axes.at(time, 0).x / static_cast<double>(kScale) + (last ? 4 : 0), axes.y + axes.height + 15, 0.72, kGreyInk,
+         false, last ? Align::kRight : Align::kCentre);
   }
-  const auto begin = std::lower_bound(torques.time_s.begin(), torques.time_s.end(), axes.from_s) - torques.time_s.begin();
+  const auto begin =
+      std::lower_bound(torques.time_s.begin(), torques.time_s.end(), axes.from_s) - torques.time_s.begin();
   const auto end = std::upper_bound(torques.time_s.begin(), torques.time_s.end(), axes.to_s) - torques.time_s.begin();
-  for (std::size_t joint = torques.torque_nm.size(); joint-- > 0;) {  // the head's on top
+  for (std::size_t joint = torques.torque_nm.size(); joint-- > 0;) {  // the curve of the head is drawn last
     std::vector<cv::Point> line;
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       line.push_back(axes.at(torques.time_s[i], torques.torque_nm[joint][i]));
@@ -129,7 +155,7 @@ void torque_plot(cv::Mat& canvas, const TorqueSeries& torques, double limit_nm, 
   cv::rectangle(canvas, scaled_rect(axes.x, axes.y, axes.width, axes.height), kFrame, kScale / 2);
 }
 
-/// A round limit that shows nearly everything: the 99.8th percentile, 2 to 10 Nm.
+/// [Nm] limit of the plots: the 99.8th percentile of all torques, rounded up, 2 to 10 Nm.
 double torque_limit(const TorqueSeries& torques) {
   std::vector<double> magnitudes;
   for (const auto& series : torques.torque_nm) {
@@ -148,7 +174,9 @@ void joint_key(cv::Mat& canvas, std::size_t joints, int right, double y) {
   text(canvas, "tail", right, y, 0.72, kGreyInk, false, Align::kRight);
   const int from = right - 30 - width;
   for (std::size_t joint = 0; joint < joints; ++joint) {
-    cv::rectangle(canvas, scaled_rect(from + static_cast<int>(joint) * kSwatch, static_cast<int>(y) - 8, kSwatch - 1, 8), joint_colour(joint, joints), cv::FILLED);
+    cv::rectangle(canvas,
+                  scaled_rect(from + static_cast<int>(joint) * kSwatch, static_cast<int>(y) - 8, kSwatch - 1, 8),
+                  joint_colour(joint, joints), cv::FILLED);
   }
   text(canvas, "head", from - 6, y, 0.72, kGreyInk, false, Align::kRight);
 }
@@ -181,31 +209,34 @@ TorqueSeries parse_torques(const std::string& csv) {
   return series;
 }
 
-cv::Mat draw_figure(const std::string& title, const std::string& subtitle, const std::vector<FigureRow>& rows,
-                    const TorqueSeries& torques, double window_s) {
+cv::Mat draw_figure(const FigureHeading& heading, const std::vector<FigureRow>& rows, const TorqueSeries& torques,
+                    double window_s) {
   int width = 2 * kMargin - kGap;
   for (const int column : kColumnWidths) width += column + kGap;
   const int row_height = kPanelHeight + 14;
-  const int height = kHeaderHeight + static_cast<int>(rows.size()) * row_height + kMargin - 8;
+  const int header_height = kHeaderHeight + (heading.failure.empty() ? 0 : kFailureHeight);
+  const int height = header_height + static_cast<int>(rows.size()) * row_height + kMargin - 8;
   cv::Mat canvas(height * kScale, width * kScale, CV_8UC3, cv::Scalar(255, 255, 255));
 
   std::array<int, kColumnWidths.size()> left{};
   left[0] = kMargin;
   for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + kColumnWidths[i - 1] + kGap;
-  text(canvas, title, kMargin, 38, 1.5, kInk, true);
-  text(canvas, subtitle, kMargin, 62, 0.95, kGreyInk);
+  text(canvas, heading.title, kMargin, 38, 1.5, kInk, true);
+  text(canvas, heading.subtitle, kMargin, 62, 0.95, kGreyInk);
+  text(canvas, fitted(heading.failure, 0.95, width - 2 * kMargin), kMargin, 84, 0.95, kRedInk);
   static const std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Yaw torques [Nm]"};
-  for (std::size_t i = 0; i < kHeadings.size(); ++i) text(canvas, kHeadings[i], left[i + 1] + (i == 3 ? 30 : 0), kHeaderHeight - 10, 0.95, kInk, true);
-  joint_key(canvas, torques.torque_nm.size(), width - kMargin - 5, kHeaderHeight - 10);
+  for (std::size_t i = 0; i < kHeadings.size(); ++i)
+    text(canvas, kHeadings[i], left[i + 1] + (i == 3 ? 30 : 0), header_height - 10, 0.95, kInk, true);
+  joint_key(canvas, torques.torque_nm.size(), width - kMargin - 5, header_height - 10);
 
   const double limit_nm = torque_limit(torques);
-  int top = kHeaderHeight;
+  int top = header_height;
   for (const FigureRow& row : rows) {
     cv::rectangle(canvas, scaled_rect(left[0], top, 5, kPanelHeight), display_colour(row.colour), cv::FILLED);
     text(canvas, number(row.time_s, 1) + " s", left[0] + 16, top + 24, 1.25, kInk, true);
     double y = top + 48;
     std::string words = row.caption;
-    while (!words.empty()) {  // one word a line is too narrow, a whole caption too wide: break at the last space that fits
+    while (!words.empty()) {  // break the caption at the last space that fits into its column
       std::size_t cut = words.size();
       if (cut > 17) {
         cut = words.rfind(' ', 17);

@@ -1,4 +1,5 @@
-// The paper's Fig. 4 over time: for each key moment the scene, the raw image, the processed image and the joint torques.
+// The figure of a run, after the paper's Fig. 4: for each key moment the scene, the raw image, the processed image and
+// the joint torques.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +10,18 @@
 
 namespace constrictor::report {
 
+struct FigureHeading {
+  std::string title;
+  std::string subtitle;
+  std::string failure;  ///< why the mission did not succeed; empty: it succeeded
+};
+
 struct FigureRow {
   double time_s = 0.0;
-  std::string caption;          ///< what happened
-  std::string state;            ///< the planner's state
-  std::uint8_t colour = 0;      ///< msg::kColour… of what it is about
-  std::filesystem::path scene, camera, processed;  ///< pictures; missing ones leave an empty frame
+  std::string caption;                             ///< what happened
+  std::string state;                               ///< state of the planner
+  std::uint8_t colour = 0;                         ///< msg::kColour… of the object or line
+  std::filesystem::path scene, camera, processed;  ///< pictures; a missing file leaves an empty frame
 };
 
 /// Torques of the yaw joints over time.
@@ -23,11 +30,11 @@ struct TorqueSeries {
   std::vector<std::vector<double>> torque_nm;  ///< by joint from the head, each as long as time_s
 };
 
-/// Reads what the report journals: a heading, then a line "time,torque,torque,…" each sample.
+/// Reads joint_torques.csv: a heading, then a line "time,torque,torque,…" for each sample.
 [[nodiscard]] TorqueSeries parse_torques(const std::string& csv);
 
-/// 8-bit BGR, 1400 pixels wide.
-[[nodiscard]] cv::Mat draw_figure(const std::string& title, const std::string& subtitle, const std::vector<FigureRow>& rows,
+/// Draws the figure: 8-bit BGR, 1400 pixels wide. Each torque plot shows `window_s`.
+[[nodiscard]] cv::Mat draw_figure(const FigureHeading& heading, const std::vector<FigureRow>& rows,
                                   const TorqueSeries& torques, double window_s);
 
 }  // namespace constrictor::report

@@ -27,7 +27,8 @@ void Journal::open(std::uint64_t length) {
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw failure(path_, std::strerror(errno));
   const off_t size = ::lseek(descriptor_, 0, SEEK_END);
-  if (size < static_cast<off_t>(length)) throw failure(path_, "is shorter than the checkpoint says: was it removed during the run?");
+  if (size < static_cast<off_t>(length))
+    throw failure(path_, "found a file shorter than at the checkpoint (was it cut or removed during the run?)");
   if (::ftruncate(descriptor_, static_cast<off_t>(length)) != 0) throw failure(path_, std::strerror(errno));
 }
 
@@ -48,7 +49,8 @@ std::string Journal::read(std::uint64_t length) const {
   std::ifstream file(path_, std::ios::binary);
   std::string bytes(length, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(length));
-  if (!file) throw failure(path_, "is shorter than the checkpoint says: was it removed during the run?");
+  if (!file)
+    throw failure(path_, "found a file shorter than at the checkpoint (was it cut or removed during the run?)");
   return bytes;
 }
 

@@ -1,4 +1,5 @@
-// Files that survive kill -9: an appended journal whose length belongs to the checkpoint, and files replaced as a whole.
+// Files that stay consistent when the process is killed: journals whose length belongs to the checkpoint, and files
+// that are replaced as a whole.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +9,19 @@
 
 namespace constrictor::report {
 
-/// An append-only file. Its length is part of the component's state: the first append after a restart cuts off what was written
-/// after the checkpoint, so that the redone ticks leave the same file.
+/// A file to which lines are appended. Its length belongs to the state of the component. The first append after a
+/// restart removes the lines that were written after the checkpoint; the ticks that are done again then write the same
+/// lines.
 class Journal {
  public:
-  /// An empty path discards everything.
+  /// With an empty path the journal discards its lines.
   explicit Journal(std::filesystem::path path) : path_(std::move(path)) {}
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
   ~Journal();
 
-  /// Writes `text` at `length` and advances `length`. Throws std::runtime_error if the file cannot be written or is shorter than
-  /// `length`.
+  /// Writes `text` at `length` and advances `length`. Throws std::runtime_error if the file cannot be written or is
+  /// shorter than `length`.
   void append(std::string_view text, std::uint64_t& length);
   /// The first `length` bytes.
   [[nodiscard]] std::string read(std::uint64_t length) const;
@@ -30,7 +32,7 @@ class Journal {
   int descriptor_ = -1;
 };
 
-/// Writes a file beside its place and renames it: readers see the old one or the new one. Makes missing folders.
+/// Writes a temporary file and renames it, so that readers see either the old or the new file. Creates missing folders.
 void replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace constrictor::report

@@ -1,20 +1,24 @@
 #include "sim/report/ledger.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "constrictor/constants.hpp"
+
 namespace constrictor::report {
 
 ZoneVerdict judge_zone(const msg::SceneDescription& scene, const msg::WorldState& world, std::size_t object) {
-  ZoneVerdict verdict{false, std::numeric_limits<double>::quiet_NaN()};
+  ZoneVerdict verdict{false, std::numeric_limits<double>::quiet_NaN(), 0.0};
   const msg::Vector3& p = world.object_poses[object].position_m;
   for (std::size_t i = 0; i < scene.zone_count; ++i) {
     const msg::SceneZone& zone = scene.zones[i];
     if (zone.colour != scene.objects[object].colour) continue;
     const double distance = std::hypot(p.x - zone.x_m, p.y - zone.y_m);
-    if (!(distance >= verdict.distance_m)) {  // also the first one, compared with NaN
-      verdict = {distance <= zone.radius_m, distance};
+    if (!(distance >= verdict.distance_m)) {  // true for the first zone, whose distance is compared with NaN
+      verdict = {distance <= zone.radius_m, distance, zone.radius_m};
     }
   }
   return verdict;
@@ -24,7 +28,8 @@ void ObjectLedger::start(const msg::SceneDescription& scene) { objects.resize(sc
 
 void ObjectLedger::on_mission(const msg::MissionStatus& mission) {
   if (sequence.size() < mission.object_count) sequence.resize(mission.object_count, msg::kColourUnknown);
-  if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown) sequence[mission.object_index] = mission.colour;
+  if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown)
+    sequence[mission.object_index] = mission.colour;
 }
 
 std::int32_t ObjectLedger::nearest(std::uint8_t colour, double reach_m, const msg::SceneDescription& scene,
@@ -48,7 +53,8 @@ std::int32_t ObjectLedger::nearest(std::uint8_t colour, double reach_m, const ms
   return found;
 }
 
-void ObjectLedger::on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world) {
+void ObjectLedger::on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene,
+                            const msg::WorldState& world) {
   constexpr double kTouching_m = 0.05;
   if (event.event == msg::kEventObjectGrasped) {
     held = nearest(event.colour, kTouching_m, scene, world);
@@ -65,23 +71,54 @@ void ObjectLedger::on_event(const msg::TaskEvent& event, const msg::SceneDescrip
   }
 }
 
-bool ObjectLedger::complete(const msg::SceneDescription& scene, const msg::WorldState& world) const {
-  if (sequence.empty()) return false;
-  std::vector<std::size_t> dropped;
+std::vector<std::size_t> ObjectLedger::dropped() const {
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].dropped) dropped.push_back(i);
+    if (objects[i].dropped) indices.push_back(i);
   }
-  std::sort(dropped.begin(), dropped.end(), [this](std::size_t a, std::size_t b) { return objects[a].drop_tick < objects[b].drop_tick; });
-  if (dropped.size() != sequence.size()) return false;
+  std::sort(indices.begin(), indices.end(),
+            [this](std::size_t a, std::size_t b) { return objects[a].drop_tick < objects[b].drop_tick; });
+  return indices;
+}
+
+std::string ObjectLedger::shortfall(const msg::SceneDescription& scene, const msg::WorldState& world) const {
+  std::vector<std::string> faults;
+  const std::vector<std::size_t> dropped_objects = dropped();
+  const auto colour_of = [&](std::size_t object) { return scene.objects[object].colour; };
+  for (auto colour = sequence.begin(); colour != sequence.end(); ++colour) {
+    // The n-th entry of a colour needs n dropped objects of that colour.
+    const auto wanted = std::count(sequence.begin(), colour + 1, *colour);
+    const auto found = std::count_if(dropped_objects.begin(), dropped_objects.end(),
+                                     [&](std::size_t object) { return colour_of(object) == *colour; });
+    if (*colour == msg::kColourUnknown || found >= wanted) continue;
+    const bool grasped = held >= 0 && static_cast<std::size_t>(held) < objects.size() &&
+                         colour_of(static_cast<std::size_t>(held)) == *colour;
+    faults.push_back(std::string(name_of(constants::kColour, *colour)) +
+                     (grasped ? " is grasped but not dropped" : " was not retrieved"));
+  }
+  if (faults.empty() && dropped_objects.size() != sequence.size()) {
+    faults.push_back(
+        fmt::format("{} objects were dropped, the mission has {}", dropped_objects.size(), sequence.size()));
+  }
   auto next = sequence.begin();
-  for (const std::size_t object : dropped) {
-    if (!judge_zone(scene, world, object).in_zone) return false;
+  for (const std::size_t object : dropped_objects) {
+    const std::string colour = name_of(constants::kColour, colour_of(object));
+    const ZoneVerdict verdict = judge_zone(scene, world, object);
+    if (std::isnan(verdict.distance_m)) {
+      faults.push_back("no zone has the colour " + colour);
+    } else if (!verdict.in_zone) {
+      faults.push_back(fmt::format("{} lies {:.2f} m from the centre of its zone (radius {:.2f} m)", colour,
+                                   verdict.distance_m, verdict.radius_m));
+    }
     if (objects[object].by_others) continue;
-    next = std::find(next, sequence.end(), scene.objects[object].colour);
-    if (next == sequence.end()) return false;
-    ++next;
+    const auto place = std::find(next, sequence.end(), colour_of(object));
+    if (place == sequence.end()) {
+      faults.push_back(colour + " was dropped out of order");
+    } else {
+      next = place + 1;
+    }
   }
-  return true;
+  return fmt::format("{}", fmt::join(faults, "; "));
 }
 
 }  // namespace constrictor::report

@@ -1,8 +1,9 @@
-// Who was held, dropped and where it lies now: the case study's outcome by ground truth.
+// Which objects were grasped and dropped, and where they lie: the outcome of the mission by ground truth.
 #pragma once
 
 #include <cereal/types/vector.hpp>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "constrictor/messages.hpp"
@@ -16,34 +17,45 @@ struct ObjectRecord {
   bool by_others = false;       ///< an operator or external planner dropped it, not the built-in planner
 
   template <class Archive>
-  void serialize(Archive& archive) { archive(grasped, dropped, drop_tick, by_others); }
+  void serialize(Archive& archive) {
+    archive(grasped, dropped, drop_tick, by_others);
+  }
 };
 
-/// Where an object lies relative to the zone of its colour.
+/// Where an object lies relative to the nearest zone of its colour.
 struct ZoneVerdict {
-  bool in_zone = false;
-  double distance_m = 0.0;  ///< of its centre from the zone's centre; NaN if no zone has its colour
+  bool in_zone = false;     ///< the centre of the object lies inside the zone
+  double distance_m = 0.0;  ///< of the object's centre from the zone's centre; NaN if no zone has the object's colour
+  double radius_m = 0.0;    ///< of the zone
 };
-[[nodiscard]] ZoneVerdict judge_zone(const msg::SceneDescription& scene, const msg::WorldState& world, std::size_t object);
+[[nodiscard]] ZoneVerdict judge_zone(const msg::SceneDescription& scene, const msg::WorldState& world,
+                                     std::size_t object);
 
-/// Follows the objects through the robot's events; ground truth says which object an event is about.
+/// Follows the objects through the events of the tasks. Ground truth decides which object an event is about.
 struct ObjectLedger {
-  std::vector<ObjectRecord> objects;       ///< in the scene's order
-  std::int32_t held = -1;                  ///< index of the object in the robot's grip; -1: none
-  std::vector<std::uint8_t> sequence;      ///< colours in the mission's order; unknown where not heard of yet
+  std::vector<ObjectRecord> objects;   ///< in the order of the scene
+  std::int32_t held = -1;              ///< index of the object in the robot's grip; -1: none
+  std::vector<std::uint8_t> sequence;  ///< colours in the order of the mission; kColourUnknown: not yet announced
 
   void start(const msg::SceneDescription& scene);
   void on_mission(const msg::MissionStatus& mission);
-  /// A grasp counts only if an object of the colour touches the body, or nearly so.
+  /// A grasp counts only if an object of the event's colour is at most 0.05 m from the body.
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
-  /// Every object of the sequence was dropped and lies in the zone of its colour. Those that the built-in planner dropped were
-  /// dropped in the sequence's order; an operator or external planner may have an order of its own.
-  [[nodiscard]] bool complete(const msg::SceneDescription& scene, const msg::WorldState& world) const;
+  /// What is missing to a complete mission, in words; empty if nothing is missing. A mission is complete if every
+  /// object of the sequence was dropped and lies in the zone of its colour. The objects that the built-in planner
+  /// dropped must have been dropped in the order of the sequence; an operator or an external planner may use another
+  /// order.
+  [[nodiscard]] std::string shortfall(const msg::SceneDescription& scene, const msg::WorldState& world) const;
 
   template <class Archive>
-  void serialize(Archive& archive) { archive(objects, held, sequence); }
+  void serialize(Archive& archive) {
+    archive(objects, held, sequence);
+  }
 
  private:
+  /// Indices of the dropped objects in the order in which they were dropped.
+  [[nodiscard]] std::vector<std::size_t> dropped() const;
+  /// Index of the object of this colour that is nearest to the robot's body, at most `reach_m` away; -1: there is none.
   [[nodiscard]] std::int32_t nearest(std::uint8_t colour, double reach_m, const msg::SceneDescription& scene,
                                      const msg::WorldState& world) const;
 };

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
 
 #include "sim/report/files.hpp"
+#include "sim/report/png.hpp"
 
 namespace constrictor::report {
 namespace {
@@ -17,17 +17,10 @@ void save(const std::filesystem::path& file, const msg::CameraImage& image) {
   const cv::Mat rgb(image.height, image.width, CV_8UC3, image.data._buffer);
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  std::vector<unsigned char> png;
-  cv::imencode(".png", bgr, png);
-  replace_file(file, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+  replace_file(file, encode_png(bgr));
 }
 
 }  // namespace
-
-bool is_whole(const msg::CameraImage& image) {
-  const std::size_t size = std::size_t{3} * image.width * image.height;
-  return size > 0 && image.data._buffer != nullptr && image.data._length == size;
-}
 
 MomentFiles::MomentFiles(const std::filesystem::path& folder, const Moment& moment) {
   char prefix[16];
@@ -66,7 +59,7 @@ std::vector<Moment> figure_rows(const std::vector<Moment>& moments) {
 
 void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera) {
   if (moments.size() >= kMostMoments) return;
-  if (!moments.empty() && moments.back().tick == moment.tick) return;  // one picture shows both
+  if (!moments.empty() && moments.back().tick == moment.tick) return;  // the pictures of that moment show both
   if (camera != nullptr) {
     save(MomentFiles(folder, moment).camera, *camera);
     moment.camera_exposure = camera->exposure_tick;
@@ -87,6 +80,20 @@ void MomentAlbum::on_scene(const std::filesystem::path& folder, const msg::Camer
     if (moment.has_scene || image.exposure_tick < moment.tick) continue;
     save(MomentFiles(folder, moment).scene, image);
     moment.has_scene = true;
+  }
+}
+
+void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage* processed,
+                         const msg::CameraImage* scene) {
+  for (Moment& moment : moments) {
+    if (!moment.has_processed && processed != nullptr) {
+      save(MomentFiles(folder, moment).processed, *processed);
+      moment.has_processed = true;
+    }
+    if (!moment.has_scene && scene != nullptr) {
+      save(MomentFiles(folder, moment).scene, *scene);
+      moment.has_scene = true;
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// Streaming statistics against ground truth.
+// Statistics of errors, updated at every tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace constrictor::report {
 
-/// Root mean square and maximum of the magnitude of what was added; NaN before the first.
+/// Root mean square and greatest magnitude of the added values; NaN before the first value.
 struct RootMeanSquare {
   double sum_of_squares = 0.0;
   double greatest = 0.0;
@@ -23,16 +23,19 @@ struct RootMeanSquare {
     ++count;
   }
   [[nodiscard]] double rms() const {
-    return count > 0 ? std::sqrt(sum_of_squares / static_cast<double>(count)) : std::numeric_limits<double>::quiet_NaN();
+    return count > 0 ? std::sqrt(sum_of_squares / static_cast<double>(count))
+                     : std::numeric_limits<double>::quiet_NaN();
   }
   [[nodiscard]] double max() const { return count > 0 ? greatest : std::numeric_limits<double>::quiet_NaN(); }
 
   template <class Archive>
-  void serialize(Archive& archive) { archive(sum_of_squares, greatest, count); }
+  void serialize(Archive& archive) {
+    archive(sum_of_squares, greatest, count);
+  }
 };
 
-/// [m] distance of a point from a polyline; nothing where the nearest point is an end of it, beyond which there is no track to
-/// be across of, or where the line has fewer than two points.
+/// [m] distance of a point from a polyline. Empty if the nearest point of the line is one of its ends and the point
+/// lies beyond it, or if the line has fewer than two points.
 [[nodiscard]] std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& line_m);
 
 /// A pose on the ground plane.
@@ -43,10 +46,12 @@ struct PlanarPose {
   double yaw_rad = 0.0;
 
   template <class Archive>
-  void serialize(Archive& archive) { archive(tick, x_m, y_m, yaw_rad); }
+  void serialize(Archive& archive) {
+    archive(tick, x_m, y_m, yaw_rad);
+  }
 };
 
-/// X_AB from X_WA and X_WB; the tick is B's.
+/// X_AB from X_WA and X_WB, with the tick of B.
 [[nodiscard]] PlanarPose relative_pose(const PlanarPose& X_WA, const PlanarPose& X_WB);
 
 /// [rad] the same angle in (-pi, pi].

@@ -9,12 +9,12 @@ namespace {
 using Eigen::Vector3d;
 
 struct Nearest {
-  Vector3d point;        ///< of the solid's surface (or the query point itself, inside)
-  Vector3d normal;       ///< outwards
-  double distance_m;     ///< negative inside
+  Vector3d point;     ///< on the surface of the solid
+  Vector3d normal;    ///< outwards
+  double distance_m;  ///< negative inside
 };
 
-/// Point of the solid (its frame) nearest to `p`; p itself if inside.
+/// Point of the solid that is nearest to `p`, both in the solid's frame; `p` itself if it lies inside.
 Vector3d project(const ConvexSolid& solid, const Vector3d& p) {
   if (solid.shape == BodyShape::kBox) {
     const Vector3d half = 0.5 * solid.size_m;
@@ -27,7 +27,7 @@ Vector3d project(const ConvexSolid& solid, const Vector3d& p) {
   return {p.x() * scale, p.y() * scale, std::clamp(p.z(), -half_height, half_height)};
 }
 
-/// Nearest face for a point inside.
+/// The nearest point of the surface for a point inside the solid.
 Nearest leave(const ConvexSolid& solid, const Vector3d& p) {
   if (solid.shape == BodyShape::kBox) {
     const Vector3d room = 0.5 * solid.size_m - p.cwiseAbs();
@@ -56,8 +56,8 @@ Nearest nearest(const ConvexSolid& solid, const Vector3d& p) {
   return {q, away / distance, distance};
 }
 
-/// Parameter in [0, 1] along a + t d at which the distance to the solid is least. The distance's derivative never falls, so
-/// bisection finds where it changes sign.
+/// The t in [0, 1] at which a + t d is nearest to the solid. The derivative of the distance never decreases with t, so
+/// bisection finds where it changes its sign.
 double nearest_parameter(const ConvexSolid& solid, const Vector3d& a, const Vector3d& d) {
   const auto slope = [&](double t) {
     const Vector3d p = a + t * d;
@@ -139,7 +139,8 @@ void touch_solid_ground(const ConvexSolid& solid, TouchPoints& touches) {
     return;
   }
   const Vector3d axis = R.col(2);
-  // Across the rim: the deepest point first; upright, where no point is deepest, points fixed in the body.
+  // Four points on each rim, beginning with the deepest one. An upright cylinder has no deepest point; there the points
+  // are fixed in the body.
   Vector3d down = -Vector3d::UnitZ() + axis * axis.z();
   const double tilt = down.norm();
   down = tilt > 1e-3 ? Vector3d(down / tilt) : Vector3d(R.col(0));

@@ -1,24 +1,25 @@
-// Where bodies touch, as plain geometry. ODE's spaces and generic colliders cost more than the few pairs of this world need, and
-// its capsule against cylinder goes through an iterative support-function search; a capsule's distance to a convex solid along
-// its segment is convex, so bisection is exact and always the same.
+// Contact points between bodies, as plain geometry. ODE's own colliders are not used for the robot: for the few pairs
+// of this world its spaces cost more than they save, and its collider of capsule and cylinder is an iterative search.
+// The distance between a convex solid and a point that moves along the axis of a capsule is a convex function, so
+// bisection finds its minimum exactly, with the same result every time.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 
-#include "sim/scenario/scenario.hpp"
+#include "sim/scenario_loader/scenario.hpp"
 
 namespace constrictor {
 
-/// A touched point in W.
+/// A contact point in W.
 struct TouchPoint {
   Eigen::Vector3d position_m{0.0, 0.0, 0.0};
   Eigen::Vector3d normal{0.0, 0.0, 1.0};  ///< unit vector from the second body into the first
-  double depth_m = 0.0;                   ///< > 0: overlap
+  double depth_m = 0.0;                   ///< positive where the bodies overlap
 };
 
-/// A bounded list of touches, so that no tick allocates.
+/// At most 16 contact points, so that no step allocates memory. Further points are dropped.
 class TouchPoints {
  public:
   void add(const TouchPoint& touch) {
@@ -42,20 +43,22 @@ struct Capsule {
   double radius_m = 0.0;
 };
 
-/// A cylinder (z its axis) or box about its centre.
+/// A cylinder (its axis is z) or a box. Its frame S has its origin at the centre.
 struct ConvexSolid {
   BodyShape shape = BodyShape::kCylinder;
   Eigen::Vector3d size_m{0.1, 0.1, 0.1};  ///< as ScenarioObject::size_m
   Eigen::Isometry3d X_WS = Eigen::Isometry3d::Identity();
 };
 
-/// The capsule's touches of a solid: at each end and, where it is deeper, between them.
+/// Adds the contact points of a capsule with a solid: at each end of the capsule, and between the ends if it is deeper
+/// there.
 void touch_capsule_solid(const Capsule& capsule, const ConvexSolid& solid, TouchPoints& touches);
 
-/// Where two capsules are closest, if they overlap. The normal points into `first`.
+/// Adds the point at which two capsules are closest, if they overlap. The normal points into `first`.
 void touch_capsules(const Capsule& first, const Capsule& second, TouchPoints& touches);
 
-/// TouchPoints of a solid with the ground z = 0: a box's corners below it, a cylinder's rims at four points each.
+/// Adds the contact points of a solid with the ground z = 0: the corners of a box, or four points on each rim of a
+/// cylinder.
 void touch_solid_ground(const ConvexSolid& solid, TouchPoints& touches);
 
 }  // namespace constrictor

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 
+#include "sim/world/ode_eigen.hpp"
+
 namespace constrictor {
 namespace {
 
 using Eigen::Vector3d;
 
-// Room for every contact of a step; more are still simulated, but not felt. Far beyond what 64 modules reach.
+// Number of felt contacts that are recorded in a step. Further contacts are simulated but not felt. 64 modules stay far
+// below this number.
 constexpr std::size_t kMostFelt = 1024;
 
 std::uint32_t key_of(std::uint8_t module, Touched touched, std::uint8_t index, std::uint8_t feature) {
-  return (std::uint32_t{module} << 24) | (static_cast<std::uint32_t>(touched) << 16) | (std::uint32_t{index} << 8) | feature;
+  return (std::uint32_t{module} << 24) | (static_cast<std::uint32_t>(touched) << 16) | (std::uint32_t{index} << 8) |
+         feature;
 }
 
 void copy(const Vector3d& from, dVector3 to) {
@@ -21,9 +25,7 @@ void copy(const Vector3d& from, dVector3 to) {
   to[3] = 0.0;
 }
 
-Vector3d vector_of(const dReal* from) { return {from[0], from[1], from[2]}; }
-
-/// R^T v for ODE's 3x4 row-major rotation.
+/// R_WB^T v: a vector of W in the frame of the body.
 Vector3d to_body(dBodyID body, const Vector3d& v) {
   const dReal* R = dBodyGetRotation(body);
   return {R[0] * v.x() + R[4] * v.y() + R[8] * v.z(), R[1] * v.x() + R[5] * v.y() + R[9] * v.z(),
@@ -82,7 +84,8 @@ void ContactSet::add_felt(const TouchPoint& touch, const Friction& friction, dBo
 
 void ContactSet::sum_up(std::uint32_t key, dBodyID body, const Vector3d& position, const Vector3d& normal,
                         const dReal* force) {
-  auto at = std::lower_bound(sums_.begin(), sums_.end(), key, [](const Sum& sum, std::uint32_t k) { return sum.key < k; });
+  auto at =
+      std::lower_bound(sums_.begin(), sums_.end(), key, [](const Sum& sum, std::uint32_t k) { return sum.key < k; });
   if (at == sums_.end() || at->key != key) {
     if (sums_.size() == kMostFelt) return;
     Sum fresh;
@@ -90,7 +93,7 @@ void ContactSet::sum_up(std::uint32_t key, dBodyID body, const Vector3d& positio
     at = sums_.insert(at, fresh);
   }
   const Vector3d force_in_body = to_body(body, vector_of(force));
-  const double weight = force_in_body.norm() + 1e-12;  // contacts without force keep a position, too
+  const double weight = force_in_body.norm() + 1e-12;  // a contact without force needs a position, too
   at->force += force_in_body;
   at->position += weight * to_body(body, position - vector_of(dBodyGetPosition(body)));
   at->normal += weight * to_body(body, normal);
@@ -105,7 +108,7 @@ void ContactSet::collect() {
     sum_up(record.key, record.first, record.touch.position_m, record.touch.normal, feedback.f1);
     const auto touched = static_cast<Touched>((record.key >> 16) & 0xFFU);
     if (touched != Touched::kSelf) continue;
-    // The other module feels the same point from its side.
+    // The other module feels the same contact with the opposite normal.
     const auto module = static_cast<std::uint8_t>(record.key >> 24);
     const auto other = static_cast<std::uint8_t>(record.key >> 8);
     sum_up(key_of(other, Touched::kSelf, module, static_cast<std::uint8_t>(record.key)), record.second,

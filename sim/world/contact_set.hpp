@@ -1,4 +1,5 @@
-// The contacts of one world: makes ODE's contact joints in each step and sums what the robot's skin feels over a tick.
+// The contacts of one world: makes ODE's contact joints in each step, and sums the forces on the robot's skin over a
+// tick.
 #pragma once
 
 #include <ode/ode.h>
@@ -15,43 +16,43 @@ namespace constrictor {
 
 enum class Touched : std::uint8_t { kGround = 0, kSelf = 1, kObject = 2, kObstacle = 3 };  // numbers of simulation.idl
 
-/// What a module feels at one point. Vectors in the module's frame; the force is the mean over the last advance().
+/// A contact that a module feels. Vectors are in the module's frame; the force is the mean over the last advance().
 struct ModuleContact {
   std::uint8_t module_index = 0;
   Touched touched = Touched::kGround;
-  std::uint8_t touched_index = 0;  ///< of the object, obstacle or own module
+  std::uint8_t touched_index = 0;  ///< index of the touched object, obstacle or module
   Eigen::Vector3d position_m{0.0, 0.0, 0.0};
-  Eigen::Vector3d normal{0.0, 0.0, 1.0};   ///< into the module
+  Eigen::Vector3d normal{0.0, 0.0, 1.0};   ///< unit vector that points into the module
   Eigen::Vector3d force_n{0.0, 0.0, 0.0};  ///< on the module
 };
 
-/// Coulomb friction of a pair. Isotropic if `direction` is null.
+/// Coulomb friction of a pair of bodies. The friction is isotropic if `direction` is null; `across` is then unused.
 struct Friction {
   double along = 0.0;
   double across = 0.0;
-  const Eigen::Vector3d* direction = nullptr;  ///< of `along`, in W, perpendicular to the normal
+  const Eigen::Vector3d* direction = nullptr;  ///< direction in which `along` acts, in W, perpendicular to the normal
 };
 
 class ContactSet {
  public:
   ContactSet(dWorldID world, const SolverSettings& settings);
 
-  /// Forgets what was felt: a new tick begins.
+  /// Call at the beginning of a tick: clears the sums of the previous tick.
   void begin_tick();
-  /// Removes the contacts of the previous step.
+  /// Call at the beginning of each step: removes the contacts of the previous step.
   void begin_step();
-  /// A contact between `first` and `second` (null: what never moves) that nobody feels.
+  /// Adds a contact that no module feels. `second` is null for the ground and for obstacles.
   void add(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second);
-  /// A contact that module `module` (body `first`) feels; `feature` tells apart several touches of one pair.
+  /// Adds a contact that module `module` (body `first`) feels. `feature` distinguishes several contacts of one pair.
   void add_felt(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second, std::uint8_t module,
                 Touched touched, std::uint8_t index, std::uint8_t feature);
-  /// After the solver: adds the step's forces to the tick's sums.
+  /// Call after the solver: adds the forces of the step to the sums of the tick.
   void collect();
-  /// Mean contacts of the tick so far, the strongest first.
+  /// Mean contacts of the tick so far, in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> felt() const;
 
  private:
-  struct Record {  // one contact joint of the present step that somebody feels
+  struct Record {  // a felt contact joint of the present step
     dBodyID first;
     dBodyID second;
     std::uint32_t key;

@@ -21,17 +21,19 @@ void JointDrive::drive(double step_s) {
   const double angle = angle_rad();
   const double limit_nm = setpoint_.torque_limit_nm;
   const double servo_angle = elastic() ? motor_angle_rad_ : angle;
-  double velocity = std::clamp(model_.servo_gain_1_s * (setpoint_.position_rad - servo_angle) + setpoint_.velocity_rad_s,
-                               -model_.max_speed_rad_s, model_.max_speed_rad_s);
+  double velocity =
+      std::clamp(model_.servo_gain_1_s * (setpoint_.position_rad - servo_angle) + setpoint_.velocity_rad_s,
+                 -model_.max_speed_rad_s, model_.max_speed_rad_s);
   if (elastic()) {
-    // The motor cannot run further than its torque stretches the spring.
+    // The torque of the motor limits how far it can stretch the spring.
     const double k = model_.stiffness_nm_rad;
     const double d = model_.damping_nm_s_rad;
     const double stretch = limit_nm / k;
     const double moved = std::clamp(motor_angle_rad_ + step_s * velocity, angle - stretch, angle + stretch);
     velocity = limit_nm > 0.0 ? (moved - motor_angle_rad_) / step_s : 0.0;
     motor_angle_rad_ = moved;
-    // torque = k (motor - joint) + d (their rates), taken at the step's end: a velocity target with this softness is exact.
+    // The torque is k (motor - joint) + d (difference of their rates) at the end of the step. A velocity target with
+    // this softness gives exactly that.
     const double softness = 1.0 / (step_s * k + d);
     velocity = (k * (motor_angle_rad_ - angle) + d * velocity) * softness;
     dJointSetHingeParam(joint_, dParamCFM, softness);
@@ -41,7 +43,8 @@ void JointDrive::drive(double step_s) {
 }
 
 void JointDrive::measure(double step_s, double filter_s) {
-  // Torque about the axis at the anchor: the joint's wrench on the module ahead, moved from its centre.
+  // The joint's wrench on the module ahead acts at the centre of that module; move it to the anchor and project it on
+  // the axis.
   dVector3 anchor;
   dVector3 axis;
   dJointGetHingeAnchor(joint_, anchor);

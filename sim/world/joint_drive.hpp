@@ -1,4 +1,4 @@
-// The servo of one joint and its hinge: ODE's velocity motor, driven as a position servo in each step, stiff or through a series
+// The servo of one joint and its hinge. ODE's velocity motor acts as a position servo, either stiff or through a series
 // elastic element.
 #pragma once
 
@@ -11,22 +11,23 @@ namespace constrictor {
 
 class JointDrive {
  public:
-  /// A hinge between the module at the head's side and the one behind it, at `anchor` about `axis` (in the world), its angle 0 in
-  /// the bodies' present poses.
+  /// Makes a hinge at `anchor` about `axis` (both in W) between the module at the head's side and the module behind it.
+  /// Its angle is 0 in the present poses of the bodies.
   JointDrive(dWorldID world, const JointModel& model, dBodyID ahead, dBodyID behind, const dVector3 anchor,
              const dVector3 axis);
 
   void set(const JointSetpoint& setpoint) { setpoint_ = clamp_to_limits(model_, setpoint); }
-  /// Before a step: sets the motor's velocity, torque and softness.
+  /// Call before each step: sets velocity, torque and softness of the motor.
   void drive(double step_s);
-  /// After a step: reads the torque that the hinge exerts about its axis.
+  /// Call after each step: reads the torque of the hinge about its axis. `filter_s` is the time constant of the low
+  /// pass.
   void measure(double step_s, double filter_s);
 
   [[nodiscard]] double angle_rad() const { return dJointGetHingeAngle(joint_); }
   [[nodiscard]] double rate_rad_s() const { return dJointGetHingeAngleRate(joint_); }
-  [[nodiscard]] double torque_nm() const { return torque_nm_; }          ///< low-passed
+  [[nodiscard]] double torque_nm() const { return torque_nm_; }            ///< low-pass filtered
   [[nodiscard]] double step_torque_nm() const { return step_torque_nm_; }  ///< of the last step
-  [[nodiscard]] double motor_angle_rad() const;                          ///< differs from the joint's if elastic
+  [[nodiscard]] double motor_angle_rad() const;  ///< differs from the joint's angle if the joint is elastic
 
   // ODE keeps a pointer to feedback_.
   JointDrive(const JointDrive&) = delete;

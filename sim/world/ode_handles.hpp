@@ -1,4 +1,4 @@
-// Owners of ODE's handles. Bodies and joints die with their world.
+// Owners of ODE's handles. ODE destroys bodies and joints together with their world.
 #pragma once
 
 #include <ode/ode.h>
@@ -8,13 +8,15 @@
 
 namespace constrictor {
 
-/// Initialises ODE once in the process.
+/// Initialises ODE at the first call in the process.
 void ensure_ode();
 
 template <auto Destroy>
 struct OdeDeleter {
   template <class T>
-  void operator()(T* handle) const { Destroy(handle); }
+  void operator()(T* handle) const {
+    Destroy(handle);
+  }
 };
 
 using OdeWorld = std::unique_ptr<std::remove_pointer_t<dWorldID>, OdeDeleter<dWorldDestroy>>;

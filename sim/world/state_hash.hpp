@@ -1,10 +1,9 @@
-// A chain of SHA-256 over raw bytes: equal chains mean equal histories, bit for bit.
+// A SHA-256 chain over raw bytes. Two equal chains mean that all values of both histories were equal, bit for bit.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace constrictor {
 
@@ -18,7 +17,6 @@ class StateHash {
 
  private:
   Digest digest_{};
-  std::vector<std::uint8_t> buffer_;
 };
 
 }  // namespace constrictor

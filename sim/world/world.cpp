@@ -1,33 +1,18 @@
 #include "sim/world/world.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "robot/kinematics.hpp"
+#include "sim/world/ode_eigen.hpp"
 
 namespace constrictor {
 namespace {
 
 using Eigen::Vector3d;
-
-// Neighbours overlap at their joint, and the next but one may touch at the joints' limits: no contact among those.
-constexpr std::size_t kNearestSelfContact = 3;
-
-Vector3d vector_of(const dReal* from) { return {from[0], from[1], from[2]}; }
-
-Eigen::Quaterniond quaternion_of(dBodyID body) {
-  const dReal* q = dBodyGetQuaternion(body);
-  return {q[0], q[1], q[2], q[3]};
-}
-
-Eigen::Isometry3d pose_of(dBodyID body) {
-  const dReal* R = dBodyGetRotation(body);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.matrix().topRows<3>() << R[0], R[1], R[2], 0.0, R[4], R[5], R[6], 0.0, R[8], R[9], R[10], 0.0;
-  pose.translation() = vector_of(dBodyGetPosition(body));
-  return pose;
-}
 
 void place(dBodyID body, const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond q(pose.linear());
@@ -143,7 +128,9 @@ void World::set_servo(std::span<const double> position_rad, std::span<const doub
                       std::span<const double> torque_limit_nm) {
   if (position_rad.size() != drives_.size() || velocity_rad_s.size() != drives_.size() ||
       torque_limit_nm.size() != drives_.size()) {
-    throw std::invalid_argument("World::set_servo: one entry for each joint is needed");
+    throw std::invalid_argument(
+        fmt::format("World::set_servo: found {}, {} and {} entries, accepted {} (one for each joint)",
+                    position_rad.size(), velocity_rad_s.size(), torque_limit_nm.size(), drives_.size()));
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     drives_[i]->set({position_rad[i], velocity_rad_s[i], torque_limit_nm[i]});
@@ -162,8 +149,9 @@ void World::advance(double duration_s) {
   extend_hash();
 }
 
-// A flat underside of half-width w resists rolling with up to weight times w. Its edge is softened over a small angle; tipped by
-// more than half a right angle a module rests on its round flank.
+// A flat underside of half-width w resists rolling with a torque of at most weight times w. The torque grows linearly
+// over a small angle, because a step would excite the solver. A module that is tipped further than kTipped_rad rests on
+// its round side and feels no such torque.
 void World::stand_on_bellies() {
   constexpr double kSoft_rad = 0.05;
   constexpr double kTipped_rad = 0.8;
@@ -189,113 +177,15 @@ void World::step() {
   stand_on_bellies();
   contacts_.begin_step();
   collide();
-  // QuickStep reorders constraints by a generator that all worlds of the process share: each continues its own sequence.
+  // QuickStep reorders constraints with a random generator that all worlds of the process share. Each world restores
+  // its own sequence, so that worlds in one process do not influence each other.
   dRandSetSeed(reorder_state_);
-  if (dWorldQuickStep(world_.get(), settings_.step_s) == 0) throw std::runtime_error("ODE: out of memory");
+  if (dWorldQuickStep(world_.get(), settings_.step_s) == 0)
+    throw std::runtime_error("ODE: dWorldQuickStep failed: out of memory");
   reorder_state_ = dRandGetSeed();
   contacts_.collect();
   for (const auto& drive : drives_) drive->measure(settings_.step_s, robot_.torque_filter_s);
   ++steps_done_;
-}
-
-Capsule World::capsule_of(std::size_t module) const {
-  const dReal* R = dBodyGetRotation(modules_[module]);
-  const Vector3d centre = vector_of(dBodyGetPosition(modules_[module]));
-  const Vector3d half = 0.5 * robot_.module_length_m * Vector3d(R[0], R[4], R[8]);
-  return {centre + half, centre - half, robot_.module_radius_m};
-}
-
-ConvexSolid World::solid_of(std::size_t object) const {
-  return {scenario_.objects[object].shape, scenario_.objects[object].size_m, pose_of(objects_[object])};
-}
-
-void World::collide() {
-  const double module_bound_m = 0.5 * robot_.module_length_m + robot_.module_radius_m;
-  const ScenarioFriction& friction = scenario_.friction;
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    capsules_[i] = capsule_of(i);
-    const Capsule& capsule = capsules_[i];
-    const auto module = static_cast<std::uint8_t>(i);
-    // The skin: its easy direction is the module's axis along the ground.
-    Vector3d along = capsule.front - capsule.back;
-    along.z() = 0.0;
-    const double length = along.norm();
-    along = length > 1e-6 ? Vector3d(along / length) : Vector3d::UnitX();
-    const Friction skin{friction.ground_scale * robot_.friction_along, friction.ground_scale * robot_.friction_across, &along};
-    std::uint8_t feature = 0;
-    for (const Vector3d& end : {capsule.front, capsule.back}) {
-      if (feature == 1 && settings_.one_ground_contact_a_joint && i + 1 < modules_.size()) continue;
-      const double depth = capsule.radius_m - end.z();
-      if (depth > 0.0) {
-        const TouchPoint touch{end - Vector3d(0.0, 0.0, capsule.radius_m), Vector3d::UnitZ(), depth};
-        contacts_.add_felt(touch, skin, modules_[i], nullptr, module, Touched::kGround, 0, feature);
-      }
-      ++feature;
-    }
-    const Vector3d centre = 0.5 * (capsule.front + capsule.back);
-    const Friction rubbing{friction.robot_robot, 0.0, nullptr};
-    for (std::size_t j = 0; j + kNearestSelfContact <= i; ++j) {
-      const Vector3d other = 0.5 * (capsules_[j].front + capsules_[j].back);
-      if ((centre - other).squaredNorm() > 4.0 * module_bound_m * module_bound_m) continue;
-      touches_.clear();
-      touch_capsules(capsule, capsules_[j], touches_);
-      for (std::size_t k = 0; k < touches_.size(); ++k) {
-        contacts_.add_felt(touches_[k], rubbing, modules_[i], modules_[j], module, Touched::kSelf,
-                           static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k));
-      }
-    }
-    const Friction holding{friction.object_robot, 0.0, nullptr};
-    for (std::size_t j = 0; j < obstacles_.size(); ++j) {
-      const double reach = module_bound_m + obstacles_[j].bound_m;
-      if ((centre - obstacles_[j].solid.X_WS.translation()).squaredNorm() > reach * reach) continue;
-      touches_.clear();
-      touch_capsule_solid(capsule, obstacles_[j].solid, touches_);
-      for (std::size_t k = 0; k < touches_.size(); ++k) {
-        contacts_.add_felt(touches_[k], holding, modules_[i], nullptr, module, Touched::kObstacle,
-                           static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k));
-      }
-    }
-    for (std::size_t j = 0; j < objects_.size(); ++j) {
-      const double reach = module_bound_m + object_bound_m_[j];
-      if ((centre - vector_of(dBodyGetPosition(objects_[j]))).squaredNorm() > reach * reach) continue;
-      touches_.clear();
-      touch_capsule_solid(capsule, solid_of(j), touches_);
-      for (std::size_t k = 0; k < touches_.size(); ++k) {
-        contacts_.add_felt(touches_[k], holding, modules_[i], objects_[j], module, Touched::kObject,
-                           static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k));
-      }
-    }
-  }
-  collide_objects();
-}
-
-void World::collide_objects() {
-  const Friction standing{scenario_.friction.object_ground, 0.0, nullptr};
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    touches_.clear();
-    touch_solid_ground(solid_of(i), touches_);
-    for (const TouchPoint& touch : touches_) contacts_.add(touch, standing, objects_[i], nullptr);
-    const Vector3d centre = vector_of(dBodyGetPosition(objects_[i]));
-    for (std::size_t j = 0; j < i; ++j) {
-      const double reach = object_bound_m_[i] + object_bound_m_[j];
-      if ((centre - vector_of(dBodyGetPosition(objects_[j]))).squaredNorm() > reach * reach) continue;
-      collide_geoms(object_geoms_[i].get(), objects_[i], object_geoms_[j].get(), objects_[j]);
-    }
-    for (const Obstacle& obstacle : obstacles_) {
-      const double reach = object_bound_m_[i] + obstacle.bound_m;
-      if ((centre - obstacle.solid.X_WS.translation()).squaredNorm() > reach * reach) continue;
-      collide_geoms(object_geoms_[i].get(), objects_[i], obstacle.geom.get(), nullptr);
-    }
-  }
-}
-
-void World::collide_geoms(dGeomID first, dBodyID first_body, dGeomID second, dBodyID second_body) {
-  dContactGeom found[8];
-  const int count = dCollide(first, second, 8, found, sizeof(dContactGeom));
-  for (int k = 0; k < count; ++k) {
-    const TouchPoint touch{vector_of(found[k].pos), vector_of(found[k].normal), found[k].depth};
-    contacts_.add(touch, {scenario_.friction.object_ground, 0.0, nullptr}, first_body, second_body);
-  }
 }
 
 Eigen::Isometry3d World::module_pose(std::size_t module) const { return pose_of(modules_[module]); }

@@ -1,5 +1,6 @@
-// The simulated world: the robot, its surroundings and ODE's solver. Pure C++: no topics, no files, no clock. Two worlds built
-// from equal arguments and given equal commands stay equal bit for bit, also when they take turns in one process.
+// The simulated world: the robot, its surroundings and ODE's solver. It has no topics, reads no files and no clock. Two
+// worlds that are built from equal arguments and receive equal commands stay equal bit for bit, also if they are
+// advanced alternately in one process.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "robot/robot_model.hpp"
-#include "sim/scenario/scenario.hpp"
+#include "sim/scenario_loader/scenario.hpp"
 #include "sim/world/contact_set.hpp"
 #include "sim/world/joint_drive.hpp"
 #include "sim/world/ode_handles.hpp"
@@ -19,25 +20,27 @@
 
 namespace constrictor {
 
-/// What an inertial unit in the head measures, without noise, in the head's frame.
+/// The exact values for an inertial unit in the head. Vectors are in the head's frame.
 struct ImuTruth {
   Eigen::Quaterniond q_WHead = Eigen::Quaterniond::Identity();
   Eigen::Vector3d angular_velocity_rad_s{0.0, 0.0, 0.0};
-  Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};  ///< mean over the last advance(); at rest 9.81 upwards
+  Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};  ///< mean over the last advance(); at rest 9.81 along
+                                                            ///< the world's z axis
 };
 
 class World {
  public:
   static constexpr double kGravity_m_s2 = 9.81;
 
-  /// Both are copied. Throws nothing for arguments that load_robot and load_scenario accept.
+  /// Copies its arguments. Does not throw for arguments that load_robot and load_scenario accept.
   World(const RobotModel& robot, const Scenario& scenario, const SolverSettings& settings = {});
 
-  /// Setpoints of all joints, each span joint_count() long; clamped to the joints' limits. Held until the next call. At first the
-  /// joints hold 0 with their full torque. A torque limit of 0 relaxes a joint.
+  /// Sets the setpoints of all joints; each span has joint_count() entries. The values are clamped to the limits of the
+  /// joints and stay in force until the next call. Before the first call the joints hold the angle 0 with their full
+  /// torque. A torque limit of 0 relaxes a joint.
   void set_servo(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
                  std::span<const double> torque_limit_nm);
-  /// Force in W at an object's centre during the next advance() only; several add up.
+  /// Applies a force (in W) to the centre of an object during the next advance() only. Several forces add up.
   void apply_force(std::size_t object, const Eigen::Vector3d& force_n);
   /// Integrates round(duration / step) steps, at least one.
   void advance(double duration_s);
@@ -49,22 +52,23 @@ class World {
 
   [[nodiscard]] double joint_angle_rad(std::size_t joint) const { return drives_[joint]->angle_rad(); }
   [[nodiscard]] double joint_rate_rad_s(std::size_t joint) const { return drives_[joint]->rate_rad_s(); }
-  /// Torque about the joint's axis on the module at the head's side, low-passed as the robot file says.
+  /// Torque about the joint's axis on the module at the head's side, low-pass filtered with the robot's
+  /// torque_filter_s.
   [[nodiscard]] double joint_torque_nm(std::size_t joint) const { return drives_[joint]->torque_nm(); }
   [[nodiscard]] const JointDrive& joint(std::size_t joint) const { return *drives_[joint]; }
 
-  [[nodiscard]] Eigen::Isometry3d module_pose(std::size_t module) const;             ///< X_WM
-  [[nodiscard]] Eigen::Vector3d module_velocity_m_s(std::size_t module) const;       ///< of its centre, in W
+  [[nodiscard]] Eigen::Isometry3d module_pose(std::size_t module) const;                  ///< X_WM
+  [[nodiscard]] Eigen::Vector3d module_velocity_m_s(std::size_t module) const;            ///< of its centre, in W
   [[nodiscard]] Eigen::Vector3d module_angular_velocity_rad_s(std::size_t module) const;  ///< in W
-  [[nodiscard]] Eigen::Isometry3d object_pose(std::size_t object) const;             ///< X_WO
-  [[nodiscard]] Eigen::Vector3d object_velocity_m_s(std::size_t object) const;       ///< of its centre, in W
+  [[nodiscard]] Eigen::Isometry3d object_pose(std::size_t object) const;                  ///< X_WO
+  [[nodiscard]] Eigen::Vector3d object_velocity_m_s(std::size_t object) const;            ///< of its centre, in W
   [[nodiscard]] Eigen::Vector3d object_angular_velocity_rad_s(std::size_t object) const;  ///< in W
-  /// What the skin felt in the last advance(), the strongest first.
+  /// Contacts that the modules felt in the last advance(), in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> contacts() const { return contacts_.felt(); }
   [[nodiscard]] ImuTruth imu() const;
 
-  /// SHA-256 chain over position, quaternion (w x y z), linear and angular velocity of each module and object, then angle and rate
-  /// of each joint, extended at the end of each advance().
+  /// SHA-256 chain. Each advance() appends position, quaternion (w x y z), linear and angular velocity of each module
+  /// and of each object, then angle and rate of each joint.
   [[nodiscard]] const StateHash::Digest& state_hash() const { return hash_.digest(); }
 
   [[nodiscard]] const RobotModel& robot() const { return robot_; }
@@ -74,7 +78,7 @@ class World {
   struct Obstacle {
     ConvexSolid solid;
     OdeGeom geom;
-    double bound_m = 0.0;  ///< radius of the sphere about it
+    double bound_m = 0.0;  ///< [m] radius of a sphere about the centre that contains the obstacle
   };
 
   void build_robot();
@@ -100,12 +104,12 @@ class World {
   std::vector<OdeGeom> object_geoms_;
   std::vector<double> object_bound_m_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Eigen::Vector3d> forces_n_;  ///< on objects, in the present advance()
-  std::vector<Capsule> capsules_;          ///< of the present step
+  std::vector<Eigen::Vector3d> forces_n_;  ///< on each object during the present advance()
+  std::vector<Capsule> capsules_;          ///< the modules in the present step
   TouchPoints touches_;
-  unsigned long reorder_state_;            ///< of ODE's global generator, which every world sets before it steps
+  unsigned long reorder_state_;  ///< state of ODE's global random generator, set before each step
   std::int64_t steps_done_ = 0;
-  Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean of the last advance()
+  Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean over the last advance()
   std::vector<double> hash_values_;
   StateHash hash_;
 };

@@ -1,15 +1,15 @@
-// One tick of the whole plant component in an in-process run: physics, sensors with noise, messages, hashes.
+// One tick of the component `physics` in one process: physics, noise of sensors, messages, hashes.
 #include <benchmark/benchmark.h>
 
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "sim/physics/physics.hpp"
-#include "tests/unit/world/open_loop_gait.hpp"
+#include "unit/world/open_loop_gait.hpp"
 
 namespace constrictor {
 namespace {
 
-/// The open-loop gait in place of control.
+/// Replaces the component `control` by the open-loop gait.
 class Undulator final : public Component {
  public:
   Undulator(Wiring& wiring, const Setup& setup)
@@ -37,10 +37,10 @@ class Undulator final : public Component {
 
 void plant_tick(benchmark::State& state) {
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
-  setup.scenario_file = share_path("sim/scenarios/case_study.yaml");
-  const ComponentFactory control{
-      "control", [](Wiring& wiring, const Setup& s) { return std::make_unique<Undulator>(wiring, s); }};
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
+  const ComponentFactory control{"control",
+                                 [](Wiring& wiring, const Setup& s) { return std::make_unique<Undulator>(wiring, s); }};
   LocalRun run({make_physics_factory(), control}, setup);
   run.advance(100);
   for (auto _ : state) run.advance(1);

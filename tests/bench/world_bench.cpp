@@ -1,14 +1,14 @@
-// One control period (20 ms) of physics. Real-time factor = 20 ms / time per iteration.
+// One control period (20 ms) of the physics. The real-time factor is 20 ms divided by the time of an iteration.
 #include <benchmark/benchmark.h>
 
-#include "tests/unit/world/open_loop_gait.hpp"
+#include "unit/world/open_loop_gait.hpp"
 
 namespace constrictor {
 namespace {
 
 constexpr double kPeriod_s = 0.02;
 
-/// The gait on the flat. Arguments: step in us, iterations, ground contacts at each joint.
+/// The gait on flat ground. Arguments: step [us], iterations, ground contacts at each joint.
 void undulate(benchmark::State& state) {
   SolverSettings settings;
   settings.step_s = 1e-6 * static_cast<double>(state.range(0));
@@ -25,8 +25,7 @@ void undulate(benchmark::State& state) {
     gait.drive(world, tick * kPeriod_s, kPeriod_s);
     ++tick;
   }
-  state.counters["x_real_time"] =
-      benchmark::Counter(kPeriod_s * (tick - first), benchmark::Counter::kIsRate);
+  state.counters["x_real_time"] = benchmark::Counter(kPeriod_s * (tick - first), benchmark::Counter::kIsRate);
   state.counters["speed_m_s"] = (centre_x() - from) / (kPeriod_s * (tick - first));
 }
 BENCHMARK(undulate)

@@ -1,17 +1,18 @@
-// The barrier's messages spoken by hand: a conductor that says less at a time than the real one, and strangers that say what is absurd.
+// Barrier messages sent by hand: by a conductor that sends fewer at a time than the real one, and by a stranger.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
-#include <functional>
 #include <limits>
-#include <thread>
 
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/member_bus.hpp"
-#include "runtime/dds/wire.hpp"
-#include "runtime/domain_claim.hpp"
+#include "component/topic_set.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "integration/stranger.hpp"
 #include "runtime/host.hpp"
+#include "runtime/member_bus.hpp"
+#include "runtime/wire.hpp"
+#include "support/eventually.hpp"
 #include "support/process.hpp"
 
 namespace constrictor::testing {
@@ -20,34 +21,27 @@ namespace {
 using namespace std::chrono_literals;
 namespace wire = dds::barrier_topics;
 
-/// Calls `look` until it is true; false if it is not within 20 s.
-bool eventually(const std::function<bool()>& look) {
-  for (int i = 0; i < 4000; ++i) {
-    if (look()) return true;
-    std::this_thread::sleep_for(5ms);
-  }
-  return false;
-}
-
 Process toys(const std::string& group, const std::string& roster, std::uint32_t domain, std::vector<std::string> more) {
-  std::vector<std::string> arguments = {program("toy_host"), group, "--domain", std::to_string(domain), "--roster", roster, "--robot", ""};
+  std::vector<std::string> arguments = {program("toy_host"), group,  "--domain", std::to_string(domain),
+                                        "--roster",          roster, "--robot",  ""};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return Process(std::move(arguments));
 }
 
-// Both were one process that died; between the two Resumes anything may happen.
-TEST(BarrierMessages, EachMemberOfARestartedProcessSaysReadyOnceItIsResumed) {
+// Both members were in one process that died; any time may pass between their two Resumes.
+TEST(BarrierMessages, EachMemberOfARestartedProcessSendsReadyOnceItIsResumed) {
   const DomainClaim claim;
   const dds::Domain domain(claim.domain());
   const dds_entity_t participant = domain.participant();
-  const std::uint64_t reads = std::uint64_t{1} << topics::kJointCommand.id;
-  const std::uint64_t writes = std::uint64_t{1} << topics::kJointState.id;
+  const auto reads = TopicSet::of(topics::kJointCommand);
+  const auto writes = TopicSet::of(topics::kJointState);
   const dds::MemberBus plant(participant, reads, writes, "physics");
   const auto hellos = dds::Reader<msg::Hello>::member(participant, wire::kHello);
   const auto readies = dds::Reader<msg::Ready>::member(participant, wire::kReady);
   const dds::Writer<msg::Hello> hello(participant, wire::kHello, 1);
   const dds::Writer<msg::Resume> resume(participant, wire::kResume, 1);
-  Process process = toys("navigation,control", "physics,navigation,control", claim.domain(), {"--incarnation", "2", "--scenario", "100"});
+  Process process = toys("navigation,control", "physics,navigation,control", claim.domain(),
+                         {"--incarnation", "2", "--scenario", "100"});
 
   msg::Hello physics{};
   ASSERT_TRUE(eventually([&] {
@@ -56,8 +50,8 @@ TEST(BarrierMessages, EachMemberOfARestartedProcessSaysReadyOnceItIsResumed) {
   }));
   dds::set_text(physics.component, "physics");
   physics.incarnation = 1;
-  physics.reads = reads;
-  physics.writes = writes;
+  physics.reads = reads.bits();
+  physics.writes = writes.bits();
   hello.write(physics);
 
   std::vector<std::string> ready;
@@ -80,7 +74,8 @@ TEST(BarrierMessages, EachMemberOfARestartedProcessSaysReadyOnceItIsResumed) {
     EXPECT_TRUE(eventually([&] {
       take_ready();
       return !ready.empty();
-    })) << name << ": " << process.errors();
+    })) << name
+        << ": " << process.errors();
     EXPECT_EQ(ready, std::vector<std::string>{name});
     ready.clear();
   }
@@ -88,152 +83,10 @@ TEST(BarrierMessages, EachMemberOfARestartedProcessSaysReadyOnceItIsResumed) {
   EXPECT_EQ(process.wait(10s), exit_status::kOk) << process.errors();
 }
 
-/// Says to a run all that obeys the types and makes no sense.
-class Stranger {
- public:
-  explicit Stranger(dds_entity_t participant)
-      : hello_(participant, wire::kHello, 64), ready_(participant, wire::kReady, 64), done_(participant, wire::kTickDone, 64),
-        epoch_(participant, wire::kEpochStart, 8), tick_(participant, wire::kTick, 8), resume_(participant, wire::kResume, 8),
-        refused_(participant, wire::kRefused, 8), state_(participant, wire::kRunState, 8), control_(participant, wire::kRunControl, 8) {}
-
-  [[nodiscard]] bool heard_by_members() const { return epoch_.readers() > 3 && tick_.readers() > 3 && resume_.readers() > 3; }
-  [[nodiscard]] bool heard() const {
-    return heard_by_members() && hello_.readers() > 4 && ready_.readers() > 0 && done_.readers() > 0;
-  }
-  void learn(const msg::RunState& run) { run_ = run; }
-  void speak() {
-    greet();
-    for (const char* name : {"navigation", "planner", "physics", "nobody", ""}) {
-      for (const std::uint64_t run_id : {run_.run_id, run_.run_id + 1, std::uint64_t{0}}) {
-        for (const std::uint32_t incarnation : {0u, 1u, 2u, std::numeric_limits<std::uint32_t>::max()}) {
-          msg::Ready ready{};
-          dds::set_text(ready.component, name);
-          ready.run_id = run_id;
-          ready.epoch = run_.epoch;
-          ready.incarnation = incarnation;
-          ready_.write(ready);
-          say_done(name, run_id, incarnation);
-        }
-      }
-    }
-    command();
-  }
-
-  /// Another run's conductor does not want this process.
-  void refuse(const char* name, pid_t pid) {
-    msg::Refused refused{};
-    dds::set_text(refused.component, name);
-    refused.run_id = run_.run_id + 1;
-    refused.incarnation = 1;
-    refused.pid = pid;
-    ::gethostname(refused.host, sizeof refused.host - 1);
-    refused_.write(refused);
-  }
-  /// Another run's conductor, or what takes itself for one.
-  void command() {
-    msg::EpochStart epoch{};
-    epoch.run_id = run_.run_id + 1;
-    epoch.epoch = 9;
-    epoch_.write(epoch);
-    epoch.run_id = run_.run_id;
-    epoch.epoch = 0;
-    epoch_.write(epoch);
-    msg::Tick tick{};
-    tick.run_id = run_.run_id + 1;
-    tick.index = std::numeric_limits<std::int64_t>::max();
-    tick.final_tick = true;
-    tick_.write(tick);
-    tick.run_id = run_.run_id;
-    tick.epoch = run_.epoch;
-    tick.index = -5;
-    tick.final_tick = false;
-    tick_.write(tick);
-    std::string block = "garbage";
-    msg::Resume resume{};
-    dds::set_text(resume.component, "navigation");
-    resume.incarnation = 1;
-    resume.index = std::numeric_limits<std::int64_t>::max();
-    resume.checkpoint = {7, 7, reinterpret_cast<std::uint8_t*>(block.data()), false};
-    resume_.write(resume);
-    msg::RunState state{};
-    state.run_id = run_.run_id + 1;
-    state.pace = std::numeric_limits<double>::quiet_NaN();
-    state_.write(state);
-    msg::RunControl control{};
-    dds::set_text(control.source, "stranger");
-    control.sequence_number = 1;
-    control.command = 200;
-    control.pace = std::numeric_limits<double>::infinity();
-    control_.write(control);
-  }
-
- private:
-  void say_done(const char* name, std::uint64_t run_id, std::uint32_t incarnation) {
-    for (const std::int64_t index : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{1} << 40,
-                                     std::numeric_limits<std::int64_t>::max()}) {
-      msg::TickDone done{};
-      dds::set_text(done.component, name);
-      done.run_id = run_id;
-      done.epoch = run_.epoch;
-      done.incarnation = incarnation;
-      done.index = index;
-      done_.write(done);
-      done.published_count = done.consumed_count = 255;
-      done_.write(done);
-    }
-    // At the very tick that is due, with a checkpoint that is none, lengths beyond all memory, topics that are not its own.
-    std::string endless(8, '\xff');
-    for (std::string block : {std::string("x"), endless, endless + endless, std::string(8, '\0') + endless, std::string(16, '\0') + "x"}) {
-      msg::TickDone done{};
-      dds::set_text(done.component, name);
-      done.run_id = run_id;
-      done.epoch = run_.epoch;
-      done.incarnation = incarnation;
-      done.index = run_.tick;
-      done.checkpoint = {static_cast<std::uint32_t>(block.size()), static_cast<std::uint32_t>(block.size()),
-                         reinterpret_cast<std::uint8_t*>(block.data()), false};
-      done_.write(done);
-    }
-    for (std::int64_t index = run_.tick - 2; index < run_.tick + 14; ++index) {
-      msg::TickDone done{};
-      dds::set_text(done.component, name);
-      done.run_id = run_id;
-      done.epoch = run_.epoch;
-      done.incarnation = incarnation;
-      done.index = index;
-      done.published_count = 2;
-      done.published[0] = {63, 1};
-      done.published[1] = {topics::kMissionStatus.id, std::numeric_limits<std::uint64_t>::max()};
-      done_.write(done);
-    }
-  }
-  void greet() {
-    for (const char* name : {"planner", "navigation", "nobody", ""}) {
-      msg::Hello hello{};
-      dds::set_text(hello.component, name);
-      hello.incarnation = 1000;
-      hello.pid = -1;
-      hello.reads = hello.writes = ~std::uint64_t{0};
-      hello_.write(hello);  // neither period nor latency
-      hello.period_ticks = hello.latency_ticks = 1;
-      hello_.write(hello);  // of another IDL and configuration
-    }
-  }
-  msg::RunState run_{};
-  dds::Writer<msg::Hello> hello_;
-  dds::Writer<msg::Ready> ready_;
-  dds::Writer<msg::TickDone> done_;
-  dds::Writer<msg::EpochStart> epoch_;
-  dds::Writer<msg::Tick> tick_;
-  dds::Writer<msg::Resume> resume_;
-  dds::Writer<msg::Refused> refused_;
-  dds::Writer<msg::RunState> state_;
-  dds::Writer<msg::RunControl> control_;
-};
-
-TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
+TEST(BarrierMessages, ImpossibleMessagesAreRejectedAndCountedAndTheRunGoesOn) {
   const std::string roster = "physics,navigation,control,planner,report";
-  const auto run = [&](const std::vector<std::string>& groups, std::uint32_t number, const std::vector<std::string>& more) {
+  const auto run = [&](const std::vector<std::string>& groups, std::uint32_t number,
+                       const std::vector<std::string>& more) {
     std::vector<Process> processes;
     for (const auto& group : groups) processes.push_back(toys(group, roster, number, more));
     return processes;
@@ -249,20 +102,20 @@ TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
   const std::vector<std::string> options = {"--scenario", "400", "--pace", "2"};
   auto processes = run({"navigation", "control", "planner", "report"}, claim.domain(), options);
   Stranger stranger(domain.participant());
-  ASSERT_TRUE(eventually([&] { return stranger.heard_by_members(); }));
-  stranger.command();  // before there is a run to believe in
+  ASSERT_TRUE(eventually([&] { return stranger.matched_members(); }));
+  stranger.command();  // before the run begins
   processes.push_back(toys("physics", roster, claim.domain(), options));
   std::optional<msg::RunState> state;
   const auto newest_state = [&] {
     states.take([&](const msg::RunState& message) {
-      if (message.epoch == 1) state = message;  // the stranger's have none
+      if (message.epoch == 1) state = message;  // the stranger's messages have epoch 0
     });
     return state.has_value();
   };
   ASSERT_TRUE(eventually(newest_state)) << processes.front().errors();
   stranger.learn(*state);
-  ASSERT_TRUE(eventually([&] { return stranger.heard(); }));
-  stranger.speak();
+  ASSERT_TRUE(eventually([&] { return stranger.matched(); }));
+  stranger.send_all();
   stranger.refuse("planner", processes.at(2).pid());
   stranger.refuse("physics", processes.back().pid());
   for (auto& process : processes) EXPECT_EQ(process.wait(60s), exit_status::kOk) << process.errors();
@@ -270,7 +123,7 @@ TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
   std::map<std::string, std::string> last;
   std::map<std::string, std::uint64_t> refused;
   statuses.take([&](const msg::ComponentStatus& status) {
-    refused[status.component] = status.refused;
+    refused[status.component] = status.refused_count;
     last[status.component] = status.last_refusal;
   });
   EXPECT_GT(refused["physics"], 500u);
@@ -280,7 +133,8 @@ TEST(BarrierMessages, WhatMakesNoSenseIsRefusedAndCountedAndTheRunGoesOn) {
   }
 }
 
-// As where two hosts have chosen one domain: the same components, roster and configuration, each with its launcher's number.
+// Two hosts may choose the same domain: their runs have the same components, roster and configuration, and differ only
+// in the run id of their launchers.
 TEST(BarrierMessages, TwoRunsInOneDomainLeaveEachOtherAlone) {
   const std::string roster = "physics,navigation,control,planner,report";
   std::map<std::string, std::string> expected;  // by the number of ticks
@@ -293,7 +147,8 @@ TEST(BarrierMessages, TwoRunsInOneDomainLeaveEachOtherAlone) {
   const DomainClaim claim;
   std::map<std::string, std::vector<Process>> runs;
   for (const std::string group : {"physics,planner", "navigation,control", "report"}) {
-    for (const auto& [ticks, result] : expected) runs[ticks].push_back(toys(group, roster, claim.domain(), {"--scenario", ticks, "--run-id", ticks}));
+    for (const auto& [ticks, result] : expected)
+      runs[ticks].push_back(toys(group, roster, claim.domain(), {"--scenario", ticks, "--run-id", ticks}));
   }
   for (auto& [ticks, processes] : runs) {
     for (auto& process : processes) EXPECT_EQ(process.wait(60s), exit_status::kOk) << process.errors();
@@ -305,8 +160,8 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
   const DomainClaim claim;
   const dds::Domain domain(claim.domain());
   const dds_entity_t participant = domain.participant();
-  const std::uint64_t writes = std::uint64_t{1} << topics::kMissionStatus.id;
-  const dds::MemberBus bus(participant, 0, writes, "planner");
+  const auto writes = TopicSet::of(topics::kMissionStatus);
+  const dds::MemberBus bus(participant, {}, writes, "planner");
   const auto hellos = dds::Reader<msg::Hello>::member(participant, wire::kHello);
   const auto starts = dds::Reader<msg::EpochStart>::member(participant, wire::kEpochStart);
   const auto ticks = dds::Reader<msg::Tick>::member(participant, wire::kTick);
@@ -314,7 +169,8 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
   const dds::Writer<msg::Hello> hello(participant, wire::kHello, 1);
   const dds::Writer<msg::Ready> ready(participant, wire::kReady, 1);
   const dds::Writer<msg::TickDone> done(participant, wire::kTickDone, 4);
-  Process rest = toys("physics,navigation,control,report", "physics,navigation,control,planner,report", claim.domain(), {"--scenario", "100000"});
+  Process rest = toys("physics,navigation,control,report", "physics,navigation,control,planner,report", claim.domain(),
+                      {"--scenario", "100000"});
 
   msg::Hello mine{};
   ASSERT_TRUE(eventually([&] {
@@ -324,7 +180,7 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
   dds::set_text(mine.component, "planner");
   mine.pid = 1;
   mine.reads = 0;
-  mine.writes = writes;
+  mine.writes = writes.bits();
   mine.period_ticks = mine.latency_ticks = 1;
   hello.write(mine);
   msg::Ready here{};
@@ -349,7 +205,8 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
       done.write(step);
     });
     return last >= 20;
-  })) << last << ": " << rest.errors();
+  })) << last
+      << ": " << rest.errors();
   mine.incarnation = 2;
   hello.write(mine);
   std::string reason;

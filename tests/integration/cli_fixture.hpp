@@ -6,23 +6,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
-
-/// True once `condition` holds; false if it does not within the bound.
-template <class Condition>
-bool eventually(Condition&& condition, std::chrono::milliseconds bound = std::chrono::seconds(20)) {
-  const auto end = std::chrono::steady_clock::now() + bound;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
 
 class CliFixture : public ::testing::Test {
  protected:
@@ -42,7 +31,9 @@ class CliFixture : public ::testing::Test {
   [[nodiscard]] std::uint32_t domain() const {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(dir_)) {
       std::uint32_t number = 0;
-      if (std::sscanf(entry.path().filename().c_str(), "run-%u.json", &number) == 1 && entry.path().extension() == ".json") return number;
+      if (std::sscanf(entry.path().filename().c_str(), "run-%u.json", &number) == 1 &&
+          entry.path().extension() == ".json")
+        return number;
     }
     return 0;
   }

@@ -1,5 +1,5 @@
-// The whole case study: the same state hash however it is spread, paced, loaded, stopped, killed or reset; another one for another seed
-// and for one ulp in one command.
+// The whole case study: the same state hash however it is spread, paced, loaded, stopped, killed or reset; another one
+// for another seed and for one ulp in one command.
 #include <cstdlib>
 #include <random>
 
@@ -21,8 +21,8 @@ class WholeCaseStudy : public DeterminismRun {
       Process process = start("reference");
       const std::string found = hash_of("reference", process);
       EXPECT_TRUE(report("reference")["success"]) << report("reference")["objects"];
-      std::printf("reference: %s, %d ticks, %.1f s of wall time\n", found.c_str(), report("reference")["ticks"].get<int>(),
-                  report("reference")["wall_time_s"].get<double>());
+      std::printf("reference: %s, %d ticks, %.1f s of wall time\n", found.c_str(),
+                  report("reference")["ticks"].get<int>(), report("reference")["wall_time_s"].get<double>());
       return found;
     }();
     return hash;
@@ -42,7 +42,8 @@ TEST_F(WholeCaseStudy, AllInOneProcess) { EXPECT_EQ(run("one", {"--in-process"})
 
 TEST_F(WholeCaseStudy, TwoGroupings) {
   EXPECT_EQ(run("two", {"--group", "physics,control,navigation"}), reference());
-  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}), reference());
+  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}),
+            reference());
 }
 
 TEST_F(WholeCaseStudy, CappedAtTwiceRealTime) { EXPECT_EQ(run("capped", {"--pace", "2x"}), reference()); }
@@ -55,12 +56,16 @@ TEST_F(WholeCaseStudy, BothCoresLoadedByOthers) {
 }
 
 TEST_F(WholeCaseStudy, OtherFeaturesOfTheCpuMaskedForOneProcess) {
-  write_manifest("masked.yaml",
-                 {{"guidance", "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
+  write_manifest(
+      "masked.yaml",
+      {{"guidance",
+        "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), reference());
 }
 
-TEST_F(WholeCaseStudy, EachProcessStoppedInTurnOneOfThemForFifteenSeconds) { EXPECT_EQ(run_with_stops("perception", 15s), reference()); }
+TEST_F(WholeCaseStudy, EachProcessStoppedInTurnOneOfThemForFifteenSeconds) {
+  EXPECT_EQ(run_with_stops("perception", 15s), reference());
+}
 
 // Between their first output and their TickDone, at ticks drawn anew each time.
 TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
@@ -76,8 +81,8 @@ TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
     while (ticks.size() < kDeaths) ticks.insert(10 + static_cast<int>(random() % 9000));
     std::string list;
     for (const int tick : ticks) list += (list.empty() ? "" : ",") + std::to_string(tick);
-    lines[member] = "    program: mortal_host\n    environment: ['CONSTRICTOR_DEATHS=" + list + "', 'CONSTRICTOR_DEATHS_DIR=" +
-                    (dir_ / "deaths").string() + "']\n";
+    lines[member] = "    program: mortal_host\n    environment: ['CONSTRICTOR_DEATHS=" + list +
+                    "', 'CONSTRICTOR_DEATHS_DIR=" + (dir_ / "deaths").string() + "']\n";
   }
   write_manifest("mortal.yaml", lines);
   EXPECT_EQ(run("killed", {"--manifest", (dir_ / "mortal.yaml").string()}), expected);
@@ -85,7 +90,8 @@ TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
 }
 
 TEST_F(WholeCaseStudy, ResetOnTheWay) {
-  const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+  const std::map<std::string, std::string> registry = {
+      {"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
   Process launcher = start("reset", {"--seed", "2"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Process reset({program("constrictor"), "reset", "1"}, registry);

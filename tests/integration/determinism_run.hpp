@@ -10,14 +10,15 @@
 #include <thread>
 
 #include "runtime/host.hpp"
+#include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
 /// Every member of the case study but the plant.
-inline const std::vector<std::string> kRestartable = {"camera", "overview", "perception", "guidance", "navigation",
-                                                      "control", "input", "planner", "report"};
+inline const std::vector<std::string> kRestartable = {"camera",  "overview", "perception", "guidance", "navigation",
+                                                      "control", "input",    "planner",    "report"};
 
 class DeterminismRun : public ::testing::Test {
  protected:
@@ -40,7 +41,7 @@ class DeterminismRun : public ::testing::Test {
   /// The state hash of a run that has ended; a run that was cut short by time is a mission without success.
   [[nodiscard]] std::string hash_of(const std::string& name, Process& process) const {
     const auto status = process.wait(bound_);
-    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
+    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kFailed)
         << name << " ended with " << status.value_or(-1) << ": " << process.output() << process.errors();
     const nlohmann::json told = report(name);
     if (!told.contains("state_hash") || !told["state_hash"].is_string()) {
@@ -53,7 +54,7 @@ class DeterminismRun : public ::testing::Test {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }
   std::string run(const std::string& name, const std::vector<std::string>& more = {},
-                                const std::map<std::string, std::string>& environment = {}) const {
+                  const std::map<std::string, std::string>& environment = {}) const {
     Process process = start(name, more, environment);
     return hash_of(name, process);
   }
@@ -84,13 +85,12 @@ class DeterminismRun : public ::testing::Test {
   }
   /// Waits until `name` runs, as another process than `dead`.
   [[nodiscard]] pid_t running(const std::string& name, pid_t dead = -1) const {
-    for (int i = 0; i < 5000; ++i) {
-      if (const pid_t pid = pid_of(name); pid > 0 && pid != dead) return pid;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return -1;
+    pid_t pid = -1;
+    const auto is_another = [&] { return (pid = pid_of(name)) > 0 && pid != dead; };
+    return eventually(is_another, std::chrono::seconds(20), std::chrono::milliseconds(1)) ? pid : -1;
   }
-  /// Stops each process in turn, the launcher last, for 2 s and one of them for `longest`; the hash of what became of the run.
+  /// Stops each process in turn, the launcher last, for 2 s and one of them for `longest`; the hash of what became of
+  /// the run.
   [[nodiscard]] std::string run_with_stops(const std::string& longest_stopped, std::chrono::seconds longest) {
     Process launcher = start("stopped", {"--pace", "2x"});
     EXPECT_GT(running("report"), 0);

@@ -1,5 +1,5 @@
-// The real components in a real mission, cut short: the same state hash however they are spread, stopped, killed or paced; another
-// one for another seed and for one ulp in one command.
+// The real components in a real mission, cut short: the same state hash however they are spread, stopped, killed or
+// paced; another one for another seed and for one ulp in one command.
 #include <random>
 
 #include "integration/determinism_run.hpp"
@@ -25,11 +25,14 @@ TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   }
   EXPECT_EQ(run("one", {"--in-process"}), expected);
   EXPECT_EQ(run("two", {"--group", "physics,control,navigation"}), expected);
-  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}), expected);
+  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}),
+            expected);
   EXPECT_EQ(run("capped", {"--pace", "2x"}), expected);
   // Guidance, which computes much, without what the others use of the CPU, as on an older host.
-  write_manifest("masked.yaml",
-                 {{"guidance", "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
+  write_manifest(
+      "masked.yaml",
+      {{"guidance",
+        "    environment: ['GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX,-AVX512F,-SSE4_2,-ERMS']\n"}});
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), expected);
 }
 
@@ -43,7 +46,8 @@ TEST_F(Determinism, AnotherSeedIsAnotherRunAndDiffNamesWhereTheyPart) {
 TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
   write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
   const std::string expected = run("plain");
-  const std::string nudged = run("nudged", {"--manifest", (dir_ / "nudged.yaml").string()}, {{"CONSTRICTOR_NUDGE_TICK", "200"}});
+  const std::string nudged =
+      run("nudged", {"--manifest", (dir_ / "nudged.yaml").string()}, {{"CONSTRICTOR_NUDGE_TICK", "200"}});
   EXPECT_NE(nudged, expected);
   Process diff({program("constrictor"), "diff", (dir_ / "plain").string(), (dir_ / "nudged").string()});
   EXPECT_EQ(diff.wait(20s), 1);
@@ -74,7 +78,8 @@ TEST_F(Determinism, KilledMembersLeaveNoTrace) {
 TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesLeavesNoTrace) {
   const std::string expected = run("reference");
   const std::string victim = "navigation,control,input,planner";
-  Process process = start("killed", {"--pace", "1x", "--group", victim, "--group", "camera,overview,perception,report"});
+  Process process =
+      start("killed", {"--pace", "1x", "--group", victim, "--group", "camera,overview,perception,report"});
   int kills = 0;
   for (pid_t dead = -1; kills < 10; ++kills) {
     const pid_t pid = running(victim, dead);
@@ -93,12 +98,17 @@ TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnLeavesNoTrace) {
 }
 
 TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsAFreshOneOfThatSeed) {
-  const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+  const std::map<std::string, std::string> registry = {
+      {"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
   const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
   Process launcher = start("reset", {"--pace", "2x", "--seed", "3"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"reset", "5"}, {"pause"}, {"step"}, {"step", "25"}, {"pace", "lockstep"}, {"resume"}}) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"reset", "5"},
+                                                {"pause"},
+                                                {"step"},
+                                                {"step", "25"},
+                                                {"pace", "lockstep"},
+                                                {"resume"}}) {
     std::vector<std::string> arguments = {program("constrictor")};
     arguments.insert(arguments.end(), words.begin(), words.end());
     Process command(arguments, registry);
@@ -107,7 +117,8 @@ TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsAFreshOneOfThatSeed) {
   EXPECT_EQ(hash_of("reset", launcher), expected);
   // Members, journals and pictures began anew too.
   const nlohmann::json fresh = report("fresh"), reset = report("reset");
-  for (const char* key : {"seed", "ticks", "events", "states", "objects", "line", "pose_error"}) EXPECT_EQ(reset[key], fresh[key]) << key;
+  for (const char* key : {"seed", "ticks", "events", "states", "objects", "line", "pose_error"})
+    EXPECT_EQ(reset[key], fresh[key]) << key;
   Process diff({program("constrictor"), "diff", (dir_ / "fresh").string(), (dir_ / "reset").string()});
   EXPECT_EQ(diff.wait(20s), 0) << diff.output();
 }
@@ -122,7 +133,8 @@ TEST_F(Determinism, ARunEndedByTheLaunchersLimitIsToldLikeOneEndedByTheReportsOw
     run("limited", more);
     const nlohmann::json own = report("own"), limited = report("limited");
     ASSERT_TRUE(own["events"].is_array() && !own["events"].empty());
-    for (const char* key : {"success", "mission", "ticks", "state_hash", "events", "states", "objects", "line", "pose_error"}) {
+    for (const char* key :
+         {"success", "mission", "ticks", "state_hash", "events", "states", "objects", "line", "pose_error"}) {
       EXPECT_EQ(limited[key], own[key]) << key;
     }
     EXPECT_TRUE(fs::exists(dir_ / "limited/figure.png"));

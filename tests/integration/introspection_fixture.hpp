@@ -10,7 +10,8 @@ namespace constrictor::testing {
 class Introspection : public CliFixture {
  protected:
   static constexpr const char* kManifest =
-      "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 30\nprocesses:\n"
+      "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+      "30\nprocesses:\n"
       "  - {components: [physics], program: toy_host}\n";
   static constexpr const char* kMembers = "  - {components: [navigation, control], program: toy_host}\n";
 
@@ -19,12 +20,13 @@ class Introspection : public CliFixture {
     EXPECT_TRUE(process.wait_for("talking", std::chrono::seconds(20))) << process.errors();
     return process;
   }
-  /// A run of toys at real-time pace: 50 ticks a second, and it lasts. `members`: processes beside the plant, as lines of the manifest.
+  /// A run of toys at real-time pace: 50 ticks a second, and it lasts. `members`: processes beside the plant, as lines
+  /// of the manifest.
   [[nodiscard]] Process toys(const std::string& members = kMembers) const {
     write("toys.yaml", kManifest + members);
     write("100000_ticks.yaml", "");
-    Process run = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--pace", "1x",
-                         "--report", (dir_ / "report").string()});
+    Process run = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(),
+                         "--pace", "1x", "--report", (dir_ / "report").string()});
     EXPECT_TRUE(eventually([&] { return domain() != 0; }));
     return run;
   }

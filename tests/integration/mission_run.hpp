@@ -1,4 +1,4 @@
-// Missions of the real components in a world of a test's own: the launcher, its processes, and what the report tells of them.
+// Whole missions in processes of their own, in a world of the test's own, judged by the report of the run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,12 +15,16 @@ namespace constrictor::testing {
 
 class MissionRun : public ::testing::Test {
  protected:
-  /// Runs a scenario to its end; its exit status, -1 if it hangs. Afterwards `report_` has what it reported.
+  /// Runs a scenario to its end and reads its report into `report_`. Returns the exit status; -1: the run hangs.
   int run(const std::string& scenario, double most_s, std::vector<std::string> more = {}) {
-    write("planner.yaml", planner_for_green());
-    write("report.yaml", "max_sim_time_s: " + std::to_string(most_s) + "\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
-    std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / "out").string(), "--config",
-                                          "planner=" + (dir_ / "planner.yaml").string(), "--config",
+    write("report.yaml", "max_sim_time_s: " + std::to_string(most_s) +
+                             "\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
+    std::vector<std::string> arguments = {program("constrictor"),
+                                          "run",
+                                          scenario,
+                                          "--report",
+                                          (dir_ / "out").string(),
+                                          "--config",
                                           "report=" + (dir_ / "report.yaml").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Process process(std::move(arguments));
@@ -54,13 +58,6 @@ class MissionRun : public ::testing::Test {
       if (entry[key] == name && entry["sim_time_s"] >= from_s) return entry["sim_time_s"];
     }
     return std::numeric_limits<double>::quiet_NaN();
-  }
-  /// The planner's own configuration, for a mission of one object.
-  static std::string planner_for_green() {
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
-    std::string text;
-    for (std::string line; std::getline(file, line);) text += (line.starts_with("sequence:") ? "sequence: [green]" : line) + "\n";
-    return text;
   }
 };
 

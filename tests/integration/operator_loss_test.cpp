@@ -1,16 +1,16 @@
-// The process of `input` is killed and restarted while an operator drives: whoever dies meanwhile or later is noticed, and what is asked
-// meanwhile is heard.
+// The process of `input` is killed and restarted while an operator drives: it detects operators that die during the
+// restart or later, and obeys requests that were made during the restart.
 #include <signal.h>
 
 #include <algorithm>
 #include <functional>
 #include <optional>
 
-#include "cli/operator_client.hpp"
+#include "cli/operator.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
-#include "runtime/dds/endpoint.hpp"
 #include "runtime/host.hpp"
-#include "runtime/topics.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -20,13 +20,17 @@ using namespace std::chrono_literals;
 class OperatorLoss : public CliFixture {
  protected:
   void SetUp() override {
-    write("blind.yaml",  // nothing here needs to see
-          "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 20\nprocesses:\n"
-          "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
-    launcher_.emplace(start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
+    write(
+        "blind.yaml",  // a run without camera and perception
+        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+        "20\nprocesses:\n"
+        "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
+    launcher_.emplace(start(
+        {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
     ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->output() << launcher_->errors();
-    hand_.emplace(domain(), "hand", 0ms);
-    ASSERT_TRUE(hand_->connect(60s)) << launcher_->output() << launcher_->errors();  // it does when `input` has stepped
+    hand_.emplace(domain(), cli::operator_options("hand"));
+    ASSERT_TRUE(hand_->connect(60s)) << launcher_->output()
+                                     << launcher_->errors();  // succeeds when `input` has stepped
     authority_ = dds::Reader<msg::Authority>::member(hand_->participant(), std::string(topics::kAuthority.name));
     commands_ = dds::Reader<msg::JointCommand>::member(hand_->participant(), std::string(topics::kJointCommand.name));
     statuses_ = dds::Reader<msg::ComponentStatus>::member(hand_->participant(), "component_status");
@@ -43,12 +47,17 @@ class OperatorLoss : public CliFixture {
     });
   }
   [[nodiscard]] bool until(const std::function<bool()>& condition, std::chrono::seconds bound = 30s) {
-    return eventually([&] { poll(); return condition(); }, bound);
+    return eventually(
+        [&] {
+          poll();
+          return condition();
+        },
+        bound);
   }
   [[nodiscard]] bool level(std::uint8_t level) {
     return until([&] { return now_.level == level; });
   }
-  /// A teleop that drives.
+  /// A teleop client that drives the robot.
   [[nodiscard]] Process drive() {
     Process teleop = start({"teleop", "--drive", "0.3,0.1"});
     EXPECT_TRUE(teleop.wait_for("driving", 30s)) << teleop.errors();
@@ -62,17 +71,19 @@ class OperatorLoss : public CliFixture {
   [[nodiscard]] bool input_is_back(std::uint32_t incarnation) {
     return until([&] { return input_.incarnation >= incarnation && now_.header.incarnation >= incarnation; });
   }
-  /// Setpoints that do not change for a while after this tick.
+  /// Expects the setpoints to stay constant for a while after this tick.
   void expect_held_after(std::int64_t tick) {
     ASSERT_TRUE(until([&] { return !setpoints_.empty() && setpoints_.back().header.tick > tick + 60; }));
-    const auto held = std::find_if(setpoints_.begin(), setpoints_.end(), [&](const auto& c) { return c.header.tick >= tick + 1; });
+    const auto held =
+        std::find_if(setpoints_.begin(), setpoints_.end(), [&](const auto& c) { return c.header.tick >= tick + 1; });
     for (auto c = held; c != setpoints_.end(); ++c) {
-      for (int j = 0; j < c->joint_count; ++j) ASSERT_EQ(c->position_rad[j], held->position_rad[j]) << "tick " << c->header.tick;
+      for (int j = 0; j < c->joint_count; ++j)
+        ASSERT_EQ(c->position_rad[j], held->position_rad[j]) << "tick " << c->header.tick;
     }
   }
 
   std::optional<Process> launcher_;
-  std::optional<cli::OperatorClient> hand_;  // also whose participant the readers are of: a process joins a domain once
+  std::optional<RequestClient> hand_;  // the readers use its participant: a process joins a domain once
   dds::Reader<msg::Authority> authority_;
   dds::Reader<msg::JointCommand> commands_;
   dds::Reader<msg::ComponentStatus> statuses_;
@@ -81,37 +92,40 @@ class OperatorLoss : public CliFixture {
   std::vector<msg::JointCommand> setpoints_;
 };
 
-TEST_F(OperatorLoss, ARestartedInputKeepsALivingOperatorAndNoticesItsDeath) {
+TEST_F(OperatorLoss, ARestartedInputKeepsALivingOperatorAndDetectsItsDeath) {
   Process teleop = drive();
   kill_input();
   ASSERT_TRUE(input_is_back(2));
   const std::int64_t restarted = now_.header.tick;
-  ASSERT_TRUE(until([&] { return now_.header.tick > restarted + 220; })) << "well beyond the grace for those that are not found";
+  ASSERT_TRUE(until([&] { return now_.header.tick > restarted + 220; }))
+      << "well beyond the 3 s for writers that are not found again";
   ASSERT_EQ(now_.level, msg::kAuthorityOperator);
   ASSERT_FALSE(teleop.wait(0s)) << teleop.errors();
   teleop.signal(SIGKILL);
-  ASSERT_TRUE(until([&] { return now_.level == msg::kAuthorityNone; }, 5s)) << "level " << int{now_.level} << " of " << now_.source;
+  ASSERT_TRUE(until([&] { return now_.level == msg::kAuthorityNone; }, 5s))
+      << "level " << int{now_.level} << " of " << now_.source;
   expect_held_after(now_.header.tick);
 
-  // Killed while nobody listens, it has never been met by who listens then.
+  // The operator dies while `input` is away: the new process has never met its writer.
   Process second = drive();
   kill_input();
   second.signal(SIGKILL);
   ASSERT_TRUE(input_is_back(3));
-  ASSERT_TRUE(until([&] { return now_.level == msg::kAuthorityNone; }, 15s)) << "level " << int{now_.level} << " of " << now_.source;
+  ASSERT_TRUE(until([&] { return now_.level == msg::kAuthorityNone; }, 15s))
+      << "level " << int{now_.level} << " of " << now_.source;
   expect_held_after(now_.header.tick);
 }
 
-TEST_F(OperatorLoss, AnEmergencyStopThatIsAskedForWhileInputIsAwayIsObeyedWhenItIsBack) {
+TEST_F(OperatorLoss, AnEmergencyStopRequestedDuringARestartOfInputIsObeyedAfterwards) {
   Process teleop = drive();
   ASSERT_TRUE(until([&] { return input_.pid > 0; }));
-  // Frozen first, so that the word is surely said to a process that will never take it.
+  // Stop the process first, so that the request certainly reaches a process that never takes it.
   ASSERT_EQ(::kill(input_.pid, SIGSTOP), 0);
   const std::uint64_t number = hand_->ask(msg::kRequestEmergencyStop);
-  EXPECT_EQ(hand_->wait_for_answer(number, 500ms), cli::OperatorClient::Answer::kNone);
+  EXPECT_EQ(hand_->wait_for_answer(number, 500ms), RequestClient::Answer::kNone);
   ASSERT_EQ(::kill(input_.pid, SIGKILL), 0);
-  EXPECT_EQ(hand_->wait_for_answer(number, 20s), cli::OperatorClient::Answer::kGranted);
-  EXPECT_TRUE(level(msg::kAuthorityStop));
+  EXPECT_EQ(hand_->wait_for_answer(number, 20s), RequestClient::Answer::kGranted);
+  EXPECT_TRUE(level(msg::kAuthorityEmergencyStop));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Run-time parameters over real processes: a change takes effect at the tick that was named, whenever it was asked for, however the
-// components are spread, and although the process that obeys it is killed.
+// Run-time parameters with real processes: a change takes effect at its tick, whenever it was requested, in whichever
+// processes the components run, and although the owner's process is killed.
 #include <signal.h>
 
 #include "cli_fixture.hpp"
@@ -25,44 +25,46 @@ class RunTimeParameters : public CliFixture {
           "  - {tick: 300, name: control.wave.curvature_rate_1_ms, value: 0.7}\n");
   }
   [[nodiscard]] Process begin(const std::string& name, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"run", "short", "--report", (dir_ / name).string(), "--config", "report=" + (dir_ / "report.yaml").string()};
+    std::vector<std::string> arguments = {
+        "run", "short", "--report", (dir_ / name).string(), "--config", "report=" + (dir_ / "report.yaml").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start(std::move(arguments));
   }
   [[nodiscard]] std::string planned() const { return "input=" + (dir_ / "planned.yaml").string(); }
-  /// The report of a run that was cut short by time.
+  /// Waits until the run has reached its time limit, and returns its report.
   [[nodiscard]] json end(const std::string& name, Process& run) const {
     const auto status = run.wait(120s);
-    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kMissionFailed)
+    EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kFailed)
         << name << " ended with " << status.value_or(-1) << ": " << run.output() << run.errors();
-    json told = report(name);
-    EXPECT_TRUE(told.contains("state_hash")) << name;
-    return told;
+    json result = report(name);
+    EXPECT_TRUE(result.contains("state_hash")) << name;
+    return result;
   }
-  /// What `constrictor ARGUMENTS --json` says; it must end with `status`.
+  /// Output of `constrictor ARGUMENTS --json`, which must exit with `status`.
   json ask(std::vector<std::string> arguments, int status = 0) {
     arguments.push_back("--json");
     Process process = start(std::move(arguments));
     EXPECT_EQ(process.wait(30s), status) << process.output() << process.errors();
     return json::parse(process.output(), nullptr, false);
   }
-  [[nodiscard]] bool is_there() {
+  [[nodiscard]] bool run_answers() {
     return eventually([&] { return domain() != 0 && command({"param", "get", kFrequency}) == 0; });
   }
-  /// Pid of this run's process of a component.
+  /// Process id of a component in this run.
   [[nodiscard]] pid_t pid_of(const std::string& name) const {
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const std::string pid = entry.path().filename();
       if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
       std::ifstream file(entry.path() / "cmdline");
       const std::string line{std::istreambuf_iterator<char>(file), {}};
-      if (fs::path(line.substr(0, line.find('\0'))).filename() == name && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
+      if (fs::path(line.substr(0, line.find('\0'))).filename() == name && line.find(dir_.string()) != std::string::npos)
+        return std::stoi(pid);
     }
     return -1;
   }
 };
 
-TEST_F(RunTimeParameters, TheSameChangesAtTheSameTicksAreTheSameRunHoweverTheyAreAskedForSpreadOrKilled) {
+TEST_F(RunTimeParameters, EqualChangesAtEqualTicksGiveEqualRunsInAnyProcessesAndThroughACrash) {
   Process plain = begin("plain", {"--in-process"});
   const json without = end("plain", plain);
   EXPECT_EQ(without["parameters"], json::array());
@@ -73,14 +75,15 @@ TEST_F(RunTimeParameters, TheSameChangesAtTheSameTicksAreTheSameRunHoweverTheyAr
   EXPECT_NE(expected, without["state_hash"]);
   ASSERT_EQ(reference["parameters"].size(), 2u);
   EXPECT_EQ(reference["parameters"][0],
-            json::parse(R"({"sim_time_s": 6.0, "tick": 300, "name": "navigation.travel.frequency_hz", "value": 0.9, "source": "input.yaml"})"));
+            json::parse(R"({"sim_time_s": 6.0, "tick": 300, "name": "navigation.travel.frequency_hz", "value": 0.9, )"
+                        R"("source": "input.yaml"})"));
 
   Process ten = begin("ten", {"--config", planned()});
   EXPECT_EQ(end("ten", ten)["state_hash"], expected);
 
-  // The same changes, asked for from the command line well before their tick, and control killed after it.
+  // The same changes, requested from the command line before their tick; control is killed after it.
   Process asked = begin("asked", {"--pace", "1x"});
-  ASSERT_TRUE(is_there()) << output_;
+  ASSERT_TRUE(run_answers()) << output_;
   const json answer = ask({"param", "set", kFrequency, "0.9", kRate, "0.7", "--at-tick", std::to_string(kTick)});
   ASSERT_EQ(answer.size(), 2u) << answer;
   EXPECT_EQ(answer[0]["effective_tick"], kTick);
@@ -89,25 +92,29 @@ TEST_F(RunTimeParameters, TheSameChangesAtTheSameTicksAreTheSameRunHoweverTheyAr
   EXPECT_EQ(waiting["value"], waiting["default"]);
   EXPECT_EQ(waiting["pending"], (json{{"tick", kTick}, {"value", 0.7}}));
   json in_force;
-  ASSERT_TRUE(eventually([&] { return !(in_force = ask({"param", "get", kRate}))["changed_tick"].is_null(); })) << in_force;
+  ASSERT_TRUE(eventually([&] {
+    return !(in_force = ask({"param", "get", kRate}))["changed_tick"].is_null();
+  })) << in_force;
   const pid_t control = pid_of("control");
   ASSERT_GT(control, 0);
   ASSERT_EQ(::kill(control, SIGKILL), 0);
   EXPECT_EQ(in_force["value"], 0.7);
   EXPECT_EQ(in_force["changed_tick"], kTick);
   EXPECT_EQ(ask({"param", "get", kFrequency})["changed_tick"], kTick);
-  const json told = end("asked", asked);
-  EXPECT_EQ(told["state_hash"], expected);
-  for (const auto& process : told["processes"]) EXPECT_EQ(process["restarts"], process["name"] == "control" ? 1 : 0) << process;
-  ASSERT_EQ(told["parameters"].size(), 2u);
-  EXPECT_EQ(told["parameters"][1]["name"], kRate);
-  EXPECT_EQ(told["parameters"][1]["tick"], kTick);
+  const json result = end("asked", asked);
+  EXPECT_EQ(result["state_hash"], expected);
+  for (const auto& process : result["processes"])
+    EXPECT_EQ(process["restarts"], process["name"] == "control" ? 1 : 0) << process;
+  ASSERT_EQ(result["parameters"].size(), 2u);
+  EXPECT_EQ(result["parameters"][1]["name"], kRate);
+  EXPECT_EQ(result["parameters"][1]["tick"], kTick);
 }
 
-TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
+TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   write("long.yaml", "max_sim_time_s: 600\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
-  Process run = start({"run", "short", "--in-process", "--pace", "1x", "--report", (dir_ / "run").string(), "--config", "report=" + (dir_ / "long.yaml").string()});
-  ASSERT_TRUE(is_there()) << output_;
+  Process run = start({"run", "short", "--in-process", "--pace", "1x", "--report", (dir_ / "run").string(), "--config",
+                       "report=" + (dir_ / "long.yaml").string()});
+  ASSERT_TRUE(run_answers()) << output_;
   EXPECT_NE(output_.find("0.7 Hz"), std::string::npos) << output_;
   EXPECT_NE(output_.find("accepted: 0.05 to 2 Hz; default: 0.7 Hz"), std::string::npos) << output_;
 
@@ -136,18 +143,23 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
 
   ASSERT_EQ(command({"completion", "bash"}), 0);
   write("completion.sh", output_ + "\nconstrictor() { \"" + program("constrictor") + "\" \"$@\"; }\n" +
-                             "COMP_WORDS=(constrictor param get control.squeeze.r) COMP_CWORD=3\n_constrictor\necho \"${COMPREPLY[@]}\"\n");
+                             "COMP_WORDS=(constrictor param get control.squeeze.r) COMP_CWORD=3\n_constrictor\necho "
+                             "\"${COMPREPLY[@]}\"\n");
   Process bash({"/bin/bash", (dir_ / "completion.sh").string()}, environment_);
   EXPECT_EQ(bash.wait(30s), 0) << bash.errors();
   EXPECT_EQ(bash.output(), "control.squeeze.rate_rad_s\n") << bash.errors();
 
-  // Refused, with the reason and status 1; nothing after it is asked for.
+  // A refused value ends the command with the reason and status 1; later values are not requested.
   EXPECT_EQ(command({"param", "set", kFrequency, "2.5", kRate, "3"}), 1);
-  EXPECT_NE(output_.find("refused: navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz"), std::string::npos) << output_;
-  EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find("parameter: found 'navigation.nothing'"), 0u);
+  EXPECT_NE(output_.find("refused: navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz"),
+            std::string::npos)
+      << output_;
+  EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find(
+                "parameter: found 'navigation.nothing'"),
+            0u);
   EXPECT_EQ(command({"param", "set", kFrequency, "0.8", "--at-tick", "1"}), 1);
   EXPECT_NE(output_.find("found 1, accepted "), std::string::npos) << output_;
-  EXPECT_EQ(command({"param", "set", "navigation.line_watch.lost_after_images", "3.5"}), 1);
+  EXPECT_EQ(command({"param", "set", "navigation.line_tracker.lost_after_images", "3.5"}), 1);
   EXPECT_NE(output_.find("accepted whole numbers from 1 to 100"), std::string::npos) << output_;
   EXPECT_EQ(ask({"param", "list", "--changed"}).size(), 1u);
 
@@ -159,7 +171,7 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
   EXPECT_EQ(command({"param"}), exit_status::kUsage);
   EXPECT_EQ(command({"param", "list", "--names", "--json"}), exit_status::kUsage);
 
-  // Defaults return with a reset.
+  // A reset restores the defaults.
   EXPECT_EQ(command({"reset", "1"}), 0) << output_;
   json after;
   EXPECT_TRUE(eventually([&] { return (after = ask({"param", "get", kFrequency}))["changed_tick"].is_null(); }));
@@ -168,7 +180,7 @@ TEST_F(RunTimeParameters, AreListedToldSetAndRefusedByTheCommandLine) {
   EXPECT_TRUE(run.wait(20s));
 }
 
-TEST_F(RunTimeParameters, WithoutARunTheStatusSaysSo) {
+TEST_F(RunTimeParameters, TheExitStatusShowsThatThereIsNoRun) {
   EXPECT_EQ(command({"param", "list"}), exit_status::kSoftware);
   EXPECT_EQ(command({"param", "set", kFrequency, "0.9"}), exit_status::kSoftware);
   EXPECT_EQ(command({"param", "--help"}), 0);

@@ -4,7 +4,7 @@
 namespace constrictor::testing {
 namespace {
 
-TEST_F(MissionRun, AnObjectIsFoundGraspedCarriedAndDroppedOnItsZone) {
+TEST_F(MissionRun, FindsGraspsCarriesAndDropsAnObjectOnItsZone) {
   EXPECT_EQ(run("short", 300.0), exit_status::kOk) << output_;
   ASSERT_TRUE(report_.is_object()) << output_;
   EXPECT_TRUE(report_["success"]);
@@ -17,12 +17,16 @@ TEST_F(MissionRun, AnObjectIsFoundGraspedCarriedAndDroppedOnItsZone) {
   EXPECT_TRUE(report_["objects"][0]["in_zone"]) << report_["objects"];
 }
 
-// When the object is a metre from where it stood, carried off, a force pulls it out of the U. A box: a cylinder that falls rolls away.
-TEST_F(MissionRun, AnObjectPulledOutOfTheBodyIsMissedByTorqueFoundAndGraspedAgain) {
+// When the robot has carried the object for a metre, a force pulls it out of the U. The object is a box, because a
+// cylinder that falls over rolls away.
+TEST_F(MissionRun, GraspsAnObjectAgainThatWasPulledOutOfTheBody) {
   const std::string pulled = scenario(
-      "name: pulled\nline:\n  colour: blue\n  width_m: 0.05\n  begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: 2.0}\n"
+      "name: pulled\nmission: {sequence: [green], line_colour: blue}\nline:\n  colour: blue\n  width_m: 0.05\n  "
+      "begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: "
+      "2.0}\n"
       "    - {length_m: 1.0, curvature_1_m: 0.3}\n"
-      "objects:\n  - {colour: green, frame: line_end, position_m: [0.45, 0.15], shape: box, size_m: [0.15, 0.15, 0.15], "
+      "objects:\n  - {colour: green, frame: line_end, position_m: [0.45, 0.15], shape: box, size_m: [0.15, 0.15, "
+      "0.15], "
       "mass_kg: 0.4}\n"
       "zones:\n  - {colour: green, frame: line_begin, position_m: [-1.1, 0.5], radius_m: 0.35}\n"
       "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n"

@@ -1,98 +1,11 @@
-// `constrictor run` and its companions on real processes: toy components, real barrier, real launcher.
-#include <gtest/gtest.h>
-#include <signal.h>
-
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <thread>
-
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/wire.hpp"
-#include "runtime/host.hpp"
-#include "support/process.hpp"
-#include "support/temporary_folder.hpp"
+// `constrictor run` and `end` on real processes: toy components, the real barrier, the real launcher.
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
+#include "integration/run_command_fixture.hpp"
+#include "runtime/wire.hpp"
 
 namespace constrictor::testing {
 namespace {
-
-namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-
-constexpr const char* kManifest =
-    "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 4\nprocesses:\n"
-    "  - {components: [physics], program: toy_host}\n  - {components: [navigation], program: toy_host}\n"
-    "  - {components: [control], program: toy_host}\n  - {components: [planner], program: toy_host}\n"
-    "  - {components: [report], program: toy_host}\n";
-
-/// True once `condition` holds; false if it does not within the bound.
-template <class Condition>
-bool eventually(Condition&& condition, std::chrono::seconds bound = 15s) {
-  const auto end = std::chrono::steady_clock::now() + bound;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
-}
-
-class RunCommand : public ::testing::Test {
- protected:
-  RunCommand() { write("toys.yaml", kManifest); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
-  [[nodiscard]] Process command(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), program("constrictor"));
-    return Process(std::move(arguments), environment_);
-  }
-  /// A run of so many ticks of 20 ms that reports to `report`.
-  [[nodiscard]] Process run(long ticks, const std::string& report, std::vector<std::string> more = {},
-                            const std::string& manifest = "toys.yaml") const {
-    const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
-    write(scenario, "");
-    std::vector<std::string> arguments = {"run", (dir_ / scenario).string(), "--manifest", (dir_ / manifest).string(), "--report",
-                                          (dir_ / report).string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return command(arguments);
-  }
-  [[nodiscard]] nlohmann::json report(const std::string& name) const {
-    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
-  }
-  [[nodiscard]] std::string log(const std::string& report, const std::string& process) const {
-    std::ifstream file(dir_ / report / "logs" / (process + ".log"));
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Signals a member's process once it is there, and nobody else.
-  void kill_member(const std::string& name, int signal) const {
-    ASSERT_TRUE(eventually([&] { return members().contains(name); })) << name;
-    const pid_t pid = members()[name];
-    ASSERT_GT(pid, 0) << name;
-    ::kill(pid, signal);
-  }
-  /// Processes that report into this test's directory: name of what each hosts, and pid.
-  [[nodiscard]] std::map<std::string, pid_t> members() const {
-    std::map<std::string, pid_t> found;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string pid = entry.path().filename();
-      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::ifstream file(entry.path() / "cmdline");
-      const std::string line{std::istreambuf_iterator<char>(file), {}};
-      const auto name = line.find('\0');
-      if (line.find(dir_.string()) == std::string::npos || line.find("--incarnation") == std::string::npos) continue;
-      found[line.substr(name + 1).c_str()] = std::stoi(pid);
-    }
-    return found;
-  }
-  void expect_nobody_left() const {
-    EXPECT_TRUE(eventually([&] { return members().empty(); })) << members().begin()->first << " is left";
-  }
-  [[nodiscard]] std::string state_hash(const std::string& name) const { return report(name).value("state_hash", "none"); }
-
-  const TemporaryFolder folder_;
-  const fs::path dir_ = folder_.path();
-  std::map<std::string, std::string> environment_;
-};
 
 TEST_F(RunCommand, EndsWellAndReportsOnEveryProcess) {
   Process launcher = run(300, "r");
@@ -111,7 +24,9 @@ TEST_F(RunCommand, EndsWellAndReportsOnEveryProcess) {
 TEST_F(RunCommand, EveryGroupingGivesTheSameStateAndDiffFindsNone) {
   ASSERT_EQ(run(300, "each").wait(30s), exit_status::kOk);
   ASSERT_EQ(run(300, "one", {"--in-process"}).wait(30s), exit_status::kOk);
-  ASSERT_EQ(run(300, "groups", {"--group", "planner,navigation", "--group", "report,physics", "--pace", "20x"}).wait(30s), exit_status::kOk);
+  ASSERT_EQ(
+      run(300, "groups", {"--group", "planner,navigation", "--group", "report,physics", "--pace", "20x"}).wait(30s),
+      exit_status::kOk);
   EXPECT_EQ(report("one")["processes"].size(), 1u);
   EXPECT_EQ(report("groups")["processes"].size(), 3u);
   for (const char* other : {"one", "groups"}) {
@@ -128,7 +43,8 @@ TEST_F(RunCommand, DiffNamesTheFirstFieldInWhichSeedsDiffer) {
   EXPECT_NE(state_hash("a"), state_hash("b"));
   Process diff = command({"diff", (dir_ / "a").string(), (dir_ / "b").string()});
   EXPECT_EQ(diff.wait(10s), 1);
-  EXPECT_EQ(diff.output().rfind("first difference: tick 0, component physics, topic joint_state, field ", 0), 0u) << diff.output();
+  EXPECT_EQ(diff.output().rfind("first difference: tick 0, component physics, topic joint_state, field ", 0), 0u)
+      << diff.output();
 }
 
 TEST_F(RunCommand, RestartsAMemberThatDiedWithoutATrace) {
@@ -145,7 +61,9 @@ TEST_F(RunCommand, RestartsAMemberThatDiedWithoutATrace) {
   ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
   EXPECT_EQ(state_hash("r"), state_hash("undisturbed"));
   EXPECT_EQ(report("r")["processes"][2]["restarts"], 1);
-  EXPECT_NE(launcher.output().find("control was killed by signal 9 (Killed); restarted as incarnation 2"), std::string::npos) << launcher.output();
+  EXPECT_NE(launcher.output().find("control was killed by signal 9 (Killed); restarted as incarnation 2"),
+            std::string::npos)
+      << launcher.output();
 }
 
 // Each death soon after the start of its incarnation, and far more of them than a member may die in vain.
@@ -162,7 +80,8 @@ TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
         steps |= status.component == std::string("control") && status.incarnation == incarnation && status.tick >= 0;
       });
       return steps;
-    })) << incarnation << ": " << launcher.output();
+    })) << incarnation
+        << ": " << launcher.output();
     std::this_thread::sleep_for(100ms);  // ten ticks, if it lets them pass
     kill_member("control", SIGKILL);
   }
@@ -176,18 +95,67 @@ TEST_F(RunCommand, ThePlantsDeathEndsTheRunWithAnError) {
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   kill_member("physics", SIGKILL);
   EXPECT_EQ(launcher.wait(15s), exit_status::kSoftware);
-  EXPECT_NE(launcher.output().find("physics, the plant, ended: killed by signal 9"), std::string::npos) << launcher.output();
+  EXPECT_NE(launcher.output().find("physics, the plant, was killed by signal 9"), std::string::npos)
+      << launcher.output();
   EXPECT_EQ(report("r")["success"], false);
   expect_nobody_left();
 }
 
-TEST_F(RunCommand, CtrlCEndsEveryProcess) {
-  Process launcher = run(100'000, "r", {"--pace", "1x"});
-  ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
+TEST_F(RunCommand, TheFirstCtrlCEndsTheRunThroughTheConductor) {
+  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
   launcher.signal(SIGINT);
-  EXPECT_EQ(launcher.wait(10s), 128 + SIGINT);
+  EXPECT_EQ(launcher.wait(30s), 128 + SIGINT) << launcher.output();
   EXPECT_TRUE(members().empty());
-  EXPECT_EQ(report("r")["success"], false);
+  EXPECT_EQ(launcher.output().find("kill"), launcher.output().rfind("kills its processes"))
+      << "nothing is killed: " << launcher.output();
+  const auto json = report("r");
+  EXPECT_EQ(json["success"], false);
+  const std::string reason = json["reason"];
+  EXPECT_EQ(reason.rfind("ended by user at ", 0), 0u) << reason;
+  EXPECT_FALSE(json.contains("error")) << json;
+  EXPECT_NE(launcher.output().find("mission did not succeed (" + reason + ")"), std::string::npos)
+      << "the last line has the same reason: " << launcher.output();
+  // All members have finished the same last tick: the log that `diff` reads is complete.
+  Process diff = command({"diff", (dir_ / "r").string(), (dir_ / "r").string()});
+  EXPECT_EQ(diff.wait(20s), 0) << diff.output() << diff.errors();
+}
+
+TEST_F(RunCommand, TheSecondCtrlCKillsARunThatDoesNotEnd) {
+  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output();
+  kill_member("physics", SIGSTOP);
+  launcher.signal(SIGINT);
+  ASSERT_TRUE(launcher.wait_for("a second signal kills", 10s)) << launcher.output();
+  launcher.signal(SIGINT);
+  EXPECT_EQ(launcher.wait(10s), 128 + SIGINT) << launcher.output();
+  EXPECT_TRUE(members().empty());
+  EXPECT_NE(report("r").value("reason", "").find("processes killed because a second signal arrived"), std::string::npos)
+      << report("r");
+}
+
+TEST_F(RunCommand, ARunWhoseConductorDoesNotAnswerIsKilledAndTheReportSaysSo) {
+  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output();
+  kill_member("physics", SIGSTOP);
+  launcher.signal(SIGTERM);
+  EXPECT_EQ(launcher.wait(30s), 128 + SIGTERM) << launcher.output();
+  EXPECT_TRUE(members().empty());
+  EXPECT_NE(report("r").value("reason", "").find("processes killed because"), std::string::npos) << report("r");
+  EXPECT_NE(launcher.output().find("the report will be incomplete"), std::string::npos) << launcher.output();
+}
+
+TEST_F(RunCommand, CtrlCBeforeTheRunBeginsKillsItsProcesses) {
+  write("sleeper", "#!/bin/sh\nexec sleep 100\n");
+  fs::permissions(dir_ / "sleeper", fs::perms::owner_all);
+  write("lazy.yaml",
+        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "sleeper").string()));
+  Process launcher = run(300, "r", {}, "lazy.yaml");
+  ASSERT_TRUE(eventually([&] { return members().size() >= 4; }));
+  launcher.signal(SIGINT);
+  EXPECT_EQ(launcher.wait(10s), 128 + SIGINT) << launcher.output();
+  EXPECT_TRUE(members().empty());
+  EXPECT_NE(report("r").value("reason", "").find("the run had not begun"), std::string::npos) << report("r");
 }
 
 TEST_F(RunCommand, AKilledLauncherLeavesNobody) {
@@ -212,7 +180,10 @@ TEST_F(RunCommand, AStoppedLauncherDoesNotStopTheRun) {
 
 TEST_F(RunCommand, WithoutASuccessfulMissionTheStatusIsOne) {
   Process launcher = run(100'000, "r", {"--max-sim-time", "20", "--pace", "20x"});
-  EXPECT_EQ(launcher.wait(30s), exit_status::kMissionFailed) << launcher.output();
+  EXPECT_EQ(launcher.wait(30s), exit_status::kFailed) << launcher.output();
+  EXPECT_EQ(report("r")["reason"], "time limit of 20 s");
+  EXPECT_NE(launcher.output().find("mission did not succeed (time limit of 20 s)"), std::string::npos)
+      << launcher.output();
   EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // the final tick is sent but not stepped
 }
 
@@ -228,9 +199,10 @@ TEST_F(RunCommand, StatusShowsAndEndEndsTheOnlyRun) {
   for (const char* name : {"physics", "navigation", "control", "planner", "report"}) {
     EXPECT_NE(status.output().find(std::string("\n") + name), std::string::npos) << status.output();
   }
-  EXPECT_EQ(status.output().find("not heard of"), std::string::npos) << status.output();
+  EXPECT_EQ(status.output().find("no status yet"), std::string::npos) << status.output();
   Process end = command({"end"});
-  EXPECT_EQ(end.wait(20s), exit_status::kOk) << end.errors();
+  EXPECT_EQ(end.wait(30s), exit_status::kOk) << end.errors();
+  EXPECT_NE(end.output().find("has ended: ended by user at "), std::string::npos) << end.output();
   EXPECT_EQ(launcher.wait(5s), 128 + SIGTERM);
   expect_nobody_left();
 }
@@ -246,10 +218,9 @@ TEST_F(RunCommand, RunsSideBySideTakeDifferentDomains) {
   EXPECT_EQ(a.wait(10s), 128 + SIGTERM);
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) { return text.replace(text.find(what), what.size(), with); }
-
 TEST_F(RunCommand, AMemberWithOtherNumbersIsRefusedByNameAndReason) {
-  write("other.yaml", replaced(kManifest, "[planner], program: toy_host", "[planner], program: toy_host, environment: ['GLIBC_TUNABLES=']"));
+  write("other.yaml", replaced(kManifest, "[planner], program: toy_host",
+                               "[planner], program: toy_host, environment: ['GLIBC_TUNABLES=']"));
   Process launcher = run(300, "r", {}, "other.yaml");
   EXPECT_EQ(launcher.wait(20s), exit_status::kRefused) << launcher.output();
   EXPECT_NE(launcher.output().find("planner: the run refuses this process: numeric profile differs"), std::string::npos)
@@ -259,7 +230,8 @@ TEST_F(RunCommand, AMemberWithOtherNumbersIsRefusedByNameAndReason) {
 TEST_F(RunCommand, AMemberThatNeverJoinsIsNamed) {
   write("sleeper", "#!/bin/sh\nexec sleep 100\n");
   fs::permissions(dir_ / "sleeper", fs::perms::owner_all);
-  write("lazy.yaml", replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "sleeper").string()));
+  write("lazy.yaml",
+        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "sleeper").string()));
   Process launcher = run(300, "r", {}, "lazy.yaml");
   EXPECT_EQ(launcher.wait(30s), exit_status::kWaitedTooLong) << launcher.output();
   EXPECT_NE(launcher.output().find("waits for Hello of planner"), std::string::npos) << launcher.output();
@@ -269,28 +241,12 @@ TEST_F(RunCommand, AMemberThatNeverJoinsIsNamed) {
 TEST_F(RunCommand, AMemberThatDiesAgainAndAgainEndsTheRun) {
   write("faulty", "#!/bin/sh\necho no luck today\nexit 3\n");
   fs::permissions(dir_ / "faulty", fs::perms::owner_all);
-  write("faulty.yaml", replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "faulty").string()));
+  write("faulty.yaml",
+        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "faulty").string()));
   Process launcher = run(300, "r", {}, "faulty.yaml");
   EXPECT_EQ(launcher.wait(30s), exit_status::kSoftware);
   EXPECT_NE(launcher.output().find("planner: no luck today"), std::string::npos) << launcher.output();
   EXPECT_NE(launcher.output().find("died 5 times in a row"), std::string::npos) << launcher.output();
-}
-
-TEST_F(RunCommand, BadFilesAndArgumentsEndItBeforeAnythingStarts) {
-  write("typo.yaml", replaced(kManifest, "plant:", "plannt:"));
-  Process typo = run(300, "r", {}, "typo.yaml");
-  EXPECT_EQ(typo.wait(10s), exit_status::kConfiguration);
-  EXPECT_NE(typo.errors().find("typo.yaml:1"), std::string::npos) << typo.errors();
-  Process pace = run(300, "r", {"--pace", "fast"});
-  EXPECT_EQ(pace.wait(10s), exit_status::kUsage);
-  Process scenario = command({"run", "nowhere"});
-  EXPECT_EQ(scenario.wait(10s), exit_status::kConfiguration);
-  Process option = command({"run", "--sead", "3"});
-  EXPECT_EQ(option.wait(10s), exit_status::kUsage);
-  write("missing.yaml", replaced(kManifest, "[planner], program: toy_host", "[planner], program: no_such_program"));
-  Process missing = run(300, "r", {}, "missing.yaml");
-  EXPECT_EQ(missing.wait(10s), exit_status::kSoftware);
-  EXPECT_NE(missing.output().find("no_such_program: No such file or directory"), std::string::npos) << missing.output();
 }
 
 }  // namespace

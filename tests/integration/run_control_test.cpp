@@ -3,11 +3,11 @@
 
 #include <optional>
 
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/wire.hpp"
 #include "runtime/host.hpp"
+#include "runtime/wire.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -16,7 +16,8 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 constexpr const char* kToys =
-    "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 4\nprocesses:\n"
+    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+    "4\nprocesses:\n"
     "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n"
     "  - {components: [planner, report], program: toy_host}\n";
 
@@ -26,7 +27,9 @@ class RunControl : public CliFixture {
   [[nodiscard]] Process run(long ticks, const std::string& name, std::vector<std::string> more = {}) const {
     const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
     write(scenario, "");
-    std::vector<std::string> arguments = {"run", (dir_ / scenario).string(), "--manifest", (dir_ / "toys.yaml").string(), "--report", (dir_ / name).string()};
+    std::vector<std::string> arguments = {"run",        (dir_ / scenario).string(),
+                                          "--manifest", (dir_ / "toys.yaml").string(),
+                                          "--report",   (dir_ / name).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start(arguments);
   }
@@ -35,11 +38,13 @@ class RunControl : public CliFixture {
     if (!eventually([&] { return launcher.output().find("report in") != std::string::npos; })) return false;
     const dds::Domain observer(domain());
     const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
-    return eventually([&] {
-      bool there = false;
-      states.take([&](const msg::RunState& state) { there |= state.tick > tick; });
-      return there;
-    }, 30s);
+    return eventually(
+        [&] {
+          bool there = false;
+          states.take([&](const msg::RunState& state) { there |= state.tick > tick; });
+          return there;
+        },
+        30s);
   }
   /// Tick that a paused run says comes next; -1 if it said none.
   [[nodiscard]] long next_tick() const {
@@ -96,14 +101,16 @@ TEST_F(RunControl, AfterAResetEverybodySeesTheNewSeedAndTick) {
   ASSERT_TRUE(status.is_object()) << output_;
   EXPECT_EQ(status["seed"], 7);
   EXPECT_LE(status["tick"], now);
-  EXPECT_TRUE(eventually([&] { return command({"status"}) == exit_status::kOk && output_.find("seed 7") != std::string::npos; })) << output_;
+  EXPECT_TRUE(eventually([&] {
+    return command({"status"}) == exit_status::kOk && output_.find("seed 7") != std::string::npos;
+  })) << output_;
   EXPECT_EQ(command({"end"}), exit_status::kOk);
   EXPECT_EQ(launcher.wait(20s), 128 + SIGTERM);
   EXPECT_EQ(report("r").value("seed", 0), 7);
 }
 
-// How long ticks are waited for is tested in control_answer_test; here, that the command waits so: beyond its bound of 10 s, with a plant that
-// is held up twice, each time for less than the bound and than anybody's patience.
+// How long ticks are waited for is tested in control_answer_test; here, that the command waits so: beyond its bound of
+// 10 s, with a plant that is held up twice, each time for less than the bound and than anybody's patience.
 TEST_F(RunControl, StepsMayTakeLongerThanTheBoundOnAnAnswer) {
   std::string patient = kToys;
   write("toys.yaml", patient.replace(patient.find("patience_s: 4"), 13, "patience_s: 30"));
@@ -130,22 +137,26 @@ TEST_F(RunControl, StepsMayTakeLongerThanTheBoundOnAnAnswer) {
   launcher.wait(20s);
 }
 
-// A command is a source of its own: neither what another one numbered higher nor how many there are at once keeps it from its answer.
+// A command is a source of its own: neither what another one numbered higher nor how many there are at once keeps it
+// from its answer.
 TEST_F(RunControl, EachCommandIsAnsweredWhoeverElseCommands) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
   const dds::Domain outside(domain());
-  const auto states = dds::Reader<msg::RunState>::member(outside.participant(), dds::barrier_topics::kRunState);
+  const auto answers =
+      dds::Reader<msg::RunControlAnswer>::member(outside.participant(), dds::barrier_topics::kRunControlAnswer);
   const dds::Writer<msg::RunControl> control(outside.participant(), dds::barrier_topics::kRunControl, 1);
   msg::RunControl ahead{};  // as of a clock that is an hour ahead, under a name that all might use
   dds::set_text(ahead.source, "constrictor");
   ahead.command = msg::kRunResume;
   const auto hour_ahead = std::chrono::system_clock::now().time_since_epoch() + 1h;
-  ahead.sequence_number = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(hour_ahead).count());
+  ahead.sequence_number =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(hour_ahead).count());
   control.write(ahead);
   ASSERT_TRUE(eventually([&] {
     bool ruled = false;
-    states.take([&](const msg::RunState& state) { ruled |= state.control_sequence == ahead.sequence_number; });
+    answers.take(
+        [&](const msg::RunControlAnswer& answer) { ruled |= answer.sequence_number == ahead.sequence_number; });
     return ruled;
   }));
   EXPECT_EQ(command({"pause"}), exit_status::kOk) << output_;
@@ -158,11 +169,21 @@ TEST_F(RunControl, EachCommandIsAnsweredWhoeverElseCommands) {
 }
 
 TEST_F(RunControl, WrongValuesAreWrongUsageWithOrWithoutARun) {
-  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
-           {"pace", "fast"}, {"reset", "-1"}, {"step", "-3"}, {"teleop", "--drive", "9,0"}, {"teleop", "--drive", "0.3,0", "--for", "0s"},
-           {"task", "start", "nothing"}, {"task", "start", "rotate", "--direction", "up"}, {"task", "wait", "--event", "tea"},
-           {"task", "wait", "--end", "--timeout", "soon"}, {"run", "--seed", "-1"}, {"run", "--pace", "fast"}, {"param", "set", "a", "b"}, {"pause", "--run", "-1"},
-           {"topic", "echo", "joint_state", "--count", "-1"}}) {
+  for (const std::vector<std::string>& wrong :
+       std::vector<std::vector<std::string>>{{"pace", "fast"},
+                                             {"reset", "-1"},
+                                             {"step", "-3"},
+                                             {"teleop", "--drive", "9,0"},
+                                             {"teleop", "--drive", "0.3,0", "--for", "0s"},
+                                             {"task", "start", "nothing"},
+                                             {"task", "start", "rotate", "--direction", "up"},
+                                             {"task", "wait", "--event", "tea"},
+                                             {"task", "wait", "--end", "--timeout", "soon"},
+                                             {"run", "--seed", "-1"},
+                                             {"run", "--pace", "fast"},
+                                             {"param", "set", "a", "b"},
+                                             {"pause", "--run", "-1"},
+                                             {"topic", "echo", "joint_state", "--count", "-1"}}) {
     EXPECT_EQ(command(wrong), exit_status::kUsage) << wrong.front() << " " << wrong[1] << ": " << output_;
     EXPECT_NE(output_.find("accepted"), std::string::npos) << output_;
   }
@@ -177,14 +198,16 @@ TEST_F(RunControl, AWordThatIsNoSubcommandIsNamed) {
 
 TEST_F(RunControl, EveryHelpHasExamplesExitStatusesAndTheEnvironment) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"run"}, {"status"}, {"doctor"}, {"end"}, {"host"}, {"pause"}, {"resume"}, {"step"}, {"pace"}, {"reset"}, {"stop"}, {"clear-stop"},
-           {"release"}, {"teleop"}, {"task"}, {"task", "start"}, {"task", "wait"}, {"task", "cancel"}, {"task", "list"}, {"topic"}, {"node"},
-           {"param"}, {"diff"}, {"completion"}}) {
+           {"run"},          {"status"}, {"doctor"}, {"end"},           {"host"},         {"pause"},
+           {"resume"},       {"step"},   {"pace"},   {"reset"},         {"stop"},         {"clear-stop"},
+           {"release"},      {"teleop"}, {"task"},   {"task", "start"}, {"task", "wait"}, {"task", "cancel"},
+           {"task", "list"}, {"topic"},  {"node"},   {"param"},         {"diff"},         {"completion"}}) {
     std::vector<std::string> arguments = words;
     arguments.emplace_back("--help");
     EXPECT_EQ(command(arguments), exit_status::kOk);
     const bool of_no_run = words.front() == "diff" || words.front() == "completion" || words.back() == "list";
-    for (const char* part : {"EXAMPLES\n", "EXIT STATUS\n", "ENVIRONMENT\n", of_no_run ? "ENVIRONMENT\n  none" : "CONSTRICTOR_DOMAIN"}) {
+    for (const char* part :
+         {"EXAMPLES\n", "EXIT STATUS\n", "ENVIRONMENT\n", of_no_run ? "ENVIRONMENT\n  none" : "CONSTRICTOR_DOMAIN"}) {
       EXPECT_NE(output_.find(part), std::string::npos) << words.front() << " --help lacks " << part;
     }
   }

@@ -3,12 +3,12 @@
 #include <iterator>
 #include <optional>
 
+#include "cyclone/domain.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/wire.hpp"
-#include "runtime/domain_claim.hpp"
 #include "runtime/host.hpp"
+#include "runtime/wire.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -28,8 +28,11 @@ class RunEnd : public CliFixture {
  protected:
   /// A toy process of a run in `domain_`.
   [[nodiscard]] Process toys(const std::string& names, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {program("toy_host"), names, "--domain", std::to_string(claim_.domain()), "--roster",
-                                          "physics,control,report", "--scenario", "50", "--robot", ""};
+    std::vector<std::string> arguments = {program("toy_host"), names,
+                                          "--domain",          std::to_string(claim_.domain()),
+                                          "--roster",          "physics,control,report",
+                                          "--scenario",        "50",
+                                          "--robot",           ""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments), environment_);
   }
@@ -38,12 +41,13 @@ class RunEnd : public CliFixture {
 
 TEST_F(RunEnd, APlantThatIsToldToGoIsNamedAndEndsTheRunWithAnError) {
   write("toys.yaml",
-        "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 60\nprocesses:\n"
+        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+        "60\nprocesses:\n"
         "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n"
         "  - {components: [report], program: toy_host}\n");
   write("100000_ticks.yaml", "");
-  Process launcher = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(), "--report",
-                            (dir_ / "r").string(), "--pace", "1x"});
+  Process launcher = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(),
+                            "--report", (dir_ / "r").string(), "--pace", "1x"});
   ASSERT_TRUE(launcher.wait_for("run ", 20s)) << launcher.errors();
   pid_t plant = 0;
   {
@@ -60,7 +64,8 @@ TEST_F(RunEnd, APlantThatIsToldToGoIsNamedAndEndsTheRunWithAnError) {
   ASSERT_EQ(::kill(plant, SIGTERM), 0);
   EXPECT_EQ(launcher.wait(40s), exit_status::kSoftware) << launcher.output();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s) << "nobody waits out a patience of 60 s";
-  EXPECT_NE(launcher.output().find("physics, the plant (pid " + std::to_string(plant) + "), ended before the run did"), std::string::npos)
+  EXPECT_NE(launcher.output().find("physics, the plant (pid " + std::to_string(plant) + "), ended before the run did"),
+            std::string::npos)
       << launcher.output();
   EXPECT_EQ(report("r").value("success", true), false);
 }
@@ -77,10 +82,10 @@ TEST_F(RunEnd, WhoIsToldToGoWhileStartingEndsWell) {
 
 TEST_F(RunEnd, AnEndBeforeTheRunHasBegunIsRefused) {
   const dds::Domain outside(claim_.domain());
-  const auto states = dds::Reader<msg::RunState>::member(outside.participant(), wire::kRunState);
+  const auto answers = dds::Reader<msg::RunControlAnswer>::member(outside.participant(), wire::kRunControlAnswer);
   const dds::Writer<msg::RunControl> control(outside.participant(), wire::kRunControl, 1);
   Process plant = toys("physics", {"--pace", "1"});
-  ASSERT_TRUE(eventually([&] { return control.readers() > 0 && states.writers() > 0; }));
+  ASSERT_TRUE(eventually([&] { return control.readers() > 0 && answers.writers() > 0; }));
   msg::RunControl end{};
   dds::set_text(end.source, "outside");
   end.sequence_number = 1;
@@ -88,21 +93,24 @@ TEST_F(RunEnd, AnEndBeforeTheRunHasBegunIsRefused) {
   control.write(end);
   ASSERT_TRUE(plant.wait_for("run_control refused: end: the run has not begun", 20s)) << plant.errors();
   Process others = toys("control,report");
-  std::optional<msg::RunState> first;
+  std::optional<msg::RunControlAnswer> first;
   ASSERT_TRUE(eventually([&] {
-    states.take([&](const msg::RunState& s) { if (!first) first = s; });
+    answers.take([&](const msg::RunControlAnswer& answer) {
+      if (!first) first = answer;
+    });
     return first.has_value();
   }));
-  EXPECT_EQ(std::string(first->control_source), "outside");
+  EXPECT_EQ(std::string(first->source), "outside");
+  EXPECT_EQ(first->sequence_number, 1u);
   EXPECT_NE(std::string(first->refusal).find("has not begun"), std::string::npos) << first->refusal;
   EXPECT_EQ(plant.wait(30s), exit_status::kOk) << plant.errors();
   EXPECT_EQ(others.wait(30s), exit_status::kOk) << others.errors();
   EXPECT_NE(others.output().find("result"), std::string::npos) << "the run went to its own end";
 }
 
-TEST_F(RunEnd, APaceThatNoClockCanKeepIsRefusedAsIsACommandThatWasHeardBefore) {
+TEST_F(RunEnd, ImpossiblePacesAndOutdatedNumbersAreRefusedAndRepetitionsAnsweredAgain) {
   const dds::Domain outside(claim_.domain());
-  const auto states = dds::Reader<msg::RunState>::member(outside.participant(), wire::kRunState);
+  const auto answers = dds::Reader<msg::RunControlAnswer>::member(outside.participant(), wire::kRunControlAnswer);
   const dds::Writer<msg::RunControl> control(outside.participant(), wire::kRunControl, 8);
   Process run = toys("physics,control,report", {"--pace", "0.01"});
   const auto answer = [&](std::uint8_t command, double pace, std::uint64_t number) {
@@ -114,18 +122,19 @@ TEST_F(RunEnd, APaceThatNoClockCanKeepIsRefusedAsIsACommandThatWasHeardBefore) {
     control.write(message);
     std::optional<std::string> refusal;
     EXPECT_TRUE(eventually([&] {
-      states.take([&](const msg::RunState& s) {
-        if (s.control_source == std::string("outside") && s.control_sequence == number) refusal = s.refusal;
+      answers.take([&](const msg::RunControlAnswer& each) {
+        if (each.source == std::string("outside") && each.sequence_number == number) refusal = each.refusal;
       });
       return refusal.has_value();
-    })) << "no answer to number " << number;
+    })) << "no answer to number "
+        << number;
     return refusal.value_or("no answer");
   };
-  ASSERT_TRUE(eventually([&] { return control.readers() > 0 && states.writers() > 0; }));
+  ASSERT_TRUE(eventually([&] { return control.readers() > 0 && answers.writers() > 0; }));
   EXPECT_EQ(answer(msg::kRunPace, 1e-12, 5), "pace: found 1e-12, accepted 0 or 0.001 to 1000");
   EXPECT_EQ(answer(msg::kRunPace, 0.001, 6), "");
-  EXPECT_NE(answer(msg::kRunPace, 1.0, 4).find("heard before"), std::string::npos);
-  EXPECT_NE(answer(msg::kRunPace, 1.0, 6).find("heard before"), std::string::npos);
+  EXPECT_NE(answer(msg::kRunPace, 1.0, 4).find("found 4, accepted more than 6"), std::string::npos);
+  EXPECT_EQ(answer(msg::kRunPace, 1e-12, 6), "") << "number 6 was answered already: the same answer again";
   EXPECT_EQ(answer(msg::kRunPace, 1.0, 7), "");
   EXPECT_EQ(answer(msg::kRunEnd, 0.0, 8), "");
   EXPECT_EQ(run.wait(20s), exit_status::kOk) << run.errors();
@@ -137,7 +146,8 @@ TEST_F(RunEnd, APaceThatNoClockCanKeepIsWrongUsage) {
     EXPECT_EQ(member.wait(20s), exit_status::kUsage) << pace;
     EXPECT_NE(member.errors().find("accepted 0 or 0.001 to 1000"), std::string::npos) << member.errors();
   }
-  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"run", "--pace", "1e-12x"}, {"pace", "1e-12x"}}) {
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"run", "--pace", "1e-12x"}, {"pace", "1e-12x"}}) {
     EXPECT_EQ(command(wrong), exit_status::kUsage) << output_;
     EXPECT_NE(output_.find("0.001x to 1000x"), std::string::npos) << output_;
   }

@@ -12,23 +12,26 @@
 #include <utility>
 #include <vector>
 
+#include "constrictor/topics.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/topics.hpp"
 
 namespace constrictor::testing {
 
 using Clock = std::chrono::steady_clock;
 
-inline constexpr double kMaxSpeed_rad_s = 4.0;  // of Mamba's joints (components/robot/mamba.yaml)
+inline constexpr double kMaxSpeed_rad_s = 4.0;  // of Mamba's joints (components/lib/robot/mamba.yaml)
 inline constexpr double kTick_s = 0.02;
 
 class Watcher {
  public:
   explicit Watcher(std::uint32_t domain)
-      : domain_(domain), authority_(reader<msg::Authority>(topics::kAuthority)), command_(reader<msg::JointCommand>(topics::kJointCommand)),
-        joints_(reader<msg::JointState>(topics::kJointState)), mission_(reader<msg::MissionStatus>(topics::kMissionStatus)),
+      : domain_(domain),
+        authority_(reader<msg::Authority>(topics::kAuthority)),
+        command_(reader<msg::JointCommand>(topics::kJointCommand)),
+        joints_(reader<msg::JointState>(topics::kJointState)),
+        mission_(reader<msg::MissionStatus>(topics::kMissionStatus)),
         task_(reader<msg::TaskStatus>(topics::kTaskStatus)) {}
   void poll() {
     authority_.take([this](const msg::Authority& m) { authorities.emplace_back(m, Clock::now()); });
@@ -44,7 +47,12 @@ class Watcher {
     task_.take([this](const msg::TaskStatus& m) { task = m; });
   }
   [[nodiscard]] bool wait_for_level(std::uint8_t level, std::chrono::milliseconds bound = std::chrono::seconds(30)) {
-    return eventually([&] { poll(); return !authorities.empty() && authorities.back().first.level == level; }, bound);
+    return eventually(
+        [&] {
+          poll();
+          return !authorities.empty() && authorities.back().first.level == level;
+        },
+        bound);
   }
   [[nodiscard]] static bool same_setpoints(const msg::JointCommand& a, const msg::JointCommand& b) {
     return std::equal(a.position_rad, a.position_rad + a.joint_count, b.position_rad);
@@ -60,7 +68,7 @@ class Watcher {
 
   std::vector<std::pair<msg::Authority, Clock::time_point>> authorities;
   std::vector<msg::JointCommand> commands;
-  Clock::time_point changed{};  ///< arrival of the last command whose setpoints differ from those before,
+  Clock::time_point changed{};     ///< arrival of the last command whose setpoints differ from those before,
   std::int64_t changed_tick = -1;  ///< and its tick
   std::vector<msg::JointState> joints;
   msg::MissionStatus mission{};
@@ -79,8 +87,8 @@ class Watcher {
   dds::Reader<msg::TaskStatus> task_;
 };
 
-/// [rad/s] the fastest setpoint of all. In the ticks of `begun` a hold or a take-over begins: there one may also jump to where its
-/// joint is (measured a tick earlier or later, if nobody waits for anybody), and on from there.
+/// [rad/s] the fastest setpoint of all. In the ticks of `begun` a hold or a take-over begins: there one may also jump
+/// to where its joint is (measured a tick earlier or later, if nobody waits for anybody), and on from there.
 inline double fastest_setpoint(const Watcher& watcher, const std::set<std::int64_t>& begun) {
   std::map<std::int64_t, const msg::JointState*> measured;
   for (const auto& state : watcher.joints) measured[state.header.tick] = &state;
@@ -92,7 +100,8 @@ inline double fastest_setpoint(const Watcher& watcher, const std::set<std::int64
     for (int j = 0; j < command.joint_count; ++j) {
       double step_rad = std::abs(command.position_rad[j] - watcher.commands[i - 1].position_rad[j]);
       for (std::int64_t k = tick - 1; begun.contains(tick) && k <= tick + 1; ++k) {
-        if (measured.contains(k)) step_rad = std::min(step_rad, std::abs(command.position_rad[j] - measured[k]->position_rad[j]));
+        if (measured.contains(k))
+          step_rad = std::min(step_rad, std::abs(command.position_rad[j] - measured[k]->position_rad[j]));
       }
       fastest_rad_s = std::max(fastest_rad_s, step_rad / dt_s);
     }
@@ -114,7 +123,8 @@ inline double fastest_joint(const Watcher& watcher, std::int64_t from) {
 /// Setpoints of the tick after this one: each as it was, or where its joint is measured.
 inline void expect_hold_begins_after(const Watcher& watcher, std::int64_t latched) {
   const auto of_tick = [](const auto& messages, std::int64_t tick) {
-    const auto found = std::find_if(messages.begin(), messages.end(), [&](const auto& m) { return m.header.tick == tick; });
+    const auto found =
+        std::find_if(messages.begin(), messages.end(), [&](const auto& m) { return m.header.tick == tick; });
     return found == messages.end() ? nullptr : &*found;
   };
   const auto* before = of_tick(watcher.commands, latched);
@@ -122,7 +132,9 @@ inline void expect_hold_begins_after(const Watcher& watcher, std::int64_t latche
   const auto* measured = of_tick(watcher.joints, latched + 1);
   ASSERT_TRUE(before && first && measured) << "the observer missed a message of tick " << latched;
   for (int j = 0; j < first->joint_count; ++j) {
-    EXPECT_TRUE(first->position_rad[j] == before->position_rad[j] || first->position_rad[j] == measured->position_rad[j]) << "joint " << j;
+    EXPECT_TRUE(first->position_rad[j] == before->position_rad[j] ||
+                first->position_rad[j] == measured->position_rad[j])
+        << "joint " << j;
   }
 }
 

@@ -1,4 +1,5 @@
-// An operator takes over in mid-mission, drives and lets go: the planner takes up from the world as it is and completes the mission.
+// An operator takes over in mid-mission, drives and lets go: the planner takes up from the world as it is and completes
+// the mission.
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
 
@@ -7,19 +8,16 @@ namespace {
 
 class MidMission : public CliFixture {
  protected:
-  MidMission() {
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
-    std::string text;
-    for (std::string line; std::getline(file, line);) text += (line.starts_with("sequence:") ? "sequence: [green]" : line) + "\n";
-    write("planner.yaml", text);
-  }
   /// Status of the run as scripts see it.
   [[nodiscard]] nlohmann::json status() {
     EXPECT_EQ(command({"status", "--json"}), exit_status::kOk) << output_;
     return nlohmann::json::parse(output_, nullptr, false);
   }
   void wait_for_event(const std::string& event) {
-    ASSERT_EQ(command({"task", "wait", "--event", event, "--goal", "any", "--timeout", "150s"}, std::chrono::seconds(160)), exit_status::kOk) << event << output_;
+    ASSERT_EQ(
+        command({"task", "wait", "--event", event, "--goal", "any", "--timeout", "150s"}, std::chrono::seconds(160)),
+        exit_status::kOk)
+        << event << output_;
   }
   void drive(const std::string& speed_turn) {
     ASSERT_EQ(command({"teleop", "--drive", speed_turn, "--for", "2s"}), exit_status::kOk) << output_;
@@ -27,7 +25,7 @@ class MidMission : public CliFixture {
 };
 
 TEST_F(MidMission, AnOperatorDrivesWhileTheLineIsFollowedAndWhileTheObjectIsCarriedAndTheMissionSucceeds) {
-  Process launcher = start({"run", "short", "--report", (dir_ / "r").string(), "--config", "planner=" + (dir_ / "planner.yaml").string()});
+  Process launcher = start({"run", "short", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", std::chrono::seconds(60))) << launcher.output() << launcher.errors();
   drive("0.3,0.4");
   wait_for_event("object grasped");

@@ -1,9 +1,9 @@
-// `constrictor teleop` as a person meets it: in a terminal of 80x24 (tmux), keys in, screen out, and the terminal as it was.
+// `constrictor teleop` in a terminal (tmux): keys in, screen out, and the terminal is restored.
 #include <signal.h>
 #include <unistd.h>
 
-#include <sstream>
 #include <optional>
+#include <sstream>
 
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
@@ -17,15 +17,18 @@ namespace fs = std::filesystem;
 class TerminalClient : public CliFixture {
  protected:
   TerminalClient() : socket_("constrictor-test-" + std::to_string(::getpid())) {
-    write("blind.yaml",
-          "plant: physics\nrobot: components/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: 20\nprocesses:\n"
-          "  - {components: [physics, guidance, navigation, control, input]}\n");
+    write(
+        "blind.yaml",
+        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+        "20\nprocesses:\n"
+        "  - {components: [physics, guidance, navigation, control, input]}\n");
   }
   ~TerminalClient() override { tmux({"kill-server"}); }
 
-  /// A run, and a shell in a terminal of 80x24 that has something on it.
+  /// Starts a run, and a shell in a terminal of 80x24 that shows some text.
   void begin() {
-    launcher_.emplace(start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
+    launcher_.emplace(start(
+        {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
     ASSERT_TRUE(launcher_->wait_for("simulated", 30s)) << launcher_->output() << launcher_->errors();
     tmux({"new-session", "-d", "-s", "robot", "-x", "80", "-y", "24", "sh"});
     enter("PS1='$ '; clear; echo was here before");
@@ -60,7 +63,7 @@ class TerminalClient : public CliFixture {
   std::optional<Process> launcher_;
 };
 
-TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
+TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsRestored) {
   begin();
   ASSERT_FALSE(HasFatalFailure());
   Process& launcher = *launcher_;
@@ -69,9 +72,9 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
 
   enter(program("constrictor") + " teleop");
   ASSERT_TRUE(shows("SPACE emergency stop")) << screen();
-  ASSERT_TRUE(shows("authority  nobody")) << screen();
+  ASSERT_TRUE(shows("authority  none")) << screen();
   ASSERT_TRUE(shows("a full bar is")) << screen();
-  EXPECT_EQ(screen().find("was here before"), std::string::npos) << "a full screen of its own";
+  EXPECT_EQ(screen().find("was here before"), std::string::npos) << "teleop uses the alternate screen";
   std::istringstream lines(screen());
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 80u) << line;
@@ -101,13 +104,13 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
   type("i");
   EXPECT_TRUE(shows("REFUSED")) << screen();
   type("c");
-  EXPECT_TRUE(shows("authority  nobody")) << screen();
+  EXPECT_TRUE(shows("authority  none")) << screen();
 
   type("q");
   EXPECT_TRUE(shows("was here before")) << screen();
   EXPECT_EQ(settings("after"), before);
 
-  // Killed without a chance to say anything.
+  // Killed without a chance to restore the terminal itself.
   enter(program("constrictor") + " teleop & echo $! > " + (dir_ / "pid").string() + "; fg");
   ASSERT_TRUE(shows("SPACE emergency stop")) << screen();
   ::kill(std::stoi(file("pid")), SIGKILL);
@@ -117,19 +120,20 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsItselfAgain) {
   launcher.wait(10s);
 }
 
-TEST_F(TerminalClient, ArrowsComeInBurstsAndPiecesAndItLeavesARunThatIsGone) {
+TEST_F(TerminalClient, ReadsArrowsInBurstsAndPiecesAndLeavesARunThatIsGone) {
   begin();
   ASSERT_FALSE(HasFatalFailure());
   Process& launcher = *launcher_;
   const std::string before = settings("before");
   enter(program("constrictor") + " teleop");
-  ASSERT_TRUE(shows("authority  nobody")) << screen();
+  ASSERT_TRUE(shows("authority  none")) << screen();
 
   std::vector<std::string> burst = {"send-keys", "-t", "robot"};
   burst.insert(burst.end(), 30, "Up");
   tmux(burst);
   EXPECT_TRUE(shows("drive      +0.3 m/s  turn +0.00")) << screen();
-  for (const char* byte : {"1b", "5b", "43"}) tmux({"send-keys", "-t", "robot", "-H", byte});  // the right arrow, as SSH may cut it
+  for (const char* byte : {"1b", "5b", "43"})
+    tmux({"send-keys", "-t", "robot", "-H", byte});  // the right arrow in three pieces, as SSH may send it
   EXPECT_TRUE(shows("turn -0.24 rad/s")) << screen();
   type("Escape");
   type("k");
@@ -143,14 +147,44 @@ TEST_F(TerminalClient, ArrowsComeInBurstsAndPiecesAndItLeavesARunThatIsGone) {
   ::kill(host, SIGCONT);
   EXPECT_TRUE(eventually([&] { return screen().find("SILENT") == std::string::npos; })) << screen();
 
-  launcher.signal(SIGKILL);  // its children go with it, and nobody says goodbye
+  launcher.signal(SIGKILL);  // its child processes die with it
   EXPECT_TRUE(shows("teleop: the run has ended")) << screen();
   EXPECT_TRUE(shows("was here before")) << screen();
   EXPECT_EQ(settings("after"), before);
 }
 
-TEST_F(TerminalClient, WithoutATerminalItSaysWhatElseThereIs) {
-  Process launcher = start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
+TEST_F(TerminalClient, AResizedTerminalAlwaysShowsTheEmergencyStop) {
+  begin();
+  ASSERT_FALSE(HasFatalFailure());
+  enter(program("constrictor") + " teleop");
+  ASSERT_TRUE(shows("a full bar is")) << screen();
+  for (const auto& [columns, rows] : std::vector<std::pair<const char*, const char*>>{{"60", "18"}, {"40", "10"}}) {
+    tmux({"resize-window", "-t", "robot", "-x", columns, "-y", rows});
+    // Redrawn from the first line on: the old picture is gone.
+    EXPECT_TRUE(eventually([&] {
+      const std::string text = screen();
+      return text.rfind("teleop  run", 0) == 0 && text.find("SPACE emergency stop") != std::string::npos &&
+             text.find("a full bar is") == std::string::npos;
+    })) << columns
+        << "x" << rows << "\n"
+        << screen();
+  }
+  tmux({"resize-window", "-t", "robot", "-x", "30", "-y", "8"});
+  EXPECT_TRUE(shows("terminal too small")) << screen();
+  type("Space");
+  tmux({"resize-window", "-t", "robot", "-x", "80", "-y", "24"});
+  EXPECT_TRUE(shows("EMERGENCY STOP")) << screen();
+  EXPECT_TRUE(shows("a full bar is")) << screen();
+  type("q");
+  EXPECT_TRUE(shows("was here before")) << screen();
+  EXPECT_TRUE(shows("teleop: authority")) << "what became of authority is on the terminal: " << screen();
+  EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+  launcher_->wait(10s);
+}
+
+TEST_F(TerminalClient, WithoutATerminalItNamesTheAlternatives) {
+  Process launcher =
+      start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
   EXPECT_EQ(command({"teleop"}), exit_status::kSoftware);
   EXPECT_NE(output_.find("--drive"), std::string::npos) << output_;

@@ -1,4 +1,5 @@
-// A program that is no part of the run: publishes types of its own, or seeds one of the faults that `constrictor doctor` finds.
+// A program that is no part of the run: publishes types of its own, or seeds one of the faults that `constrictor
+// doctor` finds.
 //   foreign_talker DOMAIN final|appendable|untyped|silent_qos|other_idl|plant
 #include <chrono>
 #include <csignal>
@@ -6,10 +7,10 @@
 #include <string>
 #include <thread>
 
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
 #include "foreign.h"
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/wire.hpp"
+#include "runtime/wire.hpp"
 
 namespace {
 
@@ -20,8 +21,10 @@ volatile std::sig_atomic_t g_stop = 0;
 
 /// The same type without its description, as vendors and versions publish it that know none.
 dds_topic_descriptor_t undescribed(const dds_topic_descriptor_t& type) {
-  return {type.m_size, type.m_align, type.m_flagset & ~DDS_TOPIC_XTYPES_METADATA, type.m_nkeys, type.m_typename, type.m_keys,
-          type.m_nops, type.m_ops, type.m_meta, {nullptr, 0}, {nullptr, 0}, type.restrict_data_representation};
+  return {type.m_size,  type.m_align,    type.m_flagset & ~DDS_TOPIC_XTYPES_METADATA,
+          type.m_nkeys, type.m_typename, type.m_keys,
+          type.m_nops,  type.m_ops,      type.m_meta,
+          {nullptr, 0}, {nullptr, 0},    type.restrict_data_representation};
 }
 
 template <class Fill>
@@ -71,7 +74,8 @@ void tide(dds_entity_t writer, int count) {
 
 /// A best-effort writer and a reliable reader of one topic: they never meet.
 void silent_qos(dds_entity_t participant) {
-  const dds::Entity topic(dds_create_topic(participant, &foreign_Tide_desc, "tide", nullptr, nullptr), "dds_create_topic");
+  const dds::Entity topic(dds_create_topic(participant, &foreign_Tide_desc, "tide", nullptr, nullptr),
+                          "dds_create_topic");
   const dds::Qos wants = dds::make_qos();
   dds_qset_reliability(wants.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   const dds::Qos offers = dds::make_qos();
@@ -100,7 +104,7 @@ void other_idl(dds_entity_t participant) {
 
 /// A plant that asks nobody whether there is one already.
 void plant(dds_entity_t participant) {
-  const dds::Writer<msg::Tick> writer(participant, dds::barrier_topics::kTick, dds::barrier_topics::kTickDepth);
+  const dds::Writer<msg::Tick> writer(participant, dds::barrier_topics::kTick, dds::barrier_topics::kTick.depth);
   std::puts("talking");
   std::fflush(stdout);
   while (!g_stop) std::this_thread::sleep_for(10ms);

@@ -1,7 +1,8 @@
-// mortal_host NAME [OPTION...]: the component NAME of constrictor_host, but it kills its process by SIGKILL between its first output of
-// a tick and its TickDone, once at each tick of $CONSTRICTOR_DEATHS (comma-separated). A death leaves the file NAME-TICK in
-// $CONSTRICTOR_DEATHS_DIR, by which the next incarnation knows that it need not die of this one any more. A component that wrote nothing
-// in the step dies at its end; one that is not due at the tick at its next.
+// mortal_host NAME [OPTION...]: the component NAME of constrictor_host, but it kills its process by SIGKILL between its
+// first output of a tick and its TickDone, once at each tick of $CONSTRICTOR_DEATHS (comma-separated). A death leaves
+// the file NAME-TICK in $CONSTRICTOR_DEATHS_DIR, by which the next incarnation knows that it need not die of this one
+// any more. A component that wrote nothing in the step dies at its end; one that is not due at the tick at its next.
+#include <unistd.h>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,9 +12,8 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <unistd.h>
 
-#include "known_components.hpp"
+#include "host/known_components.hpp"
 #include "runtime/component_main.hpp"
 #include "runtime/host.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -44,7 +44,9 @@ class Fate {
   }
 
  private:
-  [[nodiscard]] std::filesystem::path mark(std::int64_t tick) const { return dir_ / (name_ + "-" + std::to_string(tick)); }
+  [[nodiscard]] std::filesystem::path mark(std::int64_t tick) const {
+    return dir_ / (name_ + "-" + std::to_string(tick));
+  }
   std::string name_;
   std::filesystem::path dir_;
   std::set<std::int64_t> ticks_;
@@ -55,7 +57,7 @@ class Fate {
 class MortalWiring : public Wiring {
  public:
   MortalWiring(Wiring& inner, Fate& fate) : inner_(inner), fate_(fate) {}
-  std::shared_ptr<OutsideRequests> outside_requests() override { return inner_.outside_requests(); }
+  std::shared_ptr<ClientRequests> client_requests() override { return inner_.client_requests(); }
   void count_refusal(const std::string& reason) override { inner_.count_refusal(reason); }
   void request_end_of_run() override { inner_.request_end_of_run(); }
   const InputSlot* input(const TopicInfo& topic, bool events) override { return inner_.input(topic, events); }
@@ -105,7 +107,10 @@ int main(int argc, char** argv) {
     return exit_status::kUsage;
   }
   const ComponentFactory factory = known->second();
-  return component_main(argc - 1, argv + 1, {factory.name, [factory](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
-                                               return std::make_unique<Mortal>(factory, wiring, setup);
-                                             }, factory.default_config});
+  return component_main(argc - 1, argv + 1,
+                        {factory.name,
+                         [factory](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
+                           return std::make_unique<Mortal>(factory, wiring, setup);
+                         },
+                         factory.default_config});
 }

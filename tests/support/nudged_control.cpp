@@ -33,7 +33,8 @@ class NudgingWiring : public Wiring {
     nudged_.write = [this, slot](const void* message) {
       auto command = *static_cast<const msg::JointCommand*>(message);
       if (joints_ && joints_->now_tick == tick_) {
-        command.position_rad[kJoint] = std::nextafter(command.position_rad[kJoint], std::numeric_limits<double>::infinity());
+        command.position_rad[kJoint] =
+            std::nextafter(command.position_rad[kJoint], std::numeric_limits<double>::infinity());
       }
       slot->write(&command);
     };
@@ -72,7 +73,10 @@ int main(int argc, char** argv) {
   }
   const char* text = std::getenv("CONSTRICTOR_NUDGE_TICK");
   const std::int64_t tick = text ? std::atoll(text) : 1000;
-  return component_main(argc, argv, {"control", [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
-                                       return std::make_unique<NudgedControl>(wiring, setup, tick);
-                                     }, make_control_factory().default_config});
+  return component_main(argc, argv,
+                        {"control",
+                         [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
+                           return std::make_unique<NudgedControl>(wiring, setup, tick);
+                         },
+                         make_control_factory().default_config});
 }

@@ -10,13 +10,13 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 #include <utility>
+
+#include "support/eventually.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = std::chrono::milliseconds(2);
 
 std::string read_file(const std::string& path) {
@@ -81,8 +81,7 @@ bool Process::running() {
 }
 
 std::optional<int> Process::wait(std::chrono::seconds bound) {
-  const auto end = Clock::now() + bound;
-  while (running() && Clock::now() < end) std::this_thread::sleep_for(kPoll);
+  (void)eventually([this] { return !running(); }, bound, kPoll);
   return status_;
 }
 
@@ -90,13 +89,13 @@ std::string Process::output() const { return read_file(folder_->path() / "out");
 std::string Process::errors() const { return read_file(folder_->path() / "err"); }
 
 bool Process::wait_for(const std::string& text, std::chrono::seconds bound) {
-  const auto end = Clock::now() + bound;
-  for (;;) {
-    const bool alive = running();
-    if (output().find(text) != std::string::npos || errors().find(text) != std::string::npos) return true;
-    if (!alive || Clock::now() >= end) return false;
-    std::this_thread::sleep_for(kPoll);
-  }
+  bool found = false;
+  const auto found_or_ended = [&] {
+    const bool alive = running();  // asked first: the output of an ended process is complete
+    found = output().find(text) != std::string::npos || errors().find(text) != std::string::npos;
+    return found || !alive;
+  };
+  return eventually(found_or_ended, bound, kPoll) && found;
 }
 
 std::string program(const std::string& name) { return std::string(CONSTRICTOR_BIN) + "/" + name; }

@@ -1,12 +1,12 @@
 // Real processes for tests: started with arguments, watched with bounds, and never left running.
 #pragma once
 
+#include <sys/types.h>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 #include "support/temporary_folder.hpp"

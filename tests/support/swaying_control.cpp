@@ -1,5 +1,5 @@
-// swaying_control [control] OPTIONS: moves one joint to and fro in the place of the component `control`, and for a while commands what
-// nobody may: $CONSTRICTOR_FAULT says what (nan, count, silence; nothing: no fault).
+// swaying_control [control] OPTIONS: moves one joint to and fro in the place of the component `control`, and for a
+// while commands what nobody may: $CONSTRICTOR_FAULT says what (nan, count, silence; nothing: no fault).
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -17,7 +17,9 @@ using namespace constrictor;
 class SwayingControl : public StatefulComponent<int> {
  public:
   SwayingControl(Wiring& wiring, const Setup& setup, std::string fault)
-      : robot_(load_robot(setup.robot_file)), fault_(std::move(fault)), command_out_(wiring.output(topics::kJointCommand)) {}
+      : robot_(load_robot(setup.robot_file)),
+        fault_(std::move(fault)),
+        command_out_(wiring.output(topics::kJointCommand)) {}
   void step(const Tick& tick) override {
     const bool faulty = tick.index >= testing::kFaultFrom && tick.index < testing::kFaultTo;
     if (faulty && fault_ == "silence") return;
@@ -25,7 +27,8 @@ class SwayingControl : public StatefulComponent<int> {
     command.joint_count = static_cast<std::uint16_t>(robot_.joints.size());
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) command.torque_limit_nm[i] = robot_.joints[i].max_torque_nm;
     command.position_rad[testing::kSwayingJoint] = testing::sway_rad(tick.index);
-    if (faulty && fault_ == "nan") command.position_rad[testing::kSwayingJoint] = std::numeric_limits<double>::quiet_NaN();
+    if (faulty && fault_ == "nan")
+      command.position_rad[testing::kSwayingJoint] = std::numeric_limits<double>::quiet_NaN();
     if (faulty && fault_ == "count") command.joint_count = 5;
     command_out_.write(command);
   }
@@ -45,7 +48,8 @@ int main(int argc, char** argv) {
     ++argv;
   }
   const char* fault = std::getenv("CONSTRICTOR_FAULT");
-  return component_main(argc, argv, {"control", [fault](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
-                                       return std::make_unique<SwayingControl>(wiring, setup, fault ? fault : "");
-                                     }});
+  return component_main(argc, argv,
+                        {"control", [fault](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
+                           return std::make_unique<SwayingControl>(wiring, setup, fault ? fault : "");
+                         }});
 }

@@ -12,6 +12,8 @@ inline constexpr std::int64_t kFaultTo = 260;     ///< [tick] first that is not 
 inline constexpr double kSwayHalf_rad = 0.3;
 
 /// Setpoint [rad] of the joint: between 0 and twice kSwayHalf_rad, once in two seconds.
-inline double sway_rad(std::int64_t tick) { return kSwayHalf_rad * (1.0 - std::cos(M_PI * 0.02 * static_cast<double>(tick))); }
+inline double sway_rad(std::int64_t tick) {
+  return kSwayHalf_rad * (1.0 - std::cos(M_PI * 0.02 * static_cast<double>(tick)));
+}
 
 }  // namespace constrictor::testing

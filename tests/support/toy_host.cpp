@@ -13,12 +13,14 @@ namespace {
 
 using namespace constrictor;
 
-/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was: on its output and, if
-/// there is a directory for it, in mission.json. The scenario's name begins with the number of ticks.
+/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was: on its output
+/// and, if there is a directory for it, in mission.json. The scenario's name begins with the number of ticks.
 class ToyReport : public StatefulComponent<toys::Mixer> {
  public:
   ToyReport(Wiring& wiring, const Setup& setup)
-      : wiring_(wiring), joints_(wiring.latest(topics::kJointState)), ticks_(std::stol(setup.scenario_file.filename().string())),
+      : wiring_(wiring),
+        joints_(wiring.latest(topics::kJointState)),
+        ticks_(std::stol(setup.scenario_file.filename().string())),
         output_dir_(setup.output_dir) {}
   void step(const Tick& tick) override {
     state_.mix(joints_->position_rad[0]);
@@ -26,8 +28,8 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
     std::printf("result %.17g %016llx\n", joints_->position_rad[0], static_cast<unsigned long long>(state_.value));
     std::fflush(stdout);
     if (!output_dir_.empty()) {
-      std::ofstream(output_dir_ / "mission.json") << "{\"success\": true, \"ticks\": " << tick.index + 1 << ", \"state_hash\": \""
-                                                  << std::hex << state_.value << "\"}\n";
+      std::ofstream(output_dir_ / "mission.json") << "{\"success\": true, \"ticks\": " << tick.index + 1
+                                                  << ", \"state_hash\": \"" << std::hex << state_.value << "\"}\n";
     }
     wiring_.request_end_of_run();
   }
@@ -57,7 +59,7 @@ class ToyInput : public StatefulComponent<toys::Mixer> {
   void step(const Tick& tick) override {
     if (tick.index != 10 && tick.index != 20) return;
     msg::Authority authority{};
-    authority.level = tick.index == 10 ? msg::kAuthorityOperator : msg::kAuthorityStop;
+    authority.level = tick.index == 10 ? msg::kAuthorityOperator : msg::kAuthorityEmergencyStop;
     authority_.write(authority);
   }
 

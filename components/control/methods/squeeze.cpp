@@ -1,10 +1,9 @@
-// "squeeze": the base joints of a U close by `squeeze_rad` in total while the joint on either side of the base opens, so that
-// the arms stay parallel round a wide object; torque capped. Done when closed so far: navigation stops it earlier by what it
-// feels.
+// "squeeze": the base joints of a U close by `squeeze_rad` in total, while the joint on either side of the base opens,
+// so that the arms stay parallel around a wide object. The torque is limited. Done when the base has closed that far;
+// navigation stops the squeeze earlier when the forces suffice.
 #include <algorithm>
 #include <cmath>
 
-#include "control/methods/methods.hpp"
 #include "control/wave_motion.hpp"
 
 namespace constrictor {
@@ -20,7 +19,8 @@ class Squeeze : public ControlMethod {
   MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
     const LinkArray open_rad = desired_shape(input.desired, input.chain);
     double& closed_rad = body.scratch[0];
-    const double rate_rad_s = input.desired.shape_rate_rad_s > 0.0 ? input.desired.shape_rate_rad_s : input.config.squeeze_rate_rad_s;
+    const double rate_rad_s =
+        input.desired.shape_rate_rad_s > 0.0 ? input.desired.shape_rate_rad_s : input.config.squeeze_rate_rad_s;
     closed_rad = std::min(input.desired.squeeze_rad, closed_rad + rate_rad_s * input.dt_s);
     advance_wave(input, 1.0, body);
     advance_shape(input, closed(input, open_rad, closed_rad), input.config.shape_rate_rad_s, body);

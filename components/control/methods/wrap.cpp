@@ -1,16 +1,16 @@
-// "wrap": the trajectory's posture (the base of a U) slides along the body from before the head to its place, while the body
-// undulates along itself: each module follows the one before it round the object, and the head ends up facing back. Done when
-// the posture is in its place. Source: follow-the-leader; speed and gait as measured for the whole-body grasp.
+// "wrap": the desired posture (the base of a U) slides along the body from in front of the head to its place, while the
+// body undulates along itself. Each module follows the module in front of it round the object, and the head ends up
+// facing backwards. Done when the posture is in its place. Source: follow-the-leader motion; speed and gait were
+// measured for the whole-body grasp.
 #include <algorithm>
 #include <cmath>
 
-#include "control/methods/methods.hpp"
 #include "control/wave_motion.hpp"
 
 namespace constrictor {
 namespace {
 
-/// [m] by which the posture must be moved towards the head to lie wholly before it.
+/// [m] distance by which the posture must be moved towards the head so that it lies completely in front of it.
 double start_distance_m(const MethodInput& input, const LinkArray& shape_rad) {
   double last = 0.0;
   for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
@@ -34,8 +34,9 @@ class Wrap : public ControlMethod {
     double& left_m = body.scratch[0];
     left_m = std::max(0.0, left_m - input.desired.speed_m_s * input.dt_s);
     advance_wave(input, 0.0, body);
-    // The arc moves on continuously; the rate only matters if the body was bent before.
-    const double rate_rad_s = std::max(desired_shape_rate(input), 2.0 * input.desired.speed_m_s / input.chain.link_length_m());
+    // The arc moves continuously at this rate. The trajectory's own rate matters only if the body was bent before.
+    const double rate_rad_s =
+        std::max(desired_shape_rate(input), 2.0 * input.desired.speed_m_s / input.chain.link_length_m());
     advance_shape(input, input.chain.slid(final_rad, left_m), rate_rad_s, body);
     ride(input, final_rad, body, setpoints);
     const double whole_m = start_distance_m(input, final_rad);

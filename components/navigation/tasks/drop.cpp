@@ -1,5 +1,5 @@
-// Drop (Tables XI, XII): drives over the drop zone of a colour until it has left the view, goes on until the held object is over its
-// centre, stops, opens, and backs off.
+// Drop (Tables XI, XII): the robot drives over the drop zone of a colour until the zone has left the view, continues
+// until the held object is over the zone's centre, stops, opens the U, backs off and straightens.
 #include <algorithm>
 #include <cmath>
 
@@ -15,12 +15,12 @@ struct DropState {
   int phase = kApproach;
   double phase_s = 0.0;
   Eigen::Vector2d p_MZ{0.0, 0.0};
-  double course_rad = 0.0;    ///< of the straight way over the zone, in M
+  double course_rad = 0.0;  ///< heading in M of the straight course over the zone
   bool course_fixed = false;
   SteeringState steering;
-  SteeringState object_x;     ///< averages of the held object's place in the head's frame over a gait period
+  SteeringState object_x;  ///< place of the held object in the head's frame, averaged over a gait period
   SteeringState object_y;
-  Pose2 from;
+  Pose2 from;  ///< the head when the phase began
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object_x, object_y, from);
@@ -30,30 +30,39 @@ struct DropState {
 class Drop : public StatefulTask<DropState> {
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
-    const std::uint8_t colour = input.parameters.drop_zone_colour;
-    if (colour == msg::kColourUnknown) return "drop needs a drop zone colour";
-    if (!grip.carrying) return "nothing is carried";
-    if (!input.things.zones[colour].known) return "the drop zone is not in view";
+    if (!grip.carrying) return "drop cannot run: the robot carries no object";
+    if (!input.sightings.zones[input.parameters.drop_zone_colour].known)
+      return "no drop zone of this colour was seen yet";
     return "";
   }
-  void start(const TaskInput& input, Grip&) override { state_.p_MZ = input.things.zones[input.parameters.drop_zone_colour].p_M(); }
+  void start(const TaskInput& input, Grip&) override {
+    state_.p_MZ = input.sightings.zones[input.parameters.drop_zone_colour].p_M();
+  }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     state_.phase_s += input.tick.dt_s();
     output.progress = state_.phase / 6.0;
     switch (state_.phase) {
       case kApproach:
-      case kOver: drive(input, grip, output); break;
+      case kOver:
+        drive(input, grip, output);
+        break;
       case kStop:
         output.phase = "stop";
         stand(grip, output);
         if (state_.phase_s < 1.0) break;
-        grip.carrying = false;  // it lets go on purpose
+        grip.carrying = false;  // on purpose: no loss is reported
         enter(input, kOpen);
         break;
-      case kOpen: open(input, grip, output); break;
-      case kBack: back(input, grip, output); break;
-      default: straighten(input, grip, output); break;
+      case kOpen:
+        open(input, grip, output);
+        break;
+      case kBack:
+        back(input, grip, output);
+        break;
+      default:
+        straighten(input, grip, output);
+        break;
     }
   }
 
@@ -67,14 +76,14 @@ class Drop : public StatefulTask<DropState> {
   void drive(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const DropConfig& config = input.config.drop;
     const Gait& gait = input.config.carry;
-    const Sighting& zone = input.things.zones[input.parameters.drop_zone_colour];
+    const Sighting& zone = input.sightings.zones[input.parameters.drop_zone_colour];
     if (zone.missed == 0) {
       state_.p_MZ = zone.p_M();
     } else if (state_.phase == kApproach && !zone.visible) {
       enter(input, kOver);
     }
     output.phase = state_.phase == kApproach ? "approach" : "over the zone";
-    // Where the held object is, averaged over a period of the gait that shakes it.
+    // The gait shakes the held object, so its place is averaged over a gait period.
     const double period_s = gait_period_s(gait);
     const double now_s = input.tick.time_s();
     const Eigen::Vector2d p_now = input.grip_sense.held_object_H(input.body, grip.radius_m);
@@ -82,8 +91,8 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, p_now.x(), period_s, state_.object_x);
     steering.observe(now_s, p_now.y(), period_s, state_.object_y);
     const Eigen::Vector2d p_HO{Steering::mean_error(state_.object_x), Steering::mean_error(state_.object_y)};
-    // The object trails behind the head and cuts corners, so the course is the straight line from the object through the zone's
-    // centre, and the head drives along it, beside it by as much as the object lies beside the head.
+    // The object follows the head and cuts corners. The course is therefore the straight line from the object through
+    // the zone's centre, and the head drives parallel to it, at the object's lateral distance from the head.
     const Eigen::Vector2d d = state_.p_MZ - input.X_MH.to_parent(p_HO);
     if (d.norm() > config.fix_course_m || !state_.course_fixed) {
       state_.course_rad = std::atan2(d.y(), d.x());
@@ -95,7 +104,8 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, error_m, period_s, state_.steering);
     undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(input.X_MH.to_parent(p_HO)).x();
-    if (state_.phase_s > config.approach_timeout_s) return output.abort("the zone was not reached");  // still holding
+    if (state_.phase_s > config.approach_timeout_s)
+      return output.abort("the zone was not reached in time");  // the robot still holds the object
     if (past_m >= -config.brake_m) {
       enter(input, kStop);
       stand(grip, output);
@@ -117,7 +127,8 @@ class Drop : public StatefulTask<DropState> {
 
   static double largest_opening(const Grip& grip, const std::array<double, msg::kMaxJoints>& shape) {
     double largest_rad = 0.0;
-    for (std::size_t k = 0; k < shape.size(); ++k) largest_rad = std::max(largest_rad, std::abs(grip.shape_rad[k] - shape[k]));
+    for (std::size_t k = 0; k < shape.size(); ++k)
+      largest_rad = std::max(largest_rad, std::abs(grip.shape_rad[k] - shape[k]));
     return largest_rad;
   }
 
@@ -126,7 +137,8 @@ class Drop : public StatefulTask<DropState> {
     output.phase = "back off";
     const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
     undulate_on(input.config.travel, 0.0, -1.0, shape, input.grip_sense.yaw_joint_count(), output);
-    if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s) enter(input, kStraighten);
+    if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s)
+      enter(input, kStraighten);
   }
 
   void straighten(const TaskInput& input, Grip& grip, TaskOutput& output) {

@@ -1,4 +1,5 @@
-// Follow line (Tables I, II): a PID on the line's lateral offset ahead steers the undulation, also in the U that carries an object.
+// Follow line (Tables I, II): a PID on the line's lateral offset ahead steers the undulation, with or without an object
+// in the U.
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +10,11 @@ namespace constrictor {
 namespace {
 
 struct FollowLineState {
-  LineWatchState line;
+  LineTrackerState line;
   SteeringState steering;
-  bool found = false;        ///< "line found" was sent
-  double travelled_m = 0.0;  ///< for the progress: distance from the start
-  Pose2 start;
+  bool found = false;        ///< the event "line found" was sent
+  double travelled_m = 0.0;  ///< largest distance from the start, for the progress
+  Pose2 start;               ///< the head at the start
   double curvature_1_m = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
@@ -23,9 +24,6 @@ struct FollowLineState {
 
 class FollowLine : public StatefulTask<FollowLineState> {
  public:
-  std::string refusal(const TaskInput& input, const Grip&) const override {
-    return input.parameters.line_colour == msg::kColourUnknown ? "follow_line needs a line colour" : "";
-  }
   void start(const TaskInput& input, Grip&) override { state_.start = input.X_MH; }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
@@ -36,7 +34,7 @@ class FollowLine : public StatefulTask<FollowLineState> {
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
     const Steering steering(gains);
     if (input.line) {
-      watch_line(config.line, *input.line, colour, state_.line);
+      update_line_tracker(config.line, *input.line, colour, state_.line);
       if (state_.line.missed == 0) {
         steering.observe(input.tick.time_s(), state_.line.offset_m, gait_period_s(gait), state_.steering);
       }
@@ -45,15 +43,16 @@ class FollowLine : public StatefulTask<FollowLineState> {
       state_.found = true;
       output.emit(msg::kEventLineFound, colour);
     }
-    // Out of view for a moment: keep on with the last curvature.
+    // While the line is out of view for a moment, the last curvature continues.
     if (state_.line.missed == 0) state_.curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
     undulate(gait, state_.curvature_1_m, 1.0, grip, output);
     output.phase = state_.line.visible ? "follow" : state_.found ? "coast" : "look";
     const double away_m = (input.X_MH.p - state_.start.p).norm();
     state_.travelled_m = std::max(state_.travelled_m, away_m);
-    output.progress = 1.0 - 1.0 / (1.0 + state_.travelled_m);  // the line's length is not known
+    output.progress = 1.0 - 1.0 / (1.0 + state_.travelled_m);  // the length of the line is unknown
 
-    if (state_.line.end_seen >= config.follow_line.end_images && state_.line.end_distance_m <= config.follow_line.end_reached_m) {
+    if (state_.line.end_seen >= config.follow_line.end_images &&
+        state_.line.end_distance_m <= config.follow_line.end_reached_m) {
       output.emit(msg::kEventEndOfLine, colour);
       output.succeed();
     } else if (state_.line.missed >= config.line.lost_after) {

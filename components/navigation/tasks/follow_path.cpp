@@ -1,5 +1,6 @@
-// Follow path: a polyline of waypoints in the map instead of the painted line, steered by a point ahead. Not one of the paper's
-// tasks: it is for planners that think in waypoints, and ends when the head is at the last one.
+// Follow path: the robot follows a polyline of waypoints in the map instead of a painted line; a PID steers towards a
+// point of the path ahead. This task is not the paper's: it serves planners that use waypoints. It ends when the head
+// is at the last one.
 #include <algorithm>
 #include <cereal/types/vector.hpp>
 #include <cmath>
@@ -12,9 +13,9 @@ namespace {
 
 struct FollowPathState {
   std::vector<double> x_m, y_m;  ///< the path in M
-  std::size_t segment = 0;       ///< on which the head is: never goes back, so that a path may cross itself
-  double along_m = 0.0;          ///< from the segment's beginning
-  double before_m = 0.0;         ///< length of the segments before it
+  std::size_t segment = 0;       ///< the head is beside this segment; never decreases, so that a path may cross itself
+  double along_m = 0.0;          ///< the head's place along the segment, from its first point
+  double before_m = 0.0;         ///< length of all earlier segments
   PidState pid;
   template <class Archive>
   void serialize(Archive& archive) {
@@ -25,14 +26,10 @@ struct FollowPathState {
 class FollowPath : public StatefulTask<FollowPathState> {
  public:
   std::string refusal(const TaskInput& input, const Grip&) const override {
-    if (!input.path || input.path->point_count < 2) return "follow_path needs a path of two points or more";
     FollowPathState path = take(*input.path);
-    for (std::size_t i = 0; i + 1 < path.x_m.size(); ++i) {
-      if (!(length(path, i) > 1e-3)) return "follow_path: two points in a row are the same";
-    }
     advance(input.X_MH.p, path);
     const double distance_m = (input.X_MH.p - at(path, path.segment, path.along_m)).norm();
-    return distance_m > input.config.follow_path.lost_m ? "follow_path: the path begins too far from the robot" : "";
+    return distance_m > input.config.follow_path.lost_m ? "follow_path: the path is too far from the robot" : "";
   }
   void start(const TaskInput& input, Grip&) override { state_ = take(*input.path); }
 
@@ -45,7 +42,7 @@ class FollowPath : public StatefulTask<FollowPathState> {
     const Pose2 X_MP{at(state_, state_.segment, state_.along_m), heading(state_, state_.segment)};
     output.cross_track_m = X_MP.to_local(input.X_MH.p).y();
 
-    // Not averaged over the gait as the painted line is: the path is known ahead, and the delay would make it swing.
+    // The error is not averaged over a gait period, as it is for a painted line: the delay would make the robot swing.
     const double ahead_m = input.X_MH.to_local(ahead(config.lookahead_m)).y();
     undulate(gait, pid_step(gains, ahead_m, input.tick.dt_s(), state_.pid), 1.0, grip, output);
     output.phase = "follow";
@@ -69,21 +66,23 @@ class FollowPath : public StatefulTask<FollowPathState> {
     return state;
   }
   static Eigen::Vector2d point(const FollowPathState& path, std::size_t i) { return {path.x_m[i], path.y_m[i]}; }
-  static double length(const FollowPathState& path, std::size_t i) { return (point(path, i + 1) - point(path, i)).norm(); }
+  static double length(const FollowPathState& path, std::size_t i) {
+    return (point(path, i + 1) - point(path, i)).norm();
+  }
   static double heading(const FollowPathState& path, std::size_t i) {
     return std::atan2(path.y_m[i + 1] - path.y_m[i], path.x_m[i + 1] - path.x_m[i]);
   }
   static Eigen::Vector2d at(const FollowPathState& path, std::size_t i, double along_m) {
     return point(path, i) + along_m / length(path, i) * (point(path, i + 1) - point(path, i));
   }
-  /// Moves segment and along_m on to where the head is beside the path.
+  /// Moves `segment` and `along_m` on to the place of the path beside the head.
   static void advance(const Eigen::Vector2d& p_MH, FollowPathState& path) {
     for (;;) {
       const Pose2 X_MS{point(path, path.segment), heading(path, path.segment)};
       const double length_m = length(path, path.segment);
       path.along_m = std::max(path.along_m, std::clamp(X_MS.to_local(p_MH).x(), 0.0, length_m));
       if (path.segment + 2 >= path.x_m.size()) return;
-      // Round a sharp corner the head leaves a segment without having been beside its end.
+      // At a sharp corner the head leaves a segment before it has been beside the segment's end.
       const Pose2 X_MN{point(path, path.segment + 1), heading(path, path.segment + 1)};
       const double next_m = X_MN.to_local(p_MH).x();
       const bool nearer = next_m > 0.0 && next_m < length(path, path.segment + 1) &&
@@ -94,7 +93,7 @@ class FollowPath : public StatefulTask<FollowPathState> {
       ++path.segment;
     }
   }
-  /// The path's point so far ahead; beyond its end the last segment goes on straight.
+  /// The point of the path at this distance ahead; beyond the last point the last segment continues straight.
   [[nodiscard]] Eigen::Vector2d ahead(double distance_m) const {
     std::size_t i = state_.segment;
     double along_m = state_.along_m + distance_m;

@@ -1,5 +1,5 @@
-// Grasp (Tables IX, X): the body wraps itself round the object that lies beside it, drives on until the base feels it, squeezes until
-// the base's torque says that it is held, and checks by touch that it is inside.
+// Grasp (Tables IX, X): the body wraps itself round the object beside it, drives on until the base of the U touches the
+// object, squeezes until the torque in the base shows that the object is held, and checks by touch that it is inside.
 #include <algorithm>
 #include <cereal/types/array.hpp>
 #include <cmath>
@@ -15,12 +15,12 @@ struct GraspState {
   int phase = kWrap;
   double phase_s = 0.0;
   double seated_s = 0.0;
-  int touching = 0;          ///< modules that touched what is inside within the last moments
-  std::array<double, msg::kMaxModules> touched_s{};  ///< by module: time since its last touch
-  Pose2 before;              ///< the head at the previous step
-  double slid_m = 0.0;       ///< how far the arc has moved along the body
+  int touching = 0;                                  ///< modules near the base that touched within touch_memory_s
+  std::array<double, msg::kMaxModules> touched_s{};  ///< time since the last touch of each module
+  Pose2 before;                                      ///< the head at the previous step
+  double slid_m = 0.0;                               ///< distance by which the arc has moved along the body
   int squeezes = 0;
-  double speed_m_s = 0.0;    ///< of the head along itself, smoothed: how fast the body follows itself
+  double speed_m_s = 0.0;  ///< smoothed speed of the head along its own axis
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, phase_s, seated_s, touching, touched_s, before, slid_m, squeezes, speed_m_s);
@@ -34,9 +34,10 @@ class Grasp : public StatefulTask<GraspState> {
     if (grip.carrying) return "the body holds an object already";
     if (!grip.pregrasped) return "no object is pregrasped";
     const std::uint8_t colour = input.parameters.object_colour;
-    if (colour != msg::kColourUnknown && colour != grip.colour) return "the object that is pregrasped has another colour";
+    if (colour != msg::kColourUnknown && colour != grip.colour) return "the pregrasped object has another colour";
     const bool another = named != 0 && grip.handle != 0 && named != grip.handle;
-    return another ? "object_handle: found " + std::to_string(named) + ", pregrasped is " + std::to_string(grip.handle) : "";
+    return another ? "object_handle: found " + std::to_string(named) + ", pregrasped is " + std::to_string(grip.handle)
+                   : "";
   }
   void start(const TaskInput& input, Grip& grip) override {
     grip.pregrasped = false;
@@ -49,11 +50,21 @@ class Grasp : public StatefulTask<GraspState> {
     state_.phase_s += input.tick.dt_s();
     output.progress = 0.25 * state_.phase;
     switch (state_.phase) {
-      case kWrap: wrap(input, grip, output); break;
-      case kSeat: seat(input, grip, output); break;
-      case kSqueeze: squeeze(input, grip, output); break;
-      case kCheck: check(input, grip, output); break;
-      default: open(input, grip, output); break;
+      case kWrap:
+        wrap(input, grip, output);
+        break;
+      case kSeat:
+        seat(input, grip, output);
+        break;
+      case kSqueeze:
+        squeeze(input, grip, output);
+        break;
+      case kCheck:
+        check(input, grip, output);
+        break;
+      default:
+        open(input, grip, output);
+        break;
     }
   }
 
@@ -65,31 +76,23 @@ class Grasp : public StatefulTask<GraspState> {
   static std::array<double, msg::kMaxJoints> open_u(const TaskInput& input, const Grip& grip) {
     return input.grip_sense.open_shape(grip.side, input.config.grip.base_angle_rad);
   }
-  static void set_u(const TaskInput& input, const Grip& grip, TaskOutput& output) {
-    const auto shape = open_u(input, grip);
-    output.desired.shape_count = static_cast<std::uint16_t>(input.grip_sense.yaw_joint_count());
-    std::copy_n(shape.begin(), input.grip_sense.yaw_joint_count(), output.desired.shape_rad);
-  }
 
   void wrap(const TaskInput& input, const Grip& grip, TaskOutput& output) {
     output.phase = "wrap";
-    // The head bends round the object before the body begins to move, so that it does not run past it.
+    // The head bends round the object before the body begins to move; otherwise it would pass the object.
     Gait gait = input.config.grasp.wrap;
     if (state_.slid_m < input.config.grasp.wrap_still_m) gait.amplitude_rad = gait.frequency_hz = 0.0;
-    undulate(gait, 0.0, 1.0, grip, output);
-    std::snprintf(output.desired.method, sizeof output.desired.method, "wrap");
-    set_u(input, grip, output);
-    output.desired.wrap_side = grip.side;
-    // The arc must slide along the body as fast as the body moves on, so that it stays round the object.
+    // The arc must slide along the body as fast as the body advances, so that it stays round the object.
     const GraspConfig& config = input.config.grasp;
     const double moved_m = (input.X_MH.p - state_.before.p).dot(input.X_MH.forward());
     const double share = -std::expm1(-input.tick.dt_s() / config.wrap_speed_filter_s);
     state_.speed_m_s += share * (moved_m / input.tick.dt_s() - state_.speed_m_s);
     state_.before = input.X_MH;
-    output.desired.speed_m_s = state_.slid_m < config.wrap_still_m
-                                   ? config.wrap_speed_m_s
-                                   : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
-    state_.slid_m += output.desired.speed_m_s * input.tick.dt_s();
+    const double speed_m_s = state_.slid_m < config.wrap_still_m
+                                 ? config.wrap_speed_m_s
+                                 : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
+    wrap_round(input.config, input.grip_sense, gait, grip.side, speed_m_s, grip, output);
+    state_.slid_m += speed_m_s * input.tick.dt_s();
     if (input.motion_done && state_.phase_s > 0.2) enter(kSeat);
   }
 
@@ -106,27 +109,24 @@ class Grasp : public StatefulTask<GraspState> {
     }
   }
 
-  /// Counts the modules near the base that touched within the last moments: the gait makes touches intermittent.
-  void touched(const TaskInput& input) {
+  /// Counts the modules near the base with a recent touch: the gait interrupts touches.
+  void count_touching(const TaskInput& input) {
     for (double& since_s : state_.touched_s) since_s += input.tick.dt_s();
     for (const Touch& touch : input.touches) state_.touched_s[touch.module] = 0.0;
     state_.touching = 0;
     for (std::size_t m = 0; m < input.robot.module_count; ++m) {
-      if (input.grip_sense.is_near_base(m) && state_.touched_s[m] < input.config.grasp.touch_memory_s) ++state_.touching;
+      if (input.grip_sense.is_near_base(m) && state_.touched_s[m] < input.config.grasp.touch_memory_s)
+        ++state_.touching;
     }
   }
 
   void squeeze(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "squeeze";
-    // Driving on presses the object into the base and frees the arms from the ground's friction while they close.
-    undulate(config.squeeze, 0.0, 1.0, grip, output);
-    std::snprintf(output.desired.method, sizeof output.desired.method, "squeeze");
-    set_u(input, grip, output);
-    output.desired.squeeze_rad = config.squeeze_max_rad;
-    output.desired.torque_limit_nm = config.squeeze_cap_nm;
+    // Driving on presses the object into the base, and moving arms overcome the friction of the ground more easily.
+    squeeze_u(input.config, input.grip_sense, grip.side, grip, output);
     const double torque_nm = input.grip_sense.largest_closing_nm(input.joints, grip.side);
-    touched(input);
+    count_touching(input);
     const bool firm = torque_nm >= config.squeeze_torque_nm && state_.touching >= config.touching_modules;
     const bool closed = input.motion_done && state_.phase_s > 0.5;
     if (!firm && !closed) return;
@@ -143,10 +143,10 @@ class Grasp : public StatefulTask<GraspState> {
   void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
-    // Driving on as it will with the object: what is inside is pushed along and felt.
+    // The robot drives as it will with the object: the base pushes an object inside and touches it.
     undulate_on(input.config.carry, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
-    touched(input);
+    count_touching(input);
     const bool lost = input.grip_sense.lost(input.joints, input.touches, input.tick.dt_s(), grip);
     if (state_.phase_s < config.check_s && !lost) return;
     if (state_.touching >= config.touching_modules && !lost) {
@@ -158,7 +158,7 @@ class Grasp : public StatefulTask<GraspState> {
     }
   }
 
-  /// There is nothing between the arms: open and stretch, so that another attempt can begin.
+  /// Opens and straightens after a failed grasp, so that another attempt can begin.
   void open(const TaskInput& input, Grip& grip, TaskOutput& output) {
     output.phase = "open";
     bend_head(0.0, input.config.drop.straighten_rate_rad_s, grip, output);

@@ -1,5 +1,6 @@
-// Pregrasp (Tables VII, VIII): the snake bends away until the object leaves the view, passes beside it in forward steps, and after
-// each feels for it by bending the part next to the head, until the object lies beside the body where it can be wrapped.
+// Pregrasp (Tables VII, VIII): the snake bends away until the object leaves the view and passes beside it in forward
+// steps. After each step it bends the part of the body next to the head until that part touches the object. The task
+// ends when the object lies beside the body where the body can be wrapped round it.
 #include <algorithm>
 #include <cmath>
 
@@ -15,41 +16,40 @@ enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
 struct PregraspState {
   int phase = kBendAway;
   double phase_s = 0.0;
-  double side = 1.0;          ///< +1: the object stays on the left
-  double course_rad = 0.0;    ///< heading of the passing line in M
+  double side = 1.0;        ///< +1: the object stays on the left
+  double course_rad = 0.0;  ///< heading of the passing line in M
   Eigen::Vector2d p_MO{0.0, 0.0};
   double radius_m = 0.085;
-  double past_m = 0.0;        ///< how far the head shall pass the object's centre
-  int attempts = 0;
-  int misses = 0;             ///< attempts that felt nothing
-  bool felt = false;
-  bool deep = false;
-  Pose2 rest;                 ///< the head before it felt
+  double past_m = 0.0;  ///< distance by which the head must pass the object's centre
+  int attempts = 0;     ///< touch movements so far
+  int misses = 0;       ///< attempts without a touch
+  bool felt = false;    ///< the present attempt touched the object
+  bool deep = false;    ///< the object lies between deep_min_m and deep_max_m along the body
+  Pose2 rest;           ///< the head before the touch movement
   SteeringState steering;
   double unseen_s = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, misses, felt, deep, rest, steering, unseen_s);
+    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, misses, felt, deep, rest,
+            steering, unseen_s);
   }
 };
 
 class Pregrasp : public StatefulTask<PregraspState> {
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
-    const std::uint8_t colour = input.parameters.object_colour;
-    if (colour == msg::kColourUnknown) return "pregrasp needs an object colour";
-    if (grip.carrying) return "pregrasp cannot run while carrying";
-    const Sighting& thing = input.things.objects[colour];
-    const double unseen_s = static_cast<double>(input.tick.index - thing.seen_tick) * input.tick.period_s();
-    if (!thing.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
+    if (grip.carrying) return "pregrasp cannot run while the robot carries an object";
+    const Sighting& object = input.sightings.objects[input.parameters.object_colour];
+    const double unseen_s = static_cast<double>(input.tick.index - object.seen_tick) * input.tick.period_s();
+    if (!object.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
     return handle_refusal(input);
   }
 
   void start(const TaskInput& input, Grip& grip) override {
     grip.pregrasped = false;
-    const Sighting& thing = input.things.objects[input.parameters.object_colour];
-    state_.p_MO = thing.p_M();
-    state_.radius_m = thing.radius_m;
+    const Sighting& object = input.sightings.objects[input.parameters.object_colour];
+    state_.p_MO = object.p_M();
+    state_.radius_m = object.radius_m;
     state_.past_m = input.config.pregrasp.past_m;
     state_.side = choose_side(input);
     state_.course_rad = tangent_course(input, state_.side);
@@ -57,16 +57,20 @@ class Pregrasp : public StatefulTask<PregraspState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const PregraspConfig& config = input.config.pregrasp;
-    const Sighting& thing = input.things.objects[input.parameters.object_colour];
+    const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     state_.phase_s += input.tick.dt_s();
-    if (state_.phase == kBendAway && thing.missed == 0 && input.image) {
-      state_.p_MO = thing.p_M();
-      state_.radius_m = thing.radius_m;
+    if (state_.phase == kBendAway && object.missed == 0 && input.new_percepts) {
+      state_.p_MO = object.p_M();
+      state_.radius_m = object.radius_m;
     }
     output.progress = std::min(0.95, 0.2 * state_.phase + 0.1 * state_.attempts);
     switch (state_.phase) {
-      case kBendAway: bend_away(input, grip, thing, output); break;
-      case kAdvance: advance(input, grip, output); break;
+      case kBendAway:
+        bend_away(input, grip, object, output);
+        break;
+      case kAdvance:
+        advance(input, grip, output);
+        break;
       case kSettle:
         output.phase = "settle";
         bend_head(0.0, config.touch_rate_rad_s, grip, output);
@@ -76,8 +80,12 @@ class Pregrasp : public StatefulTask<PregraspState> {
         state_.deep = false;
         enter(kTouch);
         break;
-      case kTouch: touch(input, grip, output); break;
-      default: unbend(input, grip, output); break;
+      case kTouch:
+        touch(input, grip, output);
+        break;
+      default:
+        unbend(input, grip, output);
+        break;
     }
   }
 
@@ -88,19 +96,19 @@ class Pregrasp : public StatefulTask<PregraspState> {
     state_.steering = {};
   }
 
-  /// [m] distance of the object's centre from the passing body's middle line.
+  /// [m] between the object's centre and the middle line of the passing body.
   [[nodiscard]] double passing_m(const TaskInput& input) const {
     return state_.radius_m + input.robot.module_radius_m + input.config.pregrasp.clearance_m;
   }
 
-  /// Heading of the line from the head that passes the object at the wanted distance.
+  /// [rad] heading in M of the straight line from the head that passes the object at the distance passing_m.
   [[nodiscard]] double tangent_course(const TaskInput& input, double side) const {
     const Eigen::Vector2d d = state_.p_MO - input.X_MH.p;
     const double aside = std::min(0.9, passing_m(input) / std::max(0.01, d.norm()));
     return std::atan2(d.y(), d.x()) - side * std::asin(aside);
   }
 
-  /// The side with more room from other objects for passing and wrapping; the nearer one if both have enough.
+  /// The side on which other objects leave more room for passing and wrapping; the nearer side if both leave enough.
   [[nodiscard]] double choose_side(const TaskInput& input) const {
     const PregraspConfig& config = input.config.pregrasp;
     double room_m[2] = {1e9, 1e9};
@@ -108,9 +116,9 @@ class Pregrasp : public StatefulTask<PregraspState> {
       const double side = option == 0 ? 1.0 : -1.0;
       const Pose2 X_MP{state_.p_MO, tangent_course(input, side)};
       for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
-        const Sighting& other = input.things.objects[colour];
+        const Sighting& other = input.sightings.objects[colour];
         if (!other.known || colour == input.parameters.object_colour) continue;
-        // The head passes on one side, turns beyond the object and comes back on the other.
+        // The head passes the object on one side, turns beyond it and comes back on the other side.
         const Eigen::Vector2d p = X_MP.to_local(other.p_M());
         const double lane_m = -side * passing_m(input);
         const double along_m = std::clamp(p.x(), -0.9, 0.3);
@@ -135,17 +143,22 @@ class Pregrasp : public StatefulTask<PregraspState> {
     undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
   }
 
-  /// [m] how far the head is past the object's centre.
-  [[nodiscard]] double past_m(const TaskInput& input) const { return Pose2{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x(); }
+  /// [m] distance of the head beyond the object's centre along the passing line; negative before it.
+  [[nodiscard]] double past_m(const TaskInput& input) const {
+    return Pose2{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x();
+  }
 
-  void bend_away(const TaskInput& input, Grip& grip, const Sighting& thing, TaskOutput& output) {
+  void bend_away(const TaskInput& input, Grip& grip, const Sighting& object, TaskOutput& output) {
     output.phase = "bend away";
     pass(input, input.config.travel, grip, output);
-    const bool beside = std::abs(input.X_MH.to_local(state_.p_MO).y()) > 0.6 * std::abs(input.X_MH.to_local(state_.p_MO).x());
-    if (!thing.visible || beside || past_m(input) > -0.25) enter(kAdvance);
-    // Not where it was expected although it should be in view: somebody took it.
-    const double bearing_rad = std::abs(std::atan2(input.X_MH.to_local(state_.p_MO).y(), input.X_MH.to_local(state_.p_MO).x()));
-    if (!thing.visible && bearing_rad < 0.5 && past_m(input) < -0.35) lose(input, grip, output, "the object vanished while in view");
+    const bool beside =
+        std::abs(input.X_MH.to_local(state_.p_MO).y()) > 0.6 * std::abs(input.X_MH.to_local(state_.p_MO).x());
+    if (!object.visible || beside || past_m(input) > -0.25) enter(kAdvance);
+    // The object should be in view and is not: somebody has taken it.
+    const double bearing_rad =
+        std::abs(std::atan2(input.X_MH.to_local(state_.p_MO).y(), input.X_MH.to_local(state_.p_MO).x()));
+    if (!object.visible && bearing_rad < 0.5 && past_m(input) < -0.35)
+      lose(input, grip, output, "the object vanished while in view");
   }
 
   void advance(const TaskInput& input, Grip& grip, TaskOutput& output) {
@@ -159,14 +172,15 @@ class Pregrasp : public StatefulTask<PregraspState> {
   void touch(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
     output.phase = "touch";
-    // What was not felt lies farther off than it looked: each attempt reaches farther.
+    // An object that was not touched is farther away than it looked: each attempt reaches farther.
     const double limit_rad = config.touch_limit_rad + config.touch_further_rad * state_.misses;
     bend_head(state_.side * limit_rad, config.touch_rate_rad_s, grip, output);
     const Touch* best = nullptr;
     for (const Touch& t : input.touches) {
       const Pose2& module = input.body[t.module];
       const bool inner_side = state_.side * t.normal_H.dot(module.left()) < 0.3;
-      if (t.module < 9 && inner_side && t.force_n >= config.touch_force_n && (!best || t.force_n > best->force_n)) best = &t;
+      if (t.module < 9 && inner_side && t.force_n >= config.touch_force_n && (!best || t.force_n > best->force_n))
+        best = &t;
     }
     if (best) {
       state_.felt = true;
@@ -197,10 +211,10 @@ class Pregrasp : public StatefulTask<PregraspState> {
       return;
     }
     if (state_.attempts >= config.attempts) {
-      lose(input, grip, output, "the object was not felt");
+      lose(input, grip, output, "the object was not touched");
       return;
     }
-    // Felt ahead or not at all: another step, a little farther than the last.
+    // The touch was too near to the head, or there was none: take another step, a little farther than the last.
     if (!state_.felt) {
       ++state_.misses;
       state_.past_m = std::max(state_.past_m, past_m(input)) + 0.12;
@@ -208,7 +222,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     enter(kAdvance);
   }
 
-  /// The one that is named, else the one that is here.
+  /// The handle that the goal names, otherwise the handle of the object seen here.
   static std::uint16_t object_handle(const TaskInput& input) {
     const std::uint16_t named = input.parameters.object_handle;
     return named != 0 ? named : seen_handle(input, input.parameters.object_colour);

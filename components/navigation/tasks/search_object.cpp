@@ -1,5 +1,6 @@
-// Search object (Tables III, IV): where an object of the colour was known the body turns and goes there; otherwise, the head looks to
-// both sides, the body advances and turns on the spot, until an object of the colour is seen; it must stay in view for a moment.
+// Search object (Tables III, IV): if an object of the colour was seen before, the body turns and goes to that place.
+// Otherwise the head looks to both sides, and the body advances or turns on the spot between two looks. The task ends
+// when an object of the colour has stayed in view for a moment.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,13 +15,13 @@ enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm,
 
 struct SearchState {
   int phase = kLookLeft;
-  int looks = 0;             ///< completed looks to both sides
+  int looks = 0;  ///< completed looks to both sides
   double phase_s = 0.0;
   double turned_rad = 0.0;
   double last_course_rad = 0.0;
-  Pose2 from;                ///< where the phase began
-  int returns = 0;           ///< times it went to where the object was known to be
-  double side = 1.0;         ///< of the turn towards it, +1 left
+  Pose2 from;         ///< the head when the phase began
+  int returns = 0;    ///< how often the robot went to the remembered place
+  double side = 1.0;  ///< of the turn towards that place: +1 left, -1 right
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, looks, phase_s, turned_rad, last_course_rad, from, returns, side);
@@ -29,33 +30,30 @@ struct SearchState {
 
 class SearchObject : public StatefulTask<SearchState> {
  public:
-  std::string refusal(const TaskInput& input, const Grip&) const override {
-    if (input.parameters.object_colour == msg::kColourUnknown) return "search_object needs an object colour";
-    return handle_refusal(input);
-  }
+  std::string refusal(const TaskInput& input, const Grip&) const override { return handle_refusal(input); }
   void start(const TaskInput& input, Grip&) override { begin(input); }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const SearchConfig& config = input.config.search;
     const std::uint8_t colour = input.parameters.object_colour;
-    const Sighting& thing = input.things.objects[colour];
+    const Sighting& object = input.sightings.objects[colour];
     state_.phase_s += input.tick.dt_s();
-    const double course_rad = body_course_rad(input);  // the head may just have looked aside
+    const double course_rad = body_course_rad(input);  // of the body: the head may be looking aside
     state_.turned_rad += angle_between(course_rad, state_.last_course_rad);
     state_.last_course_rad = course_rad;
     output.progress = 1.0 - 1.0 / (1.0 + 0.25 * state_.looks);
 
     if (state_.phase == kConfirm) {
-      confirm(input, grip, thing, output);
+      confirm(input, grip, object, output);
       return;
     }
-    if (thing.visible && thing.missed == 0 && is_named(input)) {
+    if (object.visible && object.missed == 0 && is_named(input)) {
       output.emit(msg::kEventObjectFound, colour, seen_handle(input, colour));
       enter(input, kConfirm);
-      confirm(input, grip, thing, output);
+      confirm(input, grip, object, output);
       return;
     }
-    // A body that holds something looks around by driving in bends; the U leaves the head no freedom to turn.
+    // With an object in the U the head cannot turn by itself, so the robot looks around by driving in bends.
     if (grip.carrying) {
       undulate(input.config.carry, std::sin(0.3 * state_.phase_s), 1.0, grip, output);
       output.phase = "drive";
@@ -77,20 +75,21 @@ class SearchObject : public StatefulTask<SearchState> {
     state_.from = input.X_MH;
   }
 
-  /// Where an object of the colour was known to be, in M; empty: nowhere near.
+  /// Last known place of an object of the colour, in M; empty: there is none nearby.
   [[nodiscard]] static std::optional<Eigen::Vector2d> remembered(const TaskInput& input) {
     const std::uint8_t colour = input.parameters.object_colour;
     std::optional<Eigen::Vector2d> best;
-    if (input.things.objects[colour].known) best = input.things.objects[colour].p_M();
-    if (input.map) {  // it follows what was felt, too
+    if (input.sightings.objects[colour].known) best = input.sightings.objects[colour].p_M();
+    if (input.map) {  // the map also follows touches
       for (std::size_t i = 0; i < std::min<std::size_t>(input.map->object_count, msg::kMaxMapObjects); ++i) {
-        const auto& thing = input.map->objects[i];
-        const bool meant = input.parameters.object_handle == 0 || input.parameters.object_handle == thing.handle;
-        if (thing.kind == msg::kBlobObject && thing.colour == colour && meant) best = Eigen::Vector2d(thing.x_m, thing.y_m);
+        const auto& landmark = input.map->objects[i];
+        const bool meant = input.parameters.object_handle == 0 || input.parameters.object_handle == landmark.handle;
+        if (landmark.kind == msg::kBlobObject && landmark.colour == colour && meant)
+          best = Eigen::Vector2d(landmark.x_m, landmark.y_m);
       }
     }
-    const bool near = best && (*best - input.X_MH.p).norm() < input.config.search.remembered_m;
-    return near ? best : std::nullopt;
+    const bool nearby = best && (*best - input.X_MH.p).norm() < input.config.search.remembered_m;
+    return nearby ? best : std::nullopt;
   }
 
   void begin(const TaskInput& input) {
@@ -100,7 +99,7 @@ class SearchObject : public StatefulTask<SearchState> {
     enter(input, back ? kLeave : kLookAhead);
   }
 
-  /// First away from the object, not to push it along in the turn; then facing it; then towards it.
+  /// First away from the remembered place, so that the turn does not push the object; then face it; then approach it.
   void go_back(const TaskInput& input, Grip& grip, TaskOutput& output) {
     constexpr double kTurn_s = 12.0;
     const SearchConfig& config = input.config.search;
@@ -122,7 +121,8 @@ class SearchObject : public StatefulTask<SearchState> {
       case kFace:
         output.phase = "face";
         undulate(input.config.travel, state_.side * config.turn_curvature_1_m, 1.0, grip, output);
-        if (std::abs(bearing_rad) < 0.25 || (state_.side * bearing_rad < 0.0 && std::abs(bearing_rad) < 1.5) || state_.phase_s > kTurn_s) {
+        if (std::abs(bearing_rad) < 0.25 || (state_.side * bearing_rad < 0.0 && std::abs(bearing_rad) < 1.5) ||
+            state_.phase_s > kTurn_s) {
           enter(input, kApproach);
         }
         break;
@@ -134,13 +134,13 @@ class SearchObject : public StatefulTask<SearchState> {
     }
   }
 
-  void confirm(const TaskInput& input, Grip& grip, const Sighting& thing, TaskOutput& output) {
+  void confirm(const TaskInput& input, Grip& grip, const Sighting& object, TaskOutput& output) {
     stand(grip, output);
     output.phase = "confirm";
-    if (!thing.visible) {
+    if (!object.visible) {
       output.emit(msg::kEventObjectLost, input.parameters.object_colour, input.parameters.object_handle);
       begin(input);
-    } else if (state_.phase_s >= input.config.search.confirm_s && thing.missed == 0) {
+    } else if (state_.phase_s >= input.config.search.confirm_s && object.missed == 0) {
       output.succeed();
     }
   }

@@ -1,5 +1,6 @@
-// Track object (Tables V, VI): a PID on the object's bearing steers the undulation at constant speed until it is directly in front
-// of a straight body. Where there is no room to get there the body goes away first and turns to the object on the spot.
+// Track object (Tables V, VI): a PID on the object's bearing steers the undulation at constant speed until the object
+// is directly in front of a straight body. If the object is too near for that, the body first moves away and then turns
+// towards the object on the spot.
 #include <algorithm>
 #include <cmath>
 
@@ -14,11 +15,11 @@ struct TrackState {
   SteeringState steering;
   bool leaving = false;
   double leaving_s = 0.0;
-  int leaves = 0;             ///< times it went away
+  int leaves = 0;  ///< how often the body moved away
   bool turning = false;
   double first_distance_m = 0.0;
   double progress = 0.0;
-  int missed = 0;             ///< images in a row in which it should have been seen and was not
+  int missed = 0;  ///< consecutive images that should have shown the object and did not
   template <class Archive>
   void serialize(Archive& archive) {
     archive(steering, leaving, leaving_s, leaves, turning, first_distance_m, progress, missed);
@@ -28,30 +29,31 @@ struct TrackState {
 class TrackObject : public StatefulTask<TrackState> {
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
-    const std::uint8_t colour = input.parameters.object_colour;
-    if (colour == msg::kColourUnknown) return "track_object needs an object colour";
-    if (grip.carrying) return "track_object cannot run while carrying";
-    if (!input.things.objects[colour].known) return "no object of this colour was seen yet";
-    if (!is_named(input)) return "object_handle: found " + std::to_string(input.parameters.object_handle) + ", accepted 0 or the object that is seen";
+    if (grip.carrying) return "track_object cannot run while the robot carries an object";
+    if (!input.sightings.objects[input.parameters.object_colour].known) return "no object of this colour was seen yet";
+    if (!is_named(input)) {
+      return "object_handle: found " + std::to_string(input.parameters.object_handle) +
+             ", accepted 0 or the handle of the object in view";
+    }
     return "";
   }
   void start(const TaskInput& input, Grip&) override {
-    state_.first_distance_m = (input.things.objects[input.parameters.object_colour].p_M() - input.X_MH.p).norm();
+    state_.first_distance_m = (input.sightings.objects[input.parameters.object_colour].p_M() - input.X_MH.p).norm();
   }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const TrackConfig& config = input.config.track;
     const Gait& gait = input.config.travel;
     const std::uint8_t colour = input.parameters.object_colour;
-    const Sighting& thing = input.things.objects[colour];
-    const Eigen::Vector2d p_HO = input.X_MH.to_local(thing.p_M());
+    const Sighting& object = input.sightings.objects[colour];
+    const Eigen::Vector2d p_HO = input.X_MH.to_local(object.p_M());
     const double bearing_rad = std::atan2(p_HO.y(), p_HO.x());
-    const double range_m = p_HO.norm() - thing.radius_m;
+    const double range_m = p_HO.norm() - object.radius_m;
 
-    // Out of the field of view it is steered for by memory; inside, it must be seen.
+    // Within the field of view the object must be seen; outside, its remembered place is enough.
     const bool in_view = std::abs(bearing_rad) < config.half_view_rad;
-    if (input.image) state_.missed = thing.missed == 0 || !in_view ? 0 : state_.missed + 1;
-    const double unseen_s = static_cast<double>(input.tick.index - thing.seen_tick) * input.tick.period_s();
+    if (input.new_percepts) state_.missed = object.missed == 0 || !in_view ? 0 : state_.missed + 1;
+    const double unseen_s = static_cast<double>(input.tick.index - object.seen_tick) * input.tick.period_s();
     if (state_.missed >= input.config.object.lost_after || unseen_s > config.memory_s) {
       output.emit(msg::kEventObjectLost, colour, input.parameters.object_handle);
       output.abort("object lost");
@@ -63,15 +65,15 @@ class TrackObject : public StatefulTask<TrackState> {
     steering.observe(input.tick.time_s(), bearing_rad, gait_period_s(gait), state_.steering);
     const double mean_rad = Steering::mean_error(state_.steering);
     if (state_.first_distance_m > config.reach_m) {
-      const double way = (state_.first_distance_m - range_m) / (state_.first_distance_m - config.reach_m);
-      state_.progress = std::max(state_.progress, std::clamp(way, 0.0, 0.99));
+      const double share = (state_.first_distance_m - range_m) / (state_.first_distance_m - config.reach_m);
+      state_.progress = std::max(state_.progress, std::clamp(share, 0.0, 0.99));
     }
     output.progress = state_.progress;
 
-    const Eigen::Vector2d d = thing.p_M() - input.X_MH.p;
+    const Eigen::Vector2d d = object.p_M() - input.X_MH.p;
     const double turn_rad = angle_between(std::atan2(d.y(), d.x()), body_course_rad(input));
     if (state_.leaving) {
-      leave(input, grip, thing, turn_rad, output);
+      leave(input, grip, object, turn_rad, output);
       return;
     }
     double curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
@@ -80,7 +82,8 @@ class TrackObject : public StatefulTask<TrackState> {
     undulate(gait, curvature_1_m, 1.0, grip, output);
     output.phase = in_view && !state_.turning ? "track" : "turn to";
     const bool straight = std::abs(turn_rad) <= config.straight_rad;
-    const bool reached = range_m <= config.reach_m && std::abs(mean_rad) <= config.reach_bearing_rad && thing.missed == 0;
+    const bool reached =
+        range_m <= config.reach_m && std::abs(mean_rad) <= config.reach_bearing_rad && object.missed == 0;
     if (reached && straight && range_m > config.too_near_m) {
       output.emit(msg::kEventObjectReached, colour, seen_handle(input, colour));
       output.succeed();
@@ -92,8 +95,8 @@ class TrackObject : public StatefulTask<TrackState> {
   }
 
  private:
-  // Each time farther: a body that turns to an object abeam too near to it only circles it.
-  void leave(const TaskInput& input, Grip& grip, const Sighting& thing, double turn_rad, TaskOutput& output) {
+  /// Moves away, each time farther: a body that turns towards an object too near beside it only circles it.
+  void leave(const TaskInput& input, Grip& grip, const Sighting& object, double turn_rad, TaskOutput& output) {
     constexpr double kLeave_s = 12.0;
     constexpr double kFarther_m = 0.35;
     constexpr double kLonger_s = 4.0;
@@ -103,8 +106,8 @@ class TrackObject : public StatefulTask<TrackState> {
     const bool backwards = std::cos(turn_rad) > 0.0;
     undulate(input.config.travel, 0.0, backwards ? -1.0 : 1.0, grip, output);
     output.phase = backwards ? "back off" : "leave";
-    const bool away = (thing.p_M() - input.X_MH.p).norm() >= input.config.track.away_m + kFarther_m * farther &&
-                      nearest_module_m(input, thing.p_M()) >= input.config.search.near_m;
+    const bool away = (object.p_M() - input.X_MH.p).norm() >= input.config.track.away_m + kFarther_m * farther &&
+                      nearest_module_m(input, object.p_M()) >= input.config.search.near_m;
     if (!away && state_.leaving_s < kLeave_s + kLonger_s * farther) return;
     state_.leaving = false;
     state_.steering = {};

@@ -1,5 +1,6 @@
-// A robot that is given tasks and nothing else, in a world of the test's own: physics, rendered camera, perception, guidance,
-// navigation and control in one process. What navigation says is compared with the ground truth that only the test sees.
+// A robot that receives tasks and nothing else, in a world of the test's own: physics, rendered camera, perception,
+// guidance, navigation and control in one process. The tests compare navigation's events with ground truth, which the
+// robot does not know.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,23 +17,24 @@
 #include <string>
 #include <vector>
 
-#include "sim/camera/camera.hpp"
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "control/control.hpp"
 #include "guidance/guidance.hpp"
 #include "navigation/navigation.hpp"
 #include "perception/perception.hpp"
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "sim/camera/camera.hpp"
 #include "sim/physics/physics.hpp"
+#include "support/scripted_members.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
-/// A place on the ground with a direction, in W.
+/// A position on the ground with a heading, in W.
 struct Place {
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
   [[nodiscard]] double distance_m(const Place& other) const { return std::hypot(other.x_m - x_m, other.y_m - y_m); }
-  /// [rad] of another place as seen from here, positive left.
+  /// [rad] bearing of another place, positive left.
   [[nodiscard]] double bearing_rad(const Place& other) const {
     return std::remainder(std::atan2(other.y_m - y_m, other.x_m - x_m) - yaw_rad, 2.0 * M_PI);
   }
@@ -40,68 +42,58 @@ struct Place {
 
 inline Place place_of(const msg::Pose3& pose) {
   const auto& q = pose.orientation;
-  return {pose.position_m.x, pose.position_m.y, std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
+  return {pose.position_m.x, pose.position_m.y,
+          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
 }
-
-/// Writes the task commands that the test puts into its queue, in the place of the component `input`.
-class TaskQueue : public StatefulComponent<int> {
- public:
-  TaskQueue(Wiring& wiring, std::shared_ptr<std::deque<msg::TaskCommand>> queue)
-      : out_(wiring.output(topics::kTaskCommand)), queue_(std::move(queue)) {}
-  void step(const Tick&) override {
-    for (; !queue_->empty(); queue_->pop_front()) out_.write(queue_->front());
-  }
-
- private:
-  Output<msg::TaskCommand> out_;
-  std::shared_ptr<std::deque<msg::TaskCommand>> queue_;
-};
 
 class Behaviour : public ::testing::Test {
  protected:
-  /// What happened, with the truth at that moment.
+  /// An event with the ground truth at that moment.
   struct Happened {
     double time_s = 0.0;
     msg::TaskEvent event{};
     Place head, object;
   };
 
-  /// Begins a run in this world (the text of a scenario file); with another configuration of navigation where the default's
-  /// `from` is replaced by `to`.
+  /// Begins a run in this world (the text of a scenario file). If `from` is not empty, the run uses navigation.yaml
+  /// with the text `from` replaced by `to`.
   void begin(const std::string& world, const std::string& from = "", const std::string& to = "") {
     constrictor::Setup setup;
-    setup.robot_file = share_path("components/robot/" + robot_ + ".yaml");
+    setup.robot_file = data_path("components/lib/robot/" + robot_ + ".yaml");
     setup.scenario_file = dir_ / "scenario.yaml";
     setup.seed = 1;
     std::ofstream(setup.scenario_file) << world;
     std::map<std::string, std::filesystem::path> config_files;
     if (!from.empty()) {
-      std::ifstream file(share_path("components/navigation/navigation.yaml"));
+      std::ifstream file(data_path("components/navigation/navigation.yaml"));
       std::string text{std::istreambuf_iterator<char>(file), {}};
       ASSERT_NE(text.find(from), std::string::npos) << from;
       std::ofstream(dir_ / "navigation.yaml") << text.replace(text.find(from), from.size(), to);
       config_files["navigation"] = dir_ / "navigation.yaml";
     }
     run_ = std::make_unique<LocalRun>(
-        std::vector<ComponentFactory>{make_physics_factory(), make_camera_factory(), make_perception_factory(), make_guidance_factory(),
-                                      make_navigation_factory(), make_control_factory(),
-                                      {"input", [queue = queue_](Wiring& wiring, const constrictor::Setup&) {
-                                         return std::make_unique<TaskQueue>(wiring, queue);
-                                       }}},
+        std::vector<ComponentFactory>{make_physics_factory(), make_camera_factory(), make_perception_factory(),
+                                      make_guidance_factory(), make_navigation_factory(), make_control_factory(),
+                                      scripted_writer<msg::TaskCommand>("input", topics::kTaskCommand,
+                                                                        [queue = queue_](const Tick&, const auto& out) {
+                                                                          for (; !queue->empty(); queue->pop_front())
+                                                                            out.write(queue->front());
+                                                                        })},
         setup, config_files);
     run_->subscribe<msg::TaskEvent>(topics::kTaskEvent, [this](const msg::TaskEvent& event) {
       happened.push_back({run_->time_s(), event, head(), object_count() > 0 ? object() : Place{}});
-      std::printf("%7.2f s  task %u event %u goal state %u %s\n", run_->time_s(), event.task, event.event, event.goal_state, event.detail);
+      std::printf("%7.2f s  task %u event %u goal state %u %s\n", run_->time_s(), event.task, event.event,
+                  event.goal_state, event.detail);
     });
     run_->subscribe<msg::TouchedState>(topics::kTouchedState, [this](const msg::TouchedState& touched) {
       for (int i = 0; i < touched.contact_count; ++i) {
         if (touched.kind[i] == msg::kTouchedObject) object_touched_s = run_->time_s();
       }
     });
-    run_->advance(2);  // for the first messages
+    run_->advance(2);  // until the first messages have been written
   }
 
-  /// Starts a task; its goal id.
+  /// Starts a task and returns its goal id.
   std::uint64_t start(std::uint8_t task, const std::function<void(msg::TaskParameters&)>& parameters) {
     msg::TaskCommand command{};
     command.goal_id = ++goal_;
@@ -115,7 +107,7 @@ class Behaviour : public ::testing::Test {
     return start(task, [&](msg::TaskParameters& p) { p.*parameter = value; });
   }
 
-  /// Goes on until `condition` holds; false if it does not within so much simulated time.
+  /// Advances until `condition` is true; false if it is not within `bound_s` of simulated time.
   bool until(const std::function<bool()>& condition, double bound_s) {
     for (const double end_s = run_->time_s() + bound_s; run_->time_s() < end_s; run_->advance(1)) {
       if (condition()) return true;
@@ -126,18 +118,19 @@ class Behaviour : public ::testing::Test {
     const std::size_t from = happened.size();
     return until([&] { return first(event, from) != nullptr; }, bound_s);
   }
-  /// Until the newest goal has ended; how.
+  /// Advances until the newest goal has ended, and returns its state; kGoalIdle if it has not ended within the bound.
   std::uint8_t until_end(double bound_s) {
     const auto ended = [&]() -> std::uint8_t {
       for (const auto& h : happened) {
-        if (h.event.goal_id == goal_ && h.event.event == msg::kEventNone && h.event.goal_state > msg::kGoalRunning) return h.event.goal_state;
+        if (h.event.goal_id == goal_ && h.event.event == msg::kEventNone && h.event.goal_state > msg::kGoalRunning)
+          return h.event.goal_state;
       }
       return msg::kGoalIdle;
     };
     until([&] { return ended() != msg::kGoalIdle; }, bound_s);
     return ended();
   }
-  /// First event of this kind among those from index `from` on; null if there is none.
+  /// The first event of this kind from index `from` on; null if there is none.
   [[nodiscard]] const Happened* first(std::uint8_t event, std::size_t from = 0) const {
     for (std::size_t i = from; i < happened.size(); ++i) {
       if (happened[i].event.event == event) return &happened[i];
@@ -150,16 +143,18 @@ class Behaviour : public ::testing::Test {
     const auto& map = *run_->latest(topics::kFieldMap);
     std::vector<std::uint16_t> handles;
     for (int i = 0; i < map.object_count; ++i) {
-      if (map.objects[i].kind == msg::kBlobObject && map.objects[i].colour == colour) handles.push_back(map.objects[i].handle);
+      if (map.objects[i].kind == msg::kBlobObject && map.objects[i].colour == colour)
+        handles.push_back(map.objects[i].handle);
     }
     return handles.size() == 1 ? handles.front() : 0;
   }
-  /// Handle of the object that guidance's map has within 0.3 m of a place. Where the robot starts at W's origin, M is W.
+  /// Handle of the mapped object within 0.3 m of a place; 0: there is none. The robot must have started at the origin
+  /// of W, so that M is W.
   [[nodiscard]] std::uint16_t mapped_near(const Place& place) const {
     const auto& map = *run_->latest(topics::kFieldMap);
     for (int i = 0; i < map.object_count; ++i) {
-      const auto& thing = map.objects[i];
-      if (thing.kind == msg::kBlobObject && place.distance_m({thing.x_m, thing.y_m}) < 0.3) return thing.handle;
+      const auto& object = map.objects[i];
+      if (object.kind == msg::kBlobObject && place.distance_m({object.x_m, object.y_m}) < 0.3) return object.handle;
     }
     return 0;
   }
@@ -168,19 +163,22 @@ class Behaviour : public ::testing::Test {
   [[nodiscard]] Place module(std::size_t index) const { return place_of(world().module_poses[index]); }
   [[nodiscard]] int object_count() const { return world().object_count; }
   [[nodiscard]] Place object() const { return place_of(world().object_poses[0]); }
-  /// [m] between the object's centre and that of the module nearest to it, on the ground plan.
+  /// [m] horizontal distance between the centres of the object and of the nearest module.
   [[nodiscard]] double nearest_module_m() const {
     double nearest_m = 1e9;
-    for (std::size_t m = 0; m < world().module_count; ++m) nearest_m = std::min(nearest_m, module(m).distance_m(object()));
+    for (std::size_t m = 0; m < world().module_count; ++m)
+      nearest_m = std::min(nearest_m, module(m).distance_m(object()));
     return nearest_m;
   }
-  /// Whether a point on the ground lies in the camera's picture: a lens of 90 degrees that looks ahead from over the nose.
+  /// Whether a point on the ground is in the camera's view and nearer than `most_m`. The camera looks ahead from above
+  /// the nose with a field of view of 90 degrees.
   static bool in_view(const Place& head, const Place& point, double most_m) {
     constexpr double kCameraAhead_m = 0.06;
-    const Place camera{head.x_m + kCameraAhead_m * std::cos(head.yaw_rad), head.y_m + kCameraAhead_m * std::sin(head.yaw_rad), head.yaw_rad};
+    const Place camera{head.x_m + kCameraAhead_m * std::cos(head.yaw_rad),
+                       head.y_m + kCameraAhead_m * std::sin(head.yaw_rad), head.yaw_rad};
     return std::abs(camera.bearing_rad(point)) < 0.25 * M_PI && camera.distance_m(point) < most_m;
   }
-  /// [m] the nearest point of the line in the camera's picture; infinite if there is none.
+  /// [m] distance of the nearest point of the line in the camera's view; infinite if there is none.
   [[nodiscard]] double line_in_view_m() const {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (const Place& point : line()) {
@@ -196,9 +194,9 @@ class Behaviour : public ::testing::Test {
   }
   [[nodiscard]] double time_s() const { return run_->time_s(); }
 
-  std::string robot_ = "mamba";  ///< which robot file the next run takes
+  std::string robot_ = "mamba";  ///< robot file of the next run
   std::vector<Happened> happened;
-  double object_touched_s = 0.0;  ///< when the robot, or anything else, last touched the object
+  double object_touched_s = 0.0;  ///< time of the last contact of the object with anything
   const TemporaryFolder folder_;
   const std::filesystem::path dir_ = folder_.path();
   std::unique_ptr<LocalRun> run_;

@@ -1,5 +1,5 @@
-// Tables VII to XII (pregrasp, grasp, drop) with real contact: an object is pregrasped, grasped, carried and dropped, and missed by
-// torque and touch when a scripted force takes it away.
+// Tables VII to XII (pregrasp, grasp, drop) with simulated contact: an object is pregrasped, grasped, carried and
+// dropped. Where a scripted force takes it away, torque and touch reveal the loss.
 #include "behaviour_run.hpp"
 
 namespace constrictor::testing {
@@ -9,9 +9,12 @@ constexpr double kRadius_m = 0.085;
 constexpr double kModuleRadius_m = 0.035;
 
 std::string scene(const std::string& more = "") {
-  return "name: one\nobjects: [{colour: green, frame: world, position_m: [1.2, 0.15], shape: cylinder, radius_m: 0.085, "
-         "height_m: 0.15, mass_kg: 0.4}]\nzones: [{colour: green, frame: world, position_m: [-0.9, 0.5], radius_m: 0.35}]\n"
-         "start: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n" + more;
+  return "name: one\nobjects: [{colour: green, frame: world, position_m: [1.2, 0.15], shape: cylinder, radius_m: "
+         "0.085, "
+         "height_m: 0.15, mass_kg: 0.4}]\nzones: [{colour: green, frame: world, position_m: [-0.9, 0.5], radius_m: "
+         "0.35}]\n"
+         "start: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n" +
+         more;
 }
 
 class GraspEvents : public Behaviour {
@@ -29,8 +32,8 @@ class GraspEvents : public Behaviour {
     start(msg::kTaskGrasp, [](msg::TaskParameters&) {});
     ASSERT_TRUE(until_event(msg::kEventObjectGrasped, 90.0));
   }
-  /// [Nm] mean over the yaw joints of the U's base (navigation's `base_first_joint` 5 of them, 3): joints 10, 12, 14. Its sign says to
-  /// which side the base presses.
+  /// [Nm] mean torque of the yaw joints in the base of the U: joints 10, 12 and 14, by navigation's `base_first_joint`
+  /// and `base_joints`. The sign is the side to which the base presses.
   [[nodiscard]] double base_torque_nm() const {
     const auto& joints = *run_->latest(topics::kJointState);
     return (joints.torque_nm[10] + joints.torque_nm[12] + joints.torque_nm[14]) / 3.0;
@@ -38,25 +41,32 @@ class GraspEvents : public Behaviour {
   double mean_base_torque_nm(double over_s) {
     double sum = 0.0;
     int count = 0;
-    until([&] { sum += base_torque_nm(); ++count; return false; }, over_s);
+    until(
+        [&] {
+          sum += base_torque_nm();
+          ++count;
+          return false;
+        },
+        over_s);
     return sum / count;
   }
-  /// [rad] by how much the direction from the object to the body turns along the body, tail to head.
+  /// [rad] angle by which the direction from the object to the body turns from tail to head.
   [[nodiscard]] double wound_rad() const {
     double sum_rad = 0.0;
     for (std::size_t m = world().module_count - 1; m > 0; --m) {
       const Place from_object{object().x_m, object().y_m, 0.0};
-      sum_rad += std::remainder(from_object.bearing_rad(module(m - 1)) - from_object.bearing_rad(module(m)), 2.0 * M_PI);
+      sum_rad +=
+          std::remainder(from_object.bearing_rad(module(m - 1)) - from_object.bearing_rad(module(m)), 2.0 * M_PI);
     }
     return sum_rad;
   }
 };
 
-TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
+TEST_F(GraspEvents, GraspsCarriesAndDropsAnObjectOnItsZone) {
   begin(scene());
   pregrasp();
   ASSERT_FALSE(HasFatalFailure());
-  // It stands beside the body within reach of the wrap, and has been felt.
+  // The object stands beside the body within reach of the wrap, and the body has touched it.
   std::printf("pregrasped: %.3f m from the body, wound %.2f rad\n", nearest_module_m(), wound_rad());
   EXPECT_LT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.15);
   EXPECT_GT(object_touched_s, 0.0);
@@ -71,7 +81,7 @@ TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
   const Happened grasped = *first(msg::kEventObjectGrasped);
   EXPECT_EQ(grasped.event.object_handle, handle);
   std::printf("grasped: wound %.2f rad\n", wound_rad());
-  EXPECT_GT(std::abs(wound_rad()), 4.0) << "seen from the object the body goes round by well over half a turn";
+  EXPECT_GT(std::abs(wound_rad()), 4.0) << "the body goes round the object by more than half a turn";
   EXPECT_LT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.02);
   EXPECT_NEAR(object_touched_s, grasped.time_s, 1.0);
 
@@ -84,19 +94,19 @@ TEST_F(GraspEvents, AnObjectIsGraspedCarriedAndDroppedOnItsZone) {
   const Happened dropped = *first(msg::kEventDroppingDone);
   EXPECT_EQ(dropped.event.object_handle, handle);
   const double away_m = dropped.object.distance_m({-0.9, 0.5, 0.0});
-  std::printf("dropped %.2f m from the zone's centre, %.2f m from the body; base torque while carried %.2f Nm\n", away_m,
-              nearest_module_m(), torque_nm);
+  std::printf("dropped %.2f m from the zone's centre, %.2f m from the body; base torque while carried %.2f Nm\n",
+              away_m, nearest_module_m(), torque_nm);
   EXPECT_GT(grasped.object.distance_m(dropped.object), 1.0);
   EXPECT_LT(away_m, 0.35);
   EXPECT_NEAR(world().object_poses[0].position_m.z, 0.075, 0.01) << "it stands upright";
   EXPECT_GT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.05) << "the robot has left it";
   EXPECT_LT(object_touched_s, dropped.time_s - 1.0);
-  EXPECT_GT(std::abs(torque_nm), 0.5) << "while it was carried";
+  EXPECT_GT(std::abs(torque_nm), 0.5) << "while the object was carried";
 }
 
-// A zone that is farther than the time allows: the object is not let go somewhere, it is kept.
-TEST_F(GraspEvents, AnObjectIsKeptIfItsZoneIsNotReachedInTime) {
-  begin(scene(), "approach_timeout_s: 120.0", "approach_timeout_s: 2.0");
+// The zone is farther away than the time limit allows: the robot keeps the object and does not drop it elsewhere.
+TEST_F(GraspEvents, KeepsTheObjectWhenItsZoneIsNotReachedInTime) {
+  begin(scene(), "approach_timeout_s: 120", "approach_timeout_s: 2");
   grasp();
   ASSERT_FALSE(HasFatalFailure());
   start(msg::kTaskExplore, &msg::TaskParameters::direction, msg::kDirectionForwards);
@@ -107,8 +117,8 @@ TEST_F(GraspEvents, AnObjectIsKeptIfItsZoneIsNotReachedInTime) {
   EXPECT_TRUE(run_->latest(topics::kTaskStatus)->carrying);
 }
 
-// As soon as it was pushed 0.2 m, which the wrap's end and the squeeze do, the object is thrown away.
-TEST_F(GraspEvents, AGraspInWhichNothingIsAnyMoreIsLost) {
+// A force throws the object away when it has been pushed by 0.2 m, which happens at the end of the wrap.
+TEST_F(GraspEvents, ReportsGraspLostWhenTheObjectLeavesTheClosingBody) {
   begin(scene("perturbations: [{object: 0, when_displaced_m: 0.2, duration_s: 0.3, force_n: [6, 0, 25]}]\n"));
   pregrasp();
   ASSERT_FALSE(HasFatalFailure());
@@ -120,25 +130,33 @@ TEST_F(GraspEvents, AGraspInWhichNothingIsAnyMoreIsLost) {
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
 }
 
-TEST_F(GraspEvents, AnObjectTakenAwayWhileItIsCarriedIsMissedByTorqueAndTouch) {
-  begin(scene("perturbations: [{object: 0, when_displaced_m: 1.2, duration_s: 0.3, force_n: [0, 0, 40]}, "
-              "{object: 0, when_displaced_m: 1.2, duration_s: 0.6, force_n: [-15, 0, 0]}]\n"));
+TEST_F(GraspEvents, ReportsGraspLostByTorqueAndTouchWhenACarriedObjectIsTakenAway) {
+  begin(
+      scene("perturbations: [{object: 0, when_displaced_m: 1.2, duration_s: 0.3, force_n: [0, 0, 40]}, "
+            "{object: 0, when_displaced_m: 1.2, duration_s: 0.6, force_n: [-15, 0, 0]}]\n"));
   grasp();
   ASSERT_FALSE(HasFatalFailure());
   start(msg::kTaskExplore, &msg::TaskParameters::direction, msg::kDirectionForwards);
   const double held_nm = mean_base_torque_nm(1.0);
   EXPECT_GT(std::abs(held_nm), 0.5);
-  ASSERT_TRUE(until([&] { return object().distance_m({1.2, 0.15, 0.0}) > 1.2; }, 60.0)) << object().distance_m({1.2, 0.15, 0.0});
+  ASSERT_TRUE(until(
+      [&] {
+        return object().distance_m({1.2, 0.15, 0.0}) > 1.2;
+      },
+      60.0))
+      << object().distance_m({1.2, 0.15, 0.0});
   const double thrown_s = time_s();
   ASSERT_FALSE(first(msg::kEventObjectGraspLost));
   double torque_nm = held_nm;
-  ASSERT_TRUE(until([&] {
-    torque_nm += 0.02 * (base_torque_nm() - torque_nm);  // a low-pass of one second
-    return first(msg::kEventObjectGraspLost) != nullptr;
-  }, 15.0));
+  ASSERT_TRUE(until(
+      [&] {
+        torque_nm += 0.02 * (base_torque_nm() - torque_nm);  // a low-pass with a time constant of one second
+        return first(msg::kEventObjectGraspLost) != nullptr;
+      },
+      15.0));
   const Happened& lost = *first(msg::kEventObjectGraspLost);
-  std::printf("base torque %.2f Nm; thrown at %.2f s, touched last at %.2f s, lost at %.2f s, base torque %.2f Nm\n", held_nm, thrown_s,
-              object_touched_s, lost.time_s, torque_nm);
+  std::printf("base torque %.2f Nm; thrown at %.2f s, last touched at %.2f s, lost at %.2f s, base torque %.2f Nm\n",
+              held_nm, thrown_s, object_touched_s, lost.time_s, torque_nm);
   EXPECT_GT(lost.time_s, thrown_s);
   EXPECT_GT(lost.time_s, object_touched_s + 2.0) << "navigation's `lost_after_s`";
   EXPECT_LT(std::copysign(1.0, held_nm) * torque_nm, 0.75);  // `lost_torque_nm`

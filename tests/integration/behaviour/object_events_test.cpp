@@ -1,5 +1,5 @@
-// Tables III to VIII (search, track, pregrasp): objects are found, reached and lost by what the camera sees of them; who loses them
-// is a scripted force that throws them away.
+// Tables III to VIII (search, track, pregrasp): objects are found, reached and lost by the rendered camera; a scripted
+// force throws them away where a test needs a loss.
 #include "behaviour_run.hpp"
 
 namespace constrictor::testing {
@@ -10,9 +10,10 @@ constexpr double kRadius_m = 0.085;
 std::string scene(const std::string& at, const std::string& more = "") {
   return "name: one\nobjects: [{colour: green, frame: world, position_m: " + at +
          ", shape: cylinder, radius_m: 0.085, height_m: 0.15, mass_kg: 0.4}]\n"
-         "start: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n" + more;
+         "start: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n" +
+         more;
 }
-/// The object is thrown away at this time: 40 N for 0.2 s make 20 m/s.
+/// A force throws the object away at this time: 40 N for 0.2 s accelerate it to 20 m/s.
 std::string thrown(double at_s) {
   return "perturbations: [{object: 0, at_s: " + std::to_string(at_s) + ", duration_s: 0.2, force_n: [10, 40, 15]}]\n";
 }
@@ -26,20 +27,21 @@ class ObjectEvents : public Behaviour {
   }
 };
 
-TEST_F(ObjectEvents, SearchingFindsAnObjectOnceTheHeadHasTurnedToIt) {
+TEST_F(ObjectEvents, SearchFindsAnObjectAfterTheHeadHasTurnedToIt) {
   begin(scene("[0.5, 1.3]"));
   ASSERT_FALSE(in_view(head(), object(), 10.0));
   start_green(msg::kTaskSearchObject);
   ASSERT_TRUE(until_event(msg::kEventObjectFound, 20.0));
   const Happened& found = *first(msg::kEventObjectFound);
   EXPECT_EQ(found.event.colour, msg::kColourGreen);
-  // In the picture, its edge at least: it is 0.085 m wide to each side.
-  EXPECT_LT(std::abs(found.head.bearing_rad(found.object)), 0.25 * M_PI + kRadius_m / found.head.distance_m(found.object));
+  // At least the edge of the object is in the image: its radius is 0.085 m.
+  EXPECT_LT(std::abs(found.head.bearing_rad(found.object)),
+            0.25 * M_PI + kRadius_m / found.head.distance_m(found.object));
   EXPECT_GT(found.head.yaw_rad, 0.2) << "the head had to turn left";
   EXPECT_EQ(until_end(3.0), msg::kGoalSucceeded);
 }
 
-TEST_F(ObjectEvents, SearchingForANamedObjectPassesOverANearerOneOfItsColour) {
+TEST_F(ObjectEvents, SearchForAHandleIgnoresANearerObjectOfTheSameColour) {
   const std::string object = ", shape: cylinder, radius_m: 0.085, height_m: 0.15, mass_kg: 0.4}";
   begin("name: two\nobjects:\n  - {colour: green, frame: world, position_m: [1.3, 0.4]" + object +
         "\n  - {colour: green, frame: world, position_m: [1.9, -0.6]" + object +
@@ -59,14 +61,14 @@ TEST_F(ObjectEvents, SearchingForANamedObjectPassesOverANearerOneOfItsColour) {
   EXPECT_TRUE(in_view(found.head, place_of(world().object_poses[1]), 3.0));
 }
 
-TEST_F(ObjectEvents, SearchingDoesNotTakeAnObjectOfAnotherColour) {
+TEST_F(ObjectEvents, SearchIgnoresAnObjectOfAnotherColour) {
   begin(scene("[1.2, 0.1]"));
   start(msg::kTaskSearchObject, &msg::TaskParameters::object_colour, msg::kColourRed);
   EXPECT_FALSE(until_event(msg::kEventObjectFound, 4.0));
   EXPECT_TRUE(in_view(head(), object(), 3.0) || std::abs(head().yaw_rad) > 0.3);
 }
 
-TEST_F(ObjectEvents, SearchingLosesAnObjectThatVanishesAfterItWasFound) {
+TEST_F(ObjectEvents, SearchReportsObjectLostWhenTheFoundObjectVanishes) {
   begin(scene("[1.2, 0.1]", thrown(0.6)));
   start_green(msg::kTaskSearchObject);
   ASSERT_TRUE(until_event(msg::kEventObjectFound, 3.0));
@@ -74,11 +76,11 @@ TEST_F(ObjectEvents, SearchingLosesAnObjectThatVanishesAfterItWasFound) {
   ASSERT_TRUE(until_event(msg::kEventObjectLost, 3.0));
   const Happened& lost = *first(msg::kEventObjectLost);
   EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
-  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // ten images without it
-  EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "it goes on searching";
+  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // ten images without the object
+  EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "the search continues";
 }
 
-TEST_F(ObjectEvents, TrackingReachesAnObject) {
+TEST_F(ObjectEvents, TrackReachesTheObject) {
   begin(scene("[2.2, 0.4]"));
   find();
   start_green(msg::kTaskTrackObject);
@@ -88,11 +90,12 @@ TEST_F(ObjectEvents, TrackingReachesAnObject) {
   const double range_m = reached.head.distance_m(reached.object) - kRadius_m;
   std::printf("reached at %.2f m, %.2f rad\n", range_m, reached.head.bearing_rad(reached.object));
   EXPECT_NEAR(range_m, 0.9, 0.15);  // navigation's `reach_m`
-  EXPECT_LT(std::abs(reached.head.bearing_rad(reached.object)), 0.45);  // `reach_bearing_rad` is 0.3, of the mean of a swaying head
+  EXPECT_LT(std::abs(reached.head.bearing_rad(reached.object)),
+            0.45);  // `reach_bearing_rad` is 0.3 for the mean bearing of a swaying head
   EXPECT_EQ(until_end(1.0), msg::kGoalSucceeded);
 }
 
-TEST_F(ObjectEvents, TrackingLosesAnObjectThatVanishes) {
+TEST_F(ObjectEvents, TrackReportsObjectLostWhenTheObjectVanishes) {
   begin(scene("[2.6, 0.2]", thrown(3.0)));
   find();
   start_green(msg::kTaskTrackObject);
@@ -104,7 +107,7 @@ TEST_F(ObjectEvents, TrackingLosesAnObjectThatVanishes) {
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
 }
 
-TEST_F(ObjectEvents, PregraspIsLostWhenTheObjectVanishes) {
+TEST_F(ObjectEvents, PregraspReportsPregraspLostWhenTheObjectVanishes) {
   begin(scene("[1.9, 0.1]", thrown(2.5)));
   find();
   start_green(msg::kTaskPregrasp);

@@ -1,7 +1,10 @@
-# Builds one example from its installed copy, against the installed package: what a user does by hand.
+# Builds one example from its installed copy against the installed package, as a user does.
 # cmake -DPREFIX=... -DEXAMPLE=... -DBUILD=... -DLAUNCHER=... -P build_example.cmake
+set(SHARE ${PREFIX}/share/constrictor)
+set(CONFIGURE -S ${SHARE}/examples/${EXAMPLE} -B ${BUILD}/${EXAMPLE} -DCMAKE_PREFIX_PATH=${PREFIX}
+              -DCONSTRICTOR_IDL=${SHARE}/idl -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} --no-warn-unused-cli)
 foreach(arguments
-    "-S;${PREFIX}/share/constrictor/examples/${EXAMPLE};-B;${BUILD}/${EXAMPLE};-DCMAKE_PREFIX_PATH=${PREFIX};-DCONSTRICTOR_IDL=${PREFIX}/share/constrictor/idl;-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER};--no-warn-unused-cli"
+    "${CONFIGURE}"
     "--build;${BUILD}/${EXAMPLE}")
   execute_process(COMMAND ${CMAKE_COMMAND} ${arguments} RESULT_VARIABLE failed)
   if(failed)

@@ -1,4 +1,4 @@
-// A run from the installed prefix, an example beside it, and what the test itself sees of both on DDS.
+// A run from the installed prefix, an example beside it, and what the test itself reads of both over DDS.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,17 +11,20 @@
 #include <string>
 #include <vector>
 
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/wait_set.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
+#include "cyclone/wait_set.hpp"
+#include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
-inline std::string example(const std::string& name) { return std::string(CONSTRICTOR_EXAMPLES) + "/" + name + "/" + name; }
+inline std::string example(const std::string& name) {
+  return std::string(CONSTRICTOR_EXAMPLES) + "/" + name + "/" + name;
+}
 
-/// Authority and goals as they are said on DDS.
+/// Reads authority and goals over DDS.
 struct Witness {
   explicit Witness(unsigned domain)
       : here(domain),
@@ -31,7 +34,7 @@ struct Witness {
     wait_set.attach(authority_reader.get());
     wait_set.attach(event_reader.get());
   }
-  /// Listens until `condition` holds; false if it does not within the bound.
+  /// Reads until `condition` holds; false if it does not within the bound.
   template <class Condition>
   bool until(Condition condition, std::chrono::seconds bound) {
     for (const auto end = std::chrono::steady_clock::now() + bound; !condition();) {
@@ -76,17 +79,20 @@ class ExampleRun : public ::testing::Test {
     return path.string();
   }
   [[nodiscard]] Process run(const std::string& scenario, std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {CONSTRICTOR_PREFIX "/bin/constrictor", "run", scenario, "--report", (dir_ / "r").string()};
+    std::vector<std::string> arguments = {CONSTRICTOR_PREFIX "/bin/constrictor", "run", scenario, "--report",
+                                          (dir_ / "r").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments));
   }
-  /// The domain that a run has claimed and printed; 0 if it said nothing in time.
+  /// The domain that a run has claimed and printed; 0 if it printed none in time.
   [[nodiscard]] static unsigned domain_of(Process& run) {
     if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
     const std::string output = run.output();
     return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
   }
-  [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(dir_ / "r/report.json"), nullptr, false); }
+  [[nodiscard]] nlohmann::json report() const {
+    return nlohmann::json::parse(std::ifstream(dir_ / "r/report.json"), nullptr, false);
+  }
 
   const TemporaryFolder folder_;
   const std::filesystem::path dir_ = folder_.path();

@@ -1,4 +1,4 @@
-// Whole missions flown by outsiders: they take over in mid-mission and complete it; ground truth is the judge.
+// Whole missions of external planners: they take over, also in mid-mission, and complete it by ground truth.
 #include "example_run.hpp"
 
 namespace constrictor::testing {
@@ -17,11 +17,12 @@ std::vector<int> dropped(const Witness& witness, std::uint64_t level) {
 
 class Mission : public ExampleRun {
  protected:
-  /// A run with more simulated time than the default: an outsider's timing is the wall clock's.
+  /// A run with more simulated time than the default: an external planner's timing is that of the wall clock.
   [[nodiscard]] Process patient_run(const std::string& scenario) const {
-    return run(scenario, {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: 900", "max_sim_time_s: 1900")});
+    return run(scenario, {"--config", "report=" + altered("sim/report/report.yaml", "max_sim_time_s: 900",
+                                                          "max_sim_time_s: 1900")});
   }
-  /// Runs to the end beside `planner` and expects that ground truth finds every object on its zone.
+  /// Runs to the end beside `planner` and expects every object in its zone by ground truth.
   void completes(Process& launcher, Process& planner, Witness& witness) {
     EXPECT_TRUE(witness.until([&] { return !planner.running(); }, 1200s));
     EXPECT_EQ(planner.wait(1s), 0) << planner.output() << planner.errors();

@@ -1,5 +1,5 @@
-// The examples beside a real run from the installed prefix: they take over, their tasks run, they give back. Whole missions are in
-// mission_long_test.cpp.
+// The examples beside a real run from the installed prefix: they take authority, start tasks and release authority.
+// Whole missions are in mission_long_test.cpp.
 #include <signal.h>
 
 #include "example_run.hpp"
@@ -17,12 +17,14 @@ class Takeover : public ExampleRun {
     ASSERT_GT(domain, 0u) << launcher.output() << launcher.errors();
     Witness witness(domain);
     Process planner({example(name), "--domain", std::to_string(domain), "--order", "green", "--at", "2"});
-    ASSERT_TRUE(witness.until([&] { return witness.holds(name); }, 30s)) << planner.output() << planner.errors() << launcher.output();
-    // Its own follow_line goal runs and finds the line; the built-in planner's goal has ended.
-    EXPECT_TRUE(witness.until([&] { return witness.happened(msg::kTaskFollowLine, msg::kEventLineFound); }, 30s)) << planner.output();
+    ASSERT_TRUE(witness.until([&] { return witness.holds(name); }, 30s))
+        << planner.output() << planner.errors() << launcher.output();
+    // The example's own follow_line goal runs and finds the line; the built-in planner's goal has ended.
+    EXPECT_TRUE(witness.until([&] { return witness.happened(msg::kTaskFollowLine, msg::kEventLineFound); }, 30s))
+        << planner.output();
     EXPECT_TRUE(planner.wait_for("event 1 of task 1", 10s)) << planner.output();
     EXPECT_EQ(witness.authority.refused_count, 0u) << witness.authority.refusal;
-    // Its death gives authority back to nobody.
+    // After its death nobody has authority.
     planner.signal(SIGKILL);
     EXPECT_TRUE(witness.until([&] { return !witness.holds(name); }, 15s));
     launcher.signal(SIGTERM);
@@ -30,13 +32,13 @@ class Takeover : public ExampleRun {
   }
 };
 
-TEST_F(Takeover, APlannerOnTheInstalledPackageTakesOverAndItsDeathGivesBack) { takes_over("red_first"); }
+TEST_F(Takeover, APlannerOnTheInstalledPackageTakesOverAndItsDeathReleasesAuthority) { takes_over("red_first"); }
 
 #ifdef CONSTRICTOR_HAS_FAST_DDS
-TEST_F(Takeover, APlannerOnFastDdsTakesOverAndItsDeathGivesBack) { takes_over("fastdds_planner"); }
+TEST_F(Takeover, APlannerOnFastDdsTakesOverAndItsDeathReleasesAuthority) { takes_over("fastdds_planner"); }
 #endif
 
-TEST_F(ExampleRun, AClosePathOfWaypointsIsFollowedAndTheErrorReported) {
+TEST_F(ExampleRun, FollowsAPathOfWaypointsAndReportsTheError) {
   Process launcher = run("line", {"--pace", "4x"});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output() << launcher.errors();

@@ -1,4 +1,4 @@
-// The bridge between a real run and another vendor's DDS that knows nothing but ROS 2's topic and type names.
+// The bridge between a real run and another vendor's DDS, which uses only ROS 2's topic and type names.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -8,11 +8,12 @@
 #include <sstream>
 #include <thread>
 
-#include "runtime/dds/domain.hpp"
-#include "runtime/dds/endpoint.hpp"
-#include "runtime/dds/outside_link.hpp"
-#include "runtime/dds/wait_set.hpp"
+#include "client/request_writer.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
+#include "cyclone/wait_set.hpp"
 #include "running.hpp"
+#include "support/eventually.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -37,12 +38,13 @@ std::vector<Line> lines_of(const std::string& output) {
   return lines;
 }
 
-TEST_F(Outside, RosSeesTheRobotAndTheRunDoesNotSeeTheBridge) {
+TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) {
   Process launcher = run("bridged", "short", {"--max-sim-time", "8", "--pace", "2x"});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output();
   const std::string ros_domain = std::to_string(100 + domain);  // runs take 1 to 100
-  Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain}, {{"ROS_LOCALHOST_ONLY", "1"}});
+  Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain},
+                 {{"ROS_LOCALHOST_ONLY", "1"}});
   Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "8"});
 
   // What the robot itself says, for comparison.
@@ -55,12 +57,16 @@ TEST_F(Outside, RosSeesTheRobotAndTheRunDoesNotSeeTheBridge) {
     wait_set.attach(joints.get());
     wait_set.attach(ticks.get());
     bool over = false;
-    for (const auto end = std::chrono::steady_clock::now() + 30s; !over && std::chrono::steady_clock::now() < end;) {
-      wait_set.wait(200ms);
-      joints.take([&](const msg::JointState& m) { said[m.header.time_ns].assign(m.position_rad, m.position_rad + m.joint_count); });
-      ticks.take([&](const msg::Tick& tick) { over = over || tick.final_tick; });
-    }
-    EXPECT_TRUE(over);
+    EXPECT_TRUE(eventually(
+        [&] {
+          wait_set.wait(200ms);
+          joints.take([&](const msg::JointState& m) {
+            said[m.header.time_ns].assign(m.position_rad, m.position_rad + m.joint_count);
+          });
+          ticks.take([&](const msg::Tick& tick) { over = over || tick.final_tick; });
+          return over;
+        },
+        30s));
   }
   ASSERT_TRUE(launcher.wait(30s));
   EXPECT_EQ(bridge.wait(15s), 0) << bridge.errors();  // it ends with the run
@@ -108,7 +114,8 @@ TEST_F(Outside, RosSeesTheRobotAndTheRunDoesNotSeeTheBridge) {
   EXPECT_GE(count["tf_static"], 1);
   EXPECT_GT(count["image"], 5);
   EXPECT_GT(compared, 50);
-  for (const auto& stamp : image_stamps) EXPECT_TRUE(info_stamps.contains(stamp)) << "no camera_info with the image of " << stamp;
+  for (const auto& stamp : image_stamps)
+    EXPECT_TRUE(info_stamps.contains(stamp)) << "no camera_info with the image of " << stamp;
 
   Process alone = run("alone", "short", {"--max-sim-time", "8", "--in-process"});
   ASSERT_TRUE(alone.wait(60s));
@@ -117,12 +124,13 @@ TEST_F(Outside, RosSeesTheRobotAndTheRunDoesNotSeeTheBridge) {
   EXPECT_EQ(diff.output(), "equal\n");  // every message of every member, the state hash among them
 }
 
-TEST_F(Outside, AVelocityFromRosGoesThroughInputAndIsGivenBackWhenItsWriterGoes) {
+TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   Process launcher = run("driven", "line", {"--pace", "1x"});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output();
   const std::string ros_domain = std::to_string(100 + domain);
-  Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain}, {{"ROS_LOCALHOST_ONLY", "1"}});
+  Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain},
+                 {{"ROS_LOCALHOST_ONLY", "1"}});
   const dds::Domain here(domain);
   const auto authorities = dds::Reader<msg::Authority>::member(here.participant(), "authority");
   const auto trajectories = dds::Reader<msg::DesiredTrajectory>::observer(here.participant(), "desired_trajectory");
@@ -161,11 +169,13 @@ TEST_F(Outside, AVelocityFromRosGoesThroughInputAndIsGivenBackWhenItsWriterGoes)
   hand.write(wish);
   ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityOperator && of_bridge(authority.source); }, 60s));
   // Backwards at 0.45 m/s with 0.9 m a wave; turning left backwards is a curvature to the right.
-  EXPECT_TRUE(until([&] { return std::abs(desired.frequency_hz + 0.5) < 1e-9; }, 30s)) << desired.method << " " << desired.frequency_hz;
+  EXPECT_TRUE(until([&] { return std::abs(desired.frequency_hz + 0.5) < 1e-9; }, 30s))
+      << desired.method << " " << desired.frequency_hz;
   EXPECT_NEAR(desired.curvature_1_m, 0.2 / -0.45, 1e-9);
   probe.signal(SIGTERM);
   ASSERT_EQ(probe.wait(20s), 0);
-  EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s)) << "level " << int{authority.level};
+  EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s))
+      << "level " << int{authority.level};
   launcher.signal(SIGTERM);
   EXPECT_TRUE(launcher.wait(15s));
 }

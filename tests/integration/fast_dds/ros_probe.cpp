@@ -1,5 +1,5 @@
-// ros_probe: what a ROS 2 node would see, on another vendor's DDS with ROS's topic and type names. For each sample it prints a line;
-// with --drive it steers, as teleop_twist_keyboard would.
+// ros_probe: acts as a ROS 2 node on another vendor's DDS with ROS's topic and type names. It prints a line for each
+// sample; with --drive it writes velocities, as teleop_twist_keyboard does.
 //   ros_probe --domain N --for SECONDS [--drive SPEED,TURN]
 #include <chrono>
 #include <csignal>
@@ -34,23 +34,26 @@ int main(int argc, char** argv) {
   }
   namespace sensor = sensor_msgs::msg::dds_;
   example::Participant node(domain, "ros_probe");
-  node.read<rosgraph_msgs::msg::dds_::Clock_PubSubType>("rt/clock", false, 10, [](const auto& m) { std::printf("clock %lld\n", ns(m.clock())); });
+  node.read<rosgraph_msgs::msg::dds_::Clock_PubSubType>(
+      "rt/clock", false, 10, [](const auto& m) { std::printf("clock %lld\n", ns(m.clock())); });
   node.read<sensor::JointState_PubSubType>("rt/joint_states", false, 10, [](const auto& m) {
     std::printf("joint_states %lld", ns(m.header().stamp()));
     for (std::size_t i = 0; i < m.name().size(); ++i) std::printf(" %s=%.17g", m.name()[i].c_str(), m.position().at(i));
     std::printf("\n");
   });
   node.read<sensor::Imu_PubSubType>("rt/imu", false, 10, [](const auto& m) {
-    std::printf("imu %lld %s %.17g\n", ns(m.header().stamp()), m.header().frame_id().c_str(), m.linear_acceleration().z());
+    std::printf("imu %lld %s %.17g\n", ns(m.header().stamp()), m.header().frame_id().c_str(),
+                m.linear_acceleration().z());
   });
   node.read<nav_msgs::msg::dds_::Odometry_PubSubType>("rt/odom", false, 10, [](const auto& m) {
-    std::printf("odom %lld %s %s %.17g %.17g\n", ns(m.header().stamp()), m.header().frame_id().c_str(), m.child_frame_id().c_str(),
-                m.pose().pose().position().x(), m.pose().pose().position().y());
+    std::printf("odom %lld %s %s %.17g %.17g\n", ns(m.header().stamp()), m.header().frame_id().c_str(),
+                m.child_frame_id().c_str(), m.pose().pose().position().x(), m.pose().pose().position().y());
   });
   const auto print_tf = [](const char* name) {
     return [name](const tf2_msgs::msg::dds_::TFMessage_& m) {
       std::printf("%s", name);
-      for (const auto& t : m.transforms()) std::printf(" %s>%s", t.header().frame_id().c_str(), t.child_frame_id().c_str());
+      for (const auto& t : m.transforms())
+        std::printf(" %s>%s", t.header().frame_id().c_str(), t.child_frame_id().c_str());
       std::printf("\n");
     };
   };
@@ -59,10 +62,12 @@ int main(int argc, char** argv) {
   node.read<sensor::Image_PubSubType>("rt/camera/image_raw", true, 2, [](const auto& m) {
     unsigned long sum = 0;
     for (const auto byte : m.data()) sum += byte;
-    std::printf("image %lld %ux%u %s %zu %lu\n", ns(m.header().stamp()), m.width(), m.height(), m.encoding().c_str(), m.data().size(), sum);
+    std::printf("image %lld %ux%u %s %zu %lu\n", ns(m.header().stamp()), m.width(), m.height(), m.encoding().c_str(),
+                m.data().size(), sum);
   });
   node.read<sensor::CameraInfo_PubSubType>("rt/camera/camera_info", true, 10, [](const auto& m) {
-    std::printf("camera_info %lld %ux%u %s fx=%.6f\n", ns(m.header().stamp()), m.width(), m.height(), m.distortion_model().c_str(), m.k()[0]);
+    std::printf("camera_info %lld %ux%u %s fx=%.6f\n", ns(m.header().stamp()), m.width(), m.height(),
+                m.distortion_model().c_str(), m.k()[0]);
   });
   auto* velocity = drive ? node.write<geometry_msgs::msg::dds_::Twist_PubSubType>("rt/cmd_vel", 1, false) : nullptr;
 

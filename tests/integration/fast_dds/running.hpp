@@ -1,4 +1,4 @@
-// A `constrictor run` for tests of what outsiders see: its domain, its report.
+// A `constrictor run` for tests on another vendor's DDS: its domain, its report.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,14 +14,14 @@
 
 namespace constrictor::testing {
 
-class Outside : public ::testing::Test {
+class RosBridge : public ::testing::Test {
  protected:
   [[nodiscard]] Process run(const std::string& name, const std::string& scenario, std::vector<std::string> more) const {
     std::vector<std::string> arguments = {program("constrictor"), "run", scenario, "--report", (dir_ / name).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments));
   }
-  /// The domain that a run has claimed and printed; 0 if it said nothing in time.
+  /// The domain that a run has claimed and printed; 0 if it printed none in time.
   [[nodiscard]] static unsigned domain_of(Process& run) {
     if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
     const std::string output = run.output();

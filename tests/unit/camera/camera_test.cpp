@@ -1,4 +1,4 @@
-// The components `camera` and `overview` in a run of their own.
+// The components `camera` and `overview` in a run with a scripted plant.
 #include "sim/camera/camera.hpp"
 
 #include <gtest/gtest.h>
@@ -8,17 +8,17 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "scene_plant.hpp"
-#include "sim/camera/overview.hpp"
+#include "sim/overview/overview.hpp"
 
 namespace constrictor {
 namespace {
 
 Setup setup_with_seed(std::uint64_t seed) {
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.seed = seed;
   return setup;
 }
@@ -33,7 +33,8 @@ struct Frame {
 template <class T>
 void collect(LocalRun& run, const Topic<T>& topic, std::vector<Frame>& frames) {
   run.subscribe<T>(topic, [&frames](const T& image) {
-    frames.push_back({image.header.tick, image.exposure_tick, {image.data._buffer, image.data._buffer + image.data._length}});
+    frames.push_back(
+        {image.header.tick, image.exposure_tick, {image.data._buffer, image.data._buffer + image.data._length}});
   });
 }
 
@@ -62,12 +63,12 @@ TEST(Camera, PublishedModelPredictsWhereAnObjectAppears) {
   const msg::CameraImage* image = run.latest(topics::kCameraImage);
   ASSERT_NE(info, nullptr);
   ASSERT_NE(image, nullptr);
-  // By hand, from the message alone: world to head to camera to pixel.
+  // Computed from the message alone: from the world to the head, to the camera, to the pixel.
   const auto isometry = [](const msg::Pose3& pose) {
     const auto& [w, x, y, z] = pose.orientation;
     Eigen::Matrix3d R;
-    R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
-        2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+    R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+        1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
     return std::pair{R, Eigen::Vector3d(pose.position_m.x, pose.position_m.y, pose.position_m.z)};
   };
   const auto [R_WH, p_WH] = isometry(test::ScenePlant::head_pose(1.0));
@@ -91,7 +92,8 @@ TEST(Camera, PublishedModelPredictsWhereAnObjectAppears) {
     }
     ASSERT_GT(count, 50);
     EXPECT_NEAR(sum_u / count, u, 1.0);
-    EXPECT_NEAR(sum_v / count, v, 1.5);  // the visible half of a cylinder lies a little nearer and lower than its centre
+    EXPECT_NEAR(sum_v / count, v,
+                1.5);  // the visible half of a cylinder is nearer than its centre
   }
 }
 
@@ -121,18 +123,19 @@ TEST(Camera, RestartedProcessesWriteTheSameImages) {
     return std::pair{frames, run.output_hashes()};
   };
   const auto reference = run_with_restarts({});
-  const auto restarted = run_with_restarts({{3, "camera"}, {26, "camera"}, {60, "overview"}, {72, "camera"}, {101, "overview"}});
+  const auto restarted =
+      run_with_restarts({{3, "camera"}, {26, "camera"}, {60, "overview"}, {72, "camera"}, {101, "overview"}});
   EXPECT_EQ(reference.first, restarted.first);
   EXPECT_EQ(reference.second, restarted.second);
 }
 
-TEST(Overview, ShowsZonesObjectsAndLineFromAFixedPlace) {
+TEST(Overview, ShowsZonesObjectsAndLineFromAFixedViewpoint) {
   LocalRun run({test::scene_plant_factory(), make_overview_factory()}, setup_with_seed(1));
   std::vector<Frame> frames;
   collect(run, topics::kOverviewImage, frames);
   run.advance(101);
   ASSERT_EQ(frames.size(), 3U);
-  const OverviewConfiguration configuration = load_overview(share_path("sim/camera/overview.yaml"));
+  const auto configuration = load_parameters<OverviewConfig>(data_path("sim/overview/overview.yaml"));
   ASSERT_EQ(frames[0].data.size(), static_cast<std::size_t>(configuration.width * configuration.height * 3));
   int green = 0, red = 0, blue = 0, changed = 0;
   for (std::size_t i = 0; i < frames[0].data.size(); i += 3) {
@@ -145,8 +148,8 @@ TEST(Overview, ShowsZonesObjectsAndLineFromAFixedPlace) {
   EXPECT_GT(green, 100);
   EXPECT_GT(red, 100);
   EXPECT_GT(blue, 300);
-  EXPECT_GT(changed, 100);                        // the robot moves
-  EXPECT_LT(changed, configuration.width * configuration.height / 5);  // the camera does not
+  EXPECT_GT(changed, 100);                                             // the robot has moved
+  EXPECT_LT(changed, configuration.width * configuration.height / 5);  // the camera has not moved
 }
 
 }  // namespace

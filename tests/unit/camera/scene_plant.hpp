@@ -1,22 +1,26 @@
-// A plant without physics: a scene, and a world that moves by a formula.
+// A plant without physics: it publishes a scene and a world that moves by a formula.
 #pragma once
 
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "runtime/component.hpp"
+#include "component/component.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor::test {
 
-/// Two objects 2 m ahead of the origin, a straight line along x, the robot creeping along it at 0.2 m/s with a swinging body.
-class ScenePlant : public Plant {
+/// Two objects 2 m ahead of the origin and a straight line along x. The robot moves along the line at 0.2 m/s and
+/// swings its body.
+class ScenePlant : public testing::PlantBase {
  public:
   static constexpr std::uint16_t kModules = 12;
   static constexpr double kNoise = 0.02;
 
   ScenePlant(Wiring& wiring, const Setup& setup)
-      : seed_(setup.seed), scene_out_(wiring.output(topics::kSceneDescription)), world_out_(wiring.output(topics::kWorldState)) {}
+      : seed_(setup.seed),
+        scene_out_(wiring.output(topics::kSceneDescription)),
+        world_out_(wiring.output(topics::kWorldState)) {}
 
   static msg::SceneDescription description(std::uint64_t seed) {
     msg::SceneDescription scene{};
@@ -60,8 +64,6 @@ class ScenePlant : public Plant {
     for (int i = 0; i < 2; ++i) world.object_poses[i] = object_pose(i);
     world_out_.write(world);
   }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
 
  private:
   std::uint64_t seed_;
@@ -69,8 +71,6 @@ class ScenePlant : public Plant {
   Output<msg::WorldState> world_out_;
 };
 
-inline ComponentFactory scene_plant_factory() {
-  return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<ScenePlant>(wiring, setup); }};
-}
+inline ComponentFactory scene_plant_factory() { return testing::member_of_class<ScenePlant>("physics"); }
 
 }  // namespace constrictor::test

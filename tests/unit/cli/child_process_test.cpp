@@ -6,7 +6,8 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
-#include <thread>
+
+#include "support/eventually.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -16,32 +17,35 @@ using namespace std::chrono_literals;
 
 class ChildProcessTest : public ::testing::Test {
  protected:
-  ChildProcessTest() : log_(fs::temp_directory_path() / ("child_process_" + std::to_string(::getpid()) + ".log")) { fs::remove(log_); }
+  ChildProcessTest() : log_(fs::temp_directory_path() / ("child_process_" + std::to_string(::getpid()) + ".log")) {
+    fs::remove(log_);
+  }
   ~ChildProcessTest() override { fs::remove(log_); }
-  [[nodiscard]] ChildProcess shell(const std::string& script) const { return {{"/bin/sh", "-c", script}, {"WORD=hello"}, log_}; }
+  [[nodiscard]] ChildProcess shell(const std::string& script) const {
+    return {{"/bin/sh", "-c", script}, {"WORD=hello"}, log_};
+  }
   static ChildExit wait(ChildProcess& child) {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (!child.poll() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(testing::eventually([&] { return child.poll().has_value(); }));
     return child.poll().value_or(ChildExit{-1, 0});
   }
   fs::path log_;
 };
 
-TEST_F(ChildProcessTest, TellsExitStatusAndLastWords) {
+TEST_F(ChildProcessTest, ReportsExitStatusAndTheLastLinesOfTheLog) {
   ChildProcess child = shell("echo one; echo two >&2; echo $WORD; exit 78");
   const ChildExit exit = wait(child);
   EXPECT_EQ(exit.code(), 78);
-  EXPECT_EQ(exit.describe(), "exit status 78 (configuration)");
+  EXPECT_EQ(exit.describe(), "ended with status 78 (configuration)");
   EXPECT_EQ(last_lines(log_, 0, 2), (std::vector<std::string>{"two", "hello"}));
   EXPECT_EQ(last_lines(log_, 4, 9).size(), 2u);
 }
 
-TEST_F(ChildProcessTest, TellsTheSignalThatKilledIt) {
+TEST_F(ChildProcessTest, ReportsTheSignalThatKilledIt) {
   ChildProcess child = shell("kill -SEGV $$");
-  EXPECT_EQ(wait(child).describe(), "killed by signal 11 (Segmentation fault)");
+  EXPECT_EQ(wait(child).describe(), "was killed by signal 11 (Segmentation fault)");
 }
 
-TEST_F(ChildProcessTest, AMissingProgramSaysSo) {
+TEST_F(ChildProcessTest, ReportsAMissingProgram) {
   ChildProcess child({"/nowhere/program"}, {}, log_);
   EXPECT_EQ(wait(child).code(), 127);
   EXPECT_EQ(last_lines(log_, 0, 1), std::vector<std::string>{"/nowhere/program: No such file or directory"});
@@ -49,7 +53,7 @@ TEST_F(ChildProcessTest, AMissingProgramSaysSo) {
 
 TEST_F(ChildProcessTest, CountsCpuTimeAndMemory) {
   ChildProcess child = shell("while :; do :; done");
-  // However busy the machine is: until the kernel says that the child has computed for so long.
+  // On a busy machine this takes long: wait until the kernel has counted 0.1 s for the child.
   const auto computed_s = [&] {
     std::ifstream file("/proc/" + std::to_string(child.pid()) + "/stat");
     std::string skipped;
@@ -58,10 +62,8 @@ TEST_F(ChildProcessTest, CountsCpuTimeAndMemory) {
     file >> user >> system;
     return static_cast<double>(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
   };
-  const auto end = std::chrono::steady_clock::now() + 60s;
-  while (computed_s() < 0.1 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(5ms);
+  ASSERT_TRUE(testing::eventually([&] { return computed_s() >= 0.1; }, 60s));
   const double least_s = computed_s();
-  ASSERT_GE(least_s, 0.1);
   EXPECT_GT(child.pss_mib(), 0.01);
   child.signal(SIGKILL);
   EXPECT_GE(wait(child).cpu_s, least_s - 0.02);

@@ -1,8 +1,9 @@
-// Each fault that `constrictor doctor` names, seeded in the facts; processes that have them: tests/integration/introspection_test.
+// Each fault that `constrictor doctor` names, seeded in the facts; processes that have them:
+// tests/integration/introspection_test.
 #include <gtest/gtest.h>
 
 #include "cli/introspection/diagnosis.hpp"
-#include "runtime/dds/endpoint.hpp"
+#include "cyclone/endpoint.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -55,7 +56,8 @@ std::vector<std::string> faults(const Facts& facts) {
 using Names = std::vector<std::string>;
 
 std::string on_interface(const std::string& attributes, const std::string& more = "") {
-  return "<CycloneDDS><Domain><General><Interfaces><NetworkInterface " + attributes + "/></Interfaces>" + more + "</General></Domain></CycloneDDS>";
+  return "<CycloneDDS><Domain><General><Interfaces><NetworkInterface " + attributes + "/></Interfaces>" + more +
+         "</General></Domain></CycloneDDS>";
 }
 
 TEST(Diagnosis, FindsNothingInASoundRun) { EXPECT_EQ(faults(sound()), Names{}); }

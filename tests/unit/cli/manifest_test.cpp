@@ -5,8 +5,8 @@
 
 #include <fstream>
 
+#include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 /// A manifest file that is gone after the test.
 class File {
  public:
-  explicit File(const std::string& text) : path_(fs::temp_directory_path() / ("manifest_" + std::to_string(::getpid()) + ".yaml")) {
+  explicit File(const std::string& text)
+      : path_(fs::temp_directory_path() / ("manifest_" + std::to_string(::getpid()) + ".yaml")) {
     std::ofstream(path_) << text;
   }
   ~File() { fs::remove(path_); }
@@ -40,7 +41,7 @@ class File {
 const char* const kHead = "plant: physics\nrobot: r.yaml\nscenario: s.yaml\nprocesses:\n";
 
 TEST(Manifest, OfTheCaseStudyHasEveryComponentInAProcessOfItsOwn) {
-  const LaunchManifest manifest = load_manifest(share_path("deploy/case_study.yaml"));
+  const LaunchManifest manifest = load_manifest(data_path("deploy/case_study.yaml"));
   EXPECT_EQ(manifest.plant, "physics");
   EXPECT_EQ(manifest.processes.size(), manifest.roster().size());
   EXPECT_GE(manifest.roster().size(), 9u);
@@ -48,7 +49,8 @@ TEST(Manifest, OfTheCaseStudyHasEveryComponentInAProcessOfItsOwn) {
 
 TEST(Manifest, ReadsProcesses) {
   const File file(std::string(kHead) +
-                  "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    config: {b: b.yaml}\n");
+                  "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    "
+                  "config: {b: b.yaml}\n");
   const LaunchManifest manifest = load_manifest(file.path());
   EXPECT_EQ(manifest.roster(), (std::vector<std::string>{"physics", "a", "b"}));
   EXPECT_EQ(manifest.processes[0].restarts, 0) << "the plant cannot be restarted";
@@ -59,15 +61,20 @@ TEST(Manifest, ReadsProcesses) {
 }
 
 TEST(Manifest, RefusesWhatMakesNoRun) {
-  EXPECT_EQ(File(std::string(kHead) + "  - components: [a]\n").error(), ":1: plant: found physics, accepted a component of processes");
-  EXPECT_NE(File(std::string(kHead) + "  - components: [physics]\n  - components: [a, a]\n").error().find("found a twice"), std::string::npos);
+  EXPECT_EQ(File(std::string(kHead) + "  - components: [a]\n").error(),
+            ":1: plant: found physics, accepted a component of processes");
+  EXPECT_NE(
+      File(std::string(kHead) + "  - components: [physics]\n  - components: [a, a]\n").error().find("found a twice"),
+      std::string::npos);
   EXPECT_NE(File(std::string(kHead) + "  - components: []\n").error().find("accepted"), std::string::npos);
-  EXPECT_NE(File(std::string(kHead) + "  - components: [physics]\n    restart: 3\n").error().find("restart"), std::string::npos);
+  EXPECT_NE(File(std::string(kHead) + "  - components: [physics]\n    restart: 3\n").error().find("restart"),
+            std::string::npos);
   EXPECT_NE(File("plant: physics\n").error().find("robot"), std::string::npos);
 }
 
 TEST(Manifest, RegroupingMovesComponentsAndKeepsAllOfThem) {
-  const File file(std::string(kHead) + "  - components: [physics]\n  - components: [a, b]\n  - components: [c]\n    restarts: 2\n");
+  const File file(std::string(kHead) +
+                  "  - components: [physics]\n  - components: [a, b]\n  - components: [c]\n    restarts: 2\n");
   LaunchManifest manifest = load_manifest(file.path());
   regroup(manifest, {{"c", "a"}});
   ASSERT_EQ(manifest.processes.size(), 3u);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "constrictor/reflect.hpp"
-#include "runtime/topics.hpp"
+#include "constrictor/topics.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
@@ -101,12 +101,14 @@ class RunDifferenceOfFiles : public ::testing::Test {
 TEST_F(RunDifferenceOfFiles, RunsThatNeverTickedAreNotEqual) {
   EXPECT_FALSE(compare_runs(log_of("a", 3), log_of("b", 3)));
   const std::filesystem::path empty = log_of("empty", 0);
-  for (const auto& [one, other] : {std::pair(empty, empty), std::pair(empty, log_of("a", 3)), std::pair(log_of("a", 3), empty)}) {
+  for (const auto& [one, other] :
+       {std::pair(empty, empty), std::pair(empty, log_of("a", 3)), std::pair(log_of("a", 3), empty)}) {
     try {
       compare_runs(one, other);
       FAIL() << one << " and " << other;
     } catch (const std::runtime_error& error) {
-      EXPECT_NE(std::string(error.what()).find("empty/hashes.bin: holds no tick"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("empty/hashes.bin: contains no tick"), std::string::npos)
+          << error.what();
     }
   }
 }

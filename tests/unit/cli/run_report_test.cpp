@@ -13,23 +13,38 @@ namespace fs = std::filesystem;
 
 class RunReport : public ::testing::Test {
  protected:
-  RunReport() : dir_(fs::temp_directory_path() / ("run_report_" + std::to_string(::getpid()))) { fs::create_directories(dir_); }
+  RunReport() : dir_(fs::temp_directory_path() / ("run_report_" + std::to_string(::getpid()))) {
+    fs::create_directories(dir_);
+  }
   ~RunReport() override { fs::remove_all(dir_); }
+  void write_mission(const std::string& text) const { std::ofstream(dir_ / "mission.json") << text; }
+  /// The reason in the verdict of a run without success, which must be that in report.json.
+  [[nodiscard]] std::string reason_of(const RunOutcome& outcome) const {
+    const RunVerdict verdict = write_report(dir_, outcome, {}, {});
+    EXPECT_FALSE(verdict.success);
+    EXPECT_EQ(report()["success"], false);
+    EXPECT_EQ(report()["reason"], verdict.reason);
+    return verdict.reason;
+  }
   [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(dir_ / "report.json")); }
   fs::path dir_;
 };
 
 TEST_F(RunReport, JoinsMissionAndProcesses) {
-  std::ofstream(dir_ / "mission.json") << R"({"success": true, "sim_time_s": 20.0, "ticks": 1001, "state_hash": "ab", "objects": []})";
+  std::ofstream(dir_ / "mission.json")
+      << R"({"success": true, "sim_time_s": 20.0, "ticks": 1001, "state_hash": "ab", "objects": []})";
   RunView view;
   view.overruns["a"] = 2;
   view.overruns["b"] = 3;
   view.refused["b"] = 4;
   const std::vector<ProcessRecord> processes = {{"a+b", {"a", "b"}, 1.5, 30.0, 1}, {"c", {"c"}, 0.5, 10.0, 0}};
-  EXPECT_TRUE(write_report(dir_, {"case_study", 7, 4.0, ""}, view, processes));
+  const RunVerdict verdict = write_report(dir_, {"case_study", 7, 4.0, "", ""}, view, processes);
+  EXPECT_TRUE(verdict.success);
+  EXPECT_EQ(verdict.reason, "");
+  EXPECT_EQ(verdict.sim_time_s, 20.0);
   const auto json = report();
-  for (const char* key : {"success", "seed", "scenario", "sim_time_s", "wall_time_s", "real_time_factor", "ticks", "state_hash",
-                          "objects", "line", "pose_error", "events", "states", "processes"}) {
+  for (const char* key : {"success", "reason", "seed", "scenario", "sim_time_s", "wall_time_s", "real_time_factor",
+                          "ticks", "state_hash", "objects", "line", "pose_error", "events", "states", "processes"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_EQ(json["seed"], 7);
@@ -42,20 +57,35 @@ TEST_F(RunReport, JoinsMissionAndProcesses) {
 }
 
 TEST_F(RunReport, WithoutAMissionThereIsNoSuccess) {
-  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, ""}, {}, {}));
-  EXPECT_EQ(report()["success"], false);
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "no report component judged the mission");
   EXPECT_TRUE(report()["state_hash"].is_null());
 }
 
-TEST_F(RunReport, AFailedRunIsNoSuccessWhateverTheMissionSays) {
-  std::ofstream(dir_ / "mission.json") << R"({"success": true})";
-  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, "control ended"}, {}, {}));
+TEST_F(RunReport, AFailedRunIsNoSuccessWhateverTheMissionReports) {
+  write_mission(R"({"success": true, "reason": ""})");
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "control ended", "ended by user at 1.0 s"}), "control ended");
   EXPECT_EQ(report()["error"], "control ended");
 }
 
 TEST_F(RunReport, ADamagedMissionIsNoSuccess) {
-  std::ofstream(dir_ / "mission.json") << "{\"success\": tr";
-  EXPECT_FALSE(write_report(dir_, {"s", 1, 1.0, ""}, {}, {}));
+  write_mission("{\"success\": tr");
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "no report component judged the mission");
+}
+
+TEST_F(RunReport, TakesTheReasonOfTheReportComponent) {
+  write_mission(R"({"success": false, "reason": "green lies 0.51 m from its zone"})");
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "green lies 0.51 m from its zone");
+}
+
+TEST_F(RunReport, KnowsThatAUserEndedTheRun) {
+  write_mission(R"({"success": false, "reason": ""})");
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "", "ended by user at 46.2 s"}), "ended by user at 46.2 s");
+  EXPECT_FALSE(report().contains("error"));
+}
+
+TEST_F(RunReport, HasAReasonAlsoWhenTheReportComponentGivesNone) {
+  write_mission(R"({"success": false})");
+  EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "the report component gave no reason");
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ msg::RunState state(std::uint32_t epoch, std::int64_t next_tick, std::uint64_t s
   return s;
 }
 
-msg::ComponentStatus status(const char* component, std::uint32_t epoch, std::int64_t tick, std::uint32_t incarnation = 1, std::uint64_t overruns = 0) {
+msg::ComponentStatus status(const char* component, std::uint32_t epoch, std::int64_t tick,
+                            std::uint32_t incarnation = 1, std::uint64_t overruns = 0) {
   msg::ComponentStatus s{};
   std::snprintf(s.component, sizeof s.component, "%s", component);
   s.run_id = kRun;
@@ -59,7 +60,7 @@ TEST(RunView, AfterAResetTickAndSeedAreTheNewOnes) {
   EXPECT_EQ(view.seed(1), 7u);
   EXPECT_EQ(view.tick, -1);
   EXPECT_FALSE(view.mission) << "the mission of the epoch before is over";
-  view.take(mission(1, 501));            // still on its way
+  view.take(mission(1, 501));  // still on its way
   view.take(status("control", 1, 500));
   view.take(state(1, 501, 1));
   EXPECT_EQ(view.tick, -1);

@@ -1,4 +1,4 @@
-// The terminal client's pure parts: keys, driving, names, and the screen within 80 columns of 24 lines.
+// The pure parts of the terminal client: keys, driving, and the screen at every size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include "cli/task_command.hpp"
 #include "cli/task_names.hpp"
+#include "cli/task_request.hpp"
 #include "cli/teleop_keys.hpp"
 #include "cli/teleop_screen.hpp"
 #include "cli/usage.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What comes out if `typed` arrives in pieces of so many bytes.
+/// The actions of `typed` if it arrives in pieces of `piece` bytes.
 std::vector<TeleopAction> actions(const std::string& typed, std::size_t piece) {
   KeyReader keys;
   std::vector<TeleopAction> list;
@@ -32,30 +33,33 @@ std::vector<TeleopAction> actions(const std::string& typed, std::size_t piece) {
   return list;
 }
 
-TEST(TeleopKeys, ReadsArrowsAndLettersHoweverTheyAreCut) {
-  const std::vector<TeleopAction> expected = {TeleopAction::kForward, TeleopAction::kForward, TeleopAction::kLeft, TeleopAction::kRight,
-                                              TeleopAction::kStand, TeleopAction::kEmergencyStop, TeleopAction::kQuit};
-  for (std::size_t piece = 1; piece <= 16; ++piece) EXPECT_EQ(actions("i\033[A\033[1;5D\033OCk q", piece), expected) << piece;
+TEST(TeleopKeys, ReadsArrowsAndLettersInPiecesOfAnySize) {
+  const std::vector<TeleopAction> expected = {
+      TeleopAction::kForward, TeleopAction::kForward,       TeleopAction::kLeft, TeleopAction::kRight,
+      TeleopAction::kStand,   TeleopAction::kEmergencyStop, TeleopAction::kQuit};
+  for (std::size_t piece = 1; piece <= 16; ++piece)
+    EXPECT_EQ(actions("i\033[A\033[1;5D\033OCk q", piece), expected) << piece;
 }
 
-TEST(TeleopKeys, ABurstOfArrowsIsThatManyArrowsInReadsOf64Bytes) {
+TEST(TeleopKeys, ReadsEveryArrowOfABurst) {
   std::string burst;
   for (int i = 0; i < 30; ++i) burst += "\033[A";
   EXPECT_EQ(actions(burst, 64), std::vector<TeleopAction>(30, TeleopAction::kForward));
 }
 
-TEST(TeleopKeys, TheEscapeKeyDoesNotQuitAndHidesNoKeyAfterIt) {
+TEST(TeleopKeys, TheEscapeKeyDoesNothingAndHidesNoKeyAfterIt) {
   KeyReader keys;
   keys.add("\033");
   EXPECT_EQ(keys.next(), "") << "the rest of an arrow may follow";
   EXPECT_EQ(keys.next(/*quiet=*/true), "\033");
   EXPECT_EQ(action_of("\033"), TeleopAction::kNone);
   EXPECT_EQ(actions("\033 ", 2), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop}));
-  EXPECT_EQ(actions("\033[ ", 1), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop})) << "not swallowed by half a sequence";
+  EXPECT_EQ(actions("\033[ ", 1), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop}))
+      << "a broken sequence does not hide it";
   EXPECT_EQ(actions("\033[1;\003", 1), (std::vector{TeleopAction::kNone, TeleopAction::kQuit}));
 }
 
-TEST(TeleopKeys, AnyBytesEndAndMostMeanNothing) {
+TEST(TeleopKeys, ReadsAnyBytesToTheEnd) {
   std::string bytes;
   for (int i = 1; i < 256; ++i) bytes += static_cast<char>(i);
   bytes += std::string("\033[") + std::string(100, '1');
@@ -75,7 +79,7 @@ struct HelpedKey {
   TeleopAction action;
 };
 
-// Each key of the help, word by word as it stands there: "keys what they do".
+// The entries of the help, word by word: the keys, then what they do.
 const std::map<std::string, std::vector<HelpedKey>> kHelped = {
     {"i/, forward/back", {{"i", TeleopAction::kForward}, {",", TeleopAction::kBack}}},
     {"j/l turn", {{"j", TeleopAction::kLeft}, {"l", TeleopAction::kRight}}},
@@ -94,7 +98,7 @@ const std::map<std::string, std::vector<HelpedKey>> kHelped = {
     {"c clear it", {{"c", TeleopAction::kClearStop}}},
 };
 
-/// The help's entries, which two blanks separate.
+/// The entries of the help. Two blanks separate them.
 std::vector<std::string> help_entries() {
   std::vector<std::string> entries;
   for (const std::string line : kTeleopHelp) {
@@ -116,24 +120,24 @@ std::vector<std::string> keys_of(const std::string& entry) {
   return keys;
 }
 
-TEST(TeleopKeys, EachKeyOfTheHelpDoesWhatTheHelpSays) {
+TEST(TeleopKeys, EachKeyDoesWhatTheHelpSays) {
   std::set<std::string> named;
   for (const std::string& entry : help_entries()) {
     SCOPED_TRACE(entry);
     const auto helped = kHelped.find(entry);
-    ASSERT_NE(helped, kHelped.end()) << "nothing is known of what this shall do";
+    ASSERT_NE(helped, kHelped.end()) << "this test has no such entry";
     const std::vector<std::string> keys = keys_of(entry);
     ASSERT_EQ(keys.size(), helped->second.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
       EXPECT_EQ(keys[i], helped->second[i].key);
       EXPECT_NE(action_of(keys[i]), TeleopAction::kNone) << keys[i] << " does nothing";
       EXPECT_EQ(action_of(keys[i]), helped->second[i].action) << keys[i];
-      EXPECT_EQ(actions(keys[i], 1), std::vector{helped->second[i].action}) << "as it is typed";
-      EXPECT_TRUE(named.insert(keys[i]).second) << keys[i] << " stands there twice";
+      EXPECT_EQ(actions(keys[i], 1), std::vector{helped->second[i].action}) << "when it is typed";
+      EXPECT_TRUE(named.insert(keys[i]).second) << keys[i] << " is there twice";
     }
   }
-  EXPECT_EQ(help_entries().size(), kHelped.size()) << "the help names them all";
-  // And the reverse: what does something is in the help, or a second way to say the same.
+  EXPECT_EQ(help_entries().size(), kHelped.size()) << "an entry is missing in the help";
+  // The reverse: each key with an action is in the help, or is an alternative to one that is.
   for (int c = 1; c < 256; ++c) {
     const std::string key(1, static_cast<char>(c));
     if (action_of(key) == TeleopAction::kNone || named.contains(key)) continue;
@@ -157,7 +161,7 @@ TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {
   EXPECT_GE(drive.speed_m_s, 0.1 - 1e-9);
 }
 
-TEST(DriveGait, SignsAreThoseOfSpeedAndTurnAndAllIsWithinTheMessage) {
+TEST(DriveGait, HasTheSignsOfSpeedAndTurnAndStaysInTheRangesOfTheMessage) {
   EXPECT_GT(drive_gait(0.3, 0.0).frequency_hz, 0.0);
   EXPECT_LT(drive_gait(-0.3, 0.0).frequency_hz, 0.0);
   EXPECT_GT(drive_gait(0.3, 0.2).curvature_1_m, 0.0);
@@ -172,53 +176,6 @@ TEST(DriveGait, SignsAreThoseOfSpeedAndTurnAndAllIsWithinTheMessage) {
   }
 }
 
-TEST(TaskNames, EveryNameIsFoundAgainHoweverItsWordsAreJoined) {
-  for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) EXPECT_EQ(task_by_name(task_word(task)), task);
-  for (std::uint8_t event = 1; event < msg::kEventCount; ++event) EXPECT_EQ(event_by_name(event_name(event)), event);
-  EXPECT_EQ(task_by_name("Follow-Line"), msg::kTaskFollowLine);
-  EXPECT_EQ(event_by_name("line_lost"), msg::kEventLineLost);
-  EXPECT_FALSE(task_by_name("none"));
-  EXPECT_FALSE(event_by_name("nothing"));
-}
-
-TEST(TaskNames, ATaskIsOneLineAndWhatIsWrongIsNamed) {
-  std::uint8_t task = 0;
-  msg::TaskParameters parameters{};
-  msg::Path path{};
-  EXPECT_EQ(parse_task("rotate direction=left timeout_s=2.5", task, parameters, path), "");
-  EXPECT_EQ(task, msg::kTaskRotate);
-  EXPECT_EQ(parameters.direction, msg::kDirectionLeft);
-  EXPECT_EQ(parameters.timeout_s, 2.5);
-  EXPECT_EQ(parse_task("drop drop-zone-colour=red object_handle=7", task, parameters, path), "");
-  EXPECT_EQ(parameters.drop_zone_colour, msg::kColourRed);
-  EXPECT_EQ(parameters.object_handle, 7);
-  for (const char* bad : {"", "fly", "rotate direction", "rotate direction=up", "rotate timeout_s=-1", "rotate timeout_s=2x",
-                          "rotate speed=1", "drop object_handle=70000", "follow_line line_colour=pink", "follow_path", "follow_path path=",
-                          "follow_path path=1,2", "follow_path path=1,2;3", "follow_path path=1,2;nan,0", "rotate direction=left path=0,0;1,0"}) {
-    EXPECT_NE(parse_task(bad, task, parameters, path), "") << bad;
-  }
-  EXPECT_EQ(parse_task("follow_path path=0,0;1.5,-0.25;2,0", task, parameters, path), "");
-  EXPECT_EQ(path.point_count, 3);
-  EXPECT_EQ(path.x_m[1], 1.5);
-  EXPECT_EQ(path.y_m[1], -0.25);
-}
-
-TEST(TaskNames, APathHasTwoToSixtyFourPoints) {
-  msg::Path path{};
-  EXPECT_EQ(set_path(path, {}), "");
-  EXPECT_EQ(path.point_count, 0);
-  EXPECT_EQ(set_path(path, std::vector<std::string>(64, "1,2")), "");
-  EXPECT_EQ(path.point_count, 64);
-  EXPECT_NE(set_path(path, std::vector<std::string>(65, "1,2")), "");
-}
-
-TEST(Durations, TakeUnitsAndRefuseTheRest) {
-  EXPECT_EQ(parse_duration("--for", "5s"), 5s);
-  EXPECT_EQ(parse_duration("--for", "250ms"), 250ms);
-  EXPECT_EQ(parse_duration("--for", "1.5m"), 90s);
-  for (const char* bad : {"", "s", "-1s", "0", "5 parsecs", "nan", "inf"}) EXPECT_THROW(parse_duration("--for", bad), UsageError) << bad;
-}
-
 TeleopScreen full_screen() {
   TeleopScreen s;
   s.run = "7 case_study_of_a_long_name";
@@ -231,7 +188,7 @@ TeleopScreen full_screen() {
   s.view.run->seed = 7;
   s.view.run->real_time_factor = 0.987;
   s.view.run->pace = 1.0;
-  s.view.run->operator_cap = true;
+  s.view.run->operator_pace = true;
   s.view.task = msg::TaskStatus{};
   std::snprintf(s.view.task->reason, sizeof s.view.task->reason, "%s", std::string(126, 'r').c_str());
   s.view.mission = msg::MissionStatus{};
@@ -245,7 +202,7 @@ TeleopScreen full_screen() {
   return s;
 }
 
-TEST(TeleopScreen, FitsAPlainTerminalWhateverThereIsToShow) {
+TEST(TeleopScreen, FitsATerminalOf80x24WhateverItShows) {
   for (const TeleopScreen& s : {TeleopScreen{}, full_screen()}) {
     const auto lines = render(s);
     EXPECT_EQ(lines.size(), 24u);
@@ -253,7 +210,56 @@ TEST(TeleopScreen, FitsAPlainTerminalWhateverThereIsToShow) {
       EXPECT_LE(line.size(), 80u);
       for (const char c : line) EXPECT_TRUE(c >= ' ' && c <= '~');
     }
-    EXPECT_NE(lines[22].find("SPACE emergency stop"), std::string::npos) << "the most important key is always in view";
+    EXPECT_NE(lines[22].find("SPACE emergency stop"), std::string::npos)
+        << "the most important key must always be visible";
+  }
+}
+
+// The most important key is in view at every size, also while a task is typed and when there is no room for anything
+// else.
+TEST(TeleopScreen, ShowsTheEmergencyStopAtEverySize) {
+  for (TeleopScreen s : {TeleopScreen{}, full_screen()}) {
+    for (const bool prompt : {false, true}) {
+      if (prompt) s.prompt = "rotate";
+      for (std::size_t columns = 20; columns <= 200; columns += columns < 90 ? 1 : 30) {
+        for (std::size_t rows = 1; rows <= 60; ++rows) {
+          const auto lines = render(s, {columns, rows});
+          ASSERT_LE(lines.size(), rows) << columns;
+          for (const auto& line : lines) ASSERT_LE(line.size(), columns) << rows;
+          const auto stop = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+            return line.find("SPACE emergency stop") != std::string::npos;
+          });
+          ASSERT_NE(stop, lines.end()) << columns << "x" << rows;
+        }
+      }
+    }
+  }
+}
+
+TEST(TeleopScreen, TheSmallestOneShowsAuthorityDriveNoticeAndPrompt) {
+  TeleopScreen s = full_screen();
+  s.notice = "granted: drive";
+  const auto text = [&](ScreenSize size) {
+    std::string all;
+    for (const auto& line : render(s, size)) all += line + "\n";
+    return all;
+  };
+  for (const ScreenSize size : {kSmallestScreen, ScreenSize{60, 18}, ScreenSize{80, 24}}) {
+    for (const char* part : {"teleop  run", "authority  operator", "drive  ", "granted: drive"})
+      EXPECT_NE(text(size).find(part), std::string::npos) << part << " at " << size.columns << "x" << size.rows;
+  }
+  EXPECT_NE(text({60, 18}).find("q quit"), std::string::npos) << "the keys fit";
+  s.prompt = "rotate";
+  EXPECT_NE(text(kSmallestScreen).find("task> rotate_"), std::string::npos);
+}
+
+TEST(TeleopScreen, BelowTheSmallestSizeItSaysHowLargeTheTerminalMustBe) {
+  for (const ScreenSize size : {ScreenSize{39, 10}, ScreenSize{40, 9}}) {
+    const auto lines = render(full_screen(), size);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[0], "SPACE emergency stop");
+    EXPECT_NE(lines[2].find("too small"), std::string::npos);
+    EXPECT_NE(lines[3].find("40x10"), std::string::npos);
   }
 }
 
@@ -270,7 +276,7 @@ TEST(TeleopScreen, ShowsWhoHasAuthorityAndThePrompt) {
   EXPECT_NE(render(s)[0].find("SILENT for 12 s"), std::string::npos) << render(s)[0];
 }
 
-TEST(TeleopScreen, ABarIsAsLongAsTheTorque) {
+TEST(TeleopScreen, TheLengthOfABarIsTheTorque) {
   TeleopScreen s;
   s.view.joints = msg::JointState{};
   s.view.joints->joint_count = 23;

@@ -1,4 +1,4 @@
-// Each error text names file, line, key, what was found and what is accepted.
+// Each error message names file, line, key, what was found and what is accepted.
 #include "configuration/configuration.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 Configuration parse(const std::string& text) { return Configuration::parse(text, "x.yaml"); }
 
-/// What the error says; empty if there was none.
+/// The error message; empty if there was no error.
 std::string error_of(const std::function<void()>& action) {
   try {
     action();
@@ -21,7 +21,8 @@ std::string error_of(const std::function<void()>& action) {
 }
 
 TEST(Configuration, ReadsEveryKindOfValue) {
-  Configuration root = parse("a: 1.5e-3\nb: -7\nc: true\nd: green\ne: [1, 2.5]\nf: [x, y]\ng: {h: +3}\ni: [{j: 1}, {j: 2}]\n");
+  Configuration root =
+      parse("a: 1.5e-3\nb: -7\nc: true\nd: green\ne: [1, 2.5]\nf: [x, y]\ng: {h: +3}\ni: [{j: 1}, {j: 2}]\n");
   EXPECT_DOUBLE_EQ(root.number("a", {0, 1}), 0.0015);
   EXPECT_EQ(root.integer("b", -10, 10), -7);
   EXPECT_TRUE(root.flag("c"));
@@ -49,24 +50,32 @@ TEST(Configuration, UsesFallbacksWhereAKeyIsAbsent) {
 TEST(Configuration, AnEmptyFileIsAnEmptyMap) { EXPECT_NO_THROW(parse("").finish()); }
 
 TEST(Configuration, NamesANumberOutOfRange) {
-  EXPECT_EQ(error_of([] { parse("\nmodule:\n  mass_kg: -1\n").section("module").number("mass_kg", {0.01, 10}); }),
+  EXPECT_EQ(error_of([] {
+              parse("\nmodule:\n  mass_kg: -1\n").section("module").number("mass_kg", {0.01, 10});
+            }),
             "x.yaml:3: module.mass_kg: found -1, accepted 0.01 to 10");
 }
 
 TEST(Configuration, RefusesNotANumberAndInfinity) {
   for (const std::string value : {".nan", "nan", ".inf", "-inf", "1e999", "12 m", "abc", "0x10"}) {
-    EXPECT_EQ(error_of([&] { parse("a: " + value).number("a", {-1e300, 1e300}); }),
+    EXPECT_EQ(error_of([&] {
+                parse("a: " + value).number("a", {-1e300, 1e300});
+              }),
               "x.yaml:1: a: found " + value + ", accepted -1e+300 to 1e+300");
   }
 }
 
 TEST(Configuration, NamesAMissingKeyAtItsMap) {
-  EXPECT_EQ(error_of([] { parse("x: 1\nmodule:\n  length_m: 1\n").section("module").number("mass_kg", {0, 1}); }),
+  EXPECT_EQ(error_of([] {
+              parse("x: 1\nmodule:\n  length_m: 1\n").section("module").number("mass_kg", {0, 1});
+            }),
             "x.yaml:3: module.mass_kg: found nothing, accepted 0 to 1");
 }
 
 TEST(Configuration, NamesAnEmptyValue) {
-  EXPECT_EQ(error_of([] { parse("a:\n").number("a", {0, 1}, 0.5); }),
+  EXPECT_EQ(error_of([] {
+              parse("a:\n").number("a", {0, 1}, 0.5);
+            }),
             "x.yaml:1: a: found an empty value, accepted 0 to 1");
 }
 
@@ -82,19 +91,29 @@ TEST(Configuration, NamesAWrongFlag) {
 }
 
 TEST(Configuration, NamesAWrongChoice) {
-  EXPECT_EQ(error_of([] { parse("a: pink").text("a", {"green", "red"}); }),
+  EXPECT_EQ(error_of([] {
+              parse("a: pink").text("a", {"green", "red"});
+            }),
             "x.yaml:1: a: found pink, accepted one of green, red");
   EXPECT_EQ(error_of([] { parse("a: [1]").text("a"); }), "x.yaml:1: a: found a list of 1, accepted a text");
-  EXPECT_EQ(error_of([] { parse("a:\n- red\n- pink").texts("a", {"red", "blue"}); }),
+  EXPECT_EQ(error_of([] {
+              parse("a:\n- red\n- pink").texts("a", {"red", "blue"});
+            }),
             "x.yaml:3: a[1]: found pink, accepted one of red, blue");
 }
 
 TEST(Configuration, NamesAListOfTheWrongLengthOrElement) {
-  EXPECT_EQ(error_of([] { parse("a: [1, 2]").numbers("a", {0, 1}, 3, 3); }),
+  EXPECT_EQ(error_of([] {
+              parse("a: [1, 2]").numbers("a", {0, 1}, 3, 3);
+            }),
             "x.yaml:1: a: found a list of 2, accepted a list of 3 numbers, each 0 to 1");
-  EXPECT_EQ(error_of([] { parse("a: 1").numbers("a", {0, 1}, 1, 4); }),
+  EXPECT_EQ(error_of([] {
+              parse("a: 1").numbers("a", {0, 1}, 1, 4);
+            }),
             "x.yaml:1: a: found 1, accepted a list of 1 to 4 numbers, each 0 to 1");
-  EXPECT_EQ(error_of([] { parse("a:\n- 0.5\n- 7\n").numbers("a", {0, 1}, 1, 4); }),
+  EXPECT_EQ(error_of([] {
+              parse("a:\n- 0.5\n- 7\n").numbers("a", {0, 1}, 1, 4);
+            }),
             "x.yaml:3: a[1]: found 7, accepted 0 to 1");
 }
 
@@ -114,7 +133,7 @@ TEST(Configuration, NamesAnUnknownKeyAndTheKnownOnes) {
               section.number("gain", {0, 9}, 1);
               section.finish();
             }),
-            "x.yaml:3: m.sped: found an unknown key, accepted the keys gain, speed");
+            "x.yaml:3: m.sped: found an unknown key, accepted the keys gain, speed, did you mean 'speed'?");
 }
 
 TEST(Configuration, NamesAKeyGivenTwice) {
@@ -139,6 +158,18 @@ TEST(Configuration, NamesKeysOfNestedLists) {
               for (Configuration& item : root.list("objects")) item.number("radius_m", {0, 2});
             }),
             "x.yaml:3: objects[1].radius_m: found 9, accepted 0 to 2");
+}
+
+TEST(Configuration, GivesAnyValueAsYamlOnOneLine) {
+  Configuration root = parse("mission:\n  sequence:\n    - green\n    - red\n  line_colour: blue\nname: x\n");
+  const std::string mission = root.one_line("mission");
+  EXPECT_EQ(mission, "{sequence: [green, red], line_colour: blue}");
+  Configuration again = Configuration::parse(mission, "again");
+  EXPECT_EQ(again.texts("sequence"), (std::vector<std::string>{"green", "red"}));
+  EXPECT_EQ(parse("mission: {sequence: [], line_colour: blue}").one_line("mission"),
+            "{sequence: [], line_colour: blue}");
+  EXPECT_EQ(root.one_line("name"), "x");
+  EXPECT_EQ(root.one_line("missing"), "");
 }
 
 }  // namespace

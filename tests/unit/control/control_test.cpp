@@ -1,4 +1,4 @@
-// The component in an in-process run: an ideal servo as the plant, and a navigation that says what the test wants.
+// The component in an in-process run, with ideal servos as the plant and a scripted trajectory.
 #include "control/control.hpp"
 
 #include <gtest/gtest.h>
@@ -8,14 +8,15 @@
 #include <functional>
 #include <limits>
 
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
 
-/// Joints that are wherever they were told to be.
-class IdealServos : public Plant {
+/// Joints that reach every commanded position at once.
+class IdealServos : public testing::PlantBase {
  public:
   IdealServos(Wiring& wiring, const Setup&)
       : command_(wiring.latest(topics::kJointCommand)), joints_(wiring.output(topics::kJointState)) {
@@ -29,7 +30,6 @@ class IdealServos : public Plant {
       if (command_->torque_limit_nm[j] > 0.0) state_.position_rad[j] = command_->position_rad[j];
     }
   }
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
 
  private:
   Latest<msg::JointCommand> command_;
@@ -39,20 +39,15 @@ class IdealServos : public Plant {
 
 using Script = std::function<bool(const Tick&, msg::DesiredTrajectory&)>;
 
-class ScriptedNavigation : public StatefulComponent<int> {
- public:
-  ScriptedNavigation(Wiring& wiring, Script script)
-      : out_(wiring.output(topics::kDesiredTrajectory)), script_(std::move(script)) {}
-  void step(const Tick& tick) override {
-    msg::DesiredTrajectory desired{};
-    desired.wavelength_m = 1.07;
-    if (script_(tick, desired)) out_.write(desired);
-  }
-
- private:
-  Output<msg::DesiredTrajectory> out_;
-  Script script_;
-};
+/// Stands for navigation: writes the trajectory that the script fills in, where it returns true.
+ComponentFactory scripted_navigation(Script script) {
+  return testing::scripted_writer<msg::DesiredTrajectory>(
+      "navigation", topics::kDesiredTrajectory, [script = std::move(script)](const Tick& tick, const auto& out) {
+        msg::DesiredTrajectory desired{};
+        desired.wavelength_m = 1.07;
+        if (script(tick, desired)) out.write(desired);
+      });
+}
 
 void set_method(msg::DesiredTrajectory& desired, const char* method, std::uint64_t motion_id) {
   std::snprintf(desired.method, sizeof desired.method, "%s", method);
@@ -64,14 +59,15 @@ void set_u(msg::DesiredTrajectory& desired) {
   for (int k = 5; k <= 7; ++k) desired.shape_rad[k] = 1.047;
 }
 
-/// Control between a plant and a script; `more`: who else is there.
+/// A run of control with a plant and a script. `more`: additional components.
 template <class Servos = IdealServos>
-LocalRun make_run(Script script, ComponentFactory control = make_control_factory(), std::vector<ComponentFactory> more = {}) {
+LocalRun make_run(Script script, ComponentFactory control = make_control_factory(),
+                  std::vector<ComponentFactory> more = {}) {
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
-  more.insert(more.begin(), {"physics", [](Wiring& w, const Setup& s) { return std::make_unique<Servos>(w, s); }});
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  more.insert(more.begin(), testing::member_of_class<Servos>("physics"));
   more.push_back(std::move(control));
-  more.push_back({"navigation", [script](Wiring& w, const Setup&) { return std::make_unique<ScriptedNavigation>(w, script); }});
+  more.push_back(scripted_navigation(std::move(script)));
   return LocalRun(more, setup);
 }
 
@@ -94,17 +90,19 @@ TEST(Control, HoldsTheMeasuredPostureBeforeTheFirstTrajectory) {
   const auto& command = *run.latest(topics::kJointCommand);
   EXPECT_NEAR(command.position_rad[6], 0.4, 1e-12);
   EXPECT_GT(command.torque_limit_nm[6], 0.0);
-  EXPECT_FALSE(run.latest(topics::kMotionStatus)->known);
+  EXPECT_FALSE(run.latest(topics::kMotionStatus)->accepted);
 }
 
-/// A method of somebody else's: bends joint 0 by the yaw of the estimated pose, one way if something is touched and the other if not.
+/// An added method: bends joint 0 by the yaw of the estimated pose, in one direction during a touch and in the other
+/// direction without one.
 class Feeler : public ControlMethod {
  public:
   [[nodiscard]] std::string_view name() const override { return "feeler"; }
   MethodProgress step(const MethodInput& input, BodyState&, Setpoints& setpoints) const override {
     setpoints.position_rad = input.commanded_rad;
-    if (!input.around.pose || !input.around.contacts || input.around.map) return {};  // nobody draws a map here
-    setpoints.position_rad[0] = input.around.contacts->contact_count > 0 ? input.around.pose->yaw_rad : -input.around.pose->yaw_rad;
+    if (!input.around.pose || !input.around.contacts || input.around.map) return {};  // this run has no map
+    setpoints.position_rad[0] =
+        input.around.contacts->contact_count > 0 ? input.around.pose->yaw_rad : -input.around.pose->yaw_rad;
     return {true, 1.0};
   }
 };
@@ -112,7 +110,8 @@ class Feeler : public ControlMethod {
 /// Servos that touch something.
 class TouchingServos : public IdealServos {
  public:
-  TouchingServos(Wiring& wiring, const Setup& setup) : IdealServos(wiring, setup), contacts_(wiring.output(topics::kContactState)) {}
+  TouchingServos(Wiring& wiring, const Setup& setup)
+      : IdealServos(wiring, setup), contacts_(wiring.output(topics::kContactState)) {}
   void sample(const Tick& tick) override {
     IdealServos::sample(tick);
     msg::ContactState contacts{};
@@ -124,37 +123,33 @@ class TouchingServos : public IdealServos {
   Output<msg::ContactState> contacts_;
 };
 
-class Estimate : public StatefulComponent<int> {
- public:
-  explicit Estimate(Wiring& wiring) : pose_(wiring.output(topics::kRobotPose)) {}
-  void step(const Tick&) override {
+/// Stands for guidance: a pose with a yaw of 0.3 rad.
+ComponentFactory estimate() {
+  return testing::scripted_writer<msg::RobotPose>("guidance", topics::kRobotPose, [](const Tick&, const auto& out) {
     msg::RobotPose pose{};
     pose.yaw_rad = 0.3;
-    pose_.write(pose);
-  }
+    out.write(pose);
+  });
+}
 
- private:
-  Output<msg::RobotPose> pose_;
-};
-
-TEST(Control, GivesWhatTheRobotPerceivesToAMethodFromOutside) {
+TEST(Control, PassesSensesToAnAddedMethod) {
   LocalRun run = make_run<TouchingServos>(
       [](const Tick&, msg::DesiredTrajectory& desired) {
         set_method(desired, "feeler", 1);
         return true;
       },
       make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Feeler>(); }}),
-      {{"guidance", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<Estimate>(w); }}});
+      {estimate()});
   run.advance(100);
-  EXPECT_TRUE(run.latest(topics::kMotionStatus)->known);
+  EXPECT_TRUE(run.latest(topics::kMotionStatus)->accepted);
   EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[0], 0.3, 1e-9);
 }
 
-TEST(Control, HoldsOnAnUnknownMethodAndOnAShapeWithNaN) {
+TEST(Control, HoldsPostureOnUnknownMethodAndOnInvalidShape) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
     set_method(desired, tick.index < 50 ? "moonwalk" : "undulation", 1);
     desired.frequency_hz = 0.7;
-    desired.shape_count = tick.index < 50 ? 0 : 65535;  // more joints than there are
+    desired.shape_count = tick.index < 50 ? 0 : 65535;  // more joints than the robot has
     return tick.index < 50;
   });
   run.advance(40);
@@ -177,22 +172,17 @@ TEST(Control, HoldsThenRelaxesWhenTheTrajectoryIsStale) {
   EXPECT_EQ(run.latest(topics::kJointCommand)->torque_limit_nm[6], 0.0);
 }
 
-/// Says every 50 ticks, as `input` does, that an operator has authority; hangs from tick 200 on.
-class HangingInput : public StatefulComponent<int> {
- public:
-  explicit HangingInput(Wiring& wiring) : out_(wiring.output(topics::kAuthority)) {}
-  void step(const Tick& tick) override {
+/// Stands for the component `input`: writes every 50 ticks that an operator has authority, and hangs from tick 200 on.
+ComponentFactory hanging_input() {
+  return testing::scripted_writer<msg::Authority>("input", topics::kAuthority, [](const Tick& tick, const auto& out) {
     if (tick.index % 50 != 0 || tick.index > 200) return;
     msg::Authority authority{};
     authority.level = msg::kAuthorityOperator;
-    out_.write(authority);
-  }
+    out.write(authority);
+  });
+}
 
- private:
-  Output<msg::Authority> out_;
-};
-
-TEST(Control, HoldsWhenNobodySaysAnyMoreWhoHasAuthority) {
+TEST(Control, HoldsPostureWhenAuthorityIsNoLongerPublished) {
   LocalRun run = make_run(
       [](const Tick&, msg::DesiredTrajectory& desired) {
         set_method(desired, "undulation", 1);
@@ -200,9 +190,9 @@ TEST(Control, HoldsWhenNobodySaysAnyMoreWhoHasAuthority) {
         desired.amplitude_rad = 0.5;
         return true;
       },
-      make_control_factory(), {{"input", [](Wiring& w, const constrictor::Setup&) { return std::make_unique<HangingInput>(w); }}});
+      make_control_factory(), {hanging_input()});
   run.advance(340);
-  EXPECT_GT(largest_step_rad(run, 5), 1e-4) << "a second or two of silence is no reason";
+  EXPECT_GT(largest_step_rad(run, 5), 1e-4) << "a short silence must not stop the motion";
   run.advance(15);
   EXPECT_LT(largest_step_rad(run, 100), 1e-12);
 }
@@ -221,7 +211,7 @@ TEST(Control, ChangesOfMethodDoNotJump) {
     return true;
   });
   run.advance(1);
-  // The servo's own limit is 0.08 rad a tick; the gait itself needs up to about 0.05.
+  // The servos allow 0.08 rad in a tick. The gait itself needs about 0.05 rad.
   EXPECT_LT(largest_step_rad(run, 1050), 0.07);
 }
 
@@ -241,7 +231,7 @@ TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {
   for (int j : {10, 12, 14}) EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[j], 1.047, 1e-6);
 }
 
-TEST(Control, TorqueLimitCapsTheBaseOfTheUOnly) {
+TEST(Control, TorqueLimitAppliesToTheBaseOfTheUOnly) {
   LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory& desired) {
     set_method(desired, "squeeze", 1);
     set_u(desired);

@@ -6,14 +6,14 @@
 #include <limits>
 #include <random>
 
-#include "runtime/share.hpp"
+#include "component/data_path.hpp"
 
 namespace constrictor {
 namespace {
 
 class JointLimiterTest : public testing::Test {
  protected:
-  RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   JointLimiter limiter{robot, 1.0};
 };
 
@@ -27,7 +27,7 @@ TEST_F(JointLimiterTest, FirstSetpointStartsAtTheMeasuredPosture) {
   }
 }
 
-TEST_F(JointLimiterTest, RandomWishesNeverLeaveTheRobotsLimits) {
+TEST_F(JointLimiterTest, RandomSetpointsNeverExceedTheLimitsOfTheRobot) {
   constexpr unsigned kSeed = 20261121;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   std::mt19937 random(kSeed);
@@ -58,7 +58,7 @@ TEST_F(JointLimiterTest, RandomWishesNeverLeaveTheRobotsLimits) {
   }
 }
 
-TEST_F(JointLimiterTest, VelocityIsTheSetpointsRate) {
+TEST_F(JointLimiterTest, VelocityIsTheRateOfTheSetpoint) {
   LimiterState state;
   Setpoints wanted;
   limiter.limit(wanted, {}, 0.02, state);
@@ -66,7 +66,7 @@ TEST_F(JointLimiterTest, VelocityIsTheSetpointsRate) {
   EXPECT_NEAR(limiter.limit(wanted, {}, 0.02, state).velocity_rad_s[4], 0.5, 1e-12);
 }
 
-TEST_F(JointLimiterTest, RelaxedJointsHaveNoTorqueAndHoldFromWhereTheyAre) {
+TEST_F(JointLimiterTest, RelaxedJointsHaveNoTorqueAndAreLaterHeldWhereTheyAre) {
   LimiterState state;
   limiter.limit(Setpoints{}, {}, 0.02, state);
   JointArray measured{};

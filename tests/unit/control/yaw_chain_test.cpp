@@ -6,7 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/share.hpp"
+#include "component/data_path.hpp"
+#include "control/control_config.hpp"
 
 namespace constrictor {
 namespace {
@@ -15,9 +16,9 @@ constexpr double kBase_rad = std::numbers::pi / 3.0;
 
 class YawChainTest : public testing::Test {
  protected:
-  RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   YawChain chain{robot};
-  WaveWeights weights;
+  WaveWeights weights = ControlConfig{}.weights;
   static LinkArray u_shape(double side) {
     LinkArray shape{};
     shape[5] = shape[6] = shape[7] = side * kBase_rad;

@@ -1,4 +1,5 @@
-// Every run-time parameter is what its configuration file says it is: the same key, the same field, the same bounds.
+// Every component's parameters are what their rows say: in the shipped YAML file, in the README, and when a file is
+// read.
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -6,11 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "configuration/configuration.hpp"
-#include "control/control_parameters.hpp"
-#include "guidance/guidance_parameters.hpp"
-#include "navigation/navigation_parameters.hpp"
-#include "perception/perception_parameters.hpp"
+#include "host/known_components.hpp"
+#include "parameter_tables.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
@@ -18,111 +16,123 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class NoWiring : public Wiring {
- public:
-  const InputSlot* input(const TopicInfo&, bool) override { return nullptr; }
-  const OutputSlot* output_slot(const TopicInfo&) override { return nullptr; }
-  void request_end_of_run() override {}
-};
-
-/// The table of an owner whose configuration is `file`. Throws ConfigurationError.
-template <class Config>
-std::vector<msg::Parameter> table(Config config, const Topic<msg::ParameterList>& topic) {
-  NoWiring wiring;
-  Parameters parameters(wiring, topic);
-  add_parameters(config, parameters);
-  const msg::ParameterList list = parameters.list({});
-  return {list.parameters, list.parameters + list.count};
-}
-
-std::vector<msg::Parameter> table_of(const std::string& owner, const fs::path& file) {
-  if (owner == "navigation") return table(load_navigation_config(file), topics::kNavigationParameters);
-  if (owner == "control") return table(load_control_config(file), topics::kControlParameters);
-  if (owner == "perception") return table(perception::load_perception_config(file), topics::kPerceptionParameters);
-  return table(guidance::load_guidance_config(file), topics::kGuidanceParameters);
-}
-
-class ParameterTable : public ::testing::TestWithParam<const char*> {
- protected:
-  void SetUp() override {
-    default_file_ = fs::path(CONSTRICTOR_SOURCE_DIR) / "components" / GetParam() / (std::string(GetParam()) + ".yaml");
+TEST(ParameterTables, FollowFromTheRows) {
+  for (const auto& file : derived_files(CONSTRICTOR_SOURCE_DIR)) {
+    EXPECT_EQ(file.error, "");
+    EXPECT_EQ(content_of(file.path), file.text)
+        << file.path << " is out of date. Run: cmake --build build/release --target parameter_tables";
   }
+}
 
-  /// The default file with one value replaced. Empty keys are an error of the test.
-  [[nodiscard]] fs::path with(const std::string& name, const std::string& value) const {
-    YAML::Node root = YAML::LoadFile(default_file_.string());
-    std::vector<YAML::Node> path{root};
-    std::istringstream keys(name.substr(name.find('.') + 1));
-    std::string last;
-    for (std::string key; std::getline(keys, key, '.');) {
-      if (!last.empty()) path.push_back(path.back()[last]);
-      last = key;
-    }
-    EXPECT_TRUE(path.back()[last].IsScalar()) << name << " is no key of " << default_file_;
-    path.back()[last] = value;
-    const fs::path file = dir_ / "changed.yaml";
-    std::ofstream(file) << root;
+std::vector<std::string> components_with_rows() {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : known_components()) {
+    if (make().parameters) names.push_back(name);
+  }
+  return names;
+}
+
+class ParameterTable : public ::testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] std::vector<ParameterRow> rows_of(const fs::path& file) const { return factory_.parameters(file); }
+
+  /// A file that holds one key.
+  [[nodiscard]] fs::path file_with(const std::string& key, const std::string& value) const {
+    std::istringstream keys(key);
+    std::string text;
+    std::string indent;
+    for (std::string part; std::getline(keys, part, '.'); indent += "  ")
+      text += (text.empty() ? "" : "\n") + indent + part + ":";
+    const fs::path file = folder_.path() / "changed.yaml";
+    std::ofstream(file) << text << " " << value << "\n";
     return file;
   }
-  [[nodiscard]] bool accepts(const std::string& name, const std::string& value) const {
+  [[nodiscard]] std::string error_of(const std::string& key, const std::string& value) const {
     try {
-      static_cast<void>(table_of(GetParam(), with(name, value)));
-      return true;
-    } catch (const ConfigurationError&) {
-      return false;
+      static_cast<void>(rows_of(file_with(key, value)));
+      return {};
+    } catch (const ConfigurationError& error) {
+      return error.what();
     }
   }
-  static std::string text(const msg::Parameter& p, double value) {
-    std::ostringstream stream;
-    stream.precision(17);
-    if (p.is_integer) stream << static_cast<long>(value);
-    else stream << value;
-    return stream.str();
+  static std::string number(const ParameterRow& row, double value) {
+    return row.is_integer ? fmt::format("{}", static_cast<std::int64_t>(value)) : fmt::format("{}", value);
   }
 
   const testing::TemporaryFolder folder_;
-  const fs::path dir_ = folder_.path();
-  fs::path default_file_;
+  const ComponentFactory factory_ = known_components().at(GetParam())();
 };
 
-TEST_P(ParameterTable, SetsTheFieldThatItsKeyOfTheFileSets) {
-  const auto before = table_of(GetParam(), default_file_);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    // Somewhere within the bounds, where the default is not.
-    const double value = before[i].default_value == before[i].minimum ? before[i].maximum : before[i].minimum;
-    const auto after = table_of(GetParam(), with(before[i].name, text(before[i], value)));
+TEST_P(ParameterTable, ShippedFileHoldsTheDefaultsAndNamesEveryParameter) {
+  const fs::path shipped = fs::path(CONSTRICTOR_SOURCE_DIR) / factory_.default_config;
+  for (const auto& row : rows_of(shipped)) {
+    EXPECT_EQ(row.value, row.default_value) << row.key;
+    YAML::Node node = YAML::LoadFile(shipped.string());
+    std::istringstream keys(row.key);
+    for (std::string key; std::getline(keys, key, '.');) node.reset(node[key]);
+    EXPECT_TRUE(node.IsDefined()) << row.key << " is missing in " << shipped;
+  }
+}
+
+TEST_P(ParameterTable, KeyOfTheFileSetsItsOwnFieldAndNoOther) {
+  const auto before = rows_of({});
+  for (const auto& row : before) {
+    if (!row.is_number) continue;
+    // The bound that is not the default; the other one if the configuration as a whole rejects that.
+    double value = number(row, row.bounds.min) == row.default_value ? row.bounds.max : row.bounds.min;
+    if (!error_of(row.key, number(row, value)).empty()) value = row.bounds.max;
+    const auto after = rows_of(file_with(row.key, number(row, value)));
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t k = 0; k < after.size(); ++k) {
-      EXPECT_EQ(after[k].default_value, k == i ? value : before[k].default_value) << after[k].name << " when " << before[i].name << " is set";
+      EXPECT_EQ(after[k].value, before[k].key == row.key ? number(row, value) : before[k].default_value)
+          << after[k].key << " when " << row.key << " is set";
     }
   }
 }
 
-TEST_P(ParameterTable, HasTheBoundsThatTheFileHas) {
-  for (const auto& p : table_of(GetParam(), default_file_)) {
-    const double step = p.is_integer ? 1.0 : 1e-6 * (p.maximum - p.minimum);
-    EXPECT_TRUE(accepts(p.name, text(p, p.minimum))) << p.name;
-    EXPECT_TRUE(accepts(p.name, text(p, p.maximum))) << p.name;
-    EXPECT_FALSE(accepts(p.name, text(p, p.minimum - step))) << p.name << " at " << p.minimum;
-    EXPECT_FALSE(accepts(p.name, text(p, p.maximum + step))) << p.name << " at " << p.maximum;
+TEST_P(ParameterTable, ErrorNamesFileLineKeyFoundAndAccepted) {
+  for (const auto& row : rows_of({})) {
+    if (!row.is_number) continue;
+    const double step = row.is_integer ? 1.0 : 1e-3 * (row.bounds.max - row.bounds.min);
+    for (const double value : {row.bounds.min - step, row.bounds.max + step}) {
+      const std::string error = error_of(row.key, number(row, value));
+      const auto line = std::count(row.key.begin(), row.key.end(), '.') + 1;
+      EXPECT_EQ(error.rfind(fmt::format("{}:{}: {}: found {}, accepted ", (folder_.path() / "changed.yaml").string(),
+                                        line, row.key, number(row, value)),
+                            0),
+                0U)
+          << error;
+      const std::string bounds = row.is_integer ? fmt::format("{:.0f} to {:.0f}", row.bounds.min, row.bounds.max)
+                                                : fmt::format("{:g} to {:g}", row.bounds.min, row.bounds.max);
+      EXPECT_NE(error.find(bounds), std::string::npos) << error;
+    }
+  }
+}
+
+TEST_P(ParameterTable, RejectsUnknownKeys) {
+  for (const auto& row : rows_of({})) {
+    const std::string error = error_of(row.key + "x", row.default_value);
+    EXPECT_NE(error.find(row.key + "x: found an unknown key, accepted the keys "), std::string::npos) << error;
   }
 }
 
 TEST_P(ParameterTable, SaysUnitAndMeaning) {
-  const std::vector<std::pair<std::string, std::string>> units{{"_hz", "Hz"}, {"_rad", "rad"}, {"_nm", "Nm"}, {"_rad_s", "rad/s"},
-                                                               {"_hz_s", "Hz/s"}, {"_m_s", "m/s"}, {"_1_m", "1/m"}, {"_deg", "deg"}};
-  for (const auto& p : table_of(GetParam(), default_file_)) {
-    EXPECT_GT(std::string(p.doc).size(), 8u) << p.name;
-    const std::string name = p.name;
+  const std::vector<std::pair<std::string, std::string>> units{
+      {"_hz", "Hz"},   {"_rad", "rad"}, {"_nm", "Nm"}, {"_rad_s", "rad/s"}, {"_hz_s", "Hz/s"},    {"_m_s", "m/s"},
+      {"_1_m", "1/m"}, {"_deg", "deg"}, {"_n", "N"},   {"_ticks", "ticks"}, {"_pixels", "pixels"}};
+  for (const auto& row : rows_of({})) {
+    EXPECT_GT(row.meaning.size(), 8U) << row.key;
+    EXPECT_NE(row.meaning.back(), '.') << row.key;
     for (const auto& [ending, unit] : units) {
-      const bool ends = name.size() > ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
-      if (ends) { EXPECT_EQ(p.unit, unit) << name; }
+      if (row.is_number && row.key.ends_with(ending)) {
+        EXPECT_EQ(row.unit, unit) << row.key;
+      }
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryOwner, ParameterTable, ::testing::Values("navigation", "control", "perception", "guidance"),
-                         [](const auto& made) { return std::string(made.param); });
+INSTANTIATE_TEST_SUITE_P(EveryComponent, ParameterTable, ::testing::ValuesIn(components_with_rows()),
+                         [](const auto& made) { return made.param; });
 
 }  // namespace
 }  // namespace constrictor

@@ -1,53 +1,99 @@
-// Documentation that repeats code is held to it.
+// The table of topics against the documentation that repeats it and against the components.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
-#include <map>
-#include <sstream>
+#include <regex>
+#include <set>
 #include <string>
-#include <vector>
 
-#include "runtime/topics.hpp"
+#include "constrictor/topics.hpp"
+#include "topic_tables.hpp"
 
 namespace constrictor {
 namespace {
 
-std::string trimmed(std::string text) {
-  const auto strip = [](char c) { return c == ' ' || c == '`'; };
-  while (!text.empty() && strip(text.back())) text.pop_back();
-  while (!text.empty() && strip(text.front())) text.erase(0, 1);
-  return text;
+using Names = std::set<std::string>;
+
+/// The words of a list such as "guidance, control, observers".
+Names names_in(const std::string& list) {
+  Names names;
+  static const std::regex word("[a-z]+");
+  for (std::sregex_iterator at(list.begin(), list.end(), word), end; at != end; ++at) names.insert(at->str());
+  return names;
 }
 
-/// Rows of idl/README.md whose first cell is a number, by topic name.
-std::map<std::string, std::vector<std::string>> documented_topics() {
-  std::map<std::string, std::vector<std::string>> rows;
+/// The documentation of each message type: the comment of its struct in the IDL.
+template <class... Messages>
+std::map<std::string, std::string> docs_of(TypeList<Messages...>) {
+  return {{Description<Messages>::kName, Description<Messages>::kDoc}...};
+}
+const std::map<std::string, std::string> kDocs = docs_of(AllMessages{});
+
+/// What a comment says after "Writer:", "Readers:" or "Rate:", up to the full stop.
+std::string said(const std::string& doc, const std::string& what) {
+  std::smatch match;
+  return std::regex_search(doc, match, std::regex(what + ": ([^.]*)\\.")) ? match[1].str() : "";
+}
+
+TEST(TopicTable, EqualsTheTablesInIdlReadme) {
   std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/idl/README.md");
-  for (std::string line; std::getline(file, line);) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, '|');) cells.push_back(trimmed(cell));
-    if (cells.size() != 10 || cells[1].empty() || cells[1].find_first_not_of("0123456789") != std::string::npos) continue;
-    rows[cells[2]] = cells;
-  }
-  return rows;
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(documentation::with_topic_tables(readme), readme)
+      << "To make the tables anew: cmake --build BUILD --target topic_tables";
 }
 
-TEST(TopicTable, IdlReadmeSaysWhatTheCodeSays) {
-  const auto rows = documented_topics();
-  EXPECT_EQ(rows.size(), topics::kCount);
+// The comment of a type that several topics carry cannot name one writer, one list of readers and one rate; the table
+// has them. Request is such a type because clients write it as well.
+TEST(TopicTable, AgreesWithTheCommentsOfTheIdlOnMemberTopics) {
+  int checked = 0;
   for (const auto& topic : topics::kInfos) {
-    const auto entry = rows.find(std::string(topic.name));
-    ASSERT_NE(entry, rows.end()) << topic.name;
-    const auto& cells = entry->second;
-    EXPECT_EQ(cells[1], std::to_string(topic.id)) << topic.name;
-    EXPECT_EQ(cells[3], topic.type) << topic.name;
-    EXPECT_EQ(cells[4], topic.writer) << topic.name;
-    EXPECT_EQ(cells[6], topic.rate) << topic.name;
-    EXPECT_EQ(cells[7], std::to_string(topic.max_per_tick)) << topic.name;
-    EXPECT_EQ(cells[8], std::to_string(topic.depth)) << topic.name;
-    EXPECT_EQ(cells[9], std::string(topic.doc) + (topic.simulation_only ? " (simulation only)" : "")) << topic.name;
+    const auto same = [&](const TopicInfo& other) { return other.type == topic.type; };
+    if (std::count_if(topics::kInfos.begin(), topics::kInfos.end(), same) > 1 || topic.type == "Request") continue;
+    const std::string& doc = kDocs.at(std::string(topic.type));
+    const std::string writer = said(doc, "Writer");
+    EXPECT_EQ(writer == "plant" ? "physics" : writer, topic.writer) << topic.type;
+    EXPECT_EQ(said(doc, "Rate"), topic.rate) << topic.type;
+    Names readers = names_in(said(doc, "Readers?"));
+    EXPECT_FALSE(readers.empty()) << topic.type;
+    if (readers.erase("plant") > 0) readers.insert("physics");
+    std::erase_if(readers, [](const std::string& name) { return !documentation::members().contains(name); });
+    EXPECT_EQ(readers, documentation::readers_of(topic)) << topic.type;
+    ++checked;
   }
+  EXPECT_GT(checked, 15);
+}
+
+TEST(TopicTable, AgreesWithTheCommentsOfTheIdlOnBarrierAndClientTopics) {
+  for (const auto& topic : barrier_topics::kInfos) {
+    if (topic.type == "Request") continue;
+    const std::string& doc = kDocs.at(std::string(topic.type));
+    EXPECT_EQ(said(doc, "Writers?"), topic.writers) << topic.type;
+    EXPECT_EQ(said(doc, "Readers?"), topic.readers) << topic.type;
+    EXPECT_EQ(said(doc, "Rate"), topic.rate) << topic.type;
+  }
+}
+
+// A restarted reader repeats tick k. The run does not publish tick k + latency of the reader before the reader has
+// finished, so a writer has written at most what becomes visible at k + reader's latency - 1 + its own latency.
+TEST(TopicTable, KeepsTheSampleThatARestartedReaderNeeds) {
+  int checked = 0;
+  for (const auto& topic : topics::kInfos) {
+    if (topic.rate != "every tick") continue;
+    const int steps = topic.depth / topic.max_per_tick;
+    const int writer = documentation::members().at(std::string(topic.writer))->timing().latency;
+    for (const auto& name : documentation::readers_of(topic)) {
+      EXPECT_GE(steps, writer + documentation::members().at(name)->timing().latency) << topic.name << ", " << name;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 15);
+}
+
+TEST(TopicTable, NamesEachTopicOnce) {
+  Names names;
+  for (const auto& topic : topics::kInfos) EXPECT_TRUE(names.insert(std::string(topic.name)).second) << topic.name;
+  for (const auto& topic : barrier_topics::kInfos) EXPECT_TRUE(names.insert(topic.name).second) << topic.name;
 }
 
 }  // namespace

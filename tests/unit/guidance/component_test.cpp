@@ -1,19 +1,20 @@
-// The component in a run: its outputs' rhythm, bad samples, restarts.
+// The component in a run: the rate of its outputs, bad samples, restarts.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <memory>
 
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "guidance/guidance.hpp"
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
 
-/// Joints that undulate; not finite between ticks 40 and 45, and where no joint can be in ticks 50 to 52.
-class Snake : public Plant {
+/// Joints that undulate. Their angles are not finite between ticks 40 and 45, and impossible in ticks 50 to 52.
+class Snake : public testing::PlantBase {
  public:
   Snake(Wiring& wiring, const Setup&)
       : joints_(wiring.output(topics::kJointState)), imu_(wiring.output(topics::kImuState)) {}
@@ -34,15 +35,13 @@ class Snake : public Plant {
     imu.angular_velocity_rad_s.z = 0.05 * 2.0 * 3.14159265 * 0.7 * std::cos(phase);
     imu_.write(imu);
   }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
 
  private:
   Output<msg::JointState> joints_;
   Output<msg::ImuState> imu_;
 };
 
-/// A red object, for the first moment, and a line straight ahead, every 5 ticks.
+/// A red object at the beginning, and a line straight ahead, every 5 ticks.
 class Eye : public StatefulComponent<std::int64_t> {
  public:
   Eye(Wiring& wiring, const Setup&)
@@ -70,19 +69,16 @@ class Eye : public StatefulComponent<std::int64_t> {
   Output<msg::ObjectPercepts> objects_;
 };
 
-template <class T>
-ComponentFactory factory(const char* name) {
-  return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<T>(w, s); }};
-}
-
 std::unique_ptr<LocalRun> make_run() {
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   return std::make_unique<LocalRun>(
-      std::vector<ComponentFactory>{factory<Snake>("physics"), factory<Eye>("perception"), make_guidance_factory()}, setup);
+      std::vector<ComponentFactory>{testing::member_of_class<Snake>("physics"),
+                                    testing::member_of_class<Eye>("perception"), make_guidance_factory()},
+      setup);
 }
 
-TEST(GuidanceComponent, WritesThePoseEveryTickAndTheMapEveryFifth) {
+TEST(GuidanceComponent, PublishesThePoseEveryTickAndTheMapEveryFifthTick) {
   auto run = make_run();
   int poses = 0, maps = 0;
   run->subscribe<msg::RobotPose>(topics::kRobotPose, [&](const msg::RobotPose& pose) {
@@ -102,7 +98,7 @@ TEST(GuidanceComponent, WritesThePoseEveryTickAndTheMapEveryFifth) {
   EXPECT_GT(run->latest(topics::kFieldMap)->line_point_count, 5);
 }
 
-TEST(GuidanceComponent, JointsThatAreNotFiniteLeaveThePoseWhereItWas) {
+TEST(GuidanceComponent, KeepsThePoseWhileJointsAreNotPlausible) {
   auto run = make_run();
   run->advance(40);
   const double x = run->latest(topics::kRobotPose)->x_m;
@@ -112,7 +108,7 @@ TEST(GuidanceComponent, JointsThatAreNotFiniteLeaveThePoseWhereItWas) {
   EXPECT_NE(run->latest(topics::kRobotPose)->x_m, x);
 }
 
-TEST(GuidanceComponent, ARestartChangesNothing) {
+TEST(GuidanceComponent, RestartChangesNothing) {
   auto whole = make_run(), broken = make_run();
   whole->advance(200);
   for (int i = 0; i < 200; ++i) {

@@ -1,4 +1,4 @@
-// The map against scenes that are known exactly.
+// The map compared with scenes that are known exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "guidance/field_mapper.hpp"
-#include "guidance/planar.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
@@ -27,7 +27,7 @@ RobotModel snake() {
   return model;
 }
 
-/// A map with the robot standing at the origin.
+/// A map; the robot stands at the origin.
 struct Mapping {
   RobotModel model = snake();
   GuidanceConfig config;
@@ -47,7 +47,7 @@ struct Mapping {
     b.width_m = 2.0 * radius;
     return b;
   }
-  void see(std::initializer_list<msg::Blob> blobs, int times = 1, Pose2 exposure = {}) {
+  void see(std::initializer_list<msg::Blob> blobs, int times = 1, PlanarPose exposure = {}) {
     msg::ObjectPercepts percepts{};
     for (const msg::Blob& b : blobs) percepts.blobs[percepts.blob_count++] = b;
     for (int i = 0; i < times; ++i) mapper.objects(percepts, exposure, tick += 5);
@@ -60,7 +60,7 @@ struct Mapping {
   }
 };
 
-TEST(Map, EachThingGetsOneHandleThatItKeeps) {
+TEST(Map, EachLandmarkKeepsItsHandle) {
   Mapping m;
   const auto green = Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, 0.3, 0.08);
   const auto other = Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, -0.6, 0.08);
@@ -81,7 +81,7 @@ TEST(Map, EachThingGetsOneHandleThatItKeeps) {
   EXPECT_LT(map.objects[0].sd_m, 0.1);
 }
 
-TEST(Map, PerceptsWithoutRangeOrNonFinitePlaceNothing) {
+TEST(Map, PerceptsWithoutFiniteRangeCreateNoLandmark) {
   Mapping m;
   auto nowhere = Mapping::blob(msg::kColourRed, msg::kBlobObject, 0.5, 0.0, 0.08);
   nowhere.range_m = nowhere.width_m = kNan;
@@ -99,18 +99,18 @@ TEST(Map, PerceptsWithoutRangeOrNonFinitePlaceNothing) {
   EXPECT_EQ(m.map().line_point_count, 0);
 }
 
-TEST(Map, ALateImageIsPlacedWhereItWasTaken) {
+TEST(Map, DelayedPerceptIsPlacedFromThePoseAtItsExposure) {
   Mapping m;
-  // the head has turned by 0.2 rad and moved by 0.1 m since the exposure
+  // The head has turned by 0.2 rad and moved by 0.1 m since the exposure.
   m.filter.predict({0.1, 0.0}, 0.2, Eigen::Matrix3d::Zero());
-  const Eigen::Vector2d back = from_parent(m.filter.pose(), {0.0, 0.0});
-  m.see({Mapping::blob(msg::kColourRed, msg::kBlobObject, 1.0, 0.0, 0.08)}, 4, {back.x(), back.y(), -0.2});
+  const Eigen::Vector2d back = m.filter.pose().to_local({0.0, 0.0});
+  m.see({Mapping::blob(msg::kColourRed, msg::kBlobObject, 1.0, 0.0, 0.08)}, 4, {back, -0.2});
   ASSERT_EQ(m.map().object_count, 1);
   EXPECT_NEAR(m.map().objects[0].x_m, 1.0, 0.01);
   EXPECT_NEAR(m.map().objects[0].y_m, 0.0, 0.01);
 }
 
-TEST(Map, AMovedObjectKeepsItsHandle) {
+TEST(Map, MovedObjectKeepsItsHandle) {
   Mapping m;
   m.see({Mapping::blob(msg::kColourRed, msg::kBlobObject, 0.6, 0.0, 0.08)}, 30);
   m.see({Mapping::blob(msg::kColourRed, msg::kBlobObject, 0.6, 0.35, 0.08)}, 10);
@@ -134,49 +134,48 @@ TEST(Map, TouchConfirmsTheObjectAndIgnoresGroundAndSelf) {
   };
   add(5, 0.0, 0.0, 1.0);  // the ground
   m.mapper.touch(contacts, m.chain(), 100, 0.02);
-  EXPECT_EQ(m.map().felt_count, 0);
-  EXPECT_FALSE(m.map().objects[0].felt);
+  EXPECT_EQ(m.map().touch_count, 0);
+  EXPECT_FALSE(m.map().objects[0].touched);
 
-  // bent into a hairpin the tail half lies beside the front half: its touch is the robot's own
+  // In a hairpin bend the tail half lies beside the front half. They touch each other.
   Mapping self;
   for (std::size_t i = 8; i <= 14; i += 2) self.q[i] = kPi / 4.0;
   const BodyChain chain = self.chain();
   std::size_t across = 0;
   double nearest = 1e9;
   for (std::size_t j = 15; j < 24; ++j) {
-    const double apart = std::hypot(chain[j].x_m - chain[7].x_m, chain[j].y_m - chain[7].y_m);
+    const double apart = std::hypot(chain[j].p.x() - chain[7].p.x(), chain[j].p.y() - chain[7].p.y());
     if (apart < nearest) {
       nearest = apart;
       across = j;
     }
   }
-  const Eigen::Vector2d toward = turned(
-      Eigen::Vector2d(chain[across].x_m - chain[7].x_m, chain[across].y_m - chain[7].y_m), -chain[7].yaw_rad);
+  const Eigen::Vector2d toward = turned(Eigen::Vector2d(chain[across].p - chain[7].p), -chain[7].yaw_rad);
   msg::ContactState own{};
   own.module_count = 24;
   own.contact_count = 1;
   own.contacts[0].module_index = 7;
-  const Eigen::Vector2d at = toward - 0.03 * toward.normalized();  // on the other module's skin
+  const Eigen::Vector2d at = toward - 0.03 * toward.normalized();  // on the skin of the other module
   own.contacts[0].position_m = {at.x(), at.y(), 0.0};
   own.contacts[0].normal = {-toward.normalized().x(), -toward.normalized().y(), 0.0};
   own.contacts[0].force_n = {1.0, 1.0, 0.0};
   self.mapper.touch(own, chain, 100, 0.02);
-  EXPECT_EQ(self.map().felt_count, 0);
+  EXPECT_EQ(self.map().touch_count, 0);
 
   contacts = {};
   contacts.module_count = 24;
   add(0, 0.035, -1.0, 0.0);
   contacts.contacts[0].position_m = {0.1, 0.045, 0.0};  // toward the object at (0.15, 0.12)
   m.mapper.touch(contacts, m.chain(), 101, 0.02);
-  EXPECT_EQ(m.map().felt_count, 1);
-  EXPECT_TRUE(m.map().objects[0].felt);
+  EXPECT_EQ(m.map().touch_count, 1);
+  EXPECT_TRUE(m.map().objects[0].touched);
   m.mapper.touch(contacts, m.chain(), 102, 0.02);
-  EXPECT_EQ(m.map().felt_count, 1);  // the same contact, still
+  EXPECT_EQ(m.map().touch_count, 1);  // still the same contact
   m.mapper.touch({}, m.chain(), 102 + 1000, 0.02);
-  EXPECT_EQ(m.map().felt_count, 0);  // forgotten
+  EXPECT_EQ(m.map().touch_count, 0);  // forgotten
 }
 
-TEST(Map, APushedObjectDoesNotPushThePose) {
+TEST(Map, PushedObjectDoesNotMoveThePose) {
   Mapping m;
   m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
   m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.15, 0.12, 0.08)}, 20);
@@ -188,23 +187,24 @@ TEST(Map, APushedObjectDoesNotPushThePose) {
   contacts.contacts[0].normal = {0.0, -1.0, 0.0};
   contacts.contacts[0].force_n = {0.0, -2.0, 0.0};
   for (int k = 0; k < 30; ++k) m.mapper.touch(contacts, m.chain(), m.tick + k, 0.02);
-  // it slid away by 0.15 m while the head stood still
+  // The object slid by 0.15 m while the head stood still.
   m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.15, 0.27, 0.08)}, 20);
   ASSERT_EQ(m.map().object_count, 1);
   EXPECT_NEAR(m.map().objects[0].y_m, 0.27, 0.03);
-  EXPECT_LT(m.filter.pose().position().norm(), 0.03);
+  EXPECT_LT(m.filter.pose().p.norm(), 0.03);
 }
 
-TEST(Map, ACarriedObjectMovesWithTheBody) {
+TEST(Map, CarriedObjectMovesWithTheBody) {
   Mapping m;
   for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = kPi / 3.0;
-  // the object in the bend, at the base: place it by an independent construction, the centre of the arc's circle
+  // The object lies in the bend. Its place comes from an independent construction: the centre of the arc.
   const BodyChain chain = m.chain();
-  const Eigen::Vector2d base(chain[13].x_m, chain[13].y_m);
+  const Eigen::Vector2d base = chain[13].p;
   const double heading = chain[13].yaw_rad;
   const Eigen::Vector2d object = base + 0.115 * Eigen::Vector2d(-std::sin(heading), std::cos(heading));
   m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, object.x(), object.y(), 0.08),
-         Mapping::blob(msg::kColourRed, msg::kBlobObject, object.x() + 0.7, object.y(), 0.08)}, 5);
+         Mapping::blob(msg::kColourRed, msg::kBlobObject, object.x() + 0.7, object.y(), 0.08)},
+        5);
   msg::TaskStatus task{};
   task.parameters.object_colour = msg::kColourGreen;
   task.carrying = true;
@@ -226,7 +226,7 @@ TEST(Map, ACarriedObjectMovesWithTheBody) {
   EXPECT_NEAR(map.objects[0].x_m, object.x() + 0.5, 0.08);
 }
 
-TEST(Map, TheLineIsKeptOnceAndHoldsTheRobotOnIt) {
+TEST(Map, LineIsMappedOnceAndCorrectsThePose) {
   Mapping m;
   msg::LinePercept line{};
   line.visible = true;
@@ -239,10 +239,10 @@ TEST(Map, TheLineIsKeptOnceAndHoldsTheRobotOnIt) {
   for (int k = 0; k < 20; ++k) m.mapper.line(line, {}, k * 5, 0.02);
   EXPECT_GE(m.map().line_point_count, 12);
   EXPECT_LE(m.map().line_point_count, 20);
-  // later the odometry has drifted sideways by 0.1 m; the line is seen where it always was
+  // Later the odometry has drifted sideways by 0.1 m. The camera sees the line at its old place.
   m.filter.predict({0.0, 0.1}, 0.0, Eigen::Vector3d(1e-4, 1e-2, 1e-4).asDiagonal());
   for (int k = 0; k < 20; ++k) m.mapper.line(line, {}, 2000 + k * 5, 0.02);
-  EXPECT_NEAR(m.filter.pose().y_m, 0.0, 0.03);
+  EXPECT_NEAR(m.filter.pose().p.y(), 0.0, 0.03);
   EXPECT_LE(m.map().line_point_count, 24);
 }
 

@@ -1,19 +1,22 @@
-// The pose against motions that are known analytically.
+// The pose compared with motions that are known analytically.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <numbers>
 
+#include "guidance/guidance_config.hpp"
 #include "guidance/odometry.hpp"
-#include "guidance/planar.hpp"
 #include "guidance/pose_filter.hpp"
 #include "robot/kinematics.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
 
 using namespace guidance;
+
+const OdometryConfig kConfig = GuidanceConfig{}.odometry;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -28,18 +31,18 @@ RobotModel snake() {
   return model;
 }
 
-/// A body with so short links that it nearly is a curve.
+/// A body whose links are so short that it is nearly a curve.
 RobotModel fine_snake() {
   RobotModel model;
   model.module_count = 48;
   model.module_length_m = 0.0445;
-  model.module_mass_kg = 1e-3;  // next to no inertia
+  model.module_mass_kg = 1e-3;  // almost no inertia
   model.friction_along = 0.0;   // the ideal skin, on which a body slides along its own track
   model.joints.resize(47);
   return model;
 }
 
-/// A fine body whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
+/// Such a body whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
 class SlidingBody {
  public:
   /// `heading`: of the path at a length.
@@ -52,7 +55,7 @@ class SlidingBody {
   }
 
   struct Snapshot {
-    Pose2 head;  // in the path's frame
+    PlanarPose head;  // in the path's frame
     std::array<double, 47> q{};
   };
 
@@ -69,11 +72,11 @@ class SlidingBody {
       ahead = here;
       here = point(s);
       const double next = angle(ahead - here);
-      q = wrapped(heading - next);
+      q = wrap_angle(heading - next);
       heading = next;
     }
     const Eigen::Vector2d centre = nose - 0.5 * l * along(head);
-    snapshot.head = {centre.x(), centre.y(), head};
+    snapshot.head = {centre, head};
     return snapshot;
   }
 
@@ -121,18 +124,19 @@ Travel travel(const SlidingBody& body, double from, double length_m, double spee
     input.joint_rad = now.q.data();
     input.joint_rad_s = rate.data();
     input.yaw_rad = now.head.yaw_rad;
-    const HeadStep step = advance_odometry(state, model, {}, input);
+    const HeadStep step = advance_odometry(state, model, kConfig, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
   }
-  const Eigen::Vector2d truth = from_parent(start.head, now.head.position());
-  const Pose2 estimate = filter.pose();
-  return {length_m, (estimate.position() - truth).norm(),
-          std::abs(wrapped(estimate.yaw_rad - (now.head.yaw_rad - start.head.yaw_rad)))};
+  const Eigen::Vector2d truth = start.head.to_local(now.head.p);
+  const PlanarPose estimate = filter.pose();
+  return {length_m, (estimate.p - truth).norm(),
+          std::abs(wrap_angle(estimate.yaw_rad - (now.head.yaw_rad - start.head.yaw_rad)))};
 }
 
-/// Runs the odometry over shapes q(t) of the snake at rest at first; returns the head's path's end in its first frame.
-Pose2 run_shapes(const RobotModel& model, int ticks, const std::function<double(std::size_t, double)>& joint,
-                 const std::function<double(double)>& yaw, std::vector<double> load_n = {}) {
+/// Runs the odometry over the shapes q(t) of a snake that is at rest at first. Returns the final pose of the head in
+/// its first frame.
+PlanarPose run_shapes(const RobotModel& model, int ticks, const std::function<double(std::size_t, double)>& joint,
+                      const std::function<double(double)>& yaw, std::vector<double> load_n = {}) {
   PoseFilterState filter_state;
   PoseFilter filter(filter_state);
   OdometryState state;
@@ -148,52 +152,55 @@ Pose2 run_shapes(const RobotModel& model, int ticks, const std::function<double(
     input.joint_rad_s = rate.data();
     input.yaw_rad = yaw(k * dt);
     input.load_n = load_n;
-    const HeadStep step = advance_odometry(state, model, {}, input);
+    const HeadStep step = advance_odometry(state, model, kConfig, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
   }
   return filter.pose();
 }
 
 TEST(Odometry, FollowsASlidingBodyStraightCurvedAndBackwards) {
-  struct Case { double amplitude, wavelength, curvature; };
+  struct Case {
+    double amplitude, wavelength, curvature;
+  };
   for (const Case& c : {Case{0.5, 1.07, 0.0}, Case{0.5, 1.07, 0.5}, Case{0.35, 1.07, -0.8}, Case{0.6, 0.8, 0.0}}) {
-    const SlidingBody body([&](double s) { return c.amplitude * std::sin(2.0 * kPi * s / c.wavelength) + c.curvature * s; });
+    const SlidingBody body(
+        [&](double s) { return c.amplitude * std::sin(2.0 * kPi * s / c.wavelength) + c.curvature * s; });
     for (const double speed : {0.6, -0.4}) {
       const Travel t = travel(body, speed > 0 ? 3.0 : 9.0, 5.0, speed);
-      EXPECT_LT(t.position_error_m, 0.03 * t.length_m) << "amplitude " << c.amplitude << ", curvature " << c.curvature
-                                                       << ", speed " << speed;
+      EXPECT_LT(t.position_error_m, 0.03 * t.length_m)
+          << "amplitude " << c.amplitude << ", curvature " << c.curvature << ", speed " << speed;
       EXPECT_LT(t.yaw_error_rad, 1e-6);
     }
   }
 }
 
-TEST(Odometry, StandsStillWhileTheBodyDoes) {
-  const Pose2 end = run_shapes(snake(), 200, [](std::size_t i, double) { return i % 2 == 0 ? 0.3 : 0.0; },
-                               [](double) { return 0.4; });
-  EXPECT_LT(end.position().norm(), 1e-9);
+TEST(Odometry, StandsStillWhileTheBodyStandsStill) {
+  const PlanarPose end = run_shapes(
+      snake(), 200, [](std::size_t i, double) { return i % 2 == 0 ? 0.3 : 0.0; }, [](double) { return 0.4; });
+  EXPECT_LT(end.p.norm(), 1e-9);
 }
 
 TEST(Odometry, BendingTheHeadMovesTheHeadNotTheBody) {
-  // the other 23 modules lie straight and hold the ground: the head turns about the first joint
-  const Pose2 end = run_shapes(snake(), 100, [](std::size_t i, double t) { return i == 0 ? 0.3 * t : 0.0; },
-                               [](double t) { return 0.3 * t; });
+  // The other 23 modules lie straight and do not slip: the head turns about the first joint.
+  const PlanarPose end = run_shapes(
+      snake(), 100, [](std::size_t i, double t) { return i == 0 ? 0.3 * t : 0.0; }, [](double t) { return 0.3 * t; });
   const double half_m = 0.0445, angle = 0.6;
-  EXPECT_NEAR(end.x_m, half_m * (std::cos(angle) - 1.0), 0.004);
-  EXPECT_NEAR(end.y_m, half_m * std::sin(angle), 0.002);
+  EXPECT_NEAR(end.p.x(), half_m * (std::cos(angle) - 1.0), 0.004);
+  EXPECT_NEAR(end.p.y(), half_m * std::sin(angle), 0.002);
   EXPECT_NEAR(end.yaw_rad, angle, 1e-9);
 }
 
-TEST(Odometry, ModulesThatBearNoLoadDoNotHold) {
-  // the rear swings; only the front half touches the ground
+TEST(Odometry, ModulesWithoutLoadHaveNoFriction) {
+  // The rear half swings. Only the front half touches the ground.
   std::vector<double> load(24, 0.0);
   for (std::size_t i = 0; i <= 10; ++i) load[i] = 6.0;
-  const Pose2 end = run_shapes(snake(), 100, [](std::size_t i, double t) { return i == 10 ? 0.2 * t : 0.0; },
-                               [](double) { return 0.0; }, load);
-  EXPECT_LT(end.position().norm(), 0.005);
+  const PlanarPose end = run_shapes(
+      snake(), 100, [](std::size_t i, double t) { return i == 10 ? 0.2 * t : 0.0; }, [](double) { return 0.0; }, load);
+  EXPECT_LT(end.p.norm(), 0.005);
 }
 
-TEST(Odometry, WithoutFrictionTheCentreOfMassStays) {
-  // conservation of momentum: whatever the joints do
+TEST(Odometry, CentreOfMassStaysWithoutFriction) {
+  // Momentum is conserved, whatever the joints do.
   RobotModel ice = snake();
   ice.friction_along = ice.friction_across = 0.0;
   const auto joint = [](std::size_t i, double t) {
@@ -201,26 +208,26 @@ TEST(Odometry, WithoutFrictionTheCentreOfMassStays) {
   };
   const auto yaw = [](double t) { return 0.3 * std::sin(2.0 * t); };
   const int ticks = 300;
-  const Pose2 end = run_shapes(ice, ticks, joint, yaw);
-  const auto centre = [&](const Pose2& head, double t) {
+  const PlanarPose end = run_shapes(ice, ticks, joint, yaw);
+  const auto centre = [&](const PlanarPose& head, double t) {
     std::array<double, 23> q{};
     for (std::size_t i = 0; i < 23; ++i) q[i] = joint(i, t);
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (const PlanarPose& p : planar_module_poses(ice, q, {head.x_m, head.y_m, head.yaw_rad})) {
-      sum += Eigen::Vector2d(p.x_m, p.y_m) / 24.0;
+    for (const PlanarPose& p : planar_module_poses(ice, q, head)) {
+      sum += p.p / 24.0;
     }
     return sum;
   };
   EXPECT_LT((centre(end, 0.02 * ticks) - centre({}, 0.0)).norm(), 0.003);
 }
 
-TEST(PoseFilter, LandmarksSeenAgainTakeBackTheDrift) {
-  // a square of 2 m with odometry that believes each step 5 % too long and turns 2 % too far
+TEST(PoseFilter, LandmarksSeenAgainCorrectTheDrift) {
+  // A square of 2 m. The odometry takes each step for 5 % too long and each turn for 2 % too far.
   PoseFilterState state;
   PoseFilter filter(state);
   const Eigen::Vector2d landmarks[] = {{1.0, 0.8}, {1.5, -0.6}};
   const Eigen::Matrix2d noise = 0.02 * 0.02 * Eigen::Matrix2d::Identity();
-  Pose2 truth;
+  PlanarPose truth;
   filter.add(landmarks[0], noise);
   filter.add(landmarks[1], noise);
   for (int side = 0; side < 4; ++side) {
@@ -228,18 +235,18 @@ TEST(PoseFilter, LandmarksSeenAgainTakeBackTheDrift) {
       const Eigen::Vector2d step(0.02, 0.0);
       const double turn = k < 50 ? kPi / 100.0 : 0.0;
       const Eigen::Vector2d p = to_parent(truth, turned(step, 0.5 * turn));
-      truth = {p.x(), p.y(), wrapped(truth.yaw_rad + turn)};
+      truth = {p, wrap_angle(truth.yaw_rad + turn)};
       filter.predict(1.05 * step, 1.02 * turn, Eigen::Vector3d(1e-5, 1e-6, 1e-5).asDiagonal());
     }
   }
-  const double before = (filter.pose().position() - truth.position()).norm();
+  const double before = (filter.pose().p - truth.p).norm();
   const double spread = filter.pose_covariance().trace();
   for (int k = 0; k < 5; ++k) {
-    for (std::size_t i = 0; i < 2; ++i) filter.observe(i, from_parent(truth, landmarks[i]), noise);
+    for (std::size_t i = 0; i < 2; ++i) filter.observe(i, truth.to_local(landmarks[i]), noise);
   }
   EXPECT_GT(before, 0.1);
-  EXPECT_LT((filter.pose().position() - truth.position()).norm(), 0.02);
-  EXPECT_LT(std::abs(wrapped(filter.pose().yaw_rad - truth.yaw_rad)), 0.02);
+  EXPECT_LT((filter.pose().p - truth.p).norm(), 0.02);
+  EXPECT_LT(std::abs(wrap_angle(filter.pose().yaw_rad - truth.yaw_rad)), 0.02);
   EXPECT_LT(filter.pose_covariance().trace(), spread);
   const Eigen::Vector2d second = filter.landmark(1);
   filter.remove(0);

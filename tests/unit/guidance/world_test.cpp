@@ -1,25 +1,28 @@
-// Dead reckoning against the simulated physics: inertia, slip, compliant joints, sensor noise.
+// Dead reckoning compared with the simulated physics: inertia, slip, compliant joints, sensor noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 #include <random>
 
+#include "component/data_path.hpp"
+#include "guidance/guidance_config.hpp"
 #include "guidance/odometry.hpp"
-#include "guidance/planar.hpp"
 #include "guidance/pose_filter.hpp"
-#include "runtime/share.hpp"
-#include "tests/unit/world/open_loop_gait.hpp"
+#include "robot/planar.hpp"
+#include "unit/world/open_loop_gait.hpp"
 
 namespace constrictor {
 namespace {
 
 using namespace guidance;
 
+const OdometryConfig kConfig = GuidanceConfig{}.odometry;
+
 struct Case {
   const char* name;
   OpenLoopGait gait;
-  double ground_scale;  // of the ground's friction, of which the robot does not know
+  double ground_scale;  // factor on the friction of the ground, which the robot does not know
 };
 
 double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
@@ -28,7 +31,7 @@ class DeadReckoning : public testing::TestWithParam<Case> {};
 
 TEST_P(DeadReckoning, StaysWithinFivePercentOfTheDistance) {
   const Case& c = GetParam();
-  const RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   Scenario scenario;
   scenario.friction.ground_scale = c.ground_scale;
   World world(robot, scenario);
@@ -52,30 +55,31 @@ TEST_P(DeadReckoning, StaysWithinFivePercentOfTheDistance) {
     OdometryInput input;
     input.joint_rad = q.data();
     input.joint_rad_s = rate.data();
-    input.yaw_rad = wrapped(yaw_of(world.module_pose(0)) - yaw_of(start) + drift_rad);
+    input.yaw_rad = wrap_angle(yaw_of(world.module_pose(0)) - yaw_of(start) + drift_rad);
     input.load_n.assign(robot.module_count, 0.0);
     for (const ModuleContact& contact : world.contacts()) {
       input.load_n[contact.module_index] += contact.force_n.z() + robot.contact_force_noise_n * normal(random);
     }
-    if (k == 0) input.load_n.clear();  // nothing was felt yet
-    const HeadStep step = advance_odometry(state, robot, {}, input);
+    if (k == 0) input.load_n.clear();  // no contact has been measured yet
+    const HeadStep step = advance_odometry(state, robot, kConfig, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
     path_m += (world.module_pose(0).translation() - last).norm();
     last = world.module_pose(0).translation();
     c.gait.drive(world, k * dt, dt);
   }
   ASSERT_GE(path_m, 5.0);
-  // the last drive() was one period after the last estimate
-  const Pose2 origin{start.translation().x(), start.translation().y(), yaw_of(start)};
-  const Eigen::Vector2d truth = from_parent(origin, last.head<2>());
-  const double error_m = (filter.pose().position() - truth).norm();
+  // The last drive() was one period after the last estimate.
+  const PlanarPose origin{{start.translation().x(), start.translation().y()}, yaw_of(start)};
+  const Eigen::Vector2d truth = origin.to_local(last.head<2>());
+  const double error_m = (filter.pose().p - truth).norm();
   std::printf("%s: %.2f m, error %.3f m (%.1f %%), yaw drift %.2f degrees\n", c.name, path_m, error_m,
               100.0 * error_m / path_m, std::abs(drift_rad) * 180.0 / std::numbers::pi);
   EXPECT_LT(error_m, 0.05 * path_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gaits, DeadReckoning,
-                         testing::Values(Case{"straight", {}, 1.0}, Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.8},
+                         testing::Values(Case{"straight", {}, 1.0},
+                                         Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.8},
                                          Case{"backwards", {0.5, -0.7, 1.07, 0.0}, 1.0},
                                          Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 1.2}),
                          [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });

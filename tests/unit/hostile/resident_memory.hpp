@@ -1,4 +1,4 @@
-// What this process holds of the machine's memory.
+// Memory use of the test's own process.
 #pragma once
 
 #include <unistd.h>
@@ -7,6 +7,7 @@
 
 namespace constrictor::test {
 
+/// [MiB] resident memory of this process.
 inline double resident_mib() {
   std::ifstream file("/proc/self/statm");
   long size = 0;

@@ -1,5 +1,5 @@
-// Absurd messages into the bridge to ROS 2, from both sides: what ROS is shown is finite and consistent, what the robot is asked is
-// within the drive's limits, an emergency stop blocks, and memory stays flat.
+// Messages with absurd values from both sides of the bridge to ROS 2: messages to ROS are finite and consistent,
+// requests to the robot are within the drive's limits, an emergency stop blocks them, and memory does not grow.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
+#include "component/data_path.hpp"
 #include "constrictor/messages.hpp"
 #include "hostile_filler.hpp"
 #include "resident_memory.hpp"
 #include "robot/robot_model.hpp"
 #include "ros_bridge/ros_translator.hpp"
 #include "ros_bridge/velocity_pilot.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor::test {
 namespace {
@@ -26,14 +26,22 @@ constexpr std::uint64_t kSeed = 20261122;
 bool finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
-bool finite(const geometry_msgs_msg_dds__Vector3_& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool finite(const geometry_msgs_msg_dds__Point_& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool finite(const dds_sequence_double& values) { return finite(std::span<const double>(values._buffer, values._length)); }
-bool unit(const geometry_msgs_msg_dds__Quaternion_& q) { return std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0) < 0.02; }
-/// What ROS's own libraries accept as a time.
+bool finite(const geometry_msgs_msg_dds__Vector3_& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool finite(const geometry_msgs_msg_dds__Point_& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool finite(const dds_sequence_double& values) {
+  return finite(std::span<const double>(values._buffer, values._length));
+}
+bool unit(const geometry_msgs_msg_dds__Quaternion_& q) {
+  return std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0) < 0.02;
+}
+/// Whether ROS's own libraries accept it as a time.
 bool in_time(const builtin_interfaces_msg_dds__Time_& t) { return t.sec >= 0 && t.nanosec < 1'000'000'000u; }
 
-/// Messages with what makes them worth translating, most of the time.
+/// Messages with absurd values, most of which the bridge nevertheless accepts for translation.
 class RosFiller : public HostileFiller {
  public:
   using HostileFiller::HostileFiller;
@@ -43,28 +51,28 @@ class RosFiller : public HostileFiller {
     begin_message();
     Description<T>::visit(message, *this);
     if constexpr (requires { message.header; }) {
-      if (roll(4) != 0) tempt(message.header.tick, message.header.time_ns);
+      if (roll(4) != 0) make_relevant(message.header.tick, message.header.time_ns);
     } else {
-      if (roll(4) != 0) tempt(message.index, message.time_ns);
+      if (roll(4) != 0) make_relevant(message.index, message.time_ns);
     }
-    tempt(message);
+    make_relevant(message);
     return message;
   }
 
  private:
-  void tempt(std::int64_t& tick, std::int64_t& time_ns) {
+  void make_relevant(std::int64_t& tick, std::int64_t& time_ns) {
     tick = static_cast<std::int64_t>(roll(1'000'000'000));
     time_ns = tick * 20'000'000;
   }
   template <class T>
-  void tempt(T&) {}
-  void tempt(msg::ImuState& m) { tempt(m.orientation); }
-  void tempt(msg::CameraInfo& m) { tempt(m.X_HC.orientation); }
-  void tempt(msg::Quaternion& q) {
+  void make_relevant(T&) {}
+  void make_relevant(msg::ImuState& m) { make_relevant(m.orientation); }
+  void make_relevant(msg::CameraInfo& m) { make_relevant(m.X_HC.orientation); }
+  void make_relevant(msg::Quaternion& q) {
     if (roll(4) != 0) q = {std::cos(static_cast<double>(roll(7))), 0.0, 0.0, 0.0};
     if (roll(4) != 0) q.z = std::sqrt(std::max(0.0, 1.0 - q.w * q.w));
   }
-  void tempt(msg::CameraImage& m) {
+  void make_relevant(msg::CameraImage& m) {
     if (roll(4) == 0) return;
     m.width = static_cast<std::uint16_t>(1 + roll(32));
     m.height = static_cast<std::uint16_t>(1 + roll(16));
@@ -75,14 +83,17 @@ class RosFiller : public HostileFiller {
   std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(32 * 16 * 3);
 };
 
-/// Translates what may be shown, as the bridge does, and judges it.
-class RosEye {
+/// Translates the messages that the bridge would translate, and checks the result.
+class CheckedTranslator {
  public:
-  explicit RosEye(const RobotModel& robot) : joints_(robot.joints.size()), modules_(robot.module_count), translator_(robot) {}
-  void show(const msg::Tick& m) {
-    if (fit(m)) { ASSERT_TRUE(in_time(translator_.clock(m.time_ns).clock)); }
+  explicit CheckedTranslator(const RobotModel& robot)
+      : joints_(robot.joints.size()), modules_(robot.module_count), translator_(robot) {}
+  void translate(const msg::Tick& m) {
+    if (fit(m)) {
+      ASSERT_TRUE(in_time(translator_.clock(m.time_ns).clock));
+    }
   }
-  void show(const msg::JointState& m) {
+  void translate(const msg::JointState& m) {
     if (!fit(m)) return;
     const auto out = translator_.joint_state(last_joints_ = m);
     ASSERT_TRUE(in_time(out.header.stamp));
@@ -92,48 +103,50 @@ class RosEye {
       ASSERT_TRUE(finite(*values));
     }
   }
-  void show(const msg::ImuState& m) {
+  void translate(const msg::ImuState& m) {
     if (!fit(m)) return;
     const auto out = translator_.imu(last_imu_ = m);
     ASSERT_TRUE(in_time(out.header.stamp));
     ASSERT_TRUE(unit(out.orientation) && finite(out.angular_velocity) && finite(out.linear_acceleration));
   }
-  void show(const msg::RobotPose& m) {
+  void translate(const msg::RobotPose& m) {
     if (!fit(m)) return;
     const auto odometry = translator_.odometry(m, last_imu_);
     const auto& at = odometry.pose.pose;
     ASSERT_TRUE(in_time(odometry.header.stamp) && finite(at.position) && unit(at.orientation));
-    ASSERT_TRUE(finite(odometry.pose.covariance) && finite(odometry.twist.twist.linear) && finite(odometry.twist.twist.angular));
-    judge(translator_.transforms(m, last_joints_), modules_);
+    ASSERT_TRUE(finite(odometry.pose.covariance) && finite(odometry.twist.twist.linear) &&
+                finite(odometry.twist.twist.angular));
+    check(translator_.transforms(m, last_joints_), modules_);
   }
-  void show(const msg::CameraInfo& m) {
+  void translate(const msg::CameraInfo& m) {
     if (!fit(m)) return;
     const auto out = translator_.camera_info(m);
     ASSERT_TRUE(in_time(out.header.stamp) && finite(out.k) && finite(out.r) && finite(out.p) && finite(out.d));
     ASSERT_TRUE(out.width > 0 && out.height > 0);
-    judge(translator_.camera_transform(m), 1);
+    check(translator_.camera_transform(m), 1);
   }
-  void show(const msg::CameraImage& m) {
+  void translate(const msg::CameraImage& m) {
     if (!fit(m)) return;
     const auto out = translator_.image(m);
     ASSERT_TRUE(in_time(out.header.stamp));
     ASSERT_EQ(out.step, 3 * out.width);
     ASSERT_EQ(out.data._length, out.step * out.height);
   }
-  std::uint64_t shown = 0;
+  std::uint64_t translated = 0;
 
  private:
   template <class T>
   bool fit(const T& message) {
     const bool fits = ros::unfit(message).empty();
-    shown += fits;
+    translated += fits;
     return fits;
   }
-  static void judge(const ros::TFMessage& tree, std::size_t count) {
+  static void check(const ros::TFMessage& tree, std::size_t count) {
     ASSERT_EQ(tree.transforms._length, count);
     for (std::size_t i = 0; i < count; ++i) {
       const auto& t = tree.transforms._buffer[i];
-      ASSERT_TRUE(in_time(t.header.stamp) && finite(t.transform.translation) && unit(t.transform.rotation)) << t.child_frame_id;
+      ASSERT_TRUE(in_time(t.header.stamp) && finite(t.transform.translation) && unit(t.transform.rotation))
+          << t.child_frame_id;
     }
   }
 
@@ -143,34 +156,55 @@ class RosEye {
   msg::ImuState last_imu_{};
 };
 
-TEST(HostileRosBridge, WhatRosIsShownIsFiniteAndConsistent) {
-  RosEye eye(load_robot(share_path("components/robot/mamba.yaml")));
+TEST(HostileRosBridge, MessagesToRosAreFiniteAndConsistent) {
+  CheckedTranslator checked(load_robot(data_path("components/lib/robot/mamba.yaml")));
   RosFiller filler(kSeed);
   double early_mib = 0.0;
   for (std::uint64_t i = 0; i < kMessages && !testing::Test::HasFatalFailure(); ++i) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << " message " << i);
     switch (i % 6) {
-      case 0: eye.show(filler.make<msg::Tick>()); break;
-      case 1: eye.show(filler.make<msg::JointState>()); break;
-      case 2: eye.show(filler.make<msg::ImuState>()); break;
-      case 3: eye.show(filler.make<msg::RobotPose>()); break;
-      case 4: eye.show(filler.make<msg::CameraInfo>()); break;
-      default: eye.show(filler.make<msg::CameraImage>()); break;
+      case 0:
+        checked.translate(filler.make<msg::Tick>());
+        break;
+      case 1:
+        checked.translate(filler.make<msg::JointState>());
+        break;
+      case 2:
+        checked.translate(filler.make<msg::ImuState>());
+        break;
+      case 3:
+        checked.translate(filler.make<msg::RobotPose>());
+        break;
+      case 4:
+        checked.translate(filler.make<msg::CameraInfo>());
+        break;
+      default:
+        checked.translate(filler.make<msg::CameraImage>());
+        break;
     }
     if (i == kMessages / 3) early_mib = resident_mib();
   }
   const double late_mib = resident_mib();
-  std::printf("ros_bridge: %llu messages, %llu shown, memory %.1f to %.1f MiB\n", static_cast<unsigned long long>(kMessages),
-              static_cast<unsigned long long>(eye.shown), early_mib, late_mib);
-  EXPECT_GT(eye.shown, kMessages / 10) << "most must reach the translator";
-  EXPECT_LT(eye.shown, kMessages) << "and some must not";
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what was freed
+  std::printf("ros_bridge: %llu messages, %llu translated, memory %.1f to %.1f MiB\n",
+              static_cast<unsigned long long>(kMessages), static_cast<unsigned long long>(checked.translated),
+              early_mib, late_mib);
+  EXPECT_GT(checked.translated, kMessages / 10) << "too few messages reached the translator";
+  EXPECT_LT(checked.translated, kMessages) << "no message was rejected";
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers keep freed memory
   EXPECT_LT(late_mib - early_mib, 4.0);
 #endif
 }
 
-TEST(HostileRosBridge, WhatTheRobotIsAskedIsWithinTheDrivesLimitsAndNeverAfterAStop) {
-  constexpr double kAbsurd[] = {0.0, -0.0, 1e308, -1e308, 5e-324, 0.3, -0.4, 1.0, std::numeric_limits<double>::infinity(),
+TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencyStop) {
+  constexpr double kAbsurd[] = {0.0,
+                                -0.0,
+                                1e308,
+                                -1e308,
+                                5e-324,
+                                0.3,
+                                -0.4,
+                                1.0,
+                                std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::quiet_NaN()};
   constexpr double kHoldAfter_s = 0.5;
   const ros::DriveConfig limits;
@@ -178,7 +212,7 @@ TEST(HostileRosBridge, WhatTheRobotIsAskedIsWithinTheDrivesLimitsAndNeverAfterAS
   HostileFiller filler(kSeed);
   double now_s = 1000.0;
   double heard_s = -1e9;  // of the last velocity
-  bool stopped = false;   // since when the velocity was neither zero nor absent
+  bool stopped = false;   // an emergency stop came, and since then the velocity was neither zero nor absent
   std::uint64_t motions = 0, releases = 0, blocked = 0;
   for (std::uint64_t i = 0; i < kMessages; ++i) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << " message " << i);
@@ -186,7 +220,8 @@ TEST(HostileRosBridge, WhatTheRobotIsAskedIsWithinTheDrivesLimitsAndNeverAfterAS
     if (now_s - heard_s > kHoldAfter_s) stopped = false;
     if (filler.roll(3) != 0) {
       ros::Twist twist{};
-      for (double* value : {&twist.linear.x, &twist.linear.y, &twist.linear.z, &twist.angular.x, &twist.angular.y, &twist.angular.z}) {
+      for (double* value :
+           {&twist.linear.x, &twist.linear.y, &twist.linear.z, &twist.angular.x, &twist.angular.y, &twist.angular.z}) {
         *value = kAbsurd[filler.roll(std::size(kAbsurd))];
       }
       const ros::Drive drive = ros::drive_of(twist, limits);
@@ -209,10 +244,12 @@ TEST(HostileRosBridge, WhatTheRobotIsAskedIsWithinTheDrivesLimitsAndNeverAfterAS
     ASSERT_TRUE(ask->kind == msg::kRequestMotion || ask->kind == msg::kRequestRelease);
     ASSERT_TRUE(std::abs(ask->drive.frequency_hz) <= limits.max_frequency_hz) << ask->drive.frequency_hz;
     ASSERT_TRUE(std::abs(ask->drive.curvature_1_m) <= limits.max_curvature_1_m) << ask->drive.curvature_1_m;
-    ASSERT_TRUE(!stopped || ask->drive == ros::Drive{}) << "an emergency stop, and no pause of the velocity since";
+    ASSERT_TRUE(!stopped || ask->drive == ros::Drive{})
+        << "motion after an emergency stop, without a pause of the velocity";
   }
-  std::printf("velocity pilot: %llu motions and %llu releases asked, %llu times blocked\n", static_cast<unsigned long long>(motions),
-              static_cast<unsigned long long>(releases), static_cast<unsigned long long>(blocked));
+  std::printf("velocity pilot: %llu motions and %llu releases requested, %llu times blocked\n",
+              static_cast<unsigned long long>(motions), static_cast<unsigned long long>(releases),
+              static_cast<unsigned long long>(blocked));
   EXPECT_GT(motions, kMessages / 100);
   EXPECT_GT(releases, 0u);
   EXPECT_GT(blocked, 0u);

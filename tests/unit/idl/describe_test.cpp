@@ -1,4 +1,4 @@
-// The description generator: what it reads from the IDL, and what it says about what it cannot read.
+// The generator of descriptions: what it reads from the IDL, and how it reports what it cannot read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include "constrictor/messages.hpp"
 #include "constrictor/reflect.hpp"
+#include "constrictor/sha256.hpp"
 #include "idl/generator/idl_parser.hpp"
 #include "random_message.hpp"
 
@@ -56,11 +57,21 @@ TEST(IdlParser, ReadsFieldsAnnotationsAndComments) {
   EXPECT_TRUE(s.fields[4].is_sequence);
 }
 
-TEST(IdlParser, TakesTheEscapeOffANameThatIsAKeyword) {
+TEST(IdlParser, JoinsTheCommentAboveAFieldAndTheOneBehindIt) {
+  const Model model = parsed(
+      "@final struct S {\n  long a;  // of a\n  // [m] above b,\n  // in two lines\n  long b;  // behind b\n  long "
+      "c;\n};");
+  const auto& fields = model.structs.at(0).fields;
+  EXPECT_EQ(fields.at(0).comment, "of a");
+  EXPECT_EQ(fields.at(1).comment, "[m] above b, in two lines behind b");
+  EXPECT_EQ(fields.at(2).comment, "");
+}
+
+TEST(IdlParser, RemovesTheEscapeFromANameThatIsAKeyword) {
   EXPECT_EQ(parsed("@final struct S {\n  long _component;\n};").structs.at(0).fields.at(0).name, "component");
 }
 
-TEST(IdlParser, NamesFileAndLineOfWhatItCannotRead) {
+TEST(IdlParser, ReportsFileAndLineOfTextThatItCannotRead) {
   EXPECT_EQ(error_of("module a {\n@final struct S {\n  map<long, long> m;\n};\n};"),
             "dir/made_up.idl:3: found type 'map', which is not defined before");
   EXPECT_EQ(error_of("enum E { A };"), "dir/made_up.idl:1: found 'enum'; accepted: module, const, @final struct");
@@ -78,58 +89,71 @@ std::string idl_text(const std::string& name) {
   return text.str();
 }
 
-const char* const kFiles[] = {"common", "plant", "simulation", "camera", "perception",
-                              "guidance", "task", "motion", "mission", "parameter", "barrier"};
+const char* const kFiles[] = {"common", "plant",  "simulation", "camera",    "perception", "guidance",
+                              "task",   "motion", "mission",    "parameter", "barrier"};
 
 /// Counts over all fields of all types.
 struct Counter {
   int ranged = 0;
   int keys = 0;
+  int constants = 0;
   template <class T>
   void operator()(const FieldInfo& info, T&) {
     ranged += info.has_range ? 1 : 0;
     keys += info.is_key ? 1 : 0;
+    constants += info.constants ? 1 : 0;
   }
 };
 
 TEST(Descriptions, HoldEveryAnnotationOfTheFiles) {
   std::ptrdiff_t ranges = 0;
   std::ptrdiff_t keys = 0;
+  std::ptrdiff_t constants = 0;
+  std::ptrdiff_t ranged_constants = 0;
   for (const char* name : kFiles) {
-    // Comments aside: one of them explains @range.
-    const std::string text = std::regex_replace(idl_text(name), std::regex("//[^\n]*"), "");
-    const auto count = [&](const char* pattern) {
+    const std::string whole = idl_text(name);
+    // Without comments, because one of them explains @range.
+    const std::string text = std::regex_replace(whole, std::regex("//[^\n]*"), "");
+    const auto count = [](const std::string& in, const char* pattern) {
       const std::regex regex(pattern);
-      return std::distance(std::sregex_iterator(text.begin(), text.end(), regex), std::sregex_iterator());
+      return std::distance(std::sregex_iterator(in.begin(), in.end(), regex), std::sregex_iterator());
     };
-    ranges += count("@range\\(");
-    keys += count("@key ");
+    ranges += count(text, "@range\\(");
+    keys += count(text, "@key ");
+    constants += count(whole, "octet [a-z_]+(\\[\\w+\\])?; *// k[A-Z][a-z]+\\.\\.\\.");
+    ranged_constants += count(whole, "@range[^\n;]* octet [a-z_]+; *// k[A-Z][a-z]+\\.\\.\\.");
   }
   Counter counter;
   test::for_each_type(AllMessages{}, [&]<class T>() {
     T message{};
     Description<T>::visit(message, counter);
   });
-  EXPECT_EQ(counter.ranged, ranges);
+  EXPECT_EQ(counter.constants, constants);
+  EXPECT_EQ(counter.ranged, ranges + constants - ranged_constants);  // a group of constants is a range as well
+  EXPECT_GT(constants, 30);
   EXPECT_EQ(counter.keys, keys);
   EXPECT_GT(keys, 20);
 }
 
-// idlc takes names that stricter compilers (Fast DDS's among them) refuse: keywords of OMG IDL 4.2, in any case, unless escaped.
-TEST(Descriptions, NoNameIsAKeywordOfOtherIdlCompilers) {
+// idlc accepts names that stricter compilers, such as Fast DDS's, reject: the keywords of OMG IDL 4.2, in upper or
+// lower case, unless they are escaped by an underscore.
+TEST(Descriptions, ContainNoKeywordOfOtherIdlCompilers) {
   const std::set<std::string> keywords{
-      "abstract", "alias", "any", "attribute", "bitfield", "bitmask", "bitset", "case", "char", "component", "connector", "consumes",
-      "context", "custom", "default", "emits", "enum", "eventtype", "exception", "factory", "false", "finder", "fixed", "getraises",
-      "home", "import", "in", "inout", "interface", "local", "manages", "map", "mirrorport", "multiple", "native", "object", "oneway",
-      "out", "port", "porttype", "primarykey", "private", "provides", "public", "publishes", "raises", "readonly", "setraises", "supports",
-      "switch", "true", "truncatable", "typedef", "typeid", "typename", "typeprefix", "union", "uses", "valuebase", "valuetype", "void",
-      "wchar", "wstring"};
+      "abstract",   "alias",     "any",       "attribute",   "bitfield",  "bitmask", "bitset",   "case",
+      "char",       "component", "connector", "consumes",    "context",   "custom",  "default",  "emits",
+      "enum",       "eventtype", "exception", "factory",     "false",     "finder",  "fixed",    "getraises",
+      "home",       "import",    "in",        "inout",       "interface", "local",   "manages",  "map",
+      "mirrorport", "multiple",  "native",    "object",      "oneway",    "out",     "port",     "porttype",
+      "primarykey", "private",   "provides",  "public",      "publishes", "raises",  "readonly", "setraises",
+      "supports",   "switch",    "true",      "truncatable", "typedef",   "typeid",  "typename", "typeprefix",
+      "union",      "uses",      "valuebase", "valuetype",   "void",      "wchar",   "wstring"};
   const std::regex word("[A-Za-z_][A-Za-z0-9_]*");
   for (const char* name : kFiles) {
     const std::string text = std::regex_replace(idl_text(name), std::regex("//[^\n]*"), "");
     for (auto it = std::sregex_iterator(text.begin(), text.end(), word); it != std::sregex_iterator(); ++it) {
       std::string lower = it->str();
-      std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      std::transform(lower.begin(), lower.end(), lower.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
       EXPECT_FALSE(keywords.contains(lower)) << name << ".idl: " << it->str() << " is a keyword; write _" << it->str();
     }
   }
@@ -143,7 +167,7 @@ TEST(Descriptions, HashIsOverTheFilesOfThisBuild) {
   EXPECT_EQ(hex(hash.finish()), msg::kIdlHash);
 }
 
-TEST(Descriptions, TellUnitRangeAndUnknownValue) {
+TEST(Descriptions, HoldUnitRangeAndUnknownValue) {
   const auto& timeout = Description<msg::TaskParameters>::k_timeout_s;
   EXPECT_STREQ(timeout.name, "timeout_s");
   EXPECT_STREQ(timeout.unit, "s");

@@ -1,5 +1,5 @@
-// Judges what `input` made of two writers of different strength that asked at once: by the order of its rulings (an answer each)
-// and the requests alone, not by the arbiter.
+// Checks the outputs of `input` for two writers of different levels that send requests at the same time. The check uses
+// the requests and the order of the answers, not the arbiter.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,24 +16,24 @@ namespace constrictor {
 
 class TwoWriters {
  public:
-  /// A task start, a motion or a release; of an operator or of an external planner, each with a name of its own.
-  void asked(const msg::Request& r) { asked_[{r.source, r.header.sequence_number}] = r; }
-  // What came out, each in the order of its writing.
-  void heard(const msg::RequestAnswer& m) { at_[m.header.tick].answers.push_back(m); }
-  void heard(const msg::TaskCommand& m) {
+  /// A start of a task, a motion or a release, of an operator or an external planner with different names.
+  void add_request(const msg::Request& r) { asked_[{r.source, r.header.sequence_number}] = r; }
+  // The outputs of `input`, each topic in the order of its samples.
+  void add(const msg::RequestAnswer& m) { at_[m.header.tick].answers.push_back(m); }
+  void add(const msg::TaskCommand& m) {
     if (m.command == msg::kCommandStart) at_[m.header.tick].starts.push_back(m.goal_id);
   }
-  void heard(const msg::MotionCommand& m) { at_[m.header.tick].motions.push_back(m.level); }
-  void heard(const msg::Authority& m) { at_[m.header.tick].authority.push_back(m.level); }
+  void add(const msg::MotionCommand& m) { at_[m.header.tick].motions.push_back(m.level); }
+  void add(const msg::Authority& m) { at_[m.header.tick].authority.push_back(m.level); }
 
-  /// Both were never obeyed: while the operator holds nothing of the other goes on, and in a tick in which it releases all that is
-  /// obeyed of the one comes before the release's ruling, and all of the other after it.
-  void judge() {
+  /// Expects that both are never obeyed: while the operator has authority, every request of the planner is refused. In
+  /// a tick with a release, all granted requests of the operator come before it, and all of the planner after it.
+  void check() {
     for (const auto& [tick, now] : at_) {
       SCOPED_TRACE(::testing::Message() << "tick " << tick);
-      std::vector<std::uint64_t> starts;          // that must go on, in this order
-      std::vector<std::uint8_t> motion;           // that must go on as the last word, or none
-      bool external_spoke = false;
+      std::vector<std::uint64_t> starts;  // that must be sent, in this order
+      std::vector<std::uint8_t> motion;   // the last motion, which must be sent; empty: none
+      bool external_came = false;
       bool operator_obeyed = false;
       for (const auto& answer : now.answers) {
         const auto known = asked_.find({answer.source, answer.request_sequence});
@@ -42,9 +42,9 @@ class TwoWriters {
         ++answered;
         const bool by_operator = r.level == msg::kAuthorityOperator;
         if (by_operator) {
-          EXPECT_FALSE(external_spoke) << "the stronger is ruled on first";
+          EXPECT_FALSE(external_came) << "the operator's requests come first";
         } else {
-          external_spoke = true;
+          external_came = true;
           refused_to_external += !answer.granted;
         }
         if (r.kind == msg::kRequestRelease) {
@@ -58,7 +58,7 @@ class TwoWriters {
           EXPECT_FALSE(answer.granted) << "the operator holds authority";
           continue;
         }
-        holder_ = r.level;  // also by a task that finds no room in this tick
+        holder_ = r.level;  // also by a task that exceeds the limit of the tick
         if (!answer.granted) {
           EXPECT_NE(std::string(answer.reason).find("task commands in a tick"), std::string::npos) << answer.reason;
           continue;
@@ -74,20 +74,21 @@ class TwoWriters {
           motion.clear();  // the task ends it
         }
       }
-      EXPECT_EQ(now.starts, starts) << "one by one, in the order of the rulings";
-      // A motion of an earlier tick ends at a release, without one of this tick: stand.
+      EXPECT_EQ(now.starts, starts) << "in the order of the answers";
+      // A release ends a motion of an earlier tick: stand.
       const std::vector<std::uint8_t> stand{msg::kAuthorityNone};
-      EXPECT_TRUE(now.motions == motion || (motion.empty() && now.motions == stand)) << "motions: " << now.motions.size();
+      EXPECT_TRUE(now.motions == motion || (motion.empty() && now.motions == stand))
+          << "motions: " << now.motions.size();
       if (now.answers.empty() && now.authority.empty()) continue;
-      EXPECT_EQ(now.authority, std::vector{holder_}) << "it is said in each tick of a ruling";
+      EXPECT_EQ(now.authority, std::vector{holder_}) << "written in each tick with an answer";
     }
   }
 
   int answered = 0;
-  int of_operator = 0;          ///< obeyed
+  int of_operator = 0;  ///< granted requests
   int of_external = 0;
   int refused_to_external = 0;
-  int ticks_of_both = 0;        ///< one after the other, with a release between
+  int ticks_of_both = 0;  ///< with granted requests of both, and a release between
 
  private:
   struct Tick {

@@ -1,7 +1,5 @@
-// The allowed dependencies between folders, checked by #include lines, by names of ground truth, and by linker symbols; and file sizes.
-//
-//   idl <- runtime <- mains        robot, configuration <- component logic <- mains
-//   Component logic sees ports, topics and messages only: no DDS, no clock, no simulation, no other component.
+// Rules of the layout that the build cannot enforce. The build itself enforces which folder includes which: each
+// library has its own include root (scripts/cmake/Constrictor.cmake).
 #pragma once
 
 #include <filesystem>
@@ -10,11 +8,16 @@
 
 namespace constrictor::test {
 
-/// Every violation in the source tree `root`, as "components/x/y.cpp:12: why".
+/// Every violation in the source tree `root`, as "components/x/y.cpp:12: why": Cyclone's headers outside the libraries
+/// that call it, includes by relative path, names of ground truth in code that runs on a robot.
 std::vector<std::string> source_violations(const std::filesystem::path& root);
 
-/// Source files that are too long to be read with ease: more than 400 lines, of tests 500.
+/// Source files of more than 300 lines that the README of their folder does not name with the reason.
 std::vector<std::string> long_files(const std::filesystem::path& root);
+
+/// Lines of more than 120 columns in C++, IDL, CMake, YAML and shell files, and in README files, as "file:12: 130
+/// columns". In README files, table rows and lines with a link may be longer because they cannot be wrapped.
+std::vector<std::string> long_lines(const std::filesystem::path& root);
 
 /// A static library of the project.
 struct Library {
@@ -23,13 +26,10 @@ struct Library {
   std::string nm;      ///< output of `nm`
 };
 
-/// The libraries that the CMakeLists.txt of idl/ and of the folders of components/ and sim/ declare; `nm` is left empty.
+/// The libraries that the CMakeLists.txt files of idl/, components/ and sim/ declare; `nm` is left empty.
 std::vector<Library> declared_libraries(const std::filesystem::path& root);
 
-/// Every function that the library needs and must not: of DDS, of clocks, of unseeded random numbers.
+/// Every function of DDS, of clocks and of unseeded random numbers that the library calls although it must not.
 std::vector<std::string> symbol_violations(const Library& library);
-
-/// Every library that needs what another one defines in a folder that it must not know.
-std::vector<std::string> link_violations(const std::vector<Library>& libraries);
 
 }  // namespace constrictor::test

@@ -1,4 +1,4 @@
-// Direct motions: what the body is told, and that they and tasks end each other.
+// Direct motions: the trajectories that they ask for, and how they and tasks end each other.
 #include "navigation/direct_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -6,13 +6,14 @@
 #include <cmath>
 #include <map>
 
+#include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
-#include "runtime/local_run.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
 
-class DirectMotion : public testing::Test {
+class DirectMotion : public ::testing::Test {
  protected:
   TaskOutput ask(std::uint8_t motion, double frequency_hz = 0.0, double curvature_1_m = 0.0, double angle_rad = 0.0) {
     msg::MotionCommand command{};
@@ -28,8 +29,8 @@ class DirectMotion : public testing::Test {
     step_motion(config_, sense_, grip_, state_, output);
     return output;
   }
-  RobotModel robot_ = load_robot(SOURCE_DIR "/components/robot/mamba.yaml");
-  NavigationConfig config_ = load_navigation_config(SOURCE_DIR "/components/navigation/navigation.yaml");
+  RobotModel robot_ = load_robot(SOURCE_DIR "/components/lib/robot/mamba.yaml");
+  NavigationConfig config_;
   GripSense sense_{robot_, config_.grip};
   Grip grip_;
   DirectMotionState state_;
@@ -40,7 +41,7 @@ TEST_F(DirectMotion, DrivesForwardsBackwardsAndInCurves) {
   EXPECT_EQ(step().desired.curvature_1_m, 0.8);
   const TaskOutput back = ask(msg::kMotionDrive, -0.5);
   EXPECT_EQ(back.desired.frequency_hz, -0.5);
-  EXPECT_FALSE(back.new_motion) << "another speed is not another motion: the wave goes on";
+  EXPECT_FALSE(back.new_motion) << "another speed continues the same motion";
   EXPECT_STREQ(back.desired.method, "undulation");
 }
 
@@ -52,7 +53,7 @@ TEST_F(DirectMotion, LooksLeftWithThePositiveSign) {
   EXPECT_NEAR(sum_rad, 0.6, 1e-12);
 }
 
-TEST_F(DirectMotion, WrapsToTheSideOfTheSignAndDrivesOnWrapped) {
+TEST_F(DirectMotion, WrapsToTheSideOfTheSignAndDrivesWrapped) {
   const TaskOutput wrap = ask(msg::kMotionWrap, 0.0, 0.0, -1.0);
   EXPECT_STREQ(wrap.desired.method, "wrap");
   EXPECT_GT(wrap.desired.speed_m_s, 0.0);
@@ -63,7 +64,7 @@ TEST_F(DirectMotion, WrapsToTheSideOfTheSignAndDrivesOnWrapped) {
   EXPECT_EQ(ask(msg::kMotionDrive, 0.5).desired.shape_count, 0);
 }
 
-TEST_F(DirectMotion, SqueezesWhatIsWrappedOnlyAndCapsTheTorque) {
+TEST_F(DirectMotion, SqueezesOnlyAWrappedBodyAndCapsTheTorque) {
   EXPECT_STREQ(ask(msg::kMotionSqueeze).desired.method, "hold");
   ask(msg::kMotionWrap, 0.0, 0.0, 1.0);
   const TaskOutput squeeze = ask(msg::kMotionSqueeze);
@@ -76,7 +77,7 @@ TEST_F(DirectMotion, SqueezesWhatIsWrappedOnlyAndCapsTheTorque) {
   EXPECT_EQ(stand.desired.torque_limit_nm, config_.grip.hold_torque_nm);
 }
 
-TEST_F(DirectMotion, OpeningLetsGoOfWhatATaskGrasped) {
+TEST_F(DirectMotion, OpeningReleasesAnObjectThatATaskGrasped) {
   grip_.carrying = true;
   grip_.shape_rad[5] = 1.0;
   EXPECT_GT(ask(msg::kMotionDrive, 0.5).desired.shape_rad[5], 0.9);
@@ -85,74 +86,46 @@ TEST_F(DirectMotion, OpeningLetsGoOfWhatATaskGrasped) {
   EXPECT_EQ(step().desired.shape_rad[5], 0.0);
 }
 
-// ---- in the component ----
-
-class Robot : public Plant {
- public:
-  explicit Robot(Wiring& wiring) : joints_(wiring.output(topics::kJointState)), contacts_(wiring.output(topics::kContactState)) {}
-  void sample(const Tick&) override {
-    msg::JointState joints{};
-    joints.joint_count = 23;
-    joints_.write(joints);
-    contacts_.write(msg::ContactState{});
-  }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
-
- private:
-  Output<msg::JointState> joints_;
-  Output<msg::ContactState> contacts_;
-};
-
-class Pose : public StatefulComponent<int> {
- public:
-  explicit Pose(Wiring& wiring) : out_(wiring.output(topics::kRobotPose)) {}
-  void step(const Tick&) override { out_.write(msg::RobotPose{}); }
-
- private:
-  Output<msg::RobotPose> out_;
-};
-
-/// Rotate at 10, drive at 20, rotate at 30, drive at 40, stand at 50.
-class Commander : public StatefulComponent<int> {
- public:
-  explicit Commander(Wiring& wiring) : task_(wiring.output(topics::kTaskCommand)), motion_(wiring.output(topics::kMotionCommand)) {}
-  void step(const Tick& tick) override {
-    if (tick.index == 10 || tick.index == 30) {
-      msg::TaskCommand command{};
-      command.goal_id = static_cast<std::uint64_t>(tick.index);
-      command.task = msg::kTaskRotate;
-      command.parameters.direction = msg::kDirectionLeft;
-      command.parameters.timeout_s = std::nan("");
-      task_.write(command);
-    }
-    if (tick.index == 20 || tick.index == 40 || tick.index == 50) {
-      msg::MotionCommand command{};
-      command.motion = tick.index == 50 ? msg::kMotionStand : msg::kMotionDrive;
-      command.frequency_hz = 0.4;
-      motion_.write(command);
-    }
-  }
-
- private:
-  Output<msg::TaskCommand> task_;
-  Output<msg::MotionCommand> motion_;
-};
+/// Stands for the component `input`: rotate at tick 10, drive at 20, rotate at 30, drive at 40, stand at 50.
+ComponentFactory scripted_input() {
+  return testing::scripted_member("input", [](Wiring& wiring) -> testing::StepFunction {
+    return
+        [task = wiring.output(topics::kTaskCommand), motion = wiring.output(topics::kMotionCommand)](const Tick& tick) {
+          if (tick.index == 10 || tick.index == 30) {
+            msg::TaskCommand command{};
+            command.goal_id = static_cast<std::uint64_t>(tick.index);
+            command.task = msg::kTaskRotate;
+            command.parameters.direction = msg::kDirectionLeft;
+            command.parameters.timeout_s = std::nan("");
+            task.write(command);
+          }
+          if (tick.index == 20 || tick.index == 40 || tick.index == 50) {
+            msg::MotionCommand command{};
+            command.motion = tick.index == 50 ? msg::kMotionStand : msg::kMotionDrive;
+            command.frequency_hz = 0.4;
+            motion.write(command);
+          }
+        };
+  });
+}
 
 LocalRun make_run() {
   Setup setup;
-  setup.robot_file = SOURCE_DIR "/components/robot/mamba.yaml";
-  return LocalRun({{"physics", [](Wiring& w, const Setup&) { return std::make_unique<Robot>(w); }},
-                   make_navigation_factory(),
-                   {"guidance", [](Wiring& w, const Setup&) { return std::make_unique<Pose>(w); }},
-                   {"input", [](Wiring& w, const Setup&) { return std::make_unique<Commander>(w); }}},
-                  setup);
+  setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+  return LocalRun(
+      {testing::still_robot(), make_navigation_factory(),
+       testing::scripted_writer<msg::RobotPose>("guidance", topics::kRobotPose,
+                                                [](const Tick&, const auto& out) { out.write(msg::RobotPose{}); }),
+       scripted_input()},
+      setup);
 }
 
 TEST(DirectMotionInNavigation, TasksAndMotionsEndEachOther) {
   LocalRun run = make_run();
   std::map<std::uint64_t, int> preempted;
-  run.subscribe<msg::TaskEvent>(topics::kTaskEvent, [&](const msg::TaskEvent& e) { preempted[e.goal_id] += e.goal_state == msg::kGoalPreempted; });
+  run.subscribe<msg::TaskEvent>(topics::kTaskEvent, [&](const msg::TaskEvent& e) {
+    preempted[e.goal_id] += e.goal_state == msg::kGoalPreempted;
+  });
   const auto frequency_hz = [&](std::int64_t tick) {
     run.advance(tick - run.tick());
     return run.latest(topics::kDesiredTrajectory)->frequency_hz;
@@ -167,7 +140,7 @@ TEST(DirectMotionInNavigation, TasksAndMotionsEndEachOther) {
   EXPECT_STREQ(run.latest(topics::kDesiredTrajectory)->method, "hold");
 }
 
-TEST(DirectMotionInNavigation, SurvivesARestart) {
+TEST(DirectMotionInNavigation, ContinuesIdenticallyAfterARestart) {
   LocalRun whole = make_run();
   LocalRun broken = make_run();
   whole.advance(60);

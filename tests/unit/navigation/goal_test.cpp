@@ -1,4 +1,4 @@
-// Goals: each is answered once, each accepted one ends once. A plant that stands still, with scripted commands.
+// Goals: each is answered once, and each accepted goal ends once. The robot stands still; the commands are scripted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,56 +7,31 @@
 #include <limits>
 #include <map>
 
+#include "barrier/local_run.hpp"
+#include "constrictor/constants.hpp"
 #include "navigation/navigation.hpp"
-#include "runtime/local_run.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
 
-class StillRobot : public Plant {
- public:
-  explicit StillRobot(Wiring& wiring)
-      : joints_(wiring.output(topics::kJointState)), contacts_(wiring.output(topics::kContactState)) {}
-  void sample(const Tick&) override {
-    msg::JointState joints{};
-    joints.joint_count = 23;
-    joints_.write(joints);
-    contacts_.write(msg::ContactState{});
-  }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
-
- private:
-  Output<msg::JointState> joints_;
-  Output<msg::ContactState> contacts_;
-};
-
-class StillPose : public StatefulComponent<int> {
- public:
-  explicit StillPose(Wiring& wiring) : out_(wiring.output(topics::kRobotPose)) {}
-  void step(const Tick& tick) override {
-    if (tick.index < 400) out_.write(msg::RobotPose{});
-  }
-
- private:
-  Output<msg::RobotPose> out_;
-};
+/// The robot stands at the map's origin; the pose is not written any more from tick 400 on.
+ComponentFactory pose_until_tick_400() {
+  return testing::scripted_writer<msg::RobotPose>("guidance", topics::kRobotPose,
+                                                  [](const Tick& tick, const auto& out) {
+                                                    if (tick.index < 400) out.write(msg::RobotPose{});
+                                                  });
+}
 
 using Commands = std::map<std::int64_t, msg::TaskCommand>;
 
-class ScriptedInput : public StatefulComponent<int> {
- public:
-  ScriptedInput(Wiring& wiring, Commands commands)
-      : out_(wiring.output(topics::kTaskCommand)), commands_(std::move(commands)) {}
-  void step(const Tick& tick) override {
-    const auto command = commands_.find(tick.index);
-    if (command != commands_.end()) out_.write(command->second);
-  }
-
- private:
-  Output<msg::TaskCommand> out_;
-  Commands commands_;
-};
+/// Stands for the component `input`: writes each command at its tick.
+ComponentFactory scripted_input(const Commands& commands) {
+  return testing::scripted_writer<msg::TaskCommand>(
+      "input", topics::kTaskCommand, [commands](const Tick& tick, const auto& out) {
+        if (const auto command = commands.find(tick.index); command != commands.end()) out.write(command->second);
+      });
+}
 
 msg::TaskCommand start(std::uint64_t goal_id, std::uint8_t task) {
   msg::TaskCommand command{};
@@ -75,33 +50,37 @@ struct GoalRun {
   std::unique_ptr<LocalRun> run;
   explicit GoalRun(const Commands& commands) {
     Setup setup;
-    setup.robot_file = SOURCE_DIR "/components/robot/mamba.yaml";
-    run = std::make_unique<LocalRun>(
-        std::vector<ComponentFactory>{
-            {"physics", [](Wiring& w, const Setup&) { return std::make_unique<StillRobot>(w); }},
-            make_navigation_factory(),
-            {"guidance", [](Wiring& w, const Setup&) { return std::make_unique<StillPose>(w); }},
-            {"input", [commands](Wiring& w, const Setup&) { return std::make_unique<ScriptedInput>(w, commands); }}},
-        setup);
-    run->subscribe<msg::TaskEvent>(topics::kTaskEvent, [this](const msg::TaskEvent& event) { events.push_back(event); });
+    setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+    run = std::make_unique<LocalRun>(std::vector<ComponentFactory>{testing::still_robot(), make_navigation_factory(),
+                                                                   pose_until_tick_400(), scripted_input(commands)},
+                                     setup);
+    run->subscribe<msg::TaskEvent>(topics::kTaskEvent,
+                                   [this](const msg::TaskEvent& event) { events.push_back(event); });
   }
-  /// How often a goal was said to be in this state.
+  /// Number of events that report this state of a goal.
   [[nodiscard]] int count(std::uint64_t goal_id, std::uint8_t state) const {
     int n = 0;
     for (const auto& e : events) n += e.goal_id == goal_id && e.event == msg::kEventNone && e.goal_state == state;
     return n;
   }
   [[nodiscard]] int ends(std::uint64_t goal_id) const {
-    return count(goal_id, msg::kGoalSucceeded) + count(goal_id, msg::kGoalAborted) + count(goal_id, msg::kGoalPreempted) +
-           count(goal_id, msg::kGoalCancelled);
+    return count(goal_id, msg::kGoalSucceeded) + count(goal_id, msg::kGoalAborted) +
+           count(goal_id, msg::kGoalPreempted) + count(goal_id, msg::kGoalCancelled);
   }
 };
+
+TEST(TaskRegistry, HasEveryTaskOfTheIdlAndNoOther) {
+  EXPECT_EQ(make_task(msg::kTaskNone), nullptr);
+  for (std::uint8_t task = 1; task < msg::kTaskCount; ++task)
+    EXPECT_NE(make_task(task), nullptr) << name_of(constants::kTask, task) << ": add a row to task_registry.cpp";
+  EXPECT_EQ(make_task(msg::kTaskCount), nullptr);
+}
 
 TEST(Goals, StandsStillWithoutAGoal) {
   GoalRun r({});
   r.run->advance(50);
   EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
-  EXPECT_EQ(r.run->latest(topics::kTaskStatus)->state, msg::kGoalIdle);
+  EXPECT_EQ(r.run->latest(topics::kTaskStatus)->goal_state, msg::kGoalIdle);
 }
 
 TEST(Goals, RotateEndsByItsTimeoutWithTheEvent) {
@@ -113,7 +92,8 @@ TEST(Goals, RotateEndsByItsTimeoutWithTheEvent) {
   r.run->advance(100);
   EXPECT_EQ(r.count(1, msg::kGoalRunning), 1);
   EXPECT_EQ(r.count(1, msg::kGoalSucceeded), 1);
-  EXPECT_EQ(std::count_if(r.events.begin(), r.events.end(), [](const auto& e) { return e.event == msg::kEventTimeout; }), 1);
+  EXPECT_EQ(
+      std::count_if(r.events.begin(), r.events.end(), [](const auto& e) { return e.event == msg::kEventTimeout; }), 1);
   EXPECT_EQ(r.run->latest(topics::kTaskStatus)->progress, 1.0);
 }
 
@@ -135,8 +115,13 @@ TEST(Goals, RefusesWithAReasonAndLeavesTheRunningGoalAlone) {
   bad.parameters.line_colour = msg::kColourUnknown;
   msg::TaskCommand unknown = start(7, msg::kTaskSearchObject);
   unknown.parameters.object_handle = 3;
-  GoalRun r({{10, start(1, msg::kTaskRotate)}, {20, bad}, {30, start(3, msg::kTaskDrop)}, {40, start(4, msg::kTaskGrasp)},
-         {50, start(5, msg::kTaskPregrasp)}, {60, start(6, msg::kTaskTrackObject)}, {70, unknown}});
+  GoalRun r({{10, start(1, msg::kTaskRotate)},
+             {20, bad},
+             {30, start(3, msg::kTaskDrop)},
+             {40, start(4, msg::kTaskGrasp)},
+             {50, start(5, msg::kTaskPregrasp)},
+             {60, start(6, msg::kTaskTrackObject)},
+             {70, unknown}});
   r.run->advance(100);
   for (std::uint64_t goal = 2; goal <= 7; ++goal) {
     EXPECT_EQ(r.count(goal, msg::kGoalRefused), 1) << goal;
@@ -151,10 +136,10 @@ TEST(Goals, RefusesWithAReasonAndLeavesTheRunningGoalAlone) {
 }
 
 TEST(Goals, FollowLineWaitsForTheFirstPercept) {
-  // No percept ever comes: nothing to follow, and nothing that says that it is lost either; it waits.
+  // Without a percept the line is neither found nor lost, so the task waits.
   GoalRun r({{10, start(1, msg::kTaskFollowLine)}});
   r.run->advance(60);
-  EXPECT_EQ(r.run->latest(topics::kTaskStatus)->state, msg::kGoalRunning);
+  EXPECT_EQ(r.run->latest(topics::kTaskStatus)->goal_state, msg::kGoalRunning);
 }
 
 TEST(Goals, HoldsWhenThePoseIsStale) {
@@ -165,7 +150,7 @@ TEST(Goals, HoldsWhenThePoseIsStale) {
   EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
 }
 
-TEST(Goals, AreCancelledAlsoWhileThePoseIsStale) {
+TEST(Goals, AreCancelledWhileThePoseIsStale) {
   msg::TaskCommand cancel{};
   cancel.command = msg::kCommandCancel;
   cancel.goal_id = 1;

@@ -1,4 +1,4 @@
-// The PID against closed-form responses.
+// The PID controller, compared with closed-form responses.
 #include "navigation/pid.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(Pid, SaturatedOutputDoesNotWindUp) {
   const PidGains gains{1.0, 1.0, 0.0, 1.0, 0.0};
   PidState state;
   for (int i = 0; i < 10000; ++i) EXPECT_LE(std::abs(pid_step(gains, 5.0, kDt_s, state)), 1.0);
-  // A hundred seconds of error in one direction are forgotten at once when it turns.
+  // After a hundred seconds of error in one direction, the output follows a reversed error at once.
   EXPECT_LT(pid_step(gains, -0.5, kDt_s, state), 0.5);
 }
 
@@ -64,7 +64,7 @@ TEST(Pid, NonFiniteErrorChangesNothing) {
   EXPECT_EQ(state.integral, integral);
 }
 
-TEST(Steering, IgnoresASwayOfTheGaitsPeriod) {
+TEST(Steering, IgnoresASwayWithThePeriodOfTheGait) {
   const Steering steering({6.0, 0.0, 0.0, 1.2, 0.0});
   SteeringState state;
   const double period_s = 1.0;

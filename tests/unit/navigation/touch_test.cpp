@@ -1,19 +1,19 @@
-// Which contacts are felt from the side, and where a held object lies.
+// Touches from the side, the place of a held object, and the monitor of its loss.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "component/data_path.hpp"
 #include "navigation/grip.hpp"
 #include "navigation/motions.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor {
 namespace {
 
 class TouchTest : public testing::Test {
  protected:
-  RobotModel robot = load_robot(share_path("components/robot/mamba.yaml"));
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   GripConfig config;
   GripSense grip_sense{robot, config};
   msg::JointState joints{};
@@ -47,11 +47,11 @@ TEST_F(TouchTest, GroundContactsAreNotTouches) {
 }
 
 TEST_F(TouchTest, ContactsOnTheBodyItselfAreNotTouches) {
-  // Folded by 90 degrees at three joints in a row the body comes back upon itself.
+  // Bent by nearly 90 degrees at three joints in a row, the body touches itself.
   msg::JointState folded = joints;
   for (int j : {4, 6, 8}) folded.position_rad[j] = 1.5;
   const auto body = planar_body(robot, folded);
-  // The point of module 2's skin that is nearest to any module far along the body.
+  // The module far along the body that is nearest to module 2.
   msg::ContactState contacts{};
   contacts.contact_count = 1;
   std::size_t other = 0;
@@ -72,19 +72,19 @@ TEST_F(TouchTest, ContactsOnTheBodyItselfAreNotTouches) {
   EXPECT_TRUE(lateral_touches(robot, body, contacts, 0.4).empty());
 }
 
-TEST_F(TouchTest, HeldObjectLiesBetweenTheArmsOnItsSide) {
+TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
   for (const double side : {1.0, -1.0}) {
     const auto body = planar_body(robot, u_joints(side));
     const Eigen::Vector2d p_HO = grip_sense.held_object_H(body, 0.085);
     EXPECT_GT(side * p_HO.y(), 0.1);
     EXPECT_LT(side * p_HO.y(), 0.2);
     EXPECT_LT(p_HO.x(), -0.7);
-    // Clear of every module by about its radius.
+    // Its distance from every module is about its radius or more.
     for (const Pose2& module : body) EXPECT_GT((module.p - p_HO).norm(), 0.085 + 0.035 - 0.02);
   }
 }
 
-TEST_F(TouchTest, GraspIsLostOnlyWithoutTorqueAndTouchForAWhile) {
+TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   Grip grip;
   grip.side = -1.0;
   grip.carrying = true;
@@ -105,7 +105,7 @@ TEST_F(TouchTest, GraspIsLostOnlyWithoutTorqueAndTouchForAWhile) {
   EXPECT_GT(lost_after_s, config.lost_after_s);
 }
 
-TEST_F(TouchTest, PathErrorIsTheLateralPlaceOfThePathAhead) {
+TEST_F(TouchTest, ThePathErrorIsTheLateralPositionOfThePathAhead) {
   const Pose2 X_MH{{0.0, -0.2}, 0.0};
   EXPECT_NEAR(path_error_m(X_MH, {5.0, 0.0}, 0.0, 0.3), 0.2, 1e-12);       // path to the left
   EXPECT_LT(path_error_m({{0.0, 0.0}, 0.5}, {0.0, 0.0}, 0.0, 0.3), -0.1);  // head turned left of the path

@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "constrictor/text.hpp"
 #include "perception/perception.hpp"
 #include "ray_caster.hpp"
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using test::Arc;
 using test::Head;
 
-/// The head nods quickly: an image is only understood with the attitude of its own tick.
+/// The head nods quickly: an image can be understood only with the attitude at its exposure.
 Head head_at(std::int64_t tick) {
   Head head;
   head.pitch_rad = 0.05 * std::sin(1.3 * static_cast<double>(tick));
@@ -27,22 +28,18 @@ Head head_at(std::int64_t tick) {
   return head;
 }
 
-class Imu : public Plant {
- public:
-  Imu(Wiring& wiring, const Setup&) : imu_(wiring.output(topics::kImuState)) {}
-  void sample(const Tick& tick) override {
-    msg::ImuState state{};
-    state.orientation = test::orientation(head_at(tick.index));
-    imu_.write(state);
-  }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
+/// The plant: an inertial unit in the head.
+ComponentFactory imu() {
+  return testing::scripted_plant([](Wiring& wiring) -> testing::StepFunction {
+    return [out = wiring.output(topics::kImuState)](const Tick& tick) {
+      msg::ImuState state{};
+      state.orientation = test::orientation(head_at(tick.index));
+      out.write(state);
+    };
+  });
+}
 
- private:
-  Output<msg::ImuState> imu_;
-};
-
-/// Images of a blue and a yellow line; a broken one at tick 15.
+/// Images of a blue and a yellow line; the image of tick 15 is broken.
 class Eye : public StatefulComponent<std::int64_t> {
  public:
   Eye(Wiring& wiring, const Setup&)
@@ -69,21 +66,19 @@ class Eye : public StatefulComponent<std::int64_t> {
   Output<msg::CameraImage> image_;
 };
 
-/// Names the yellow line from tick 30 on.
-class Tasks : public StatefulComponent<std::int64_t> {
- public:
-  Tasks(Wiring& wiring, const Setup&) : status_(wiring.output(topics::kTaskStatus)) {}
-  void step(const Tick& tick) override {
-    msg::TaskStatus status{};
-    if (tick.index == 30) status.parameters.line_colour = msg::kColourYellow;
-    status_.write(status);
-  }
+/// Stands for navigation: names the yellow line from tick 30 on.
+ComponentFactory tasks() {
+  return testing::scripted_writer<msg::TaskStatus>("navigation", topics::kTaskStatus,
+                                                   [](const Tick& tick, const auto& out) {
+                                                     msg::TaskStatus status{};
+                                                     if (tick.index == 30)
+                                                       status.parameters.line_colour = msg::kColourYellow;
+                                                     out.write(status);
+                                                   });
+}
 
- private:
-  Output<msg::TaskStatus> status_;
-};
-
-/// Changes the hues that count as yellow, of which none is in the picture, and changes them back: each a few ticks before its time.
+/// Changes the hues that count as yellow, of which none is in the picture, and changes them back: each a few ticks
+/// before its time.
 class Desk : public StatefulComponent<int> {
  public:
   static constexpr std::int64_t kGone = 22, kBack = 43;  // 22: when the image of tick 20 comes; 43: after that of 40
@@ -105,17 +100,12 @@ class Desk : public StatefulComponent<int> {
   Output<msg::ParameterChange> change_;
 };
 
-template <class T>
-ComponentFactory factory(const char* name) {
-  return {name, [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<T>(w, s); }};
-}
-
 std::unique_ptr<LocalRun> make_run(bool with_changes = false) {
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
-  std::vector<ComponentFactory> factories{factory<Imu>("physics"), factory<Eye>("camera"), factory<Tasks>("navigation"),
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  std::vector<ComponentFactory> factories{imu(), testing::member_of_class<Eye>("camera"), tasks(),
                                           make_perception_factory()};
-  if (with_changes) factories.push_back(factory<Desk>("input"));
+  if (with_changes) factories.push_back(testing::member_of_class<Desk>("input"));
   return std::make_unique<LocalRun>(factories, setup);
 }
 
@@ -140,7 +130,7 @@ TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {
   EXPECT_EQ(run->latest(topics::kProcessedImage)->data._length, 160u * 120u * 3u);
 }
 
-TEST(PerceptionComponent, LooksForTheColourThatATaskNamedLast) {
+TEST(PerceptionComponent, SearchesForTheColourThatATaskNamedLast) {
   auto run = make_run();
   run->advance(28);
   EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourBlue);
@@ -149,7 +139,7 @@ TEST(PerceptionComponent, LooksForTheColourThatATaskNamedLast) {
   EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // the yellow thing stands
 }
 
-TEST(PerceptionComponent, ARestartChangesNothing) {
+TEST(PerceptionComponent, RestartChangesNothing) {
   auto whole = make_run(), broken = make_run();
   whole->advance(50);
   for (int i = 0; i < 50; ++i) {
@@ -160,7 +150,8 @@ TEST(PerceptionComponent, ARestartChangesNothing) {
 }
 
 /// Exposures in which the yellow thing was reported, and in which it was not.
-std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& run, std::int64_t ticks, const std::set<std::int64_t>& restarts) {
+std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& run, std::int64_t ticks,
+                                                                      const std::set<std::int64_t>& restarts) {
   std::pair<std::set<std::int64_t>, std::set<std::int64_t>> seen;
   run.subscribe<msg::ObjectPercepts>(topics::kObjectPercepts, [&seen](const msg::ObjectPercepts& percepts) {
     bool yellow = false;
@@ -174,9 +165,10 @@ std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& 
   return seen;
 }
 
-TEST(PerceptionComponent, ObeysAColourThresholdFromItsTickOnAlsoAfterARestart) {
+TEST(PerceptionComponent, AppliesAHueFromItsTickOnAlsoAfterARestart) {
   using Exposures = std::set<std::int64_t>;
-  const Exposures before_and_after{0, 5, 10, 45, 50, 55}, between{20, 25, 30, 35, 40};  // the image of tick 15 is broken
+  const Exposures before_and_after{0, 5, 10, 45, 50, 55},
+      between{20, 25, 30, 35, 40};  // the image of tick 15 is broken
   // Restarts with a change waiting, in force, and taken back.
   for (const Exposures& restarts : {Exposures{}, Exposures{12, 22}, Exposures{23, 28, 42}, Exposures{44, 50}}) {
     auto run = make_run(true);

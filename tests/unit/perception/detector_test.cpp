@@ -1,4 +1,4 @@
-// Percepts against scenes drawn by a ray-caster of its own, whose geometry is known exactly.
+// Percepts compared with the scenes of an independent ray caster, whose geometry is known exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(Line, OffsetHeadingAndCurvatureMatchTheArc) {
   }
 }
 
-TEST(Line, AcrossTheViewIsSeenAsWell) {
+TEST(Line, IsSeenAlsoAcrossTheView) {
   Scene scene;
   scene.line = Arc{{0.05, -2.0}, 1.35, 0.0};
   for (const Conditions& c : kConditions) {
@@ -111,7 +111,7 @@ TEST(Line, AcrossTheViewIsSeenAsWell) {
   }
 }
 
-TEST(Line, EndIsSeenWhereItEnds) {
+TEST(Line, EndIsReportedAtItsPlace) {
   for (const Conditions& c : kConditions) {
     for (const double length : {0.45, 0.7, 1.0}) {
       SCOPED_TRACE(describe(c) + ", length " + std::to_string(length));
@@ -127,7 +127,7 @@ TEST(Line, EndIsSeenWhereItEnds) {
   }
 }
 
-TEST(Line, HiddenEndIsNotAnEnd) {
+TEST(Line, HiddenEndIsNotReported) {
   for (const Conditions& c : kConditions) {
     SCOPED_TRACE(describe(c));
     Scene scene;
@@ -137,7 +137,7 @@ TEST(Line, HiddenEndIsNotAnEnd) {
   }
 }
 
-TEST(Line, ObjectOnItIsNotABend) {
+TEST(Line, ObjectOnTheLineDoesNotBendIt) {
   for (const Conditions& c : kConditions) {
     for (const double side : {-0.06, -0.03, 0.0, 0.04, 0.07}) {
       SCOPED_TRACE(describe(c) + ", object beside the line by " + std::to_string(side));
@@ -164,7 +164,8 @@ TEST(Blobs, BearingRangeAndWidthOfAnObject) {
                        ", colour " + std::to_string(colour));
           const double radius = 0.085;
           Scene scene;
-          scene.rounds = {Round{colour, (range + radius) * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)), radius, 0.15}};
+          scene.rounds = {
+              Round{colour, (range + radius) * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)), radius, 0.15}};
           const Percepts percepts = look(scene, c);
           EXPECT_EQ(percepts.objects.blob_count, 1);
           EXPECT_FALSE(percepts.line.visible);
@@ -198,7 +199,7 @@ TEST(Blobs, ZoneIsNotAnObject) {
   }
 }
 
-TEST(Blobs, ObjectOnAZoneOfItsColourIsBoth) {
+TEST(Blobs, ObjectOnAZoneOfItsColourGivesBoth) {
   for (const Conditions& c : kConditions) {
     SCOPED_TRACE(describe(c));
     Scene scene;
@@ -243,14 +244,15 @@ TEST(Blobs, NothingIsSeenInAnEmptyScene) {
   }
 }
 
-TEST(Blobs, AnObjectLeavingTheViewIsNeverTakenForAZone) {
+TEST(Blobs, ObjectThatLeavesTheViewIsNeverAZone) {
   for (const double side : {-1.0, 1.0}) {
     for (const double range : {0.2, 0.6}) {
       for (double bearing = 0.5; bearing < 1.15; bearing += 0.1) {
         SCOPED_TRACE("range " + std::to_string(range) + ", bearing " + std::to_string(side * bearing));
         Scene scene;
-        scene.rounds = {Round{msg::kColourRed, (range + 0.085) * Eigen::Vector2d(std::cos(bearing), side * std::sin(bearing)),
-                              0.085, 0.15}};
+        scene.rounds = {Round{msg::kColourRed,
+                              (range + 0.085) * Eigen::Vector2d(std::cos(bearing), side * std::sin(bearing)), 0.085,
+                              0.15}};
         const Percepts percepts = look(scene, kConditions[0]);
         EXPECT_LE(percepts.objects.blob_count, 1);
         EXPECT_EQ(find(percepts, msg::kColourRed, msg::kBlobZone), nullptr);
@@ -259,7 +261,7 @@ TEST(Blobs, AnObjectLeavingTheViewIsNeverTakenForAZone) {
   }
 }
 
-TEST(Blobs, CutAtTheBorderIsMarked) {
+TEST(Blobs, BlobCutByTheBorderIsMarked) {
   Scene scene;
   scene.rounds = {Round{msg::kColourGreen, {0.18, 0.0}, 0.085, 0.15}};
   const Percepts percepts = look(scene, kConditions[0]);

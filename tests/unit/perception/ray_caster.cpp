@@ -94,8 +94,8 @@ Vector3d trace(const Scene& scene, const Vector3d& o, const Vector3d& d) {
 }
 
 Eigen::Matrix3d axes(const Head& head, bool with_yaw) {
-  const Eigen::AngleAxisd yaw(with_yaw ? head.yaw_rad : 0.0, Vector3d::UnitZ()), pitch(head.pitch_rad, Vector3d::UnitY()),
-      roll(head.roll_rad, Vector3d::UnitX());
+  const Eigen::AngleAxisd yaw(with_yaw ? head.yaw_rad : 0.0, Vector3d::UnitZ()),
+      pitch(head.pitch_rad, Vector3d::UnitY()), roll(head.roll_rad, Vector3d::UnitX());
   return (yaw * pitch * roll).toRotationMatrix();
 }
 
@@ -163,7 +163,8 @@ cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, 
       for (int c = 0; c < 3; ++c) {
         double level = scene.gamma ? std::pow(std::clamp(sum[c], 0.0, 1.0), 1.0 / 2.2) : sum[c];
         if (scene.noise_sd > 0.0) level += noise(random);
-        image.at<cv::Vec3b>(v, u)[c] = cv::saturate_cast<std::uint8_t>(std::lround(255.0 * std::clamp(level, 0.0, 1.0)));
+        image.at<cv::Vec3b>(v, u)[c] =
+            cv::saturate_cast<std::uint8_t>(std::lround(255.0 * std::clamp(level, 0.0, 1.0)));
       }
     }
   }

@@ -1,5 +1,5 @@
-// A small ray-caster for tests: the ground with a line along a circular arc and round zones, upright cylinders, one light
-// with shadows. Shares no code with perception.
+// A small ray-caster for tests: the ground with a line along a circular arc and round zones, upright cylinders, one
+// light with shadows. Shares no code with perception.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,8 +52,10 @@ struct Head {
   double height_m = 0.035;
 };
 
-/// 320 x 240, 90 degrees, 0.03 m ahead of and 0.05 m above the head's centre, tilted down by 0.3 rad, unless told otherwise.
-msg::CameraInfo camera_info(int width = 320, int height = 240, double horizontal_fov_rad = 1.5708, double tilt_rad = 0.3);
+/// 320 x 240, 90 degrees, 0.03 m ahead of and 0.05 m above the head's centre, tilted down by 0.3 rad, unless told
+/// otherwise.
+msg::CameraInfo camera_info(int width = 320, int height = 240, double horizontal_fov_rad = 1.5708,
+                            double tilt_rad = 0.3);
 msg::Quaternion orientation(const Head& head);
 cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, double tilt_rad = 0.3);
 

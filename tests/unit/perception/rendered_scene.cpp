@@ -42,7 +42,8 @@ RenderedScene::~RenderedScene() = default;
 cv::Mat RenderedScene::draw(const msg::CameraInfo& info, const Head& head, double tilt_rad) {
   Eigen::Isometry3d X_WH = Eigen::Isometry3d::Identity();
   X_WH.linear() = (Eigen::AngleAxisd(head.pitch_rad, Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(head.roll_rad, Eigen::Vector3d::UnitX())).toRotationMatrix();
+                   Eigen::AngleAxisd(head.roll_rad, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
   X_WH.translation().z() = head.height_m;
   poses_.X_WModule.assign(24, X_WH);
   for (std::size_t i = 1; i < 24; ++i) poses_.X_WModule[i].translation().x() -= 0.089 * static_cast<double>(i);

@@ -1,4 +1,4 @@
-// Percepts against the simulator's own pictures: light, shadow, texture, noise, and the body's own shadow.
+// Percepts compared with the simulator's scenes: light, shadow, texture, noise, and the shadow of the body.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,8 +39,9 @@ perception::Percepts look(test::Scene scene, const Light& light) {
   const msg::CameraInfo info = test::camera_info();
   RenderedScene rendered(scene);
   const cv::Mat image = rendered.draw(info, light.head);
-  return detector.detect(image, perception::GroundCamera(info, test::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
-                         msg::kColourBlue);
+  return detector.detect(
+      image, perception::GroundCamera(info, test::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
+      msg::kColourBlue);
 }
 
 const msg::Blob* find(const perception::Percepts& percepts, std::uint8_t colour, std::uint8_t kind) {
@@ -75,7 +76,7 @@ TEST(Rendered, LineMatchesItsArc) {
   }
 }
 
-TEST(Rendered, LineEndsWhereItEnds) {
+TEST(Rendered, EndOfTheLineIsReportedAtItsPlace) {
   for (const Light& light : kLights) {
     SCOPED_TRACE(describe(light));
     test::Scene scene;
@@ -87,7 +88,7 @@ TEST(Rendered, LineEndsWhereItEnds) {
   }
 }
 
-TEST(Rendered, ObjectsAndZonesAreFoundAndTold) {
+TEST(Rendered, ObjectsAndZonesAreFoundAndDistinguished) {
   for (const Light& light : kLights) {
     SCOPED_TRACE(describe(light));
     test::Scene scene;

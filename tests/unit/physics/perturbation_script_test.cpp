@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A world with an object on a frictionless floor, far from the robot: momentum is force times time.
+/// A world with an object on a floor without friction, far from the robot: its momentum is force times time.
 class PerturbationScriptTest : public testing::Test {
  protected:
   PerturbationScriptTest() {
@@ -24,7 +24,7 @@ class PerturbationScriptTest : public testing::Test {
     scenario_.objects.push_back(object);
     scenario_.friction.object_ground = 0.0;
   }
-  /// Velocity of the object after these seconds, in ticks of 20 ms.
+  /// [m/s] velocity of the object after a time, in ticks of 20 ms.
   double velocity_after(double seconds) {
     World world(robot_, scenario_);
     PerturbationScript script(scenario_);
@@ -47,8 +47,8 @@ TEST_F(PerturbationScriptTest, ActsFromItsTimeForItsDuration) {
 }
 
 TEST_F(PerturbationScriptTest, BeginsOnceTheObjectWasMoved) {
-  scenario_.perturbations.push_back({0, 0.1, kNan, 0.2, {1.0, 0.0, 0.0}});  // sets it going: 0.4 m/s
-  scenario_.perturbations.push_back({0, kNan, 0.3, 0.2, {1.0, 0.0, 0.0}});  // 0.3 m later: 0.8 m/s
+  scenario_.perturbations.push_back({0, 0.1, kNan, 0.2, {1.0, 0.0, 0.0}});  // accelerates it to 0.4 m/s
+  scenario_.perturbations.push_back({0, kNan, 0.3, 0.2, {1.0, 0.0, 0.0}});  // after 0.3 m: to 0.8 m/s
   EXPECT_NEAR(velocity_after(0.7), 0.4, 1e-3);
   EXPECT_NEAR(velocity_after(1.6), 0.8, 1e-3);
 }

@@ -1,4 +1,4 @@
-// The plant as a member of a run: what it measures, what it obeys, and that equal runs are equal.
+// The plant as a member of a run: its measurements, the commands that it obeys, and equal runs.
 #include "sim/physics/physics.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <limits>
 #include <memory>
 
+#include "barrier/local_run.hpp"
 #include "configuration/configuration.hpp"
-#include "runtime/local_run.hpp"
 
 namespace constrictor {
 namespace {
@@ -20,7 +20,7 @@ const std::filesystem::path kProject = PROJECT_DIR;
 
 using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
 
-/// Stands for the control component: writes what the test says at each tick, or nothing.
+/// Replaces the component `control`: writes the command that the test gives for each tick, or none.
 class Commander final : public Component {
  public:
   Commander(Wiring& wiring, CommandAt command_at)
@@ -42,7 +42,7 @@ class Commander final : public Component {
 
 Setup setup_of(const std::string& scenario, std::uint64_t seed = 1) {
   Setup setup;
-  setup.robot_file = kProject / "components/robot/mamba.yaml";
+  setup.robot_file = kProject / "components/lib/robot/mamba.yaml";
   setup.scenario_file = kProject / "sim/scenarios" / scenario;
   setup.seed = seed;
   return setup;
@@ -90,12 +90,12 @@ TEST(Physics, RestsOnTheGround) {
   const msg::ContactState& felt = *run->latest(topics::kContactState);
   double weight = 0.0;
   for (int i = 0; i < felt.module_count; ++i) weight += felt.force_n[i].z;
-  // 24 modules of 0.3 kg; each contact's noise is 0.05 N.
+  // 24 modules of 0.3 kg; the noise of each contact is 0.05 N.
   EXPECT_NEAR(weight, 24 * 0.3 * 9.81, 2.0);
   const msg::ImuState& imu = *run->latest(topics::kImuState);
   EXPECT_NEAR(imu.linear_acceleration_m_s2.z, 9.81, 0.3);
   EXPECT_NEAR(imu.linear_acceleration_m_s2.x, 0.0, 0.3);
-  EXPECT_NEAR(imu.orientation.w, 1.0, 1e-3);  // yaw counts from the start, whatever the start pose
+  EXPECT_NEAR(imu.orientation.w, 1.0, 1e-3);  // the yaw is relative to the pose at the start
   const msg::TouchedState& touched = *run->latest(topics::kTouchedState);
   EXPECT_EQ(touched.contact_count, felt.contact_count);
   for (int i = 0; i < touched.contact_count; ++i) EXPECT_EQ(touched.kind[i], msg::kTouchedGround);
@@ -159,7 +159,7 @@ TEST(Physics, DoesNotObeyACommandOfTheWrongSize) {
 TEST(Physics, EqualRunsHaveEqualHashes) {
   auto first = make_run(swing());
   auto second = make_run(swing());
-  for (int i = 0; i < 5; ++i) {  // in turns, as two runs in one process
+  for (int i = 0; i < 5; ++i) {  // the runs take turns in one process
     first->advance(20);
     second->advance(20);
   }
@@ -182,7 +182,7 @@ TEST(Physics, OneUlpInOneCommandChangesTheHash) {
   EXPECT_NE(hash_of(*first), hash_of(*second));
 }
 
-TEST(Physics, SeedsDiffer) {
+TEST(Physics, DifferentSeedsGiveDifferentRuns) {
   auto first = make_run(swing(), setup_of("line.yaml", 1));
   auto second = make_run(swing(), setup_of("line.yaml", 2));
   first->advance(10);
@@ -190,7 +190,7 @@ TEST(Physics, SeedsDiffer) {
   EXPECT_NE(hash_of(*first), hash_of(*second));
 }
 
-TEST(Physics, NoiseHasTheRobotFilesStandardDeviation) {
+TEST(Physics, NoiseHasTheStandardDeviationOfTheRobotFile) {
   auto run = make_run(silence());
   double squares = 0.0;
   int count = 0;
@@ -216,21 +216,22 @@ TEST(Physics, AScenarioCanSwitchNoiseOff) {
   EXPECT_NEAR(truth.module_poses[0].position_m.x, 1.0, 1e-3);
   EXPECT_NEAR(2.0 * std::asin(truth.module_poses[0].orientation.z), 0.7, 1e-3);
   EXPECT_NEAR(run->latest(topics::kImuState)->orientation.z, 0.0, 1e-3);
-  for (std::size_t i = 0; i < 23; ++i) {  // a step apart, at rest
+  for (std::size_t i = 0; i < 23; ++i) {  // one step apart, at rest
     EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[i], world.joint_angle_rad(i), 1e-4);
   }
 }
 
-TEST(Physics, NamesAPeriodThatIsNoMultipleOfTheStep) {
+TEST(Physics, RejectsAPeriodThatIsNoMultipleOfTheStep) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "physics.yaml";
   std::ofstream(file) << "period_s: 0.02\nsolver: {step_s: 0.003, iterations: 20}\n";
   try {
-    (void)load_physics_config(file);
+    (void)load_parameters<PhysicsConfig>(file);
     FAIL();
   } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find(
-                  "physics.yaml:1: period_s: found a period that is no multiple of solver.step_s, accepted a multiple"),
-              std::string::npos);
+    EXPECT_NE(
+        std::string(error.what())
+            .find("physics.yaml:1: period_s: found a period that is no multiple of solver.step_s, accepted a multiple"),
+        std::string::npos);
   }
 }
 

@@ -1,4 +1,4 @@
-// The nominal mission, what is looked for and what is ignored.
+// The nominal mission: which objects it retrieves, and what it ignores.
 #include <gtest/gtest.h>
 
 #include "scripted_planner.hpp"
@@ -44,7 +44,19 @@ TEST_F(PlannerTest, SequencesOfOneToFourColoursAreRetrieved) {
   }
 }
 
-TEST_F(PlannerTest, IgnoresAnObjectOfAnotherColourAZoneAndWhatIsFar) {
+TEST_F(PlannerTest, MissionWithoutObjectsSucceedsAtTheEndOfTheLine) {
+  config_.sequence.clear();
+  find_line();
+  EXPECT_EQ(last_.task, msg::kTaskFollowLine);
+  see(msg::kColourGreen, msg::kBlobObject, 0.6);
+  steps(10);
+  EXPECT_EQ(memory_.state, kFollowLine) << "an object that is no part of the mission is ignored";
+  succeed(msg::kEventEndOfLine);
+  EXPECT_EQ(memory_.state, kDone);
+  EXPECT_FALSE(step());
+}
+
+TEST_F(PlannerTest, IgnoresZonesDistantObjectsAndObjectsOfAnotherColour) {
   find_line();
   see(msg::kColourRed, msg::kBlobObject, 0.6);
   steps(10);
@@ -57,8 +69,8 @@ TEST_F(PlannerTest, IgnoresAnObjectOfAnotherColourAZoneAndWhatIsFar) {
   EXPECT_EQ(memory_.state, kFollowLine);
 }
 
-// Tables VII and IX: the object to pregrasp and to grasp is named by the handle under which it was reached.
-TEST_F(PlannerTest, TheObjectThatWasReachedIsPregraspedAndGraspedByItsHandle) {
+// Tables VII and IX: pregrasp and grasp name the object by the handle with which it was reached.
+TEST_F(PlannerTest, PregraspsAndGraspsTheReachedObjectByItsHandle) {
   const auto succeed_with = [this](std::uint8_t what, std::uint16_t handle) {
     msg::TaskEvent e = event(what, msg::kGoalSucceeded);
     e.object_handle = handle;
@@ -73,15 +85,15 @@ TEST_F(PlannerTest, TheObjectThatWasReachedIsPregraspedAndGraspedByItsHandle) {
   succeed_with(msg::kEventObjectReached, 7);
   ASSERT_EQ(last_.task, msg::kTaskPregrasp);
   EXPECT_EQ(last_.parameters.object_handle, 7);
-  succeed_with(msg::kEventObjectPregrasped, 8);  // placed anew, when it was felt
+  succeed_with(msg::kEventObjectPregrasped, 8);  // a new handle after the touch
   ASSERT_EQ(last_.task, msg::kTaskGrasp);
   EXPECT_EQ(last_.parameters.object_handle, 8);
   abort(msg::kEventObjectGraspLost);
   ASSERT_EQ(last_.task, msg::kTaskSearchObject);
-  EXPECT_EQ(last_.parameters.object_handle, 0) << "the map may place it anew";
+  EXPECT_EQ(last_.parameters.object_handle, 0) << "the map may give it a new handle";
 }
 
-TEST_F(PlannerTest, ASingleImageDoesNotConvince) {
+TEST_F(PlannerTest, IgnoresAnObjectInASingleImage) {
   find_line();
   for (int i = 0; i < 10; ++i) {
     see(msg::kColourGreen, msg::kBlobObject, 1.0);
@@ -92,7 +104,7 @@ TEST_F(PlannerTest, ASingleImageDoesNotConvince) {
   EXPECT_EQ(memory_.state, kFollowLine);
 }
 
-TEST_F(PlannerTest, AnObjectOnTheZoneWhereOneOfItsColourWasDroppedIsLeftThere) {
+TEST_F(PlannerTest, IgnoresAnObjectOnItsZoneAfterADropOfItsColour) {
   config_.sequence = {msg::kColourGreen, msg::kColourGreen};
   find_line();
   fetch(msg::kColourGreen);
@@ -109,7 +121,7 @@ TEST_F(PlannerTest, AnObjectOnTheZoneWhereOneOfItsColourWasDroppedIsLeftThere) {
   face(0.0);
   steps(20);
   EXPECT_EQ(memory_.state, kFollowLine);
-  map_.objects[0].x_m += 2.0;  // one that stands elsewhere is fetched
+  map_.objects[0].x_m += 2.0;  // an object elsewhere is retrieved
   steps(4);
   EXPECT_EQ(memory_.state, kTrackObject);
 }

@@ -22,8 +22,8 @@ inline std::string saved(const MissionMemory& memory) {
   return std::move(stream).str();
 }
 
-/// A world of scripted percepts and events around a planner. Every step is made by a second planner, restored from the saved
-/// memory of the step before, as well: both must ask for the same and end up with the same memory.
+/// A world of scripted percepts and events around a planner. A second planner, restored from the saved state of the
+/// previous step, makes every step too: both must request the same and reach the same state.
 class PlannerTest : public ::testing::Test {
  protected:
   PlannerTest() {
@@ -37,16 +37,16 @@ class PlannerTest : public ::testing::Test {
     inputs.time_s = time_s_ += 0.02;
     inputs.line = &line_;
     inputs.objects = &objects_;
-    inputs.fresh_percepts = true;
+    inputs.new_percepts = true;
     inputs.pose = &pose_;
     inputs.map = &map_;
     inputs.authority = &authority_;
     if (with_status_) {
-      // Navigation takes a goal up three ticks after the request.
+      // Navigation takes a goal three ticks after the request.
       taken_.push_back(memory_.goals);
       if (taken_.size() > 3) taken_.erase(taken_.begin());
       status_.goal_id = kPlannerGoalBase + taken_.front();
-      status_.state = msg::kGoalRunning;
+      status_.goal_state = msg::kGoalRunning;
       inputs.status = &status_;
     }
     for (const auto& event : events) inputs.events.push_back(&event);
@@ -73,7 +73,7 @@ class PlannerTest : public ::testing::Test {
     e.goal_state = goal_state;
     return e;
   }
-  /// As navigation reports what ends a goal well, and badly.
+  /// The goal succeeds, or is aborted, with this event.
   void succeed(std::uint8_t what) { step({event(what, msg::kGoalSucceeded)}); }
   void abort(std::uint8_t what) { step({event(what, msg::kGoalAborted)}); }
 
@@ -96,13 +96,13 @@ class PlannerTest : public ::testing::Test {
     objects_ = {};
     see_line(false);
   }
-  /// The straight body points there; or it is curled up and points elsewhere than the head.
+  /// Turns head and body to this heading, or each to its own: a body that points elsewhere is curled up.
   void face(double yaw_rad) { face(yaw_rad, yaw_rad); }
   void face(double yaw_rad, double body_yaw_rad) {
     pose_.yaw_rad = wrapped(yaw_rad);
     pose_.body_yaw_rad = wrapped(body_yaw_rad);
   }
-  /// The line runs along x; drives `metres` along the head's direction with the line in view.
+  /// Drives `metres` along the head's heading, with the line, which runs along x, in view.
   void drive(double metres) {
     see_line(true);
     for (int i = 0; i < 150; ++i) {
@@ -111,7 +111,7 @@ class PlannerTest : public ::testing::Test {
       step();
     }
   }
-  /// Turns as asked, at 1 rad/s, until the state changes; at most once round.
+  /// Turns in the requested direction at 1 rad/s until the state changes, by one revolution at most.
   void turn() {
     const MissionState from = memory_.state;
     for (int i = 0; i < 315 && memory_.state == from; ++i) {
@@ -129,7 +129,7 @@ class PlannerTest : public ::testing::Test {
     steps(4);
     EXPECT_EQ(memory_.state, MissionState::kFollowLine);
   }
-  /// From the line to the U around the object, the head facing back.
+  /// From the line to the object in the U; then the head faces back.
   void fetch(std::uint8_t colour) {
     drive(4.0);
     see(colour, msg::kBlobObject, 1.2);
@@ -161,7 +161,7 @@ class PlannerTest : public ::testing::Test {
     EXPECT_EQ(last_.parameters.drop_zone_colour, colour);
     see_nothing();
     status_.carrying = false;
-    steps(200);  // it backs off
+    steps(200);  // the robot backs off
     EXPECT_EQ(memory_.state, MissionState::kDrop);
     succeed(msg::kEventDroppingDone);
   }

@@ -1,22 +1,22 @@
-// The memory of the line, and the planner's file.
+// The planner's memory of the line, and the errors of its configuration file.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
+#include <string>
 
 #include "configuration/configuration.hpp"
 #include "planner/line_trail.hpp"
 #include "planner/planner_config.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
 
 TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
-  // A quarter circle of radius 2 m to the left, from the origin along x, seen 0.35 m ahead.
+  // A quarter circle of radius 2 m to the left, from the origin along x. Each percept has the point 0.35 m ahead.
   LineTrail trail;
   msg::LinePercept line{};
   line.visible = true;
@@ -39,7 +39,7 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
     EXPECT_NEAR(*trail.direction_rad(pose, true), angle, 0.1);
     EXPECT_NEAR(std::abs(wrapped(*trail.direction_rad(pose, false) - angle)), std::numbers::pi, 0.1);
     EXPECT_EQ(trail.heading_rad(pose, true), trail.direction_rad(pose, true));
-    // From a metre beside the line it leads to a place 0.6 m further along the tangent.
+    // One metre beside the line, the heading leads to a point 0.6 m further along the tangent.
     for (const double beside_m : {1.0, -1.0}) {
       msg::RobotPose beside = pose;
       beside.x_m -= beside_m * std::sin(angle);
@@ -50,7 +50,7 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
   }
 }
 
-TEST(LineTrail, LeadsToWhereABendWasSeenLastAndOnOverNewGroundOnly) {
+TEST(LineTrail, LeadsToTheLastVisiblePointOfABendAndOverNewGroundOnly) {
   // Along x for 2 m, then a corner of 110 degrees to the left.
   LineTrail trail;
   msg::LinePercept line{};
@@ -67,22 +67,23 @@ TEST(LineTrail, LeadsToWhereABendWasSeenLastAndOnOverNewGroundOnly) {
     trail.note_beyond(line, pose);
     trail.record(line, pose, true);
   }
-  pose.x_m = 2.3;  // lost, and run past the corner
+  pose.x_m = 2.3;  // the robot has lost the line and passed the corner
   pose.yaw_rad = 0.3;
   EXPECT_NEAR(*trail.heading_rad(pose, true), std::atan2(0.3, -0.3), 1e-9);
-  EXPECT_NEAR(std::abs(wrapped(*trail.heading_rad(pose, false))), std::numbers::pi, 0.3);  // the way back is not concerned
+  EXPECT_NEAR(std::abs(wrapped(*trail.heading_rad(pose, false))), std::numbers::pi,
+              0.3);  // the way back does not use that point
   const double corner_rad = 110.0 / 180.0 * std::numbers::pi;
   see(2.0 + 0.9 * std::cos(corner_rad), 0.9 * std::sin(corner_rad));
-  EXPECT_TRUE(trail.leads_on(line, pose));
-  see(1.0, 0.0);  // where it came from
-  EXPECT_FALSE(trail.leads_on(line, pose));
+  EXPECT_TRUE(trail.leads_to_new_ground(line, pose));
+  see(1.0, 0.0);  // behind the robot
+  EXPECT_FALSE(trail.leads_to_new_ground(line, pose));
   see(0.3, 0.8);  // new ground, but not where the line was followed last
-  EXPECT_FALSE(trail.leads_on(line, pose));
+  EXPECT_FALSE(trail.leads_to_new_ground(line, pose));
   line.x_m[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(trail.leads_on(line, pose));
+  EXPECT_FALSE(trail.leads_to_new_ground(line, pose));
 }
 
-TEST(LineTrail, ReversedLeadsTheOtherWayAndUnknownIsSaid) {
+TEST(LineTrail, ReverseTurnsDirectionsRoundAndAnUnknownLineHasNone) {
   LineTrail trail;
   msg::RobotPose pose{};
   EXPECT_FALSE(trail.direction_rad(pose, true));
@@ -99,33 +100,49 @@ TEST(LineTrail, ReversedLeadsTheOtherWayAndUnknownIsSaid) {
   EXPECT_NEAR(*trail.direction_rad(pose, true), 0.4 - std::numbers::pi, 1e-12);
 }
 
-TEST(PlannerConfig, DefaultFileIsAccepted) {
-  const auto config = load_planner_config(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
+TEST(PlannerConfig, TheShippedFileHoldsTheDefaults) {
+  const auto config =
+      load_parameters<PlannerConfig>(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
   EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourGreen, msg::kColourRed}));
 }
 
-TEST(PlannerConfig, NamesFileLineKeyAndWhatIsAccepted) {
-  std::ifstream source(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
-  std::stringstream text;
-  text << source.rdbuf();
-  const auto message_of = [&](const std::string& from, const std::string& to) -> std::string {
-    std::string changed = text.str();
-    changed.replace(changed.find(from), from.size(), to);
-    const auto file = std::filesystem::path(::testing::TempDir()) / "bad_planner.yaml";
-    std::ofstream(file) << changed;
+TEST(PlannerConfig, TheMissionOfTheScenarioTakesPrecedence) {
+  const auto config = load_planner_config({}, "{sequence: [yellow], line_colour: red}");
+  EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourYellow}));
+  EXPECT_EQ(config.line_colour, msg::kColourRed);
+  EXPECT_EQ(load_planner_config({}, "").sequence.size(), 2U);
+  EXPECT_TRUE(load_planner_config({}, "{sequence: [], line_colour: blue}").sequence.empty());
+  for (const auto& [mission, message] : {std::pair{"{sequence: [pink], line_colour: blue}", "--mission:1: sequence"},
+                                         {"{sequence: [blue], line_colour: blue}", "accepted other colours"},
+                                         {"{sequence: [green], line_color: blue}", "line_colo"}}) {
     try {
-      (void)load_planner_config(file);
+      static_cast<void>(load_planner_config({}, mission));
+      FAIL() << mission;
+    } catch (const ConfigurationError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(PlannerConfig, AnErrorNamesFileLineKeyAndTheAcceptedValues) {
+  const testing::TemporaryFolder folder;
+  const auto message_of = [&](const std::string& text) -> std::string {
+    const auto file = folder.path() / "bad_planner.yaml";
+    std::ofstream(file) << text << "\n";
+    try {
+      static_cast<void>(load_parameters<PlannerConfig>(file));
     } catch (const ConfigurationError& error) {
       return error.what();
     }
     return "";
   };
-  EXPECT_NE(message_of("[green, red]", "[green, pink]").find("bad_planner.yaml:2: sequence"), std::string::npos);
-  EXPECT_NE(message_of("[green, red]", "[green, pink]").find("pink"), std::string::npos);
-  EXPECT_NE(message_of("[green, red]", "[green, blue]").find("accepted others"), std::string::npos);
-  EXPECT_NE(message_of("[green, red]", "[]").find("accepted 1 to 16"), std::string::npos);
-  EXPECT_NE(message_of("confirm_images: 3", "confirm_images: 0").find("confirm_images: found 0"), std::string::npos);
-  EXPECT_NE(message_of("explore_s", "explore").find("explore"), std::string::npos);
+  EXPECT_NE(message_of("# mission\nsequence: [green, pink]").find("bad_planner.yaml:2: sequence"), std::string::npos);
+  EXPECT_NE(message_of("sequence: [green, pink]").find("pink"), std::string::npos);
+  EXPECT_NE(message_of("sequence: [green, blue]").find("accepted other colours"), std::string::npos);
+  EXPECT_EQ(message_of("sequence: []"), "") << "a mission without objects";
+  EXPECT_NE(message_of("confirm_images: 0").find("confirm_images: found 0"), std::string::npos);
+  EXPECT_NE(message_of("explore: 8").find("explore"), std::string::npos);
+  EXPECT_EQ(message_of("sequence: [red]"), "") << "the other keys keep their defaults";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Pixel noise: its moments, and that it is a pure function of seed and tick.
+// Pixel noise has the right moments and is a pure function of seed and tick.
 #include "sim/render/pixel_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kSize = 320 * 240 * 3;
 
-TEST(PixelNoise, HasTheStandardDeviationAskedForAndNoBias) {
+TEST(PixelNoise, HasTheGivenStandardDeviationAndNoBias) {
   for (const double sd : {0.01, 0.03}) {
     std::vector<std::uint8_t> rgb(kSize, 128);
     PixelNoise(sd, 5).add(rgb, 17);
@@ -43,11 +43,11 @@ TEST(PixelNoise, DependsOnSeedAndTickOnly) {
   std::vector<std::uint8_t> rgb(1003, 100);
   generator.add(rgb, 3);
   rgb.assign(1003, 100);
-  generator.add(rgb, 10);  // what came before does not matter
+  generator.add(rgb, 10);  // earlier frames have no influence
   EXPECT_EQ(rgb, noise(1, 10));
 }
 
-TEST(PixelNoise, ZeroLeavesTheImageAlone) {
+TEST(PixelNoise, ZeroDoesNotChangeTheImage) {
   std::vector<std::uint8_t> rgb(100, 77);
   PixelNoise(0.0, 1).add(rgb, 1);
   EXPECT_EQ(rgb, std::vector<std::uint8_t>(100, 77));

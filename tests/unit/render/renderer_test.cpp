@@ -1,4 +1,4 @@
-// The renderer against geometry: pin-hole equations, shadow construction, similar triangles.
+// Images compared with geometry: pin-hole equations, shadow construction, similar triangles.
 #include "sim/render/renderer.hpp"
 
 #include <gtest/gtest.h>
@@ -31,11 +31,15 @@ struct Picture {
   int width = 0;
   int height = 0;
   [[nodiscard]] Pixel operator()(int u, int v) const {
-    const std::size_t i = 3 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u));
+    const std::size_t i =
+        3 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u));
     return {rgb[i], rgb[i + 1], rgb[i + 2]};
   }
   /// Centroid and count of the pixels that `wanted` accepts.
-  struct Region { double u = 0, v = 0; int count = 0, v_min = 1 << 20, v_max = -1, u_min = 1 << 20, u_max = -1; };
+  struct Region {
+    double u = 0, v = 0;
+    int count = 0, v_min = 1 << 20, v_max = -1, u_min = 1 << 20, u_max = -1;
+  };
   [[nodiscard]] Region find(const std::function<bool(const Pixel&)>& wanted) const {
     Region region;
     for (int v = 0; v < height; ++v) {
@@ -58,7 +62,8 @@ struct Picture {
 
 bool is_red(const Pixel& p) { return p.r > p.g + 50 && p.r > p.b + 50; }
 
-Picture take(Renderer& renderer, const ScenePoses& poses, const PinholeCamera& camera, const ShadowRegion& region = {}) {
+Picture take(Renderer& renderer, const ScenePoses& poses, const PinholeCamera& camera,
+             const ShadowRegion& region = {}) {
   return {renderer.draw(poses, camera, region), camera.width, camera.height};
 }
 
@@ -67,7 +72,8 @@ Scene busy_scene() {
   for (int i = 0; i <= 40; ++i) scene.line_m.emplace_back(0.1 * i, 0.4 * std::sin(0.2 * i));
   scene.line_colour = colour_reflectance(3);
   scene.zones = {{{0.5, 0.8}, 0.3, colour_reflectance(1)}};
-  scene.objects = {{SolidShape::kCylinder, {0.08, 0.08, 0.15}, colour_reflectance(2)}, {SolidShape::kBox, {0.1, 0.2, 0.15}, colour_reflectance(1)}};
+  scene.objects = {{SolidShape::kCylinder, {0.08, 0.08, 0.15}, colour_reflectance(2)},
+                   {SolidShape::kBox, {0.1, 0.2, 0.15}, colour_reflectance(1)}};
   scene.obstacles = {{SolidShape::kBox, {0.1, 1.0, 0.3}, colour_reflectance(0)}};
   scene.X_WObstacle = {at({4.0, 1.0, 0.15})};
   scene.light.direction = Vector3d(0.4, -0.5, 0.7).normalized();
@@ -77,7 +83,8 @@ Scene busy_scene() {
 ScenePoses busy_poses() {
   ScenePoses poses;
   for (int i = 0; i < 24; ++i) {
-    poses.X_WModule.push_back(at({2.0 - 0.089 * i, 0.1 * std::sin(0.5 * i), 0.035}) * Eigen::AngleAxisd(0.3 * std::cos(0.5 * i), Vector3d::UnitZ()));
+    poses.X_WModule.push_back(at({2.0 - 0.089 * i, 0.1 * std::sin(0.5 * i), 0.035}) *
+                              Eigen::AngleAxisd(0.3 * std::cos(0.5 * i), Vector3d::UnitZ()));
   }
   poses.X_WObject = {at({2.8, 0.3, 0.075}), at({3.0, -0.4, 0.075})};
   return poses;
@@ -93,7 +100,7 @@ TEST(Renderer, ProjectsPointsByThePinholeEquations) {
   Scene scene;
   scene.objects = {{SolidShape::kBox, {0.02, 0.02, 0.02}, kRed}};
   scene.light.direction = Vector3d::UnitZ();
-  scene.light.ambient = 0.9;  // every face well lit
+  scene.light.ambient = 0.9;  // every face is bright
   RenderOptions options;
   options.shadow_map_size = 0;
   Renderer renderer(scene, options);
@@ -104,10 +111,11 @@ TEST(Renderer, ProjectsPointsByThePinholeEquations) {
   camera.fy = 190.0;
   camera.cx = 150.5;
   camera.cy = 128.0;
-  camera.X_WC = at({0.3, -0.2, 0.4}) * Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.1, Vector3d::UnitY()) *
-                Eigen::AngleAxisd(-1.8, Vector3d::UnitX());
-  for (const Vector3d& p_C : {Vector3d(0, 0, 1), Vector3d(0.5, -0.2, 1), Vector3d(-0.6, 0.1, 1.1), Vector3d(0.3, -0.25, 0.6), Vector3d(-0.2, -0.3, 0.8)}) {
-    ASSERT_GT((camera.X_WC * p_C).z(), 0.05) << "test point lies below the ground";
+  camera.X_WC = at({0.3, -0.2, 0.4}) * Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(0.1, Vector3d::UnitY()) * Eigen::AngleAxisd(-1.8, Vector3d::UnitX());
+  for (const Vector3d& p_C : {Vector3d(0, 0, 1), Vector3d(0.5, -0.2, 1), Vector3d(-0.6, 0.1, 1.1),
+                              Vector3d(0.3, -0.25, 0.6), Vector3d(-0.2, -0.3, 0.8)}) {
+    ASSERT_GT((camera.X_WC * p_C).z(), 0.05) << "the test point lies below the ground";
     const Picture picture = take(renderer, {{}, {at(camera.X_WC * p_C)}}, camera);
     const auto region = picture.find(is_red);
     ASSERT_GT(region.count, 3);
@@ -116,7 +124,7 @@ TEST(Renderer, ProjectsPointsByThePinholeEquations) {
   }
 }
 
-TEST(Renderer, CylinderIsAsTallAsSimilarTrianglesSay) {
+TEST(Renderer, CylinderHasTheHeightOfSimilarTriangles) {
   Scene scene;
   constexpr double kRadius = 0.08;
   constexpr double kHeight = 0.15;
@@ -129,12 +137,13 @@ TEST(Renderer, CylinderIsAsTallAsSimilarTrianglesSay) {
     const Picture picture = take(renderer, {{}, {at({distance, 0, kHeight / 2})}}, camera);
     const auto region = picture.find(is_red);
     EXPECT_NEAR(region.v_max - region.v_min + 1, camera.fy * kHeight / (distance - kRadius), 1.5);
-    // The outline touches the tangents from the eye.
-    EXPECT_NEAR(region.u_max - region.u_min + 1, 2 * camera.fx * kRadius / std::sqrt(distance * distance - kRadius * kRadius), 1.5);
+    // The outline is bounded by the tangents from the eye.
+    EXPECT_NEAR(region.u_max - region.u_min + 1,
+                2 * camera.fx * kRadius / std::sqrt(distance * distance - kRadius * kRadius), 1.5);
   }
 }
 
-TEST(Renderer, LineIsAsWideAsDescribedSeenFromAbove) {
+TEST(Renderer, LineHasItsWidthWhenSeenFromAbove) {
   Scene scene;
   scene.line_m = {{-2, 0.1}, {2, 0.1}};
   scene.line_width_m = 0.06;
@@ -152,14 +161,15 @@ TEST(Renderer, ShadowLiesWhereTheLightIsBlockedAndOnlyThere) {
   Scene scene;
   scene.objects = {{SolidShape::kCylinder, {0.05, 0.05, 0.3}, kRed}};
   scene.ground_colour = {0.4F, 0.4F, 0.4F};
-  scene.light.direction = Vector3d(-1, 0, 1).normalized();  // shadow falls along +x, as long as the cylinder is tall
+  scene.light.direction =
+      Vector3d(-1, 0, 1).normalized();  // the shadow falls along +x and is as long as the cylinder is high
   scene.light.ambient = 0.3;
   scene.light.intensity = 1.0;
   Renderer renderer(scene, {});
   PinholeCamera camera = make_pinhole(240, 240, 1.0);
   camera.X_WC = look_at({0.2, 0, 2.0}, {0.2, 0, 0});
   const Picture picture = take(renderer, {{}, {at({0, 0, 0.15})}}, camera);
-  const auto brightness = [&](double x, double y) {  // mean over 5 x 5 pixels: evens out the ground's pattern
+  const auto brightness = [&](double x, double y) {  // mean over 5 x 5 pixels, because the ground has a pattern
     const Vector3d c = camera.X_WC.inverse() * Vector3d(x, y, 0);
     const int u = static_cast<int>(camera.fx * c.x() / c.z() + camera.cx);
     const int v = static_cast<int>(camera.fy * c.y() / c.z() + camera.cy);
@@ -182,7 +192,7 @@ TEST(Renderer, FramesAreEqualAcrossRenderersRunsAndThreads) {
   options.samples = 4;
   Renderer first(busy_scene(), options);
   const std::vector<std::uint8_t> reference = first.draw(busy_poses(), scene_camera(), {});
-  // A renderer with another past: other poses, another size, another region.
+  // A renderer that has drawn other poses, another size and another region before.
   Renderer second(busy_scene(), options);
   ScenePoses others = busy_poses();
   others.X_WObject[0].translation().x() += 0.4;
@@ -221,10 +231,16 @@ TEST(Renderer, RobotIsGreyAndItsHeadTheBrightest) {
   PinholeCamera camera = make_pinhole(320, 240, 0.8);
   camera.X_WC = look_at({-0.25, 0, 1.0}, {-0.25, 0, 0});
   const Picture picture = take(renderer, poses, camera);
-  EXPECT_EQ(picture.find([](const Pixel& p) { return std::max({p.r, p.g, p.b}) - std::min({p.r, p.g, p.b}) > 12; }).count, 0);
+  EXPECT_EQ(picture.find([](const Pixel& p) {
+                     return std::max({p.r, p.g, p.b}) - std::min({p.r, p.g, p.b}) > 12;
+                   })
+                .count,
+            0);
   const auto brightness = [&](double x) {
     const Vector3d c = camera.X_WC.inverse() * Vector3d(x, 0, 0.07);
-    return picture(static_cast<int>(camera.fx * c.x() / c.z() + camera.cx), static_cast<int>(camera.fy * c.y() / c.z() + camera.cy)).g;
+    return picture(static_cast<int>(camera.fx * c.x() / c.z() + camera.cx),
+                   static_cast<int>(camera.fy * c.y() / c.z() + camera.cy))
+        .g;
   };
   EXPECT_GT(brightness(0.0), brightness(-0.089 * 2) + 20);
   EXPECT_GT(brightness(-0.089 * 2), brightness(-0.089) + 20);

@@ -1,4 +1,4 @@
-// Viewpoints: everything asked for is in the picture, and no smaller than it has to be.
+// Viewpoints contain all given points, as large as possible.
 #include "sim/render/viewpoint.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace constrictor {
 namespace {
 
-TEST(Viewpoint, EverythingIsInThePictureAndTouchesTheMargin) {
+TEST(Viewpoint, ContainsAllPointsAndTouchesTheMargin) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 20; ++i) points.emplace_back(0.4 * i, (i * 7 % 5) * 0.3, 0.0);
   for (const double heading : {0.0, 0.9, 2.0, -2.5}) {
@@ -30,7 +30,7 @@ TEST(Viewpoint, EverythingIsInThePictureAndTouchesTheMargin) {
       EXPECT_GE(v_min, 0.05 * 360 - 1e-6);
       EXPECT_LE(v_max, 0.95 * 360 + 1e-6);
       EXPECT_TRUE(u_max - u_min > 0.9 * 640 - 1e-3 || v_max - v_min > 0.9 * 360 - 1e-3);
-      EXPECT_NEAR(u_min + u_max, 640, 1e-3);  // as much free on the left as on the right
+      EXPECT_NEAR(u_min + u_max, 640, 1e-3);  // the left and the right margin are equal
       EXPECT_NEAR(v_min + v_max, 360, 1e-3);
     }
   }

@@ -1,4 +1,4 @@
-// The journal after a restart, and files replaced as a whole.
+// Journals after a restart, and files that are replaced as a whole.
 #include "sim/report/files.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace constrictor::report {
 namespace {
 
-TEST(Journal, RestartCutsOffWhatTheCheckpointDoesNotKnow) {
+TEST(Journal, RestartRemovesLinesAfterTheCheckpoint) {
   const testing::TemporaryFolder folder;
   std::uint64_t checkpoint = 0;
   {
@@ -24,7 +24,7 @@ TEST(Journal, RestartCutsOffWhatTheCheckpointDoesNotKnow) {
   EXPECT_EQ(restarted.read(4), "one\n");
 }
 
-TEST(Journal, AFreshRunEmptiesAnOldFile) {
+TEST(Journal, NewRunEmptiesAnOldFile) {
   const testing::TemporaryFolder folder;
   replace_file(folder.path() / "a.csv", "from yesterday");
   std::uint64_t length = 0;
@@ -32,7 +32,7 @@ TEST(Journal, AFreshRunEmptiesAnOldFile) {
   EXPECT_EQ(folder.contents().at("a.csv"), "x");
 }
 
-TEST(Journal, SaysWhenItsFileWasCutOrRemoved) {
+TEST(Journal, ReportsAFileThatWasCutOrRemoved) {
   const testing::TemporaryFolder folder;
   std::uint64_t length = 10;
   Journal journal(folder.path() / "a.csv");
@@ -40,7 +40,7 @@ TEST(Journal, SaysWhenItsFileWasCutOrRemoved) {
   EXPECT_THROW((void)journal.read(10), std::runtime_error);
 }
 
-TEST(Journal, WithoutAPathDiscards) {
+TEST(Journal, DiscardsLinesWithoutAPath) {
   std::uint64_t length = 0;
   Journal journal{std::filesystem::path()};
   journal.append("x", length);

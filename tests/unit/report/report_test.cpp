@@ -1,4 +1,4 @@
-// The report on a mission whose every figure is known.
+// The report on a scripted mission of which every figure is known.
 #include "sim/report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -7,30 +7,39 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "runtime/local_run.hpp"
-#include "runtime/share.hpp"
-#include "synthetic_run.hpp"
+#include "barrier/local_run.hpp"
+#include "component/data_path.hpp"
 #include "support/temporary_folder.hpp"
+#include "synthetic_run.hpp"
 
 namespace constrictor {
 namespace {
 
 using nlohmann::json;
 using test::Story;
+using test::travel_m;
 using testing::TemporaryFolder;
 
-struct Told {
+struct Outcome {
   json mission;
   std::map<std::string, std::string> files;
   std::int64_t last_tick = 0;
 };
 
-Told tell(const Story& story, const std::vector<std::int64_t>& restarts = {}, const std::string& configuration = {}) {
+/// An end of the run before the mission's end.
+struct EarlyEnd {
+  std::int64_t end_tick = -1;  ///< last tick that the report steps; -1: the report ends the run
+  double plant_limit_s = 0.0;
+};
+
+Outcome report_of(const Story& story, const std::vector<std::int64_t>& restarts = {},
+                  const std::string& configuration = {}, EarlyEnd early = {}) {
   const TemporaryFolder folder;
   const TemporaryFolder configurations;
   Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.output_dir = folder.path() / "run";
+  setup.max_sim_time_s = early.plant_limit_s;
   std::map<std::string, std::filesystem::path> config_files;
   if (!configuration.empty()) {
     report::replace_file(configurations.path() / "report.yaml", configuration);
@@ -43,19 +52,23 @@ Told tell(const Story& story, const std::vector<std::int64_t>& restarts = {}, co
     run.advance(tick - run.tick());
     run.restart("report");
   }
+  if (early.end_tick >= 0) {
+    run.advance(early.end_tick + 1 - run.tick());
+    run.end_run();
+  }
   run.advance(2000);
   EXPECT_TRUE(run.ended());
-  Told told;
-  told.files = folder.contents();
-  told.last_tick = run.tick();
-  if (told.files.count("run/mission.json") > 0) told.mission = json::parse(told.files.at("run/mission.json"));
-  return told;
+  Outcome outcome;
+  outcome.files = folder.contents();
+  outcome.last_tick = run.tick();
+  if (outcome.files.count("run/mission.json") > 0) outcome.mission = json::parse(outcome.files.at("run/mission.json"));
+  return outcome;
 }
 
-TEST(Report, FiguresEqualWhatTheStorySays) {
+TEST(Report, FiguresAreThoseOfTheScript) {
   const Story story;
-  const Told told = tell(story);
-  const json& mission = told.mission;
+  const Outcome outcome = report_of(story);
+  const json& mission = outcome.mission;
   EXPECT_EQ(mission["success"], true);
   EXPECT_EQ(mission["seed"], 11);
   EXPECT_EQ(mission["scenario"], "story");
@@ -83,7 +96,7 @@ TEST(Report, FiguresEqualWhatTheStorySays) {
   EXPECT_EQ(mission["states"][1]["state"], "retrieve_first");
   EXPECT_NEAR(mission["states"][1]["sim_time_s"], 60 * 0.02, 1e-9);
 
-  // The end: seen one tick after it was said, and 2 s for things to settle.
+  // The report sees the end of the mission one tick later, and waits 2 s for objects to come to rest.
   const std::int64_t last = story.mission_end_tick + 1 + 100;
   EXPECT_EQ(mission["ticks"], last);
   EXPECT_NEAR(mission["sim_time_s"], 0.02 * static_cast<double>(last), 1e-9);
@@ -95,51 +108,96 @@ TEST(Report, FiguresEqualWhatTheStorySays) {
   EXPECT_EQ(hash.substr(62), "ab");
 }
 
-TEST(Report, KilledAndRestartedItLeavesTheSameFiles) {
-  const Told whole = tell({});
+TEST(Report, LeavesTheSameFilesAfterRestarts) {
+  const Outcome whole = report_of({});
   ASSERT_GT(whole.files.size(), 20U);
-  // Just after events, amid waits for pictures, after the mission's end, and in the last tick.
-  const Told restarted = tell({}, {1, 12, 61, 62, 63, 91, 125, 150, 201, 261, 300, 321, 401, 422, 423, 500, 521});
+  // Restarts just after events, while pictures are missing, after the end of the mission, and in the last tick.
+  const Outcome restarted =
+      report_of({}, {1, 12, 61, 62, 63, 91, 125, 150, 201, 261, 300, 321, 401, 422, 423, 500, 521});
   EXPECT_EQ(whole.last_tick, restarted.last_tick);
   ASSERT_EQ(whole.files.size(), restarted.files.size());
   for (const auto& [name, bytes] : whole.files) EXPECT_TRUE(restarted.files.at(name) == bytes) << name << " differs";
 }
 
-TEST(Report, AnObjectOutsideItsZoneIsNoSuccess) {
+TEST(Report, DoesNotSucceedWithAnObjectOutsideItsZone) {
   Story story;
   story.red_drop_distance_m = 0.31;
-  const json mission = tell(story).mission;
+  const json mission = report_of(story).mission;
   EXPECT_EQ(mission["success"], false);
-  EXPECT_EQ(mission["mission"], "succeeded");  // so the planner thought
+  EXPECT_EQ(mission["mission"], "failed");
+  EXPECT_EQ(mission["reason"], "red lies 0.31 m from the centre of its zone (radius 0.30 m)");
   EXPECT_EQ(mission["objects"][0]["in_zone"], true);
   EXPECT_EQ(mission["objects"][1]["in_zone"], false);
 }
 
-TEST(Report, TheWrongOrderIsNoSuccess) {
+TEST(Report, DoesNotSucceedInTheWrongOrder) {
   Story story;
   story.first_colour = msg::kColourRed;
-  EXPECT_EQ(tell(story).mission["success"], false);
+  const json mission = report_of(story).mission;
+  EXPECT_EQ(mission["success"], false);
+  EXPECT_EQ(mission["reason"], "red was dropped out of order");
 }
 
-TEST(Report, AnExternalPlannerMayHaveAnOrderOfItsOwn) {
+TEST(Report, AcceptsAnotherOrderOfAnExternalPlanner) {
   Story story;
   story.first_colour = msg::kColourRed;
   story.level = msg::kAuthorityExternal;
-  EXPECT_EQ(tell(story).mission["success"], true);
+  EXPECT_EQ(report_of(story).mission["success"], true);
 }
 
 TEST(Report, EndsAtTheTimeLimit) {
   Story story;
   story.mission_end_tick = 1'000'000;
-  const Told told = tell(story, {}, "max_sim_time_s: 9.0\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
-  EXPECT_EQ(told.mission["ticks"], 450);
-  EXPECT_EQ(told.mission["success"], false);
-  EXPECT_EQ(told.mission["mission"], "running");
+  const Outcome outcome =
+      report_of(story, {}, "max_sim_time_s: 9.0\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
+  EXPECT_EQ(outcome.mission["ticks"], 450);
+  EXPECT_EQ(outcome.mission["success"], false);
+  EXPECT_EQ(outcome.mission["mission"], "unfinished");
+  EXPECT_EQ(outcome.mission["reason"], "time limit of 9 s");
+  EXPECT_TRUE(outcome.files.contains("run/snapshots/0000450_camera.png")) << "the figure shows the end of the run";
+}
+
+TEST(Report, WritesEverythingWhenAUserEndsTheRun) {
+  const Outcome outcome = report_of({}, {}, {}, {.end_tick = 300});
+  EXPECT_EQ(outcome.mission["success"], false);
+  EXPECT_EQ(outcome.mission["mission"], "unfinished");
+  EXPECT_EQ(outcome.mission["reason"], "ended by user at 6.0 s");
+  EXPECT_EQ(outcome.mission["objects"].size(), 2U);
+  EXPECT_EQ(outcome.mission["objects"][0]["in_zone"], true);
+  EXPECT_EQ(outcome.mission["events"].size(), 8U);
+  EXPECT_TRUE(outcome.mission["line"]["rms_cross_track_m"].is_number());
+  EXPECT_TRUE(outcome.files.contains("run/figure.png"));
+  for (const std::string picture : {"camera", "processed", "scene"})
+    EXPECT_TRUE(outcome.files.contains("run/snapshots/0000300_" + picture + ".png")) << picture;
+}
+
+TEST(Report, NamesThePlantsTimeLimit) {
+  const Outcome outcome = report_of({}, {}, {}, {.end_tick = 300, .plant_limit_s = 6.02});
+  EXPECT_EQ(outcome.mission["reason"], "time limit of 6.02 s");
+}
+
+TEST(Report, NamesThePlannersReason) {
+  Story story;
+  story.mission_end = msg::kMissionFailed;
+  const json mission = report_of(story).mission;
+  EXPECT_EQ(mission["mission"], "failed");
+  EXPECT_EQ(mission["reason"], "the planner gave up: more than 60 recoveries");
+}
+
+TEST(Report, AMissionWithoutObjectsSucceedsAtTheEndOfTheLineOnly) {
+  Story story;
+  story.objects_in_mission = 0;
+  story.line_length_m = travel_m(story.mission_end_tick + 101);
+  EXPECT_EQ(report_of(story).mission["reason"], "");
+  EXPECT_EQ(report_of(story).mission["success"], true);
+  story.line_length_m += 1.0;
+  EXPECT_EQ(report_of(story).mission["success"], false);
+  EXPECT_EQ(report_of(story).mission["reason"], "the head is 1.00 m from the end of the line");
 }
 
 TEST(Report, JournalsTorquesTenTimesASecond) {
-  const Told told = tell({});
-  const std::string& csv = told.files.at("run/joint_torques.csv");
+  const Outcome outcome = report_of({});
+  const std::string& csv = outcome.files.at("run/joint_torques.csv");
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
@@ -152,32 +210,33 @@ TEST(Report, JournalsTorquesTenTimesASecond) {
   }
 }
 
-TEST(Report, PicturesOfAMomentShowThatMomentOrSoonAfter) {
-  const Told told = tell({});
+TEST(Report, PicturesShowTheirMomentOrShortlyAfterwards) {
+  const Outcome outcome = report_of({});
   const auto brightness = [&](const std::string& name) {
-    const std::string& bytes = told.files.at("run/snapshots/" + name);
+    const std::string& bytes = outcome.files.at("run/snapshots/" + name);
     const cv::Mat image = cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
-    return static_cast<int>(image.at<cv::Vec3b>(0, 1)[0]);  // tells the tick, see write_picture
+    return static_cast<int>(image.at<cv::Vec3b>(0, 1)[0]);  // the brightness is the tick, see write_picture
   };
-  // The event of tick 120 is visible in 121; the newest camera image then is that of 115, visible in 117.
+  // The event of tick 120 is visible in tick 121. The newest camera image at that time was exposed in tick 115.
   EXPECT_EQ(brightness("0000120_camera.png"), 115);
   EXPECT_GE(brightness("0000120_processed.png"), 115);
   EXPECT_EQ(brightness("0000120_scene.png"), 150);
 }
 
-// The camera is anybody's: what calls itself 64 x 48 pixels and brings ten bytes is not drawn.
-TEST(Report, ImagesWithoutTheirPixelsAreLeftOut) {
+// An image of 64 x 48 pixels with ten bytes, as a faulty camera may send it, is not drawn.
+TEST(Report, LeavesOutImagesWithMissingPixels) {
   test::Story story;
   story.torn_from_tick = 100;
-  const Told told = tell(story);
-  EXPECT_TRUE(told.files.contains("run/snapshots/0000090_camera.png"));
-  for (const std::string name : {"camera", "processed"}) EXPECT_FALSE(told.files.contains("run/snapshots/0000120_" + name + ".png")) << name;
-  EXPECT_TRUE(told.files.contains("run/figure.png"));
+  const Outcome outcome = report_of(story);
+  EXPECT_TRUE(outcome.files.contains("run/snapshots/0000090_camera.png"));
+  for (const std::string name : {"camera", "processed"})
+    EXPECT_FALSE(outcome.files.contains("run/snapshots/0000120_" + name + ".png")) << name;
+  EXPECT_TRUE(outcome.files.contains("run/figure.png"));
 }
 
-TEST(Report, WithoutAFolderItStillEndsTheRun) {
+TEST(Report, EndsTheRunWithoutAnOutputFolder) {
   constrictor::Setup setup;
-  setup.robot_file = share_path("components/robot/mamba.yaml");
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   auto members = test::story_members({});
   members.push_back(make_report_factory());
   LocalRun run(members, setup);

@@ -1,4 +1,4 @@
-// Cross-track distance and planar poses against geometry by hand.
+// Cross-track distance and planar poses compared with geometry.
 #include "sim/report/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST(CrossTrack, OffsetPathHasItsOffset) {
 TEST(CrossTrack, SineOffsetHasItsRootMeanSquare) {
   RootMeanSquare statistics;
   for (int i = 0; i < 1000; ++i) {
-    statistics.add(*cross_track_m({1.0 + 0.002 * i, 0.1 * std::sin(2 * std::numbers::pi * i / 100)}, {{0, 0}, {10, 0}}));
+    statistics.add(
+        *cross_track_m({1.0 + 0.002 * i, 0.1 * std::sin(2 * std::numbers::pi * i / 100)}, {{0, 0}, {10, 0}}));
   }
   EXPECT_NEAR(statistics.rms(), 0.1 / std::sqrt(2.0), 1e-12);
 }

@@ -1,4 +1,4 @@
-// A mission by formula: every member that the report listens to, without physics, vision or planning.
+// A scripted mission: every member that the report reads from, without physics, vision or planning.
 #pragma once
 
 #include <cmath>
@@ -10,21 +10,25 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/component.hpp"
+#include "component/component.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor::test {
 
-/// What a test may change about the mission.
+/// The values of the mission that a test may change.
 struct Story {
-  double offset_m = 0.07;                ///< of the head's path from the line
-  double pose_error_x_m = 0.03;          ///< of guidance's estimate, in M
+  double offset_m = 0.07;        ///< of the head's path from the line
+  double pose_error_x_m = 0.03;  ///< of guidance's estimate, in M
   double pose_error_y_m = -0.04;
   double yaw_error_rad = 0.02;
-  std::uint8_t first_colour = msg::kColourGreen;   ///< the mission's order
-  std::uint8_t level = msg::kAuthorityPlanner;     ///< of whose goals the events are
-  double red_drop_distance_m = 0.1;      ///< from the red zone's centre; its radius is 0.3
+  std::uint8_t first_colour = msg::kColourGreen;  ///< the mission's order
+  std::uint8_t level = msg::kAuthorityPlanner;    ///< authority of the goals to which the events belong
+  double red_drop_distance_m = 0.1;               ///< from the red zone's centre; its radius is 0.3
   std::int64_t mission_end_tick = 420;
-  std::int64_t torn_from_tick = 1'000'000;  ///< from here on images have fewer pixels than their size says
+  std::uint8_t mission_end = msg::kMissionSucceeded;  ///< what the planner announces then
+  std::uint16_t objects_in_mission = 2;
+  double line_length_m = 10.0;
+  std::int64_t torn_from_tick = 1'000'000;  ///< from this tick on images have fewer bytes than their size requires
 };
 
 constexpr double kStartX = 1.0, kStartY = 2.0, kStartYaw = 0.5;
@@ -52,21 +56,28 @@ inline const std::vector<ScriptedEvent>& scripted_events() {
 /// Distance of the head along the line.
 inline double travel_m(std::int64_t tick) { return 0.5 + 0.005 * static_cast<double>(tick); }
 
-class StoryPlant : public Plant {
+class StoryPlant : public testing::PlantBase {
  public:
   StoryPlant(Wiring& wiring, Story story)
-      : story_(story), scene_(wiring.output(topics::kSceneDescription)), world_(wiring.output(topics::kWorldState)), joints_(wiring.output(topics::kJointState)) {}
+      : story_(story),
+        scene_(wiring.output(topics::kSceneDescription)),
+        world_(wiring.output(topics::kWorldState)),
+        joints_(wiring.output(topics::kJointState)) {}
   void sample(const Tick& tick) override {
     if (tick.index == 0) write_scene();
     msg::WorldState world{};
     world.module_count = 1;
     const double c = std::cos(kStartYaw), s = std::sin(kStartYaw);
-    const auto place = [&](double along, double across) { return msg::Vector3{kStartX + c * along - s * across, kStartY + s * along + c * across, 0.0}; };
-    world.module_poses[0] = {place(travel_m(tick.index), 0.0), {std::cos(kStartYaw / 2), 0, 0, std::sin(kStartYaw / 2)}};
+    const auto place = [&](double along, double across) {
+      return msg::Vector3{kStartX + c * along - s * across, kStartY + s * along + c * across, 0.0};
+    };
+    world.module_poses[0] = {place(travel_m(tick.index), 0.0),
+                             {std::cos(kStartYaw / 2), 0, 0, std::sin(kStartYaw / 2)}};
     world.object_count = 2;
-    // Objects go with the head until they are dropped, then lie in their zones.
+    // Objects move with the head until they are dropped; then they lie in their zones.
     const auto object = [&](int i, std::int64_t dropped, double zone_y, double miss) {
-      world.object_poses[i] = {tick.index < dropped ? place(travel_m(tick.index), 0.1) : msg::Vector3{miss, zone_y, 0.0}, {1, 0, 0, 0}};
+      world.object_poses[i] = {
+          tick.index < dropped ? place(travel_m(tick.index), 0.1) : msg::Vector3{miss, zone_y, 0.0}, {1, 0, 0, 0}};
     };
     object(0, 195, 1.0, 0.05);
     object(1, 395, -1.0, story_.red_drop_distance_m);
@@ -75,11 +86,10 @@ class StoryPlant : public Plant {
     world_.write(world);
     msg::JointState joints{};
     joints.joint_count = 23;
-    for (int i = 0; i < 23; i += 2) joints.torque_nm[i] = 3.0 * std::sin(0.3 * i + 2.0 * tick.time_s()) * (tick.index > 120 ? 1.5 : 1.0);
+    for (int i = 0; i < 23; i += 2)
+      joints.torque_nm[i] = 3.0 * std::sin(0.3 * i + 2.0 * tick.time_s()) * (tick.index > 120 ? 1.5 : 1.0);
     joints_.write(joints);
   }
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
 
  private:
   void write_scene() {
@@ -97,9 +107,9 @@ class StoryPlant : public Plant {
     scene->zones[1] = {msg::kColourRed, 0.0, -1.0, 0.3};
     scene->line_point_count = 2;
     const double c = std::cos(kStartYaw), s = std::sin(kStartYaw);
-    for (int i = 0; i < 2; ++i) {  // parallel to the head's path
-      scene->line_x_m[i] = kStartX + c * 10.0 * i + s * story_.offset_m;
-      scene->line_y_m[i] = kStartY + s * 10.0 * i - c * story_.offset_m;
+    for (int i = 0; i < 2; ++i) {  // parallel to the path of the head
+      scene->line_x_m[i] = kStartX + c * story_.line_length_m * i + s * story_.offset_m;
+      scene->line_y_m[i] = kStartY + s * story_.line_length_m * i - c * story_.offset_m;
     }
     scene_.write(*scene);
   }
@@ -109,27 +119,15 @@ class StoryPlant : public Plant {
   Output<msg::JointState> joints_;
 };
 
-/// A member whose step is a function of the tick.
-class Scripted : public Component {
- public:
-  Scripted(Timing timing, std::function<void(const Tick&)> step) : timing_(timing), step_(std::move(step)) {}
-  [[nodiscard]] Timing timing() const override { return timing_; }
-  void step(const Tick& tick) override { step_(tick); }
-  [[nodiscard]] std::string save() const override { return {}; }
-  void load(const std::string&) override {}
-
- private:
-  Timing timing_;
-  std::function<void(const Tick&)> step_;
-};
-
-inline ComponentFactory scripted(std::string name, Timing timing, std::function<std::function<void(const Tick&)>(Wiring&)> wire) {
-  return {std::move(name), [timing, wire](Wiring& wiring, const Setup&) { return std::make_unique<Scripted>(timing, wire(wiring)); }};
+inline ComponentFactory scripted(std::string name, Timing timing, testing::WireFunction wire) {
+  return testing::scripted_member(std::move(name), std::move(wire), timing);
 }
 
-/// A picture whose brightness tells its tick.
-inline void write_picture(const Output<msg::CameraImage>& output, const Tick& tick, int width, int height, const Story& story) {
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width * height * 3), static_cast<std::uint8_t>(tick.index & 0xFF));
+/// Writes a picture whose brightness is its tick (modulo 256).
+inline void write_picture(const Output<msg::CameraImage>& output, const Tick& tick, int width, int height,
+                          const Story& story) {
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width * height * 3),
+                                   static_cast<std::uint8_t>(tick.index & 0xFF));
   for (std::size_t i = 0; i < pixels.size(); i += 7) pixels[i] = static_cast<std::uint8_t>(i & 0xFF);
   if (tick.index >= story.torn_from_tick) pixels.resize(10);
   msg::CameraImage image{};
@@ -143,7 +141,8 @@ inline void write_picture(const Output<msg::CameraImage>& output, const Tick& ti
 
 inline std::vector<ComponentFactory> story_members(const Story& story) {
   std::vector<ComponentFactory> members;
-  members.push_back({"physics", [story](Wiring& wiring, const Setup&) { return std::make_unique<StoryPlant>(wiring, story); }});
+  members.push_back(
+      {"physics", [story](Wiring& wiring, const Setup&) { return std::make_unique<StoryPlant>(wiring, story); }});
   members.push_back(scripted("guidance", {1, 1}, [story](Wiring& wiring) {
     return [story, out = wiring.output(topics::kRobotPose)](const Tick& tick) {
       msg::RobotPose pose{};
@@ -154,10 +153,11 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
     };
   }));
   members.push_back(scripted("navigation", {1, 1}, [story](Wiring& wiring) {
-    return [story, status = wiring.output(topics::kTaskStatus), events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
+    return [story, status = wiring.output(topics::kTaskStatus),
+            events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
       msg::TaskStatus task{};
       task.task = tick.index >= 20 && tick.index < 380 ? msg::kTaskFollowLine : msg::kTaskDrop;
-      task.state = msg::kGoalRunning;
+      task.goal_state = msg::kGoalRunning;
       task.parameters.timeout_s = std::nan("");
       status.write(task);
       for (const ScriptedEvent& scripted_event : scripted_events()) {
@@ -176,27 +176,39 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
     return [story, out = wiring.output(topics::kMissionStatus)](const Tick& tick) {
       msg::MissionStatus mission{};
       const bool second = tick.index > 200;
-      mission.mission = tick.index >= story.mission_end_tick ? msg::kMissionSucceeded : msg::kMissionRunning;
-      mission.object_count = 2;
-      mission.object_index = second ? 1 : 0;
+      mission.outcome = tick.index >= story.mission_end_tick ? story.mission_end : msg::kMissionRunning;
+      if (mission.outcome == msg::kMissionFailed)
+        std::snprintf(mission.reason, sizeof mission.reason, "more than 60 recoveries");
+      mission.object_count = story.objects_in_mission;
+      mission.object_index = second && story.objects_in_mission > 1 ? 1 : 0;
       const std::uint8_t other = story.first_colour == msg::kColourGreen ? msg::kColourRed : msg::kColourGreen;
       mission.colour = second ? other : story.first_colour;
       mission.recoveries = tick.index > 230 ? 1 : 0;
-      std::snprintf(mission.state, sizeof mission.state, "%s", tick.index < 60 ? "follow_line" : second ? "retrieve_second" : "retrieve_first");
+      std::snprintf(mission.state, sizeof mission.state, "%s",
+                    tick.index < 60 ? "follow_line"
+                    : second        ? "retrieve_second"
+                                    : "retrieve_first");
       out.write(mission);
     };
   }));
   members.push_back(scripted("camera", {5, 2}, [story](Wiring& wiring) {
-    return [story, out = wiring.output(topics::kCameraImage)](const Tick& tick) { write_picture(out, tick, 64, 48, story); };
+    return [story, out = wiring.output(topics::kCameraImage)](const Tick& tick) {
+      write_picture(out, tick, 64, 48, story);
+    };
   }));
   members.push_back(scripted("overview", {50, 25}, [story](Wiring& wiring) {
-    return [story, out = wiring.output(topics::kOverviewImage)](const Tick& tick) { write_picture(out, tick, 64, 36, story); };
+    return [story, out = wiring.output(topics::kOverviewImage)](const Tick& tick) {
+      write_picture(out, tick, 64, 36, story);
+    };
   }));
   members.push_back(scripted("perception", {5, 1}, [story](Wiring& wiring) {
-    return [story, line = wiring.output(topics::kLinePercept), out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
+    return [story, line = wiring.output(topics::kLinePercept),
+            out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
       msg::LinePercept percept{};
       percept.visible = tick.index % 20 != 0;  // three of four
-      for (double* value : {&percept.end_distance_m, &percept.offset_m, &percept.heading_rad, &percept.curvature_1_m, &percept.near_m, &percept.far_m}) *value = std::nan("");
+      for (double* value : {&percept.end_distance_m, &percept.offset_m, &percept.heading_rad, &percept.curvature_1_m,
+                            &percept.near_m, &percept.far_m})
+        *value = std::nan("");
       line.write(percept);
       write_picture(out, tick, 64, 48, story);
     };

@@ -1,4 +1,4 @@
-// Kinematics against geometry that can be said in words.
+// Kinematics compared with simple geometry.
 #include "robot/kinematics.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Kinematics, AStraightBodyTrailsTheHead) {
 }
 
 TEST(Kinematics, PositiveYawTurnsTheHeadSideLeft) {
-  // Seen from the tail module, a head side turned left is displaced to +y.
+  // In the frame of the tail module, a head side that is turned left is displaced to +y.
   const RobotModel robot = robot_of(2, {JointAxis::kYaw});
   const auto poses = module_poses(robot, std::vector<double>{0.5});
   const Eigen::Vector3d p_TailHead = (poses[1].inverse() * poses[0]).translation();
@@ -65,28 +65,28 @@ TEST(Kinematics, NeighboursMeetAtTheirJoint) {
     const Eigen::Vector3d behind = poses[i] * Eigen::Vector3d(-0.05, 0, 0);
     const Eigen::Vector3d ahead = poses[i + 1] * Eigen::Vector3d(0.05, 0, 0);
     EXPECT_NEAR((behind - ahead).norm(), 0.0, 1e-12);
-    // The angle between the two x axes is the joint's.
+    // The angle between the two x axes is the angle of the joint.
     const double cosine = poses[i].linear().col(0).dot(poses[i + 1].linear().col(0));
     EXPECT_NEAR(std::acos(cosine), std::abs(angles[i]), 1e-7);
   }
 }
 
-TEST(Kinematics, ThePlanarChainAgreesWithTheSpatialOneOnTheFlat) {
+TEST(Kinematics, PlanarChainAgreesWithSpatialChainOnFlatGround) {
   const RobotModel robot = robot_of(24, {JointAxis::kYaw, JointAxis::kPitch});
   std::vector<double> angles(23, 0.0);
   for (std::size_t i = 0; i < 23; i += 2) angles[i] = 0.6 * std::sin(0.9 * static_cast<double>(i));
-  const PlanarPose head{0.3, -0.2, 2.5};
+  const PlanarPose head{{0.3, -0.2}, 2.5};
   Eigen::Isometry3d X_WHead = Eigen::Isometry3d::Identity();
   X_WHead.linear() = Eigen::AngleAxisd(head.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  X_WHead.translation() = Eigen::Vector3d(head.x_m, head.y_m, 0.0);
+  X_WHead.translation() = Eigen::Vector3d(head.p.x(), head.p.y(), 0.0);
   const auto spatial = module_poses(robot, angles, X_WHead);
   const auto planar = planar_module_poses(robot, angles, head);
   for (std::size_t i = 0; i < planar.size(); ++i) {
-    EXPECT_NEAR(planar[i].x_m, spatial[i].translation().x(), 1e-12);
-    EXPECT_NEAR(planar[i].y_m, spatial[i].translation().y(), 1e-12);
+    EXPECT_NEAR(planar[i].p.x(), spatial[i].translation().x(), 1e-12);
+    EXPECT_NEAR(planar[i].p.y(), spatial[i].translation().y(), 1e-12);
     EXPECT_NEAR(std::sin(planar[i].yaw_rad), spatial[i].linear()(1, 0), 1e-12);
     const Eigen::Vector3d point = spatial[i] * Eigen::Vector3d(0.01, 0.02, 0.0);
-    EXPECT_NEAR((transform(planar[i], {0.01, 0.02}) - point.head<2>()).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((planar[i].to_parent({0.01, 0.02}) - point.head<2>()).norm(), 0.0, 1e-12);
   }
 }
 

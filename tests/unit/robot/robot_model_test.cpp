@@ -15,7 +15,7 @@ namespace {
 
 const std::filesystem::path kRobots = ROBOT_DIR;
 
-/// mamba.yaml with one line replaced, as a file of its own.
+/// A copy of mamba.yaml in which one line is replaced.
 std::string error_of_changed_file(const std::string& from, const std::string& to) {
   std::ifstream original(kRobots / "mamba.yaml");
   std::ostringstream stream;
@@ -47,9 +47,7 @@ TEST(RobotModel, MambaHasTheSizesOfTheStudy) {
   EXPECT_EQ(robot.joints[0].stiffness_nm_rad, 0.0);
 }
 
-TEST(RobotModel, SerpensIsElastic) {
-  EXPECT_GT(load_robot(kRobots / "serpens.yaml").joints[5].stiffness_nm_rad, 0.0);
-}
+TEST(RobotModel, SerpensIsElastic) { EXPECT_GT(load_robot(kRobots / "serpens.yaml").joints[5].stiffness_nm_rad, 0.0); }
 
 TEST(RobotModel, CameraSeesTheGroundJustAheadAndTheHorizon) {
   const RobotModel robot = load_robot(kRobots / "mamba.yaml");
@@ -61,29 +59,32 @@ TEST(RobotModel, CameraSeesTheGroundJustAheadAndTheHorizon) {
   const double nearest_m = camera.p_HC.x() + height_m / std::tan(camera.tilt_rad + half_height);
   EXPECT_GT(nearest_m, 0.08);
   EXPECT_LT(nearest_m, 0.15);
-  // The lowest ray passes the nose's cap, a sphere about the head's front end.
+  // The lowest ray passes the front cap of the head, which is a sphere around its front end.
   const Eigen::Vector2d to_cap(0.5 * robot.module_length_m - camera.p_HC.x(), -camera.p_HC.z());
   const double angle = camera.tilt_rad + half_height;
   EXPECT_GT(std::abs(std::cos(angle) * to_cap.y() + std::sin(angle) * to_cap.x()), robot.module_radius_m);
 }
 
-TEST(RobotModel, NamesWhatIsWrong) {
+TEST(RobotModel, ErrorNamesTheMistake) {
   EXPECT_EQ(error_of_changed_file("mass_kg: 0.3", "mass_kg: -1"), "module.mass_kg: found -1, accepted 0.01 to 20");
-  EXPECT_EQ(error_of_changed_file("count: 24", "count: 65"),
-            "module.count: found 65, accepted a whole number 2 to 64");
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 12"),
+            "module.count: found 12 modules with 6 yaw joints, accepted a robot with at least 8 yaw joints (16 modules "
+            "if the axes alternate)");
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 16"), "");
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 65"), "module.count: found 65, accepted a whole number 2 to 64");
   EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: [yaw, roll]"),
             "joints.axes[1]: found roll, accepted one of yaw, pitch");
   EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: []"),
             "joints.axes: found a list of 0, accepted a list of yaw and pitch");
   EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "damping_nm_s_rad: 1\n  max_torque_nm: 6.0"),
             "joints.damping_nm_s_rad: found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
-  EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3 ", "  tilt: 0.3 "),
+  EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3", "  tilt: 0.3"),
             "camera.tilt_rad: found nothing, accepted -1.5 to 1.5");
   EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\ncolour: green").substr(0, 42),
             "colour: found an unknown key, accepted the");
 }
 
-TEST(JointLimits, RefuseWhatNoServoShouldSee) {
+TEST(JointLimits, RejectUnacceptableSetpoints) {
   const JointModel joint;
   EXPECT_TRUE(is_acceptable(joint, {0.5, 100.0, 100.0}));
   EXPECT_FALSE(is_acceptable(joint, {2.0, 0.0, 1.0}));

@@ -1,6 +1,8 @@
-// Whom the safety gate obeys, and where the joints begin when somebody else takes over.
+// Which source the safety gate obeys, the posture at which the joints start after a take-over, and its saved state.
+#include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <span>
+#include <sstream>
 #include <string>
 
 #include "safety_gate_fixture.hpp"
@@ -8,7 +10,7 @@
 namespace constrictor {
 namespace {
 
-TEST_F(SafetyGateTest, WithoutAuthorityThePostureIsHeldAlthoughCommandsCome) {
+TEST_F(SafetyGateTest, HoldsThePostureWithoutAuthorityAlthoughCommandsArrive) {
   drive_to(0.5, 0.5);
   for (int i = 0; i < 50; ++i) {
     offer({1.0, 1.0});
@@ -17,7 +19,7 @@ TEST_F(SafetyGateTest, WithoutAuthorityThePostureIsHeldAlthoughCommandsCome) {
   EXPECT_EQ(state_.mode, GateMode::kHolding);
 }
 
-TEST_F(SafetyGateTest, AuthorityOfNobodyCountsAfterSomebodyHadIt) {
+TEST_F(SafetyGateTest, MissingAuthorityMattersOnlyAfterASourceHasHadIt) {
   EXPECT_EQ(authority(0), GateOrder::kObey);
   EXPECT_EQ(authority(1), GateOrder::kObey);
   EXPECT_EQ(authority(0), GateOrder::kHold);
@@ -25,28 +27,30 @@ TEST_F(SafetyGateTest, AuthorityOfNobodyCountsAfterSomebodyHadIt) {
   EXPECT_EQ(authority(3), GateOrder::kObey);
 }
 
-TEST_F(SafetyGateTest, AStopBeforeAnybodyCommandedHoldsAndItsEndDoesNot) {
+TEST_F(SafetyGateTest, StopBeforeTheFirstCommandHoldsUntilItIsCleared) {
   EXPECT_EQ(authority(4, "pilot", true), GateOrder::kStop);
   EXPECT_EQ(authority(0), GateOrder::kObey) << "control holds the posture by itself";
 }
 
-// A joint under load is not where its setpoint is. Whoever takes over, from whomever and by whatever way, begins where the joint is.
-TEST_F(SafetyGateTest, TakingOverBeginsAtTheMeasuredPosture) {
+// A joint under load is not at its setpoint. Every take-over starts at the measured angle, whatever happened before.
+TEST_F(SafetyGateTest, TakeOverStartsAtTheMeasuredPosture) {
   struct Holder {
     std::uint8_t level;
     std::string source;
     bool stop = false;
   };
-  const Holder planner{1, "planner"}, external{2, "fast"}, pilot{3, "pilot"}, script{3, "script"}, nobody{0, ""}, stopped{4, "pilot", true};
-  const std::vector<std::vector<Holder>> changes = {{planner, pilot}, {pilot, planner}, {external, pilot}, {pilot, external}, {script, pilot},
-                                                    {planner, nobody, planner}, {pilot, nobody, planner}, {pilot, stopped, nobody, pilot}};
+  const Holder planner{1, "planner"}, external{2, "fast"}, pilot{3, "pilot"}, script{3, "script"}, nobody{0, ""},
+      stopped{4, "pilot", true};
+  const std::vector<std::vector<Holder>> changes = {
+      {planner, pilot}, {pilot, planner},           {external, pilot},        {pilot, external},
+      {script, pilot},  {planner, nobody, planner}, {pilot, nobody, planner}, {pilot, stopped, nobody, pilot}};
   for (std::size_t i = 0; i < changes.size(); ++i) {
     SCOPED_TRACE(i);
     state_ = {};
     sequence_ = 0;
     authority(changes[i][0].level, changes[i][0].source);
     drive_to(0.5, -0.5);
-    measured_ = {0.2, -0.5};  // the first joint sags, the second is where it shall be
+    measured_ = {0.2, -0.5};  // the first joint sags, the second is at its setpoint
     for (const Holder& holder : std::span(changes[i]).subspan(1)) {
       const GateOrder order = authority(holder.level, holder.source, holder.stop);
       measured_[0] -= 0.01;
@@ -63,16 +67,16 @@ TEST_F(SafetyGateTest, TakingOverBeginsAtTheMeasuredPosture) {
   }
 }
 
-TEST_F(SafetyGateTest, TheFirstWhoCommandsInARunTakesNothingOver) {
+TEST_F(SafetyGateTest, FirstSourceOfARunTakesNothingOver) {
   authority(0);
-  drive_to(0.5, 0.5);  // control holds by itself, or an earlier authority message is not there yet
+  drive_to(0.5, 0.5);  // control holds by itself, or the first authority message has not arrived yet
   measured_ = {0.2, 0.2};
   authority(1, "planner");
   offer({0.5, 0.5});
   EXPECT_EQ(tick()[0].position_rad, 0.5);
 }
 
-TEST_F(SafetyGateTest, ATakeOverWaitsForTheFirstCommandThatIsObeyedAndKeepsWhatIsNotMeasured) {
+TEST_F(SafetyGateTest, TakeOverWaitsForAnObeyedCommandAndKeepsUnmeasuredJoints) {
   authority(1, "planner");
   drive_to(0.5, 0.5);
   authority(3, "pilot");
@@ -88,14 +92,15 @@ TEST_F(SafetyGateTest, ATakeOverWaitsForTheFirstCommandThatIsObeyedAndKeepsWhatI
   EXPECT_NEAR(tick()[0].position_rad, 1.5, 1e-12);
 }
 
-// Control's gate before the plant's, which hears of a command and of a measured angle a tick later: a squeeze on an object that
-// does not yield is interrupted for a few ticks at most, never without torque, and neither gate lets a setpoint jump.
-TEST_F(SafetyGateTest, ATakeOverThroughBothGatesKeepsASqueeze) {
+// The gate of control in front of the gate of the plant, which gets commands and measured angles one tick later. A
+// take-over interrupts a squeeze on a stiff object for a few ticks at most and never without torque. Neither gate lets
+// a setpoint jump.
+TEST_F(SafetyGateTest, TakeOverThroughBothGatesKeepsASqueeze) {
   const SafetyGate at_control(two_joints(), {0, 250});
   const SafetyGate at_plant(two_joints(), {5, 250});
   GateState control;
   GateState plant;
-  const std::vector<double> measured{0.6, 0.6};  // stopped by what it grasps
+  const std::vector<double> measured{0.6, 0.6};  // the grasped object stops the joints
   const std::vector<double> wanted{0.9, 0.9};
   const std::vector<double> zeros(2, 0.0);
   const std::vector<double> torques(2, 1.5);
@@ -105,20 +110,53 @@ TEST_F(SafetyGateTest, ATakeOverThroughBothGatesKeepsASqueeze) {
     const std::uint8_t level = now < 30 ? 1 : 3;
     const auto number = static_cast<std::uint64_t>(now) + 1;
     const double before = now == 0 ? 0.6 : plant.setpoints[0].position_rad;
-    if (now > 0) { EXPECT_EQ(at_plant.offer({7, 2, now - 1, number, 0, sent, zeros, torques}, {7, 2, now}, plant), GateRefusal::kNone); }
-    const double there = at_plant.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), plant), kDt_s, plant)[0].position_rad;
+    if (now > 0) {
+      EXPECT_EQ(at_plant.offer({7, 2, now - 1, number, 0, sent, zeros, torques}, {7, 2, now}, plant),
+                GateRefusal::kNone);
+    }
+    const double there =
+        at_plant.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), plant), kDt_s, plant)[0]
+            .position_rad;
     at_control.offer({7, 2, now, number, 0, wanted, zeros, torques}, {7, 2, now}, control);
     sent[0] = sent[1] =
-        at_control.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), control), kDt_s, control)[0].position_rad;
-    EXPECT_TRUE(std::abs(there - before) <= kFastest_rad + 1e-8 || (now == 30 && there <= 0.6 + kFastest_rad + 1e-8)) << now;
+        at_control.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), control), kDt_s, control)[0]
+            .position_rad;
+    EXPECT_TRUE(std::abs(there - before) <= kFastest_rad + 1e-8 || (now == 30 && there <= 0.6 + kFastest_rad + 1e-8))
+        << now;
     if (now < 10) continue;
-    if (now == 30) { EXPECT_LE(there, 0.6 + kFastest_rad + 1e-8); }
+    if (now == 30) {
+      EXPECT_LE(there, 0.6 + kFastest_rad + 1e-8);
+    }
     EXPECT_GT(there, 0.6) << "it never stops to squeeze";
     EXPECT_EQ(plant.setpoints[0].torque_limit_nm, 1.5);
     interrupted += there < 0.9 - 1e-6;
   }
   EXPECT_GE(interrupted, 1);
   EXPECT_LE(interrupted, 6);
+}
+
+TEST_F(SafetyGateTest, ContinuesIdenticallyFromItsSavedState) {
+  drive_to(0.5, 0.2);
+  offer({0.9, kNan});
+  tick();
+  std::stringstream stream;
+  {
+    cereal::PortableBinaryOutputArchive archive(stream);
+    archive(state_);
+  }
+  GateState restored;
+  cereal::PortableBinaryInputArchive restore(stream);
+  restore(restored);
+  offer({0.9, 0.9});
+  SafetyGate other(two_joints(), {3, 10});
+  const std::vector<double> position{0.9, 0.9};
+  const std::vector<double> zeros(2, 0.0);
+  const std::vector<double> torque(2, 5.0);
+  other.offer({7, 2, now_.tick - 1, sequence_, 0, position, zeros, torque}, now_, restored);
+  tick();
+  const auto& again = other.setpoints(measured_, GateOrder::kObey, kDt_s, restored);
+  EXPECT_EQ(again[0].position_rad, state_.setpoints[0].position_rad);
+  EXPECT_EQ(restored.refused, state_.refused);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A gate of two joints, a tick at a time.
+// A gate of two joints that advances tick by tick.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace constrictor {
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kDt_s = 0.02;
-inline constexpr double kFastest_rad = 4.0 * kDt_s;  // of the default joint, in a tick
+inline constexpr double kFastest_rad = 4.0 * kDt_s;  // greatest step of the default joint in a tick
 
 class SafetyGateTest : public ::testing::Test {
  protected:
@@ -25,7 +25,8 @@ class SafetyGateTest : public ::testing::Test {
     return robot;
   }
   /// A command that came `age` ticks after it was written.
-  GateRefusal offer(std::vector<double> position, std::vector<double> torque = {5.0, 5.0}, std::int64_t age = 1, std::uint8_t mode = 0) {
+  GateRefusal offer(std::vector<double> position, std::vector<double> torque = {5.0, 5.0}, std::int64_t age = 1,
+                    std::uint8_t mode = 0) {
     const std::vector<double> velocity(position.size(), velocity_);
     return gate_.offer({7, run_epoch_, now_.tick - age, ++sequence_, mode, position, velocity, torque}, now_, state_);
   }

@@ -1,4 +1,4 @@
-// What the safety gate lets pass: messages, limits, silence, stops. Who is obeyed: safety_gate_authority_test.cpp.
+// Messages, limits, silence and stops at the safety gate. Authority is tested in safety_gate_authority_test.cpp.
 #include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <functional>
@@ -17,7 +17,7 @@ TEST_F(SafetyGateTest, HoldsTheMeasuredPostureBeforeTheFirstCommand) {
   EXPECT_EQ(setpoints[0].torque_limit_nm, 6.0);
 }
 
-TEST_F(SafetyGateTest, TheFirstCommandBeginsAtTheMeasuredPosture) {
+TEST_F(SafetyGateTest, FirstCommandStartsAtTheMeasuredPosture) {
   EXPECT_EQ(offer({1.0, -0.25}), GateRefusal::kNone);
   const auto& setpoints = tick();
   EXPECT_EQ(state_.mode, GateMode::kObeying);
@@ -25,7 +25,7 @@ TEST_F(SafetyGateTest, TheFirstCommandBeginsAtTheMeasuredPosture) {
   EXPECT_EQ(setpoints[1].position_rad, -0.25);
 }
 
-TEST_F(SafetyGateTest, ObeysExactlyWhatIsWithinTheLimits) {
+TEST_F(SafetyGateTest, ObeysCommandsWithinTheLimitsExactly) {
   drive_to(0.5, -0.5);
   EXPECT_EQ(offer({0.51, -0.52}, {1.5, 6.0}), GateRefusal::kNone);
   const auto& setpoints = tick();
@@ -34,7 +34,7 @@ TEST_F(SafetyGateTest, ObeysExactlyWhatIsWithinTheLimits) {
   EXPECT_EQ(setpoints[0].torque_limit_nm, 1.5);
 }
 
-TEST_F(SafetyGateTest, BoundsRateAndTorque) {
+TEST_F(SafetyGateTest, LimitsRateAndTorque) {
   drive_to(0.0, 0.0);
   velocity_ = -99.0;
   offer({1.0, -1.0}, {50.0, 1.0});
@@ -45,26 +45,68 @@ TEST_F(SafetyGateTest, BoundsRateAndTorque) {
   EXPECT_EQ(setpoints[0].torque_limit_nm, 6.0);
 }
 
-// Each rule by itself: the whole message is refused, counted under its reason only, and the joints hold.
+// Each rule by itself: the whole message is refused and counted under its own reason, and the joints hold.
 TEST_F(SafetyGateTest, RefusesTheWholeMessageAndCountsByReason) {
   struct Case {
     GateRefusal reason;
     std::function<GateRefusal()> offer;
   };
   const std::vector<Case> cases = {
-      {GateRefusal::kWrongEpoch, [&] { run_epoch_ = 1; const auto r = offer({0.0, 0.0}); run_epoch_ = 2; return r; }},
-      {GateRefusal::kFromFuture, [&] { return offer({0.0, 0.0}, {5, 5}, -1); }},
-      {GateRefusal::kStale, [&] { return offer({0.0, 0.0}, {5, 5}, 4); }},
-      {GateRefusal::kUnknownMode, [&] { return offer({0.0, 0.0}, {5, 5}, 1, 2); }},
-      {GateRefusal::kWrongCount, [&] { return offer({0.0, 0.0, 0.0}, {1, 1, 1}); }},
-      {GateRefusal::kWrongCount, [&] { return offer({0.0, 0.0}, {1}); }},
+      {GateRefusal::kWrongEpoch,
+       [&] {
+         run_epoch_ = 1;
+         const auto r = offer({0.0, 0.0});
+         run_epoch_ = 2;
+         return r;
+       }},
+      {GateRefusal::kFromFuture,
+       [&] {
+         return offer({0.0, 0.0}, {5, 5}, -1);
+       }},
+      {GateRefusal::kStale,
+       [&] {
+         return offer({0.0, 0.0}, {5, 5}, 4);
+       }},
+      {GateRefusal::kUnknownMode,
+       [&] {
+         return offer({0.0, 0.0}, {5, 5}, 1, 2);
+       }},
+      {GateRefusal::kWrongCount,
+       [&] {
+         return offer({0.0, 0.0, 0.0}, {1, 1, 1});
+       }},
+      {GateRefusal::kWrongCount,
+       [&] {
+         return offer({0.0, 0.0}, {1});
+       }},
       {GateRefusal::kWrongCount, [&] { return offer({}, {}); }},
-      {GateRefusal::kNotFinite, [&] { return offer({0.0, kNan}); }},
-      {GateRefusal::kNotFinite, [&] { return offer({0.0, 0.0}, {kInfinity, 1}); }},
-      {GateRefusal::kNotFinite, [&] { velocity_ = kInfinity; const auto r = offer({0.0, 0.0}); velocity_ = 0; return r; }},
-      {GateRefusal::kBeyondLimits, [&] { return offer({3.0, 0.0}); }},
-      {GateRefusal::kBeyondLimits, [&] { return offer({0.0, -3.0}); }},
-      {GateRefusal::kBeyondLimits, [&] { return offer({0.0, 0.0}, {-0.1, 1}); }},
+      {GateRefusal::kNotFinite,
+       [&] {
+         return offer({0.0, kNan});
+       }},
+      {GateRefusal::kNotFinite,
+       [&] {
+         return offer({0.0, 0.0}, {kInfinity, 1});
+       }},
+      {GateRefusal::kNotFinite,
+       [&] {
+         velocity_ = kInfinity;
+         const auto r = offer({0.0, 0.0});
+         velocity_ = 0;
+         return r;
+       }},
+      {GateRefusal::kBeyondLimits,
+       [&] {
+         return offer({3.0, 0.0});
+       }},
+      {GateRefusal::kBeyondLimits,
+       [&] {
+         return offer({0.0, -3.0});
+       }},
+      {GateRefusal::kBeyondLimits,
+       [&] {
+         return offer({0.0, 0.0}, {-0.1, 1});
+       }},
   };
   for (std::size_t i = 0; i < cases.size(); ++i) {
     SCOPED_TRACE(i);
@@ -80,12 +122,12 @@ TEST_F(SafetyGateTest, RefusesTheWholeMessageAndCountsByReason) {
   }
 }
 
-TEST_F(SafetyGateTest, AnotherRunIsAnotherEpoch) {
+TEST_F(SafetyGateTest, RefusesCommandsOfAnotherRun) {
   const std::vector<double> zeros(2, 0.0);
   EXPECT_EQ(gate_.offer({8, 2, now_.tick, 1, 0, zeros, zeros, zeros}, now_, state_), GateRefusal::kWrongEpoch);
 }
 
-TEST_F(SafetyGateTest, ANumberOfRatesThatIsNotTheNumberOfJointsIsRefusedAndAllRefusalsAreCounted) {
+TEST_F(SafetyGateTest, RefusesAWrongNumberOfRatesAndCountsAllRefusals) {
   const std::vector<double> two(2, 0.0);
   const std::vector<double> three(3, 0.0);
   EXPECT_EQ(gate_.offer({7, 2, now_.tick, 77, 0, two, three, two}, now_, state_), GateRefusal::kWrongCount);
@@ -94,14 +136,15 @@ TEST_F(SafetyGateTest, ANumberOfRatesThatIsNotTheNumberOfJointsIsRefusedAndAllRe
   EXPECT_EQ(refused_count(state_), 3u);
 }
 
-TEST_F(SafetyGateTest, AMessageThatStaysIsJudgedEachTickButCountedOnce) {
+TEST_F(SafetyGateTest, CountsAnOldMessageOnceAlthoughItIsOfferedAgain) {
   const std::vector<double> bad{kNan, 0.0};
   const std::vector<double> zeros(2, 0.0);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(gate_.offer({7, 2, 99, 5, 0, bad, zeros, zeros}, now_, state_), GateRefusal::kNotFinite);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(gate_.offer({7, 2, 99, 5, 0, bad, zeros, zeros}, now_, state_), GateRefusal::kNotFinite);
   EXPECT_EQ(refused(GateRefusal::kNotFinite), 1u);
 }
 
-TEST_F(SafetyGateTest, ACommandThatAgesIsObeyedUntilItsLimitAndThenSilence) {
+TEST_F(SafetyGateTest, ObeysAnAgingCommandUntilItIsStale) {
   const std::vector<double> zeros(2, 0.0);
   const std::vector<double> torques(2, 5.0);
   measured_ = {0.0, 0.0};
@@ -117,21 +160,21 @@ TEST_F(SafetyGateTest, ACommandThatAgesIsObeyedUntilItsLimitAndThenSilence) {
   EXPECT_EQ(refused(GateRefusal::kStale), 0u);
 }
 
-TEST_F(SafetyGateTest, HoldsTheLastSetpointWhereTheJointIsThereAndTheMeasuredAngleWhereNot) {
+TEST_F(SafetyGateTest, HoldsTheLastSetpointWhereTheJointAgreesElseTheMeasuredAngle) {
   drive_to(0.5, 0.5);
   offer({0.5, 0.5}, {1.5, 5.0});
   tick();
-  measured_ = {0.46, 0.2};  // one joint yields a little, the other was pushed away
+  measured_ = {0.46, 0.2};  // one joint yields a little, the other one was pushed away
   tick();
   EXPECT_EQ(state_.setpoints[0].position_rad, 0.5);
   EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 1.5) << "what was held with a capped torque is not squeezed harder";
   EXPECT_EQ(state_.setpoints[1].position_rad, 0.2);
-  measured_ = {0.0, 0.0};  // sagging under load must not move the setpoint
+  measured_ = {0.0, 0.0};  // a joint that sags under load must not move the setpoint
   tick();
   EXPECT_EQ(state_.setpoints[1].position_rad, 0.2);
 }
 
-TEST_F(SafetyGateTest, RelaxesAfterALongSilenceAndObeysAgainFromWhereItIs) {
+TEST_F(SafetyGateTest, RelaxesAfterALongSilenceAndLaterObeysFromTheMeasuredPosture) {
   for (int i = 0; i < 10; ++i) tick();
   EXPECT_EQ(state_.mode, GateMode::kHolding);
   EXPECT_EQ(tick()[0].torque_limit_nm, 0.0);
@@ -143,7 +186,7 @@ TEST_F(SafetyGateTest, RelaxesAfterALongSilenceAndObeysAgainFromWhereItIs) {
   EXPECT_EQ(state_.mode, GateMode::kObeying);
 }
 
-TEST_F(SafetyGateTest, RelaxesWhenAskedTo) {
+TEST_F(SafetyGateTest, RelaxesOnCommand) {
   drive_to(0.5, 0.5);
   offer({0.5, 0.5}, {5, 5}, 1, 1);
   EXPECT_EQ(tick()[1].torque_limit_nm, 0.0);
@@ -153,7 +196,7 @@ TEST_F(SafetyGateTest, RelaxesWhenAskedTo) {
   EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 6.0);
 }
 
-TEST_F(SafetyGateTest, AnEmergencyStopHoldsWhateverIsCommandedHoweverLong) {
+TEST_F(SafetyGateTest, EmergencyStopHoldsWhateverIsCommanded) {
   drive_to(0.5, 0.5);
   for (int i = 0; i < 400; ++i) {
     if (i < 200) offer({1.0, -1.0});
@@ -167,14 +210,14 @@ TEST_F(SafetyGateTest, AnEmergencyStopHoldsWhateverIsCommandedHoweverLong) {
   EXPECT_EQ(state_.setpoints[0].position_rad, 0.5) << "the end of a stop starts no motion";
 }
 
-TEST_F(SafetyGateTest, AReasonIsToldWithItsOwnCount) {
+TEST_F(SafetyGateTest, TextOfARefusalHasTheCountOfItsReason) {
   for (int i = 0; i < 3; ++i) offer({0.0, 0.0}, {5, 5}, 4);
   offer({0.0, kNan});
-  EXPECT_EQ(text_of(GateRefusal::kStale, state_), "stale when it came (3 so far)");
+  EXPECT_EQ(text_of(GateRefusal::kStale, state_), "stale on arrival (3 so far)");
   EXPECT_EQ(text_of(GateRefusal::kNotFinite, state_), "not finite (1 so far)");
 }
 
-TEST_F(SafetyGateTest, MeasurementsThatAreNoNumbersChangeNothing) {
+TEST_F(SafetyGateTest, IgnoresMeasurementsThatAreNotFinite) {
   measured_ = {kNan, 0.4};
   EXPECT_EQ(tick()[0].position_rad, 0.0);
   drive_to(0.5, 0.5);
@@ -185,7 +228,7 @@ TEST_F(SafetyGateTest, MeasurementsThatAreNoNumbersChangeNothing) {
   EXPECT_EQ(state_.setpoints[0].position_rad, 0.5);
 }
 
-TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
+TEST_F(SafetyGateTest, RandomInputsNeverExceedLimitsNorMakeSetpointsJump) {
   constexpr unsigned kSeed = 20261121;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   std::mt19937_64 random(kSeed);
@@ -200,7 +243,9 @@ TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
     std::vector<double> torque{std::abs(wild(random)), wild(random) + 3.8};
     if (random() % 9 == 0) position[random() % 2] = random() % 2 == 0 ? kNan : kInfinity;
     velocity_ = 10.0 * wild(random);
-    if (random() % 3 != 0) offer(position, torque, static_cast<std::int64_t>(random() % 6) - 1, static_cast<std::uint8_t>(random() % 12 == 0));
+    if (random() % 3 != 0)
+      offer(position, torque, static_cast<std::int64_t>(random() % 6) - 1,
+            static_cast<std::uint8_t>(random() % 12 == 0));
     for (std::size_t j = 0; j < 2; ++j) {
       const double there = state_.started ? state_.setpoints[j].position_rad : measured_[j];
       measured_[j] += std::clamp(there - measured_[j], -0.05, 0.05);  // a servo that follows
@@ -218,40 +263,17 @@ TEST_F(SafetyGateTest, WhateverComesTheSetpointsStayWithinLimitsAndNeverJump) {
       ASSERT_LE(std::abs(s.velocity_rad_s), 4.0);
       ASSERT_GE(s.torque_limit_nm, 0.0);
       ASSERT_LE(s.torque_limit_nm, 6.0);
-      // A setpoint may only jump to where the joint is, at a take-over with a step from there.
+      // A setpoint may jump only to the measured angle, or at a take-over one step from there.
       const double jump = std::abs(s.position_rad - before[j]);
       const double from_joint = std::abs(s.position_rad - measured_[j]);
-      ASSERT_TRUE((jump <= kFastest_rad + 1e-8 && !from_measured) || from_joint <= (from_measured ? kFastest_rad + 1e-8 : 0.0))
+      ASSERT_TRUE((jump <= kFastest_rad + 1e-8 && !from_measured) ||
+                  from_joint <= (from_measured ? kFastest_rad + 1e-8 : 0.0))
           << i << " from mode " << static_cast<int>(mode_before);
       before[j] = s.position_rad;
     }
     mode_before = state_.mode;
   }
   EXPECT_GT(obeyed, 2000);
-}
-
-TEST_F(SafetyGateTest, ContinuesIdenticallyFromItsSavedState) {
-  drive_to(0.5, 0.2);
-  offer({0.9, kNan});
-  tick();
-  std::stringstream stream;
-  {
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(state_);
-  }
-  GateState restored;
-  cereal::PortableBinaryInputArchive restore(stream);
-  restore(restored);
-  offer({0.9, 0.9});
-  SafetyGate other(two_joints(), {3, 10});
-  const std::vector<double> position{0.9, 0.9};
-  const std::vector<double> zeros(2, 0.0);
-  const std::vector<double> torque(2, 5.0);
-  other.offer({7, 2, now_.tick - 1, sequence_, 0, position, zeros, torque}, now_, restored);
-  tick();
-  const auto& again = other.setpoints(measured_, GateOrder::kObey, kDt_s, restored);
-  EXPECT_EQ(again[0].position_rad, state_.setpoints[0].position_rad);
-  EXPECT_EQ(restored.refused, state_.refused);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What ROS 2 is told, against the conventions of REP 103, REP 105 and the message definitions; and what becomes of its velocities.
+// ROS 2 messages of the bridge against the conventions of REP 103, REP 105 and the message definitions; motions that
+// follow from ROS 2 velocities.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -7,14 +8,14 @@
 #include <map>
 #include <numbers>
 
+#include "component/data_path.hpp"
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_translator.hpp"
-#include "runtime/share.hpp"
 
 namespace constrictor::ros {
 namespace {
 
-RobotModel mamba() { return load_robot(share_path("components/robot/mamba.yaml")); }
+RobotModel mamba() { return load_robot(data_path("components/lib/robot/mamba.yaml")); }
 
 Eigen::Isometry3d isometry(const geometry_msgs_msg_dds__Transform_& t) {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
@@ -54,7 +55,7 @@ TEST(RosTranslator, JointStatesCarryNamesAnglesRatesAndTorques) {
   }
 }
 
-TEST(RosTranslator, TheTreeOfFramesLeadsFromOdomToEveryModuleWhereKinematicsPutsIt) {
+TEST(RosTranslator, FramesOfModulesAreWhereKinematicsPutsThem) {
   const RobotModel robot = mamba();
   Translator translator(robot);
   msg::RobotPose pose{};
@@ -80,7 +81,7 @@ TEST(RosTranslator, TheTreeOfFramesLeadsFromOdomToEveryModuleWhereKinematicsPuts
   }
 }
 
-TEST(RosTranslator, OdometryPutsTheCovarianceOfXYAndYawWhereRosHasThem) {
+TEST(RosTranslator, OdometryHasTheCovarianceOfXYAndYawInRosOrder) {
   Translator translator(mamba());
   msg::RobotPose pose{};
   pose.yaw_rad = std::numbers::pi / 2;
@@ -156,7 +157,7 @@ TEST(RosVelocity, BecomesAnUndulationOfThatSpeedAndTurningRate) {
   EXPECT_GT(spot.frequency_hz, 0);
 }
 
-TEST(RosVelocity, NothingAbsurdComesThrough) {
+TEST(RosVelocity, AHostileVelocityGivesABoundedMotion) {
   const DriveConfig config;
   constexpr double kInf = std::numeric_limits<double>::infinity();
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// When the bridge asks for a motion, for how long it insists, and when it lets go.
+// When the bridge requests a motion, how long it repeats the request, and when it releases authority.
 #include <gtest/gtest.h>
 
 #include "ros_bridge/velocity_pilot.hpp"
@@ -12,11 +12,11 @@ constexpr double kTurn_s = 0.02;
 class VelocityPilotTest : public ::testing::Test {
  protected:
   /// Lets time pass with a constant velocity from ROS (none: nobody says anything); how many requests were made.
-  int asks(double duration_s, std::optional<Drive> stream, bool heard = true, bool steered = true) {
+  int asks(double duration_s, std::optional<Drive> stream, bool connected = true, bool steered = true) {
     int count = 0;
     for (const double end_s = now_s_ + duration_s; now_s_ < end_s; now_s_ += kTurn_s) {
       if (stream) pilot_.command(*stream, now_s_);
-      const auto ask = pilot_.next(heard, steered, now_s_);
+      const auto ask = pilot_.next(connected, steered, now_s_);
       if (!ask) continue;
       ++count;
       last_ = *ask;
@@ -31,12 +31,12 @@ class VelocityPilotTest : public ::testing::Test {
   double now_s_ = 1000.0;
 };
 
-TEST_F(VelocityPilotTest, AConstantVelocityIsAskedForOnce) {
+TEST_F(VelocityPilotTest, RequestsAConstantVelocityOnce) {
   EXPECT_EQ(asks(5.0, kAhead), 1);
   EXPECT_EQ(last_.drive, kAhead);
 }
 
-TEST_F(VelocityPilotTest, AConstantVelocityThatWasRefusedIsAskedForUntilItIsObeyed) {
+TEST_F(VelocityPilotTest, RepeatsARefusedVelocityUntilItIsGranted) {
   answer_ = false;
   const int refused = asks(5.0, kAhead);
   EXPECT_GE(refused, 4);
@@ -45,26 +45,26 @@ TEST_F(VelocityPilotTest, AConstantVelocityThatWasRefusedIsAskedForUntilItIsObey
   EXPECT_EQ(asks(5.0, kAhead), 1);
 }
 
-TEST_F(VelocityPilotTest, WhatIsNotAnsweredIsAskedAgain) {
+TEST_F(VelocityPilotTest, RepeatsAnUnansweredRequest) {
   answer_.reset();
-  const int unheard = asks(2.0, kAhead);
-  EXPECT_GE(unheard, 4);
-  EXPECT_LE(unheard, 5);
+  const int unanswered = asks(2.0, kAhead);
+  EXPECT_GE(unanswered, 4);
+  EXPECT_LE(unanswered, 5);
 }
 
-TEST_F(VelocityPilotTest, NothingIsAskedBeforeInputIsMet) {
-  EXPECT_EQ(asks(2.0, kAhead, /*heard=*/false), 0);
+TEST_F(VelocityPilotTest, RequestsNothingBeforeInputIsDiscovered) {
+  EXPECT_EQ(asks(2.0, kAhead, /*connected=*/false), 0);
   EXPECT_EQ(asks(0.1, kAhead), 1);
 }
 
-TEST_F(VelocityPilotTest, TakenAwayItIsAskedForAgainAfterAWhile) {
+TEST_F(VelocityPilotTest, RequestsAuthorityAgainAWhileAfterItWasLost) {
   asks(1.0, kAhead);
   pilot_.authority(false, false, now_s_);
   EXPECT_EQ(asks(0.9, kAhead), 0);
   EXPECT_EQ(asks(0.3, kAhead), 1);
 }
 
-TEST_F(VelocityPilotTest, ClearingAnEmergencyStopStartsNothingBeforeTheStreamHasPaused) {
+TEST_F(VelocityPilotTest, StartsNoMotionAfterAStopUntilTheVelocityWasZeroOrAbsent) {
   asks(1.0, kAhead);
   pilot_.authority(false, true, now_s_);
   EXPECT_EQ(asks(2.0, kAhead), 0);
@@ -74,17 +74,17 @@ TEST_F(VelocityPilotTest, ClearingAnEmergencyStopStartsNothingBeforeTheStreamHas
   EXPECT_EQ(asks(0.2, kAhead), 1);
 }
 
-TEST_F(VelocityPilotTest, SilenceStandsAndTheEndOfItsWriterReleases) {
+TEST_F(VelocityPilotTest, StandsWithoutVelocitiesAndReleasesWhenTheirWriterIsGone) {
   asks(1.0, kAhead);
   EXPECT_EQ(asks(2.0, std::nullopt), 1);
   EXPECT_EQ(last_.kind, msg::kRequestMotion);
   EXPECT_EQ(last_.drive, Drive{});
   EXPECT_EQ(asks(2.0, std::nullopt, true, /*steered=*/false), 1);
   EXPECT_EQ(last_.kind, msg::kRequestRelease);
-  EXPECT_EQ(asks(0.1, kAhead), 1) << "whoever steers next need not wait";
+  EXPECT_EQ(asks(0.1, kAhead), 1) << "the next writer of velocities need not wait";
 }
 
-TEST_F(VelocityPilotTest, AChangedVelocityIsAskedForAtOnce) {
+TEST_F(VelocityPilotTest, RequestsAChangedVelocityAtOnce) {
   asks(1.0, kAhead);
   EXPECT_EQ(asks(0.1, Drive{0.5, 0.3}), 1);
   EXPECT_EQ(asks(0.1, Drive{0.4, 0.3}), 1);

@@ -1,13 +1,14 @@
-// Explores every interleaving of deliveries, steps and ticks of a small run, with a crash of a member at every point and any
-// number of its last messages lost, and with a reset: all must end with what the in-process run computes.
+// Explores every interleaving of deliveries, steps and ticks of a small run, with a crash of a member at every point
+// and any number of its last messages lost, and with a reset: all must end with what the in-process run computes.
 #include <gtest/gtest.h>
 
 #include <span>
 #include <unordered_set>
 
+#include "barrier/local_run.hpp"
 #include "constrictor/reflect.hpp"
+#include "constrictor/sha256.hpp"
 #include "queue_world.hpp"
-#include "runtime/local_run.hpp"
 
 namespace constrictor::toys {
 namespace {
@@ -81,7 +82,8 @@ class Explorer {
       ASSERT_EQ(world.refused(), 0u);
     }
     if (world.finished()) return check(world, resets);
-    const auto actions = world.actions(crashes < case_.crashes ? case_.mortal : std::set<std::string>{}, resets < case_.resets);
+    const auto actions =
+        world.actions(crashes < case_.crashes ? case_.mortal : std::set<std::string>{}, resets < case_.resets);
     ASSERT_FALSE(actions.empty()) << "deadlock after " << path_.size() << " actions: " << world.fingerprint();
     for (const auto& action : actions) {
       path_.push_back(action);
@@ -158,7 +160,9 @@ TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
 
 TEST(BarrierExploration, AResetAnywhereGivesAFreshRun) { explore({{plant(), control()}, 2, {}, 0, 1}); }
 
-TEST(BarrierExploration, AResetWhileAMemberComesBackGivesAFreshRun) { explore({{plant(), control()}, 1, {"control"}, 1, 1, false}); }
+TEST(BarrierExploration, AResetWhileAMemberComesBackGivesAFreshRun) {
+  explore({{plant(), control()}, 1, {"control"}, 1, 1, false});
+}
 
 }  // namespace
 }  // namespace constrictor::toys

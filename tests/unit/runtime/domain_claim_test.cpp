@@ -1,9 +1,9 @@
 // Two runs never share a domain, wherever they keep their notes.
-#include "runtime/domain_claim.hpp"
+#include "cyclone/domain_claim.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <optional>
 

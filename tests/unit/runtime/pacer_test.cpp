@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "constrictor/messages.hpp"
-#include "runtime/control_sources.hpp"
 
 namespace constrictor {
 namespace {
@@ -15,10 +14,12 @@ constexpr std::int64_t kLongestRun_ns = 1'000'000'000'000'000;  // --max-sim-tim
 
 TEST(Pacer, AcceptsLockstepAndWhatStaysInTheClocksRange) {
   for (const double pace : {0.0, 0.001, 0.5, 1.0, 1000.0}) EXPECT_TRUE(Pacer::accepts(pace)) << pace;
-  for (const double pace : {1e-12, 0.000999, -1.0, 1000.1, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double pace : {1e-12, 0.000999, -1.0, 1000.1, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_FALSE(Pacer::accepts(pace)) << pace;
   }
-  EXPECT_LT(static_cast<double>(kLongestRun_ns) / Pacer::kSlowest, 0x1p62) << "[ns] leaves room for the time since the machine started";
+  EXPECT_LT(static_cast<double>(kLongestRun_ns) / Pacer::kSlowest, 0x1p62)
+      << "[ns] leaves room for the time since the machine started";
 }
 
 TEST(Pacer, ATickIsDueWhenItsTimeHasComeAtEveryPaceThatIsAccepted) {
@@ -43,27 +44,6 @@ TEST(Pacer, DoesTheStepsThatWereAskedForAndPauses) {
   }
   EXPECT_TRUE(pacer.holding());
   EXPECT_FALSE(pacer.may_tick(40'000'000));
-}
-
-TEST(ControlSources, ANumberIsTakenOnceAndOnlyRising) {
-  ControlSources sources;
-  EXPECT_TRUE(sources.take("a", 5));
-  EXPECT_FALSE(sources.take("a", 5));
-  EXPECT_FALSE(sources.take("a", 4));
-  EXPECT_TRUE(sources.take("b", 1)) << "each counts for itself";
-  EXPECT_TRUE(sources.take("a", 6));
-}
-
-TEST(ControlSources, NewcomersAreHeardHoweverManyThereWere) {
-  ControlSources sources;
-  const auto name = [](std::size_t i) { return "source" + std::to_string(i); };
-  for (std::size_t i = 0; i < ControlSources::kMost; ++i) ASSERT_TRUE(sources.take(name(i), 9));
-  ASSERT_TRUE(sources.take(name(0), 10)) << "now 1 has been silent for the longest";
-  EXPECT_TRUE(sources.take("newcomer", 1));
-  EXPECT_FALSE(sources.take(name(0), 9));
-  EXPECT_FALSE(sources.take(name(2), 9));
-  EXPECT_FALSE(sources.take("newcomer", 1));
-  EXPECT_TRUE(sources.take(name(1), 9)) << "forgotten";
 }
 
 }  // namespace

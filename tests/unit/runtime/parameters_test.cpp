@@ -1,5 +1,6 @@
-// Run-time parameters in the barrier: in force from their tick on, in an order that arrival does not change, and through a crash.
-#include "runtime/parameters.hpp"
+// Run-time parameters in a run: each change comes into force at its tick, independently of the order of arrival and of
+// a restart.
+#include "component/parameters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "runtime/local_run.hpp"
+#include "barrier/local_run.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
@@ -23,34 +25,22 @@ struct Asked {
   std::int64_t effective_tick;
 };
 
-class Plant20ms : public Plant {
- public:
-  void sample(const Tick&) override {}
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
-};
+/// Stands for the component `input`: writes changes as told.
+ComponentFactory scripted_input(const std::vector<Asked>& script) {
+  return testing::scripted_writer<msg::ParameterChange>(
+      "input", topics::kParameterChange, [&script](const Tick& tick, const auto& out) {
+        for (const auto& asked : script) {
+          if (asked.at != tick.index) continue;
+          msg::ParameterChange change{};
+          std::snprintf(change.name, sizeof change.name, "%s", asked.name.c_str());
+          change.value = asked.value;
+          change.effective_tick = asked.effective_tick;
+          out.write(change);
+        }
+      });
+}
 
-/// Writes changes as told.
-class ScriptedInput : public StatefulComponent<int> {
- public:
-  ScriptedInput(Wiring& wiring, const std::vector<Asked>& script) : script_(script), out_(wiring.output(topics::kParameterChange)) {}
-  void step(const Tick& tick) override {
-    for (const auto& asked : script_) {
-      if (asked.at != tick.index) continue;
-      msg::ParameterChange change{};
-      std::snprintf(change.name, sizeof change.name, "%s", asked.name.c_str());
-      change.value = asked.value;
-      change.effective_tick = asked.effective_tick;
-      out_.write(change);
-    }
-  }
-
- private:
-  const std::vector<Asked>& script_;
-  Output<msg::ParameterChange> out_;
-};
-
-/// What a step saw.
+/// The values in one step.
 struct Seen {
   double gain = 0.0;
   int images = 0;
@@ -60,33 +50,38 @@ struct Seen {
 
 struct OwnerState {
   ParameterState parameters;
-  double sum = 0.0;  ///< depends on every step's values
+  double sum = 0.0;  ///< depends on the values in every step
   template <class Archive>
   void serialize(Archive& archive) {
     archive(parameters, sum);
   }
 };
 
+struct OwnerConfig : ParameterSet {
+  double gain = add(gain, "wave.gain", 0.5, "1/m", {0.0, 2.0}, Changes::kWhileRunning, "a gain");
+  int images = add(images, "watch.images", 3, "", {1, 10}, Changes::kWhileRunning, "a number of images");
+  double fixed = add(fixed, "watch.fixed", 1.0, "", {0.0, 2.0}, Changes::kAtStart, "a number for the start only");
+};
+
 class Owner : public StatefulComponent<OwnerState> {
  public:
   Owner(Wiring& wiring, std::uint16_t period, std::map<std::int64_t, Seen>& seen)
-      : parameters_(wiring, topics::kControlParameters), period_(period), seen_(seen), out_(wiring.output(topics::kMotionStatus)) {
-    parameters_.add(gain_, "wave.gain", "1/m", {0.0, 2.0}, "a gain");
-    parameters_.add(images_, "watch.images", "", {1.0, 10.0}, "a number of images");
-  }
+      : parameters_(wiring, topics::kControlParameters, config_),
+        period_(period),
+        seen_(seen),
+        out_(wiring.output(topics::kMotionStatus)) {}
   [[nodiscard]] Timing timing() const override { return {period_, 1}; }
   void step(const Tick& tick) override {
     const bool changed = parameters_.step(tick, state_.parameters);
-    seen_[tick.index] = {gain_, images_, changed};
-    state_.sum = std::fmod(1.7 * state_.sum + gain_ * images_, 1000.0);
+    seen_[tick.index] = {config_.gain, config_.images, changed};
+    state_.sum = std::fmod(1.7 * state_.sum + config_.gain * config_.images, 1000.0);
     msg::MotionStatus status{};
     status.phase_rad = state_.sum;
     out_.write(status);
   }
 
  private:
-  double gain_ = 0.5;
-  int images_ = 3;
+  OwnerConfig config_;
   Parameters parameters_;
   std::uint16_t period_;
   std::map<std::int64_t, Seen>& seen_;
@@ -97,10 +92,12 @@ class ParametersTest : public ::testing::Test {
  protected:
   std::unique_ptr<LocalRun> make(std::uint16_t period = 1) {
     return std::make_unique<LocalRun>(
-        std::vector<ComponentFactory>{
-            {"physics", [](Wiring&, const constrictor::Setup&) { return std::make_unique<Plant20ms>(); }},
-            {"input", [this](Wiring& w, const constrictor::Setup&) { return std::make_unique<ScriptedInput>(w, script_); }},
-            {"control", [this, period](Wiring& w, const constrictor::Setup&) { return std::make_unique<Owner>(w, period, seen_); }}},
+        std::vector<ComponentFactory>{testing::idle_plant(),
+                                      scripted_input(script_),
+                                      {"control",
+                                       [this, period](Wiring& w, const constrictor::Setup&) {
+                                         return std::make_unique<Owner>(w, period, seen_);
+                                       }}},
         constrictor::Setup{});
   }
   static msg::Parameter find(const LocalRun& run, const std::string& name) {
@@ -116,7 +113,7 @@ class ParametersTest : public ::testing::Test {
   std::map<std::int64_t, Seen> seen_;
 };
 
-TEST_F(ParametersTest, AChangeIsInForceFromItsTickOnAndNotBefore) {
+TEST_F(ParametersTest, ChangeIsInForceFromItsTickOnAndNotBefore) {
   script_ = {{5, kGain, 1.5, 12}, {5, kImages, 7, 20}};
   make()->advance(30);
   for (const auto& [tick, seen] : seen_) {
@@ -127,14 +124,14 @@ TEST_F(ParametersTest, AChangeIsInForceFromItsTickOnAndNotBefore) {
   EXPECT_EQ(seen_.size(), 30u);
 }
 
-TEST_F(ParametersTest, OneForTheNextTickIsInForceThen) {
+TEST_F(ParametersTest, ChangeForTheNextTickIsInForceThen) {
   script_ = {{5, kGain, 1.5, 6}};
   make()->advance(10);
   EXPECT_EQ(seen_[5].gain, 0.5);
   EXPECT_EQ(seen_[6].gain, 1.5);
 }
 
-TEST_F(ParametersTest, OfSeveralForOneTickTheLastCountsAndTicksNeedNotComeInOrder) {
+TEST_F(ParametersTest, LastChangeForATickCountsAndTicksMayArriveInAnyOrder) {
   script_ = {{3, kGain, 1.8, 15}, {3, kGain, 1.0, 10}, {4, kGain, 1.1, 10}, {4, kGain, 1.2, 10}, {6, kImages, 9, 8}};
   make()->advance(20);
   EXPECT_EQ(seen_[9], (Seen{0.5, 9, false}));
@@ -143,7 +140,7 @@ TEST_F(ParametersTest, OfSeveralForOneTickTheLastCountsAndTicksNeedNotComeInOrde
   EXPECT_EQ(seen_[15].gain, 1.8);
 }
 
-TEST_F(ParametersTest, ASlowComponentTakesItAtItsFirstStepAtOrAfterTheTick) {
+TEST_F(ParametersTest, SlowComponentAppliesItInItsFirstStepAtOrAfterTheTick) {
   script_ = {{3, kGain, 1.5, 11}, {3, kImages, 7, 15}};
   const auto run = make(5);
   run->advance(22);
@@ -152,34 +149,40 @@ TEST_F(ParametersTest, ASlowComponentTakesItAtItsFirstStepAtOrAfterTheTick) {
   EXPECT_EQ(find(*run, kGain).changed_tick, 15);
 }
 
-TEST_F(ParametersTest, WhatItDoesNotAcceptIsRefusedCountedAndChangesNothing) {
+TEST_F(ParametersTest, RejectedChangesAreCountedAndChangeNothing) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  script_ = {{1, "control.wave.nothing", 1.0, 4}, {2, kGain, 2.1, 4}, {2, kGain, -0.1, 4}, {3, kImages, 2.5, 4}, {3, kImages, 11, 4}};
+  script_ = {{1, "control.wave.nothing", 1.0, 4},
+             {2, kGain, 2.1, 4},
+             {2, kGain, -0.1, 4},
+             {3, kImages, 2.5, 4},
+             {3, kImages, 11, 4}};
   const auto run = make();
   run->advance(10);
   for (const auto& [tick, seen] : seen_) EXPECT_EQ(seen, (Seen{0.5, 3, false})) << "tick " << tick;
   EXPECT_EQ(run->member("control").counters().refused, script_.size());
   msg::Parameter gain = find(*run, kGain);
   EXPECT_EQ(parameter_refusal(gain, 2.1), "control.wave.gain: found 2.1, accepted 0 to 2 1/m");
-  EXPECT_EQ(parameter_refusal(find(*run, kImages), 2.5), "control.watch.images: found 2.5, accepted whole numbers from 1 to 10");
+  EXPECT_EQ(parameter_refusal(find(*run, kImages), 2.5),
+            "control.watch.images: found 2.5, accepted whole numbers from 1 to 10");
   EXPECT_NE(parameter_refusal(gain, kInfinity), "");
   EXPECT_NE(parameter_refusal(gain, std::nan("")), "");
   EXPECT_EQ(parameter_refusal(gain, 0.0), "");
   EXPECT_EQ(parameter_refusal(gain, 2.0), "");
 }
 
-TEST_F(ParametersTest, ThoseOfOthersAreNoneOfItsBusiness) {
+TEST_F(ParametersTest, ChangesOfOtherComponentsAreIgnored) {
   script_ = {{1, "navigation.wave.gain", 1.0, 4}, {1, "controller.wave.gain", 1.0, 4}};
   const auto run = make();
   run->advance(10);
   EXPECT_EQ(run->member("control").counters().refused, 0u);
 }
 
-TEST_F(ParametersTest, TheListTellsDefaultsWhatIsInForceAndWhatWaits) {
+TEST_F(ParametersTest, ListHasDefaultsValuesInForceAndWaitingChanges) {
   script_ = {{5, kGain, 1.5, 8}, {5, kGain, 1.7, 30}};
   const auto run = make();
   int lists = 0;
-  run->subscribe(topics::kControlParameters, std::function<void(const msg::ParameterList&)>([&](const auto&) { ++lists; }));
+  run->subscribe(topics::kControlParameters,
+                 std::function<void(const msg::ParameterList&)>([&](const auto&) { ++lists; }));
   run->advance(5);
   EXPECT_EQ(lists, 1);  // once, at the start
   const msg::Parameter before = find(*run, kGain);
@@ -201,7 +204,20 @@ TEST_F(ParametersTest, TheListTellsDefaultsWhatIsInForceAndWhatWaits) {
   EXPECT_EQ(lists, 3);  // one more when the two came, one more when the first was due
 }
 
-TEST_F(ParametersTest, AResetBringsTheDefaultsBack) {
+TEST_F(ParametersTest, ListHasOnlyWhatMayChangeWhileRunning) {
+  const auto run = make();
+  run->advance(1);
+  const auto* list = run->latest(topics::kControlParameters);
+  ASSERT_NE(list, nullptr);
+  ASSERT_EQ(list->count, 2);
+  EXPECT_STREQ(list->parameters[0].name, kImages);
+  EXPECT_STREQ(list->parameters[1].name, kGain);
+  EXPECT_STREQ(list->parameters[1].doc, "a gain");
+  EXPECT_TRUE(list->parameters[0].is_integer);
+  EXPECT_EQ(list->parameters[0].maximum, 10.0);
+}
+
+TEST_F(ParametersTest, ResetRestoresTheDefaults) {
   script_ = {{1, kGain, 1.5, 4}, {1, kGain, 1.9, 100}};
   const auto run = make();
   run->advance(10);
@@ -213,7 +229,7 @@ TEST_F(ParametersTest, AResetBringsTheDefaultsBack) {
   EXPECT_EQ(find(*run, kGain).changed_tick, -1);
 }
 
-TEST_F(ParametersTest, ACrashAtAnyTickLeavesNoTrace) {
+TEST_F(ParametersTest, RestartAtAnyTickChangesNothing) {
   script_ = {{3, kGain, 1.5, 8}, {4, kImages, 7, 12}, {4, kGain, 0.1, 16}, {9, kGain, 0.2, 10}};
   const auto reference = make();
   reference->advance(25);
@@ -233,7 +249,7 @@ TEST_F(ParametersTest, ACrashAtAnyTickLeavesNoTrace) {
   }
 }
 
-TEST_F(ParametersTest, ATableThatCannotBeIsABug) {
+TEST_F(ParametersTest, RowThatContradictsItselfIsABug) {
   class NoWiring : public Wiring {
    public:
     const InputSlot* input(const TopicInfo&, bool) override { return nullptr; }
@@ -243,9 +259,10 @@ TEST_F(ParametersTest, ATableThatCannotBeIsABug) {
   Parameters parameters(wiring, topics::kControlParameters);
   double field = 0.5;
   parameters.add(field, "a", "", {0.0, 1.0}, "");
-  EXPECT_THROW(parameters.add(field, "a", "", {0.0, 1.0}, ""), std::logic_error);                     // twice
-  EXPECT_THROW(parameters.add(field, "b", "", {0.6, 1.0}, ""), std::logic_error);                     // default out of bounds
-  EXPECT_THROW(parameters.add(field, std::string(60, 'x'), "", {0.0, 1.0}, ""), std::logic_error);    // longer than the message's field
+  EXPECT_THROW(parameters.add(field, "a", "", {0.0, 1.0}, ""), std::logic_error);  // twice
+  EXPECT_THROW(parameters.add(field, "b", "", {0.6, 1.0}, ""), std::logic_error);  // default out of bounds
+  EXPECT_THROW(parameters.add(field, std::string(60, 'x'), "", {0.0, 1.0}, ""),
+               std::logic_error);  // longer than the message's field
   EXPECT_THROW(parameters.add(field, "c", "", {0.0, 1.0}, std::string(96, 'x')), std::logic_error);
 }
 

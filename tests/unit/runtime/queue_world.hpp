@@ -1,6 +1,8 @@
-// A run on queues in which every delivery, step, tick, crash and restart is an explicit action, so that a test can try all
-// orders. One channel for each (writer incarnation, topic, reader): in order within, any order between, as DDS promises.
+// A run on queues in which each delivery, step, tick, crash and restart is an explicit action, so that a test can try
+// all orders. Each (writer incarnation, topic, reader) has a channel: in order within, any order between, as in DDS.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <deque>
@@ -11,27 +13,21 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "runtime/barrier/conductor.hpp"
-#include "runtime/barrier/member.hpp"
+#include "barrier/conductor.hpp"
+#include "barrier/member.hpp"
+#include "queue_action.hpp"
 #include "toy_components.hpp"
 
 namespace constrictor::toys {
 
 class QueueWorld : private ConductorSink {
  public:
-  struct Action {
-    enum Kind { kDeliver, kStep, kTick, kCrash, kReset } kind;
-    std::string what;   ///< channel (kDeliver) or member (kStep, kCrash)
-    int lost = 0;       ///< kCrash: so many of the newest messages of each of its channels never left
-    bool operator<(const Action& other) const {
-      return std::tie(kind, what, lost) < std::tie(other.kind, other.what, other.lost);
-    }
-  };
+  using Action = QueueAction;
 
-  QueueWorld(std::vector<ComponentFactory> factories, std::int64_t final_tick) : factories_(std::move(factories)), final_tick_(final_tick) {
+  QueueWorld(std::vector<ComponentFactory> factories, std::int64_t final_tick)
+      : factories_(std::move(factories)), final_tick_(final_tick) {
     ConductorOptions options;
     for (const auto& factory : factories_) options.roster.push_back(factory.name);
     options.plant = options.roster.front();
@@ -75,7 +71,9 @@ class QueueWorld : private ConductorSink {
         deliver();
         break;
       }
-      case Action::kStep: find(action.what).member->try_step(); break;
+      case Action::kStep:
+        find(action.what).member->try_step();
+        break;
       case Action::kTick: {
         Member& plant = *nodes_.front()->member;
         if (conductor_->next_index() == final_tick_) conductor_->end_run();
@@ -83,8 +81,12 @@ class QueueWorld : private ConductorSink {
         conductor_->tick(plant.published());
         break;
       }
-      case Action::kCrash: crash(action.what, action.lost); break;
-      case Action::kReset: conductor_->reset(5); break;
+      case Action::kCrash:
+        crash(action.what, action.lost);
+        break;
+      case Action::kReset:
+        conductor_->reset(5);
+        break;
     }
   }
 
@@ -109,9 +111,10 @@ class QueueWorld : private ConductorSink {
     for (const auto& node : nodes_) {
       const Member& member = *node->member;
       const MissingInput missing = member.missing();
-      text += "|" + member.name() + std::to_string(member.incarnation()) + "," + std::to_string(member.last_done()) + "," +
-              std::to_string(member.newest_tick()) + (member.ended() ? "e" : "") + (member.in_epoch() ? std::to_string(member.epoch().epoch) : "?") +
-              "," + std::to_string(missing.tick) + (missing.topic ? std::string(missing.topic->name) : "-") + std::to_string(missing.have) +
+      text += "|" + member.name() + std::to_string(member.incarnation()) + "," + std::to_string(member.last_done()) +
+              "," + std::to_string(member.newest_tick()) + (member.ended() ? "e" : "") +
+              (member.in_epoch() ? std::to_string(member.epoch().epoch) : "?") + "," + std::to_string(missing.tick) +
+              (missing.topic ? std::string(missing.topic->name) : "-") + std::to_string(missing.have) +
               node->member->component().save();
     }
     for (const auto& [name, queue] : channels_) {
@@ -122,8 +125,12 @@ class QueueWorld : private ConductorSink {
     return text;
   }
 
-  [[nodiscard]] double plant_value() const { return static_cast<const ToyPlant&>(nodes_.front()->member->component()).value(); }
-  [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const { return conductor_->output_hashes(); }
+  [[nodiscard]] double plant_value() const {
+    return static_cast<const ToyPlant&>(nodes_.front()->member->component()).value();
+  }
+  [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const {
+    return conductor_->output_hashes();
+  }
   [[nodiscard]] std::uint64_t refused() const {
     std::uint64_t sum = 0;
     for (const auto& node : nodes_) sum += node->member->counters().refused;
@@ -135,20 +142,20 @@ class QueueWorld : private ConductorSink {
     QueueWorld* world = nullptr;
     std::size_t index = 0;
     std::unique_ptr<Member> member;
-    std::optional<EpochId> ready_in;                      ///< what it said ready for
-    std::map<std::uint8_t, std::deque<Sample>> history;   ///< transient-local, dies with the process
+    std::optional<EpochId> ready_in;                     ///< what it said ready for
+    std::map<std::uint8_t, std::deque<Sample>> history;  ///< transient-local, dies with the process
     void publish(const TopicInfo& topic, const Sample& sample) override {
       auto& kept = history[topic.id];
       kept.push_back(sample);
       if (kept.size() > topic.depth) kept.pop_front();
       for (const auto& reader : world->nodes_) {
-        if (reader && reader->member && (reader->member->reads() >> topic.id & 1)) world->send(*this, topic.id, *reader, sample);
+        if (reader && reader->member && reader->member->reads().contains(topic.id))
+          world->send(*this, topic.id, *reader, sample);
       }
     }
-    void done(const StepDone& step) override {
-      QueueWorld* w = world;
-      w->push(key(*this, "done", "conductor"), "d" + std::to_string(step.epoch.epoch) + "," + std::to_string(step.index),
-              [w, step] { w->conductor_->on_done(step); });
+    void done(const TickDone& step) override {
+      world->push(key(*this, "done", "conductor"), fmt::format("d{},{}", step.epoch.epoch, step.index),
+                  [w = world, step] { w->conductor_->on_done(step); });
     }
   };
 
@@ -165,7 +172,8 @@ class QueueWorld : private ConductorSink {
   }
   static bool can_step(const Member& member) {
     const MissingInput missing = member.missing();
-    return missing.topic == nullptr && missing.tick >= 0 && member.in_epoch() && !member.ended() && missing.tick <= member.newest_tick();
+    return missing.topic == nullptr && missing.tick >= 0 && member.in_epoch() && !member.ended() &&
+           missing.tick <= member.newest_tick();
   }
   Node& find(const std::string& name) {
     for (auto& node : nodes_) {
@@ -179,7 +187,7 @@ class QueueWorld : private ConductorSink {
     const std::string name = key(from, std::string(topics::kInfos[topic].name), to.member->name());
     Node* reader = &to;
     const msg::Header& header = *sample.header;
-    push(name, "s" + std::to_string(header.epoch) + "," + std::to_string(header.incarnation) + "," + std::to_string(header.sequence_number),
+    push(name, fmt::format("s{},{},{}", header.epoch, header.incarnation, header.sequence_number),
          [this, name, reader, topic, sample] {
            ++delivered_[name];
            reader->member->on_sample(topic, sample);
@@ -191,17 +199,18 @@ class QueueWorld : private ConductorSink {
     node->world = this;
     node->index = index;
     Setup setup;
-    node->member = std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, static_cast<MemberSink&>(*node));
-    if (nodes_.size() <= index) nodes_.resize(index + 1);
+    node->member =
+        std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, static_cast<MemberSink&>(*node));
+    nodes_.resize(std::max(nodes_.size(), index + 1));
     nodes_[index] = std::move(node);
-    Greeting greeting;
-    greeting.component = nodes_[index]->member->name();
-    greeting.incarnation = incarnation;
-    greeting.pid = static_cast<int>(incarnation);
-    greeting.timing = nodes_[index]->member->timing();
-    greeting.reads = nodes_[index]->member->reads();
-    greeting.writes = nodes_[index]->member->writes();
-    conductor_->on_greeting(greeting);
+    Hello hello;
+    hello.component = nodes_[index]->member->name();
+    hello.incarnation = incarnation;
+    hello.pid = static_cast<int>(incarnation);
+    hello.timing = nodes_[index]->member->timing();
+    hello.reads = nodes_[index]->member->reads();
+    hello.writes = nodes_[index]->member->writes();
+    conductor_->on_hello(hello);
   }
 
   void crash(const std::string& name, int lost) {
@@ -214,14 +223,15 @@ class QueueWorld : private ConductorSink {
       }
       if (channel.ends_with(">" + name)) queue.clear();
     }
-    std::erase_if(delivered_, [&](const auto& entry) { return entry.first.ends_with(">" + name); });  // gone with its buffers
+    std::erase_if(delivered_,
+                  [&](const auto& entry) { return entry.first.ends_with(">" + name); });  // gone with its buffers
     nodes_[index]->member.reset();
     start(index, incarnation);
     Node& reborn = *nodes_[index];
     for (const auto& node : nodes_) {
       if (node->index == index) continue;
       for (const auto& [topic, kept] : node->history) {
-        if (!(reborn.member->reads() >> topic & 1)) continue;
+        if (!reborn.member->reads().contains(topic)) continue;
         for (const auto& sample : kept) send(*node, topic, reborn, sample);
       }
     }
@@ -233,7 +243,7 @@ class QueueWorld : private ConductorSink {
     if (to.index == 0) return to.member->on_tick(tick);
     Node* reader = &to;
     const std::string name = "conductor>tick>" + to.member->name();
-    push(name, "t" + std::to_string(tick.epoch) + "," + std::to_string(tick.index), [this, name, reader, tick] {
+    push(name, fmt::format("t{},{}", tick.epoch, tick.index), [this, name, reader, tick] {
       ++delivered_[name];
       reader->member->on_tick(tick);
     });
@@ -245,14 +255,13 @@ class QueueWorld : private ConductorSink {
   void start_epoch(const EpochId& epoch, std::uint64_t seed) override {
     ticks_.clear();
     for (auto& node : nodes_) {
-      Node* reader = node.get();
-      send_epoch(*reader, epoch, seed);
+      send_epoch(*node, epoch, seed);
     }
   }
   void send_epoch(Node& to, const EpochId& epoch, std::uint64_t seed) {
     Node* reader = &to;
     const std::string name = "conductor>epoch>" + to.member->name();
-    push(name, "e" + std::to_string(epoch.epoch), [this, name, reader, epoch, seed] {
+    push(name, fmt::format("e{}", epoch.epoch), [this, name, reader, epoch, seed] {
       ++delivered_[name];
       reader->member->on_epoch(epoch, seed);
       say_ready(*reader);
@@ -263,23 +272,22 @@ class QueueWorld : private ConductorSink {
     const Member& member = *from.member;
     if (!member.in_epoch() || from.ready_in == member.epoch()) return;
     from.ready_in = member.epoch();
-    push(key(from, "ready", "conductor"), "r" + std::to_string(member.epoch().epoch),
+    push(key(from, "ready", "conductor"), fmt::format("r{}", member.epoch().epoch),
          [this, name = member.name(), incarnation = member.incarnation(), epoch = member.epoch()] {
            conductor_->on_ready(name, epoch, incarnation);
          });
   }
-  void resume(const Resumption& resumption) override {
-    Node* reader = &find(resumption.component);
-    const std::string what = "R" + std::to_string(resumption.epoch.epoch) + "," + std::to_string(resumption.index);
-    push("conductor>resume>" + resumption.component, what, [this, reader, resumption] {
-      reader->member->on_resume(resumption);
+  void resume(const Resume& resume) override {
+    Node* reader = &find(resume.component);
+    const std::string what = fmt::format("R{},{}", resume.epoch.epoch, resume.index);
+    push("conductor>resume>" + resume.component, what, [this, reader, resume] {
+      reader->member->on_resume(resume);
       say_ready(*reader);
     });
   }
-  void refuse(const Greeting& greeting, const std::string& reason) override {
-    throw std::logic_error(greeting.component + " refused: " + reason);
+  void refuse(const Hello& hello, const std::string& reason) override {
+    throw std::logic_error(hello.component + " refused: " + reason);
   }
-
   std::vector<ComponentFactory> factories_;
   std::int64_t final_tick_;
   std::unique_ptr<Conductor> conductor_;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "runtime/component.hpp"
+#include "component/component.hpp"
 
 namespace constrictor::toys {
 
@@ -85,7 +85,8 @@ class ToyNavigation : public StatefulComponent<Mixer> {
 class ToyControl : public StatefulComponent<Mixer> {
  public:
   ToyControl(Wiring& wiring, const Setup& setup)
-      : joints_(wiring.latest(topics::kJointState)), events_(wiring.events(topics::kTaskEvent)),
+      : joints_(wiring.latest(topics::kJointState)),
+        events_(wiring.events(topics::kTaskEvent)),
         command_(wiring.output(topics::kJointCommand)) {
     state_.mix(setup.component_seed());
   }
@@ -108,7 +109,8 @@ class ToyControl : public StatefulComponent<Mixer> {
 class ToyPlanner : public StatefulComponent<Mixer> {
  public:
   ToyPlanner(Wiring& wiring, const Setup& setup)
-      : events_(wiring.events(topics::kTaskEvent)), command_(wiring.latest(topics::kJointCommand)),
+      : events_(wiring.events(topics::kTaskEvent)),
+        command_(wiring.latest(topics::kJointCommand)),
         mission_(wiring.output(topics::kMissionStatus)) {
     state_.mix(setup.component_seed());
   }
@@ -128,17 +130,21 @@ class ToyPlanner : public StatefulComponent<Mixer> {
 };
 
 inline ComponentFactory plant() {
-  return {"physics", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlant>(w, s); }};
+  return {"physics",
+          [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlant>(w, s); }};
 }
 inline ComponentFactory navigation(Timing timing = {1, 1}) {
-  return {"navigation",
-          [timing](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyNavigation>(w, s, timing); }};
+  return {"navigation", [timing](Wiring& w, const Setup& s) -> std::unique_ptr<Component> {
+            return std::make_unique<ToyNavigation>(w, s, timing);
+          }};
 }
 inline ComponentFactory control() {
-  return {"control", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyControl>(w, s); }};
+  return {"control",
+          [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyControl>(w, s); }};
 }
 inline ComponentFactory planner() {
-  return {"planner", [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlanner>(w, s); }};
+  return {"planner",
+          [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlanner>(w, s); }};
 }
 
 }  // namespace constrictor::toys

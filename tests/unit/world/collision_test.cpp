@@ -1,4 +1,4 @@
-// Collision against brute force and against ODE's own colliders.
+// Contact points compared with brute force and with ODE's own colliders.
 #include "sim/world/collision.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ ConvexSolid solid_of(BodyShape shape, const Eigen::Isometry3d& pose) {
   return {shape, shape == BodyShape::kBox ? Vector3d(0.1, 0.2, 0.15) : Vector3d(0.085, 0.085, 0.15), pose};
 }
 
-TEST(Collision, CapsuleAndSolidTouchWhereSamplingSaysSo) {
+TEST(Collision, CapsuleAndSolidTouchWhereSampledPointsDo) {
   RandomPoses random;
   int touched = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -60,23 +60,24 @@ TEST(Collision, CapsuleAndSolidTouchWhereSamplingSaysSo) {
       EXPECT_EQ(touches.size(), 0U);
       continue;
     }
-    if (least < 1e-3) continue;  // the axis itself is inside: no task comes near it
+    if (least < 1e-3) continue;  // the axis is inside the solid, which no task comes near
     ++touched;
     ASSERT_GE(touches.size(), 1U);
     double deepest = 0.0;
     for (const TouchPoint& touch : touches) {
       deepest = std::max(deepest, touch.depth_m);
       EXPECT_NEAR(touch.normal.norm(), 1.0, 1e-9);
-      // The point lies on the solid; moving back along the normal to the capsule's axis gives the depth.
+      // The point lies on the solid. Its distance from the capsule's axis gives the depth.
       EXPECT_NEAR(distance(solid, touch.position_m), 0.0, 1e-9);
-      EXPECT_NEAR(distance(solid, touch.position_m + touch.normal * (0.035 - touch.depth_m)), 0.035 - touch.depth_m, 1e-9);
+      EXPECT_NEAR(distance(solid, touch.position_m + touch.normal * (0.035 - touch.depth_m)), 0.035 - touch.depth_m,
+                  1e-9);
     }
     EXPECT_NEAR(deepest, 0.035 - least, 2e-5);
   }
   EXPECT_GT(touched, 300);
 }
 
-/// Deepest contact of two of ODE's geoms.
+/// Deepest contact of two geoms by ODE's colliders.
 double ode_depth(const OdeGeom& first, const OdeGeom& second, Vector3d* normal = nullptr) {
   dContactGeom contacts[8];
   const int count = dCollide(first.get(), second.get(), 8, contacts, sizeof(dContactGeom));

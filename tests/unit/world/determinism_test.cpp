@@ -1,18 +1,14 @@
-// Equal commands, equal bits.
+// Equal commands give equal states, bit for bit.
 #include <gtest/gtest.h>
 
 #include <openssl/evp.h>
 
 #include <cstring>
 
-#include "tests/unit/world/open_loop_gait.hpp"
+#include "unit/world/world_fixture.hpp"
 
 namespace constrictor {
 namespace {
-
-constexpr double kPeriod_s = 0.02;
-
-RobotModel mamba() { return load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"); }
 
 Scenario busy_scene() {
   Scenario scenario;
@@ -32,7 +28,7 @@ StateHash::Digest run_alone(const OpenLoopGait& gait, int ticks) {
   return world.state_hash();
 }
 
-TEST(Determinism, TwoWorldsInTurnsEqualEachAlone) {
+TEST(Determinism, WorldsThatTakeTurnsEqualWorldsThatRunAlone) {
   OpenLoopGait forward;
   OpenLoopGait turning;
   turning.curvature_1_m = 0.8;
@@ -48,7 +44,7 @@ TEST(Determinism, TwoWorldsInTurnsEqualEachAlone) {
 }
 
 TEST(Determinism, TheRobotPushesAnObjectIntoAnother) {
-  // The scene above is worth its name: both objects move.
+  // Both objects of busy_scene() move, so the test above covers contacts between objects.
   World world(mamba(), busy_scene());
   OpenLoopGait gait;
   for (int tick = 0; tick < 120; ++tick) gait.drive(world, tick * kPeriod_s, kPeriod_s);
@@ -62,7 +58,7 @@ TEST(StateHash, IsTheChainOfSha256) {
   StateHash hash;
   hash.extend(first);
   hash.extend(second);
-  // The same with OpenSSL's incremental interface.
+  // The same chain with the incremental interface of OpenSSL.
   std::array<std::uint8_t, 32> expected{};
   for (const auto* values : {&first, &second}) {
     EVP_MD_CTX* context = EVP_MD_CTX_new();

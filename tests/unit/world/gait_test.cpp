@@ -1,22 +1,20 @@
-// The open-loop gait reaches the study's figures.
+// The open-loop gait reaches the speeds and radii of the preceding study.
 #include <gtest/gtest.h>
 
-#include "tests/unit/world/open_loop_gait.hpp"
+#include "unit/world/world_fixture.hpp"
 
 namespace constrictor {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
-
 struct Course {
-  double speed_m_s;    ///< of the body's mean position, along the first heading
-  double turn_rad_s;   ///< of the head
-  double drift_m;      ///< sideways off the first heading
-  double radius_m;     ///< length of the way per turn
+  double speed_m_s;   ///< of the mean position of the body, along the initial heading
+  double turn_rad_s;  ///< of the head
+  double drift_m;     ///< sideways from the initial heading
+  double radius_m;    ///< distance travelled for each radian of turn
 };
 
 Course run(const OpenLoopGait& gait, const SolverSettings& settings = {}) {
-  World world(load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"), Scenario{}, settings);
+  World world(mamba(), Scenario{}, settings);
   const auto centre = [&] {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < world.module_count(); ++i) sum += world.module_pose(i).translation();

@@ -1,4 +1,4 @@
-// The undulation of the study, open loop: what a world must be able to carry. Source: FACTS of the project, "Gait".
+// The undulation of the preceding study, without feedback.
 #pragma once
 
 #include <cmath>
@@ -9,15 +9,15 @@
 
 namespace constrictor {
 
-/// Heading of yaw link k: H_k = kappa X_k + A w_k cos(2 pi X_k / lambda + Phi); joint q_k = H_k - H_{k+1}; X_k is the link's
-/// coordinate along the path, that of the undulating body before it is bent by kappa.
+/// The heading of yaw link k is H_k = kappa X_k + A w_k cos(2 pi X_k / lambda + Phi), and joint k has the angle
+/// q_k = H_k - H_{k+1}. X_k is the coordinate of the link along the path before kappa bends the body.
 struct OpenLoopGait {
   double amplitude_rad = 0.5;
-  double frequency_hz = 0.7;  ///< negative: backwards
+  double frequency_hz = 0.7;  ///< [Hz] negative: backwards
   double wavelength_m = 1.07;
   double curvature_1_m = 0.0;
 
-  /// Angles of all joints at a time since the wave began.
+  /// [rad] angles of all joints at a time since the wave began.
   [[nodiscard]] std::vector<double> angles(const RobotModel& robot, double time_s) const {
     const std::vector<std::size_t> yaw = robot.yaw_joints();
     const double link_m = 2.0 * robot.module_length_m;

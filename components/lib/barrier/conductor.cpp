@@ -1,0 +1,234 @@
+#include "barrier/conductor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace constrictor {
+
+Conductor::Conductor(ConductorOptions options, ConductorSink& sink)
+    : options_(std::move(options)), sink_(sink), seed_(options_.seed) {
+  for (const auto& name : options_.roster) members_[name];
+}
+
+void Conductor::on_hello(const Hello& hello) {
+  const auto found = members_.find(hello.component);
+  const auto refuse = [&](const std::string& reason) { sink_.refuse(hello, reason); };
+  if (found == members_.end()) return refuse("no component of this name is in the roster");
+  MemberState& member = found->second;
+  if (member.hello_received && hello.pid == member.hello.pid && hello.host == member.hello.host &&
+      hello.incarnation == member.hello.incarnation) {
+    return;  // a repeated Hello
+  }
+  if (member.hello_received && hello.incarnation <= member.hello.incarnation) {
+    return refuse(
+        fmt::format("two members of one name: incarnation {} runs as pid {} on {}; a replacement needs a "
+                    "higher --incarnation",
+                    member.hello.incarnation, member.hello.pid, member.hello.host));
+  }
+  if (hello.component == options_.plant && member.hello_received)
+    return refuse("the plant cannot be replaced in a run");
+  Hello ours;
+  ours.idl_hash = options_.idl_hash;
+  ours.config_hash = options_.config_hash;
+  ours.numeric_profile = options_.numeric_profile;
+  if (const auto what = difference(hello, ours)) return refuse(*what);
+  if (member.hello_received && hello.component_hash != member.hello.component_hash) {
+    return refuse(
+        fmt::format("its configuration or scenario file differs from the one that the run began with: found "
+                    "hash {}, the run has {}",
+                    hello.component_hash, member.hello.component_hash));
+  }
+  if (epoch_ && member.last_done >= 0 && member.state.empty()) {
+    return refuse("it cannot be resumed: its TickDone carried no checkpoint");
+  }
+  member.hello = hello;
+  member.hello_received = true;
+  member.ready = false;
+  if (epoch_) {
+    send_resume(member);
+  } else if (std::all_of(members_.begin(), members_.end(),
+                         [](const auto& entry) { return entry.second.hello_received; })) {
+    epoch_ = EpochId{options_.run_id, 1};
+    clear_epoch_state();
+    sink_.start_epoch(*epoch_, seed_);
+    // A member that was restarted before the epoch began waits for a Resume.
+    for (const auto& [name, other] : members_) {
+      if (other.hello.incarnation > 1) send_resume(other);
+    }
+  }
+}
+
+void Conductor::send_resume(const MemberState& member) {
+  Resume resume{member.hello.component, *epoch_, member.hello.incarnation, member.last_done, seed_, member.state, {}};
+  for (const auto& [topic, samples] : member.history) {
+    for (const auto& bytes : samples) resume.outputs.push_back({topic, bytes});
+  }
+  sink_.resume(resume);
+}
+
+void Conductor::on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation) {
+  const auto found = members_.find(component);
+  if (found == members_.end() || epoch_ != epoch || found->second.hello.incarnation != incarnation) return;
+  found->second.ready = true;
+}
+
+std::int64_t Conductor::newest_due(const MemberState& member, std::int64_t tick) const {
+  const std::int64_t latest_start = tick - member.hello.timing.latency;
+  if (latest_start < 0) return -1;
+  return latest_start - latest_start % member.hello.timing.period;
+}
+
+std::optional<std::string> Conductor::foreign(const std::string& component, const EpochId& epoch,
+                                              std::uint32_t incarnation) const {
+  const auto found = members_.find(component);
+  if (found == members_.end()) return fmt::format("component: found '{}', accepted one of the roster", component);
+  if (epoch_ != epoch) return "of another run or epoch";
+  if (incarnation > found->second.hello.incarnation)
+    return fmt::format("incarnation: found {}, which has sent no Hello", incarnation);
+  return {};
+}
+
+std::optional<std::string> Conductor::implausible(const TickDone& done) const {
+  const MemberState& member = members_.at(done.component);
+  if (done.incarnation < member.hello.incarnation || done.index <= member.last_done) return {};  // on_done() ignores it
+  const std::int64_t period = member.hello.timing.period;
+  if (done.index >= next_index_ || done.index % period != 0) {
+    return fmt::format("index: found {}, accepted a tick that was sent and at which the member steps", done.index);
+  }
+  const auto steps =
+      static_cast<std::uint64_t>((done.index - (member.last_done < 0 ? -period : member.last_done)) / period);
+  for (const auto& [topic, count] : done.published) {
+    if (topic >= topics::kCount || !member.hello.writes.contains(topic)) {
+      return fmt::format("published: found topic {}, which the member does not write", topic);
+    }
+    const std::uint64_t before = member.published[topic];
+    if (count < before || count - before > steps * topics::kInfos[topic].max_per_tick) {
+      return fmt::format("published: found {} of topic {} after {}, accepted at most {} more", count, topic, before,
+                         steps * topics::kInfos[topic].max_per_tick);
+    }
+  }
+  for (const auto& written : done.written) {
+    if (!member.hello.writes.contains(written.topic)) {
+      return fmt::format("checkpoint: found topic {}, which the member does not write", written.topic);
+    }
+  }
+  return {};
+}
+
+bool Conductor::on_done(const TickDone& done) {
+  const auto found = members_.find(done.component);
+  if (found == members_.end() || epoch_ != done.epoch) return false;
+  MemberState& member = found->second;
+  // A message of an older incarnation is late. A known step was repeated after a restart that had lost nothing.
+  if (done.incarnation != member.hello.incarnation || done.index <= member.last_done || done.index >= next_index_)
+    return false;
+  member.last_done = done.index;
+  member.state = done.state;
+  for (const auto& [topic, count] : done.published) member.published[topic] = count;
+  member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
+  for (const auto& written : done.written) {
+    auto& history = member.history[written.topic];
+    history.push_back(written.bytes);
+    if (history.size() > topics::kInfos[written.topic].depth) history.pop_front();
+  }
+  if (done.end_of_run) {
+    const std::int64_t at = done.index + member.hello.timing.latency;
+    end_requested_at_ = std::min(end_requested_at_.value_or(at), at);
+  }
+  return true;
+}
+
+bool Conductor::may_tick() const {
+  if (!epoch_ || ended_) return false;
+  return std::all_of(members_.begin(), members_.end(), [this](const auto& entry) {
+    if (options_.realtime && entry.first != options_.plant) return entry.second.ready || next_index_ > 0;
+    return entry.second.ready && entry.second.last_done >= newest_due(entry.second, next_index_);
+  });
+}
+
+std::vector<Conductor::Owed> Conductor::owed() const {
+  std::vector<Owed> owed;
+  for (const auto& [name, member] : members_) {
+    if (!member.hello_received) {
+      owed.push_back({name, "Hello", 0, 1});
+    } else if (epoch_ && !member.ready) {
+      owed.push_back({name, "Ready", 0, 1});
+    } else if (epoch_ && !options_.realtime && member.last_done < newest_due(member, next_index_)) {
+      owed.push_back({name, "TickDone", member.last_done, newest_due(member, next_index_)});
+    }
+  }
+  return owed;
+}
+
+void Conductor::tick(const std::vector<TickDone::Count>& plant) {
+  for (auto& [name, member] : members_) {
+    for (; !member.pending.empty(); member.pending.pop_front()) {
+      const Pending& step = member.pending.front();
+      if (step.index + member.hello.timing.latency > next_index_) break;
+      for (const auto& [topic, count] : step.published) {
+        if (count > visible_[topic]) incarnations_[topic] = step.incarnation;
+        visible_[topic] = count;
+      }
+      member.output_hash = step.output_hash;
+    }
+  }
+  const std::uint32_t plant_incarnation = incarnation(options_.plant);
+  for (const auto& [topic, count] : plant) {
+    visible_[topic] = count;
+    incarnations_[topic] = plant_incarnation;
+  }
+  msg::Tick tick{};
+  tick.run_id = epoch_->run_id;
+  tick.epoch = epoch_->epoch;
+  tick.index = next_index_;
+  tick.time_ns = next_time_ns();
+  tick.period_ns = options_.period_ns;
+  tick.final_tick = next_is_final();
+  tick.realtime = options_.realtime;
+  std::copy(visible_.begin(), visible_.end(), tick.visible);
+  std::copy(incarnations_.begin(), incarnations_.end(), tick.incarnations);
+  ended_ = tick.final_tick;
+  ++next_index_;
+  sink_.tick(tick);
+}
+
+void Conductor::clear_epoch_state() {
+  for (auto& [name, member] : members_) {
+    Hello hello = member.hello;
+    member = MemberState{};
+    member.hello = std::move(hello);
+    member.hello_received = true;
+  }
+  next_index_ = 0;
+  ended_ = false;
+  end_requested_at_.reset();
+  visible_ = {};
+  incarnations_ = {};
+}
+
+void Conductor::reset(std::uint64_t seed) {
+  if (!epoch_) return;
+  ++epoch_->epoch;
+  seed_ = seed;
+  clear_epoch_state();
+  sink_.start_epoch(*epoch_, seed_);
+}
+
+std::map<std::string, std::array<std::uint8_t, 32>> Conductor::output_hashes() const {
+  std::map<std::string, std::array<std::uint8_t, 32>> hashes;
+  for (const auto& [name, member] : members_) hashes[name] = member.output_hash;
+  return hashes;
+}
+
+std::uint32_t Conductor::incarnation(const std::string& component) const {
+  const auto found = members_.find(component);
+  return found == members_.end() ? 0 : found->second.hello.incarnation;
+}
+
+std::string Conductor::known_of(const std::string& component) const {
+  const MemberState& member = members_.at(component);
+  return std::to_string(member.hello.incarnation) + (member.ready ? "r" : "-") + std::to_string(member.last_done);
+}
+
+}  // namespace constrictor

@@ -1,0 +1,125 @@
+// The conductor: it knows which members take part, decides when the next tick may come and what the tick makes visible,
+// and lets restarted members resume. Without DDS and clock.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "barrier/protocol.hpp"
+
+namespace constrictor {
+
+/// Receives what the conductor sends.
+class ConductorSink {
+ public:
+  virtual ~ConductorSink() = default;
+  virtual void start_epoch(const EpochId& epoch, std::uint64_t seed) = 0;
+  virtual void tick(const msg::Tick& tick) = 0;
+  virtual void resume(const Resume& resume) = 0;
+  virtual void refuse(const Hello& hello, const std::string& reason) = 0;
+};
+
+struct ConductorOptions {
+  std::uint64_t run_id = 1;
+  std::vector<std::string> roster;  ///< every member, the plant included
+  std::string plant;                ///< its name
+  std::string idl_hash;
+  std::string config_hash;
+  std::string numeric_profile;
+  std::uint64_t seed = 1;
+  std::int64_t period_ns = 20'000'000;
+  bool realtime = false;         ///< once all members are ready, ticks wait for nobody
+  std::int64_t last_index = -1;  ///< the run ends with this tick at the latest; negative: no such limit
+};
+
+class Conductor {
+ public:
+  Conductor(ConductorOptions options, ConductorSink& sink);
+
+  /// A member announces itself: it joins, it comes back with a newer incarnation, or it is refused with a reason.
+  void on_hello(const Hello& hello);
+  void on_ready(const std::string& component, const EpochId& epoch, std::uint32_t incarnation);
+  /// Why a message of this component, epoch and incarnation does not belong to this run; empty if it does. A message of
+  /// an older incarnation does: it is only late.
+  [[nodiscard]] std::optional<std::string> foreign(const std::string& component, const EpochId& epoch,
+                                                   std::uint32_t incarnation) const;
+  /// What cannot be true in a TickDone of another process; empty if it is plausible. Such a message must not be passed
+  /// to on_done(). Its component must be in the roster.
+  [[nodiscard]] std::optional<std::string> implausible(const TickDone& done) const;
+  /// Returns whether the step counts: false for an older incarnation, another epoch, or a step that was done before.
+  bool on_done(const TickDone& done);
+  /// Ends this epoch and begins the next: every member builds its component anew and sends Ready again.
+  void reset(std::uint64_t seed);
+  /// Makes the next tick the final one.
+  void end_run() { end_requested_at_ = next_index_; }
+
+  /// True if all members are ready and have finished the steps that the next tick needs.
+  [[nodiscard]] bool may_tick() const;
+  /// Index and time of the tick that comes next.
+  [[nodiscard]] std::int64_t next_index() const { return next_index_; }
+  [[nodiscard]] std::int64_t next_time_ns() const { return next_index_ * options_.period_ns; }
+  /// Sends the next tick. `plant`: the plant's counts after it has sampled for this tick.
+  void tick(const std::vector<TickDone::Count>& plant);
+  [[nodiscard]] bool next_is_final() const {
+    return (end_requested_at_ && *end_requested_at_ <= next_index_) ||
+           (options_.last_index >= 0 && options_.last_index <= next_index_);
+  }
+  [[nodiscard]] bool ended() const { return ended_; }
+  [[nodiscard]] std::optional<EpochId> epoch() const { return epoch_; }
+  [[nodiscard]] std::uint64_t run_id() const { return options_.run_id; }
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+
+  /// A member that the next tick waits for, and the message that it has not sent yet.
+  struct Owed {
+    std::string component;
+    const char* what;   ///< "Hello", "Ready" or "TickDone"
+    std::int64_t have;  ///< tick of the last finished step
+    std::int64_t want;  ///< tick whose step must be finished
+  };
+  [[nodiscard]] std::vector<Owed> owed() const;
+  /// Output hash of each member over what is visible at the last tick.
+  [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const;
+  [[nodiscard]] std::uint32_t incarnation(const std::string& component) const;
+  /// What it knows about a member, as text that tests compare: incarnation, ready or not, last finished step.
+  [[nodiscard]] std::string known_of(const std::string& component) const;
+
+ private:
+  /// A finished step whose outputs are not visible yet.
+  struct Pending {
+    std::int64_t index;
+    std::uint32_t incarnation;
+    std::vector<TickDone::Count> published;
+    std::array<std::uint8_t, 32> output_hash;
+  };
+  struct MemberState {
+    Hello hello;
+    bool hello_received = false;
+    bool ready = false;
+    std::int64_t last_done = -1;
+    std::deque<Pending> pending;
+    std::array<std::uint64_t, msg::kMaxTopics> published{};   ///< counts by topic after last_done
+    std::array<std::uint8_t, 32> output_hash{};               ///< of what is visible
+    std::string state;                                        ///< checkpoint after last_done
+    std::map<std::uint8_t, std::deque<std::string>> history;  ///< newest outputs by topic
+  };
+  [[nodiscard]] std::int64_t newest_due(const MemberState& member, std::int64_t tick) const;
+  void clear_epoch_state();
+  void send_resume(const MemberState& member);
+
+  ConductorOptions options_;
+  ConductorSink& sink_;
+  std::map<std::string, MemberState> members_;
+  std::optional<EpochId> epoch_;
+  std::uint64_t seed_;
+  std::int64_t next_index_ = 0;
+  bool ended_ = false;
+  std::optional<std::int64_t> end_requested_at_;
+  std::array<std::uint64_t, msg::kMaxTopics> visible_{};
+  std::array<std::uint32_t, msg::kMaxTopics> incarnations_{};
+};
+
+}  // namespace constrictor

@@ -1,0 +1,66 @@
+// The samples of one topic that have arrived for a member, and what its steps may see of them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "component/ports.hpp"
+
+namespace constrictor {
+
+/// Samples may arrive early, late, twice, or in several incarnations of their writer. A step sees exactly the samples
+/// that the tick makes visible (`Tick.visible`), so that the order of arrival has no effect. Before the first epoch
+/// the buffer is empty.
+class InputBuffer {
+ public:
+  /// What becomes of an arriving sample.
+  enum class Arrival {
+    kNew,          ///< keep() it
+    kReplacement,  ///< keep() it: a newer incarnation of the writer repeated a step that nobody has seen yet
+    kDuplicate,    ///< drop it: it is known already, which is normal after a restart
+    kTooFarAhead,  ///< reject it: no writer can be so many samples ahead
+  };
+  static constexpr std::uint64_t kFarthestAhead = 4096;  ///< sequence numbers beyond the newest one that was consumed
+
+  /// `events`: the component wants every sample, not only the newest.
+  InputBuffer(const TopicInfo& topic, bool events);
+  InputBuffer(const InputBuffer&) = delete;  // ports point to slot()
+  InputBuffer& operator=(const InputBuffer&) = delete;
+
+  [[nodiscard]] const TopicInfo& topic() const { return *slot_.topic; }
+  [[nodiscard]] const InputSlot& slot() const { return slot_; }
+
+  [[nodiscard]] Arrival classify(const msg::Header& header) const;
+  /// A sample that is not valid keeps its place in the sequence, so that no step waits for it, but no step sees it.
+  void keep(const Sample& sample, bool valid);
+  /// Whether every sample that a step at `tick` must see has arrived. At real-time pace nothing is waited for.
+  [[nodiscard]] bool complete(const msg::Tick& tick) const;
+  /// Fills slot() for a step at `tick`; at real-time pace with everything that has arrived.
+  void present(const msg::Tick& tick);
+
+  /// Newest sequence number that a step has seen; 0 before the first.
+  [[nodiscard]] std::uint64_t consumed() const { return consumed_; }
+  /// Newest sequence number that has arrived; 0 before the first.
+  [[nodiscard]] std::uint64_t newest() const { return samples_.empty() ? consumed_ : samples_.rbegin()->first; }
+
+  /// The part of a checkpoint; the samples themselves come from the writers' histories.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(consumed_, last_valid_);
+  }
+
+ private:
+  struct Entry {
+    Sample sample;
+    bool valid = true;
+  };
+  /// Newest valid sequence number up to `target`; 0 if there is none.
+  [[nodiscard]] std::uint64_t newest_valid(std::uint64_t target) const;
+
+  InputSlot slot_;
+  std::map<std::uint64_t, Entry> samples_;  ///< by sequence number
+  std::uint64_t consumed_ = 0;
+  std::uint64_t last_valid_ = 0;  ///< newest valid sequence number up to consumed_
+};
+
+}  // namespace constrictor

@@ -1,0 +1,262 @@
+#include "barrier/member.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "barrier/topic_ops.hpp"
+#include "component/concluding.hpp"
+#include "component/data_path.hpp"
+#include "constrictor/reflect.hpp"
+#include "constrictor/sha256.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr std::size_t kMaxEarly = 4096;  // samples, and ticks, that are kept until the epoch is known
+
+[[noreturn]] void bug(const std::string& component, const std::string& what) {
+  std::fprintf(stderr, "constrictor: bug in component %s: %s\n", component.c_str(), what.c_str());
+  std::abort();
+}
+
+}  // namespace
+
+class Member::MemberWiring : public Wiring {
+ public:
+  explicit MemberWiring(Member& member) : member_(member) {}
+  void request_end_of_run() override { member_.end_requested_ = true; }
+  void count_refusal(const std::string& reason) override { member_.refuse(reason); }
+  std::shared_ptr<ClientRequests> client_requests() override {
+    if (!member_.client_requests_) member_.client_requests_ = std::make_shared<ClientRequests>();
+    return member_.client_requests_;
+  }
+
+  const InputSlot* input(const TopicInfo& topic, bool events) override {
+    if (member_.reads_.contains(topic.id)) bug(member_.name(), fmt::format("declares input {} twice", topic.name));
+    member_.reads_.insert(topic.id);
+    return &member_.inputs_.emplace_back(std::make_unique<InputBuffer>(topic, events))->slot();
+  }
+  const OutputSlot* output_slot(const TopicInfo& topic) override {
+    if (member_.writes_.contains(topic.id)) bug(member_.name(), fmt::format("declares output {} twice", topic.name));
+    if (topic.writer != member_.name()) {
+      bug(member_.name(), fmt::format("declares output {}, which only {} may write", topic.name, topic.writer));
+    }
+    member_.writes_.insert(topic.id);
+    auto& port = *member_.outputs_.emplace_back(std::make_unique<OutputPort>());
+    port.slot.topic = &topics::kInfos[topic.id];
+    port.slot.write = [&member = member_, &port](const void* message) { member.write(port, message); };
+    return &port.slot;
+  }
+
+ private:
+  Member& member_;
+};
+
+Member::Member(ComponentFactory factory, Setup setup, std::uint32_t incarnation, bool checkpoints, MemberSink& sink)
+    : factory_(std::move(factory)),
+      setup_(std::move(setup)),
+      incarnation_(incarnation),
+      checkpoints_(checkpoints),
+      sink_(sink) {
+  setup_.component = factory_.name;
+  if (setup_.config_file.empty() && !factory_.default_config.empty())
+    setup_.config_file = data_path(factory_.default_config);
+  build(setup_.seed);
+}
+
+Member::~Member() = default;
+
+void Member::build(std::uint64_t seed) {
+  if (component_ && fresh_component_ && seed == setup_.seed) return;
+  component_.reset();  // it points to its ports
+  inputs_.clear();
+  outputs_.clear();
+  reads_ = writes_ = {};
+  setup_.seed = seed;
+  wiring_ = std::make_unique<MemberWiring>(*this);
+  component_ = factory_.create(*wiring_, setup_);
+  timing_ = component_->timing();
+  fresh_component_ = true;
+  if (timing_.period < 1 || timing_.latency < 1) bug(name(), "period and latency must be at least 1 tick");
+}
+
+const EpochId& Member::epoch() const {
+  if (!epoch_) bug(name(), "asked for its epoch before it was in one");
+  return *epoch_;
+}
+
+void Member::refuse(const std::string& reason) {
+  ++counters_.refused;
+  counters_.last_refusal = reason;
+}
+
+void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
+  if (epoch_ == epoch) return;
+  if (!epoch_ && incarnation_ > 1) {
+    if (!epoch_after_resume_ || epoch.epoch > epoch_after_resume_->first.epoch) epoch_after_resume_ = {epoch, seed};
+    return;
+  }
+  if (epoch_ && (epoch.run_id != epoch_->run_id || epoch.epoch < epoch_->epoch)) {
+    return refuse("epoch: of another run, or older than the present one");
+  }
+  build(seed);
+  epoch_ = epoch;
+  ticks_.clear();
+  last_done_ = newest_tick_ = -1;
+  ended_ = end_requested_ = false;
+  output_hash_ = {};
+  replay_early();
+}
+
+void Member::replay_early() {
+  for (const auto& [topic, sample] : std::exchange(early_, {})) on_sample(topic, sample);
+  for (const auto& tick : std::exchange(early_ticks_, {})) on_tick(tick);
+}
+
+void Member::on_tick(const msg::Tick& tick) {
+  if (!epoch_) {
+    if (early_ticks_.size() < kMaxEarly) early_ticks_.push_back(tick);
+    return;
+  }
+  if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch) return refuse("tick: of another epoch");
+  if (tick.index < 0 || tick.period_ns <= 0)
+    return refuse(fmt::format("tick: found index {} and period_ns {}, accepted an index from 0 and a period above 0",
+                              tick.index, tick.period_ns));
+  if (tick.index <= last_done_ && !tick.final_tick) return;  // from history, after a restart
+  if (tick.final_tick && !ended_) conclude(tick);
+  newest_tick_ = std::max(newest_tick_, tick.index);
+  if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
+}
+
+void Member::conclude(const msg::Tick& final_tick) {
+  ended_ = true;
+  auto* concluding = dynamic_cast<Concluding*>(component_.get());
+  if (!concluding || last_done_ < 0) return;
+  const std::int64_t time_ns = final_tick.time_ns - (final_tick.index - last_done_) * final_tick.period_ns;
+  concluding->conclude(Tick{last_done_, time_ns, final_tick.period_ns, 1, final_tick.run_id, final_tick.epoch});
+}
+
+void Member::on_sample(std::size_t topic_id, const Sample& sample) {
+  if (!epoch_) {
+    if (early_.size() < kMaxEarly) early_.emplace_back(topic_id, sample);
+    return;
+  }
+  const auto found = std::find_if(inputs_.begin(), inputs_.end(),
+                                  [topic_id](const auto& input) { return input->topic().id == topic_id; });
+  if (found == inputs_.end()) return;
+  const msg::Header& header = *sample.header;
+  const std::string topic((*found)->topic().name);
+  if (header.run_id != epoch_->run_id || header.epoch != epoch_->epoch) return refuse(topic + ": of another epoch");
+  const InputBuffer::Arrival arrival = (*found)->classify(header);
+  if (arrival == InputBuffer::Arrival::kTooFarAhead) {
+    return refuse(fmt::format("{}.sequence_number: found {}, accepted at most {} more than {}", topic,
+                              header.sequence_number, InputBuffer::kFarthestAhead, (*found)->consumed()));
+  }
+  if (arrival != InputBuffer::Arrival::kNew) ++counters_.duplicates;
+  if (arrival == InputBuffer::Arrival::kDuplicate) return;
+  const auto violation = topic_ops(topic_id).validate(sample.message.get());
+  if (violation) refuse(topic + "." + *violation);
+  (*found)->keep(sample, !violation);
+}
+
+const msg::Tick* Member::due() const {
+  return epoch_ && !ticks_.empty() && !ended_ ? &ticks_.begin()->second : nullptr;
+}
+
+void Member::skip_to_newest() {
+  while (ticks_.size() > 1 && std::next(ticks_.begin())->second.realtime) {
+    ticks_.erase(ticks_.begin());
+    ++counters_.skipped;
+  }
+}
+
+bool Member::try_step() {
+  skip_to_newest();
+  const msg::Tick* tick = due();
+  if (!tick) return false;
+  for (const auto& input : inputs_) {
+    if (!input->complete(*tick)) return false;
+  }
+  for (const auto& input : inputs_) input->present(*tick);
+  stamp_ = {tick->run_id, tick->epoch, incarnation_, tick->index, tick->time_ns, 0};
+  for (auto& port : outputs_) port->in_this_step = 0;
+  const std::int64_t elapsed = last_done_ < 0 ? timing_.period : tick->index - last_done_;
+  fresh_component_ = false;
+  component_->step(Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch});
+  finish_step(*tick);
+  return true;
+}
+
+void Member::sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns) {
+  if (!epoch_) bug(name(), "sampled before the epoch");
+  stamp_ = {epoch_->run_id, epoch_->epoch, incarnation_, index, time_ns, 0};
+  for (auto& port : outputs_) port->in_this_step = 0;
+  fresh_component_ = false;
+  static_cast<Plant&>(*component_).sample(Tick{index, time_ns, period_ns, 1, epoch_->run_id, epoch_->epoch});
+}
+
+std::vector<TickDone::Count> Member::published() const {
+  std::vector<TickDone::Count> counts;
+  for (const auto& port : outputs_) counts.push_back({port->slot.topic->id, port->count});
+  return counts;
+}
+
+void Member::write(OutputPort& port, const void* message) {
+  const TopicInfo& topic = *port.slot.topic;
+  const auto& ops = topic_ops(topic.id);
+  if (port.in_this_step == topic.max_per_tick) {
+    return refuse(fmt::format("{}: more than {} in one step", topic.name, topic.max_per_tick));
+  }
+  if (const auto violation = ops.validate(message)) return refuse(std::string(topic.name) + "." + *violation);
+  ++port.in_this_step;
+  msg::Header header = stamp_;
+  header.sequence_number = ++port.count;
+  const Sample sample = ops.stamp(message, header, setup_.robot_id);
+  sink_.publish(topic, sample);
+  // The output hash must not depend on the random run id, nor on how often the member was restarted.
+  msg::Header neutral = header;
+  neutral.run_id = 0;
+  neutral.epoch = neutral.incarnation = 0;
+  Sha256 hash;
+  hash.update(std::as_bytes(std::span(output_hash_)));
+  std::string bytes;
+  ops.append_bytes(ops.stamp(message, neutral, setup_.robot_id).message.get(), bytes);
+  hash.update(std::as_bytes(std::span(bytes)));
+  output_hash_ = hash.finish();
+  if (checkpoints_) {
+    bytes.clear();
+    ops.append_bytes(sample.message.get(), bytes);
+    written_.push_back({topic.id, std::move(bytes)});
+  }
+}
+
+void Member::finish_step(const msg::Tick& tick) {
+  last_done_ = tick.index;
+  TickDone done;
+  done.component = name();
+  done.epoch = *epoch_;
+  done.incarnation = incarnation_;
+  done.index = tick.index;
+  done.published = published();
+  for (const auto& input : inputs_) done.consumed.push_back({input->topic().id, input->consumed()});
+  done.output_hash = output_hash_;
+  done.end_of_run = end_requested_;
+  if (checkpoints_) done.state = state_bytes();
+  done.written = std::exchange(written_, {});
+  ticks_.erase(tick.index);  // invalidates `tick`
+  sink_.done(done);
+}
+
+MissingInput Member::missing() const {
+  const msg::Tick* tick = due();
+  if (!tick) return {newest_tick_ + 1, nullptr, 0, 0};
+  for (const auto& input : inputs_) {
+    if (input->complete(*tick)) continue;
+    return {tick->index, &input->topic(), input->newest(), tick->visible[input->topic().id]};
+  }
+  return {tick->index, nullptr, 0, 0};
+}
+
+}  // namespace constrictor

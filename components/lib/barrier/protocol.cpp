@@ -1,0 +1,85 @@
+#include "barrier/protocol.hpp"
+
+#include <string_view>
+
+namespace constrictor {
+namespace {
+
+void append_number(std::string& block, std::uint64_t number) {
+  for (int shift = 0; shift < 64; shift += 8) block.push_back(static_cast<char>(number >> shift & 0xff));
+}
+
+/// Reads values from the front of a block. If the block is too short, `ok` becomes false and stays false.
+struct BlockReader {
+  std::string_view block;
+  bool ok = true;
+
+  std::string bytes(std::uint64_t size) {
+    if (size > block.size()) {
+      ok = false;
+      return {};
+    }
+    std::string taken(block.substr(0, size));
+    block.remove_prefix(size);
+    return taken;
+  }
+  std::uint64_t number() {
+    std::uint64_t value = 0;
+    int shift = 0;
+    for (const char byte : bytes(8)) {
+      value |= std::uint64_t{static_cast<unsigned char>(byte)} << shift;
+      shift += 8;
+    }
+    return value;
+  }
+};
+
+}  // namespace
+
+std::optional<std::string> difference(const Hello& hello, const Hello& ours) {
+  const auto differs = [](const char* what, const std::string& theirs, const std::string& our) {
+    return std::string(what) + " differs: found " + theirs + ", the run has " + our;
+  };
+  if (hello.idl_hash != ours.idl_hash) return differs("IDL hash", hello.idl_hash, ours.idl_hash);
+  if (hello.config_hash != ours.config_hash) return differs("configuration hash", hello.config_hash, ours.config_hash);
+  if (hello.numeric_profile != ours.numeric_profile) {
+    return differs("numeric profile", hello.numeric_profile, ours.numeric_profile);
+  }
+  return {};
+}
+
+std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs) {
+  std::string block;
+  if (state.empty() && outputs.empty()) return block;
+  append_number(block, state.size());
+  block += state;
+  append_number(block, outputs.size());
+  for (const auto& output : outputs) {
+    block.push_back(static_cast<char>(output.topic));
+    append_number(block, output.bytes.size());
+    block += output.bytes;
+  }
+  return block;
+}
+
+bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<TickDone::Written>& outputs) {
+  state.clear();
+  outputs.clear();
+  if (block.empty()) return true;
+  BlockReader reader{block};
+  state = reader.bytes(reader.number());
+  const std::uint64_t count = reader.number();
+  for (std::uint64_t i = 0; i < count && reader.ok; ++i) {
+    const std::string topic = reader.bytes(1);
+    TickDone::Written output{topic.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(topic[0]),
+                             reader.bytes(reader.number())};
+    reader.ok &= output.topic < topics::kCount;
+    outputs.push_back(std::move(output));
+  }
+  if (reader.ok && reader.block.empty()) return true;
+  state.clear();
+  outputs.clear();
+  return false;
+}
+
+}  // namespace constrictor

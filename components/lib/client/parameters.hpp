@@ -1,0 +1,55 @@
+// The run-time parameters of a run, as their owners announce them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "client/request_client.hpp"
+#include "constrictor/messages.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor {
+
+/// A parameter and the component that owns it.
+struct OwnedParameter {
+  std::string owner;
+  msg::Parameter parameter{};
+};
+
+struct ParameterView {
+  std::map<std::string, OwnedParameter> parameters;  ///< by name: "navigation.travel.frequency_hz"
+  std::vector<std::string> silent;  ///< components of the run that have a parameter list but have not published it yet
+};
+
+/// Reads the parameter lists of all components over a DDS participant. Returns when no new list has arrived for a
+/// moment, at most after `bound`.
+ParameterView read_parameters(std::int32_t participant,
+                              std::chrono::milliseconds bound = std::chrono::milliseconds(2000));
+
+/// Changes parameters through a client, which needs no authority for that.
+class ParameterSetter {
+ public:
+  /// `client` must outlive this object.
+  explicit ParameterSetter(RequestClient& client);
+  /// Sets a parameter at `tick` (0: the next one) and waits for the change that `input` forwards: the value in force
+  /// and its tick. Throws CommandError: kRefused with the reason, kNoAnswer, kInterrupted.
+  msg::ParameterChange set(const std::string& name, double value, std::int64_t tick = 0,
+                           std::chrono::milliseconds bound = std::chrono::seconds(5));
+
+ private:
+  RequestClient& client_;
+  dds::Reader<msg::ParameterChange> changes_;
+};
+
+/// The accepted values with their unit, for people: "0.05 to 2 Hz".
+std::string accepted_text(const msg::Parameter& parameter);
+/// A value with its unit, for people: "0.7 Hz".
+std::string value_text(const msg::Parameter& parameter, double value);
+/// All fields of a parameter, for scripts; `pending` and `changed_tick` are null if there is no such change.
+nlohmann::ordered_json to_json(const OwnedParameter& owned);
+
+}  // namespace constrictor

@@ -1,0 +1,251 @@
+#include "client/request_client.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "client/goal_reader.hpp"
+#include "client/request_writer.hpp"
+#include "client/run_attachment.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/domain.hpp"
+
+namespace constrictor {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr auto kPoll = 10ms;
+constexpr auto kRepeat = 200ms;
+constexpr auto kAnswerBound = 5s;
+constexpr auto kEventBound = 1s;           // after which a TaskStatus proves the end of a goal, too
+constexpr std::size_t kMostAnswers = 256;  // kept for callers that ask late
+
+constexpr const char* kNoAnswerText =
+    "no answer within 5 s; if the run is paused, the request is obeyed when the run resumes (constrictor resume)";
+
+}  // namespace
+
+struct RequestClient::Endpoints {
+  Endpoints(std::uint32_t number, std::chrono::nanoseconds lease, bool by_hand)
+      : domain_number(number),
+        domain(number),
+        authority(dds::Reader<msg::Authority>::member(domain.participant(), std::string(topics::kAuthority.name))),
+        answer(dds::Reader<msg::RequestAnswer>::member(domain.participant(), std::string(topics::kRequestAnswer.name))),
+        request(domain.participant(), lease.count(), by_hand) {}
+  std::uint32_t domain_number;
+  dds::Domain domain;
+  dds::Reader<msg::Authority> authority;
+  dds::Reader<msg::RequestAnswer> answer;
+  dds::RequestWriter request;
+  std::optional<GoalReader> goals;
+};
+
+RequestClient::RequestClient(std::uint32_t domain, RequestClientOptions options)
+    : options_(std::move(options)),
+      endpoints_(std::make_unique<Endpoints>(domain, options_.lease, options_.lease_by_hand)),
+      sequence_(first_sequence_number()) {}
+
+RequestClient::~RequestClient() = default;
+
+bool RequestClient::connected() const { return endpoints_->request.heard(); }
+
+bool RequestClient::connect(std::chrono::milliseconds bound) {
+  const auto end = Clock::now() + bound;
+  while (!connected() || !authority()) {
+    if (Clock::now() > end || interrupted()) return false;
+    std::this_thread::sleep_for(kPoll);
+    poll();
+  }
+  return true;
+}
+
+void RequestClient::connect_or_throw(std::chrono::milliseconds bound) {
+  if (connect(bound)) return;
+  if (interrupted()) throw CommandError("interrupted before a request was sent", CommandError::Cause::kInterrupted);
+  const char* missing = connected() ? "no message on topic \"authority\"" : "no subscriber on topic \"request\"";
+  throw CommandError(
+      fmt::format("run {}: {} (is `input` running? see `constrictor status --run {}`)", domain(), missing, domain()),
+      CommandError::Cause::kNoAnswer);
+}
+
+std::uint64_t RequestClient::ask(msg::Request request) {
+  dds::set_text(request.source, options_.source);
+  request.robot_id = options_.robot_id;
+  request.level = options_.level;
+  request.detached = options_.detached;
+  request.header.sequence_number = ++sequence_;
+  if (request.kind == msg::kRequestEmergencyStop) {
+    take_authority();  // messages that have arrived already cannot confirm this stop
+    authority_.stop_asked();
+  }
+  unanswered_.asked(request, Clock::now());
+  endpoints_->request.write(request);
+  return sequence_;
+}
+
+std::uint64_t RequestClient::ask(std::uint8_t kind) {
+  msg::Request request{};
+  request.kind = kind;
+  request.parameters = no_parameters();
+  return ask(request);
+}
+
+std::uint64_t RequestClient::move(std::uint8_t motion, double frequency_hz, double curvature_1_m, double angle_rad) {
+  msg::Request request{};
+  request.kind = msg::kRequestMotion;
+  request.parameters = no_parameters();
+  request.motion = motion;
+  request.frequency_hz = frequency_hz;
+  request.curvature_1_m = curvature_1_m;
+  request.angle_rad = angle_rad;
+  return ask(request);
+}
+
+std::uint64_t RequestClient::start_goal(const msg::Request& request) {
+  static_cast<void>(goals());
+  switch (wait_for_answer(ask(request), kAnswerBound)) {
+    case Answer::kGranted:
+      break;
+    case Answer::kRefused:
+      throw CommandError("refused: " + refusal_, CommandError::Cause::kRefused);
+    case Answer::kNone:
+      throw CommandError(kNoAnswerText, CommandError::Cause::kNoAnswer);
+    case Answer::kInterrupted:
+      throw CommandError("interrupted while waiting for the answer of `input`", CommandError::Cause::kInterrupted);
+  }
+  const std::uint64_t goal = goal_;
+  for (const auto bound = Clock::now() + kAnswerBound; Clock::now() < bound; std::this_thread::sleep_for(kPoll)) {
+    poll();
+    if (const msg::TaskEvent* answer = goals().answer(goal)) {
+      if (answer->goal_state != msg::kGoalRefused) return goal;
+      throw CommandError(fmt::format("refused by `navigation`: {}", answer->detail), CommandError::Cause::kRefused);
+    }
+    if (interrupted())
+      throw CommandError("interrupted while waiting for the answer of `navigation`", CommandError::Cause::kInterrupted);
+  }
+  throw CommandError(
+      "`input` forwarded the goal, but `navigation` did not answer within 5 s (is the run paused? see `constrictor "
+      "status`)",
+      CommandError::Cause::kNoAnswer);
+}
+
+GoalTracker::End RequestClient::wait_for_end(std::uint64_t goal, const std::function<void()>& each_poll) {
+  const std::uint32_t epoch = goals().epoch();
+  std::optional<Clock::time_point> status_ended;
+  auto input_seen = Clock::now();
+  for (;; std::this_thread::sleep_for(kPoll)) {
+    poll();
+    if (each_poll) each_poll();
+    const auto now = Clock::now();
+    if (const auto end = goals().end(goal, false)) return *end;
+    // The event may be lost; it arrives soon after the status if it is not.
+    if (const auto end = goals().end(goal, true)) {
+      if (!status_ended) status_ended = now;
+      if (now - *status_ended > kEventBound) return *end;
+    }
+    if (connected()) input_seen = now;
+    if (epoch != 0 && goals().epoch() != epoch) throw CommandError("the run was reset while the goal was running");
+    if (now - input_seen > RunAttachment::kInputGrace)
+      throw CommandError("the run has ended: `input` is gone", CommandError::Cause::kNoAnswer);
+    if (interrupted()) throw CommandError("interrupted while the goal was running", CommandError::Cause::kInterrupted);
+  }
+}
+
+const GoalTracker& RequestClient::goals() {
+  if (!endpoints_->goals) {
+    endpoints_->goals.emplace(participant());
+    endpoints_->goals->poll();
+  }
+  return endpoints_->goals->goals();
+}
+
+bool RequestClient::release(std::chrono::milliseconds bound) {
+  // Not wait_for_answer(): a client that was interrupted must still be able to give authority back.
+  const std::uint64_t number = ask(msg::kRequestRelease);
+  const auto end = Clock::now() + bound;
+  while (!answer(number) && Clock::now() < end) {
+    std::this_thread::sleep_for(kPoll);
+    poll();
+  }
+  const msg::RequestAnswer* answered = answer(number);
+  return answered ? answered->granted || !holds_authority() : false;
+}
+
+void RequestClient::assert_alive() const {
+  if (options_.lease_by_hand) endpoints_->request.assert_alive();
+}
+
+void RequestClient::flush() const { endpoints_->request.flush(std::chrono::nanoseconds(1s).count()); }
+
+std::uint32_t RequestClient::domain() const { return endpoints_->domain_number; }
+
+std::int32_t RequestClient::participant() const { return endpoints_->domain.participant(); }
+
+void RequestClient::take_authority() {
+  endpoints_->authority.take([this](const msg::Authority& authority) { authority_.take(authority); });
+}
+
+void RequestClient::poll() {
+  endpoints_->answer.take([this](const msg::RequestAnswer& answer) {
+    if (options_.source != answer.source) return;
+    // `input` rules on a request once. Later answers under the same number repeat the first, without goal and reason.
+    answers_.try_emplace(answer.request_sequence, answer);
+    if (answers_.size() > kMostAnswers) answers_.erase(answers_.begin());
+    unanswered_.answered(answer.request_sequence);
+  });
+  take_authority();
+  if (const std::uint64_t stop = unanswered_.stop(); stop != 0 && authority_.stop_latched()) {
+    msg::RequestAnswer answer{};
+    answer.granted = true;  // whoever requested the stop
+    answers_.try_emplace(stop, answer);
+    unanswered_.answered(stop);
+  }
+  if (endpoints_->goals) endpoints_->goals->poll();
+  unanswered_.repeat(Clock::now(), kRepeat,
+                     [this](const msg::Request& request) { endpoints_->request.write(request); });
+  assert_alive();
+}
+
+bool RequestClient::holds_authority() const {
+  return authority() && authority()->level == options_.level && options_.source == authority()->source;
+}
+
+const msg::RequestAnswer* RequestClient::answer(std::uint64_t number) const {
+  const auto found = answers_.find(number);
+  return found == answers_.end() ? nullptr : &found->second;
+}
+
+RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound) {
+  const auto end = Clock::now() + bound;
+  for (;;) {
+    poll();
+    if (const msg::RequestAnswer* found = answer(number)) {
+      if (found->granted) goal_ = found->goal_id;
+      else refusal_ = found->reason;
+      return found->granted ? Answer::kGranted : Answer::kRefused;
+    }
+    if (interrupted()) return Answer::kInterrupted;
+    if (Clock::now() > end) return Answer::kNone;
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+msg::TaskParameters no_parameters() {
+  msg::TaskParameters parameters{};
+  parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+  return parameters;
+}
+
+msg::Request task_request(std::uint8_t task) {
+  msg::Request request{};
+  request.kind = msg::kRequestTask;
+  request.command = msg::kCommandStart;
+  request.task = task;
+  request.parameters = no_parameters();
+  return request;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,59 @@
+// Commands the time of a run: pause, resume, step, pace, reset, end.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "client/command_error.hpp"
+#include "constrictor/messages.hpp"
+
+namespace constrictor {
+
+/// Sends commands on `run_control` and waits for the answers of the conductor. A command is repeated until it is
+/// answered, because an answer may be written before its reader has been discovered; the conductor obeys it once.
+/// All functions throw CommandError: kRefused with the conductor's reason, kNoAnswer, kInterrupted. Not thread-safe.
+class RunControlClient {
+ public:
+  /// Joins the DDS domain of a run (find_domain()). A process joins each domain once. `bound` is how long a command
+  /// waits for its answer, and a step for the next tick. `interrupted` is called while a function waits; the wait ends
+  /// when it returns true.
+  explicit RunControlClient(std::uint32_t domain, std::chrono::seconds bound = std::chrono::seconds(10),
+                            std::function<bool()> interrupted = {});
+  /// The same on a participant that this process already has. It must outlive this object.
+  RunControlClient(std::int32_t participant, std::uint32_t domain, std::chrono::seconds bound,
+                   std::function<bool()> interrupted = {});
+  ~RunControlClient();
+
+  /// Each returns the state of the run right after the command was obeyed.
+  msg::RunState pause();
+  msg::RunState resume();
+  /// Pauses the run, lets it make `ticks` more ticks and waits for them as long as the run makes ticks.
+  msg::RunState step(std::uint32_t ticks);
+  /// `pace`: at most so many times real time, 0.001 to 1000; 0: lock-step, as fast as possible.
+  msg::RunState set_pace(double pace);
+  /// Ends the epoch and begins a new one with `seed`.
+  msg::RunState reset(std::uint64_t seed);
+  /// Ends the run: every member finishes its current tick, and the report is complete.
+  msg::RunState end();
+  /// Sends a command; fills in source and number.
+  msg::RunState send(msg::RunControl command);
+
+ private:
+  struct Endpoints;
+  RunControlClient(std::unique_ptr<Endpoints> endpoints, std::uint32_t domain, std::chrono::seconds bound,
+                   std::function<bool()> interrupted);
+  msg::RunState send(std::uint8_t command);
+  msg::RunState wait_for_tick(std::int64_t tick);
+
+  std::unique_ptr<Endpoints> endpoints_;
+  std::uint32_t domain_;
+  std::chrono::seconds bound_;
+  std::function<bool()> interrupted_;
+  std::string source_;
+  std::uint64_t sequence_;
+};
+
+}  // namespace constrictor

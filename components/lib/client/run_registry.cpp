@@ -1,0 +1,94 @@
+#include "client/run_registry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "constrictor/json.hpp"
+#include "cyclone/domain_claim.hpp"
+
+namespace constrictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path note_file(std::uint32_t domain) { return run_directory() / fmt::format("run-{}.json", domain); }
+
+std::optional<RunNote> read_note(std::uint32_t domain) {
+  std::ifstream file(note_file(domain));
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  RunNote note;
+  note.domain = domain;
+  note.pid = json.value("pid", 0);
+  note.scenario = json.value("scenario", "");
+  note.seed = json.value("seed", std::uint64_t{0});
+  note.roster = json.value("roster", std::vector<std::string>{});
+  note.plant = json.value("plant", "physics");
+  note.report_dir = json.value("report_dir", "");
+  return note;
+}
+
+}  // namespace
+
+PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file(note.domain)) { write(); }
+
+void PublishedNote::set_seed(std::uint64_t seed) {
+  if (seed == note_.seed) return;
+  note_.seed = seed;
+  write();
+}
+
+void PublishedNote::write() const {
+  const nlohmann::json json = {{"pid", note_.pid},
+                               {"domain", note_.domain},
+                               {"scenario", note_.scenario},
+                               {"seed", note_.seed},
+                               {"roster", note_.roster},
+                               {"plant", note_.plant},
+                               {"report_dir", note_.report_dir.string()}};
+  const fs::path unfinished = file_.string() + ".new";
+  std::ofstream(unfinished) << json_text(json, 1) << "\n";
+  fs::rename(unfinished, file_);
+}
+
+PublishedNote::~PublishedNote() {
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+}
+
+std::vector<RunNote> live_runs() {
+  std::vector<RunNote> runs;
+  for (const auto& entry : fs::directory_iterator(run_directory())) {
+    std::uint32_t domain = 0;
+    if (std::sscanf(entry.path().filename().c_str(), "run-%u.json", &domain) != 1 || entry.path() != note_file(domain))
+      continue;
+    // If nobody holds the claim, the launcher was killed and could not remove its note.
+    if (!domain_claimed(domain)) continue;
+    if (auto note = read_note(domain)) runs.push_back(std::move(*note));
+  }
+  std::sort(runs.begin(), runs.end(), [](const RunNote& a, const RunNote& b) { return a.domain < b.domain; });
+  return runs;
+}
+
+RunNote find_run(std::optional<std::uint32_t> domain) {
+  const auto runs = live_runs();
+  std::string list;
+  for (const auto& run : runs) {
+    if (run.domain == domain) return run;
+    list += fmt::format("\n  --run {}   {} seed {}, pid {}, {}", run.domain, run.scenario, run.seed, run.pid,
+                        run.report_dir.string());
+  }
+  const auto fail = [](const std::string& message) { throw CommandError(message, CommandError::Cause::kNoRun); };
+  if (domain) fail(fmt::format("no run in DDS domain {}{}{}", *domain, runs.empty() ? "" : "; choose one of:", list));
+  if (runs.empty()) fail("no run on this host; start one with `constrictor run`");
+  if (runs.size() > 1) fail("several runs on this host; choose one:" + list);
+  return runs.front();
+}
+
+std::uint32_t find_domain(std::optional<std::uint32_t> domain) { return domain ? *domain : find_run({}).domain; }
+
+}  // namespace constrictor

@@ -1,0 +1,87 @@
+#include "component/task_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "constrictor/constants.hpp"
+
+namespace constrictor {
+namespace {
+
+enum class Need { kLineColour, kObjectColour, kDropZoneColour, kDirection, kLeftOrRight, kPath };
+
+struct Row {
+  std::uint8_t task;
+  Need need;
+};
+
+/// One row for each parameter without which a task cannot run. A task without a row needs none.
+constexpr std::array kNeeds = {
+    Row{msg::kTaskFollowLine, Need::kLineColour},    Row{msg::kTaskSearchObject, Need::kObjectColour},
+    Row{msg::kTaskTrackObject, Need::kObjectColour}, Row{msg::kTaskPregrasp, Need::kObjectColour},
+    Row{msg::kTaskDrop, Need::kDropZoneColour},      Row{msg::kTaskRotate, Need::kLeftOrRight},
+    Row{msg::kTaskExplore, Need::kDirection},        Row{msg::kTaskFollowPath, Need::kPath},
+};
+
+std::string colour_problem(const char* what, std::uint8_t colour) {
+  if (colour != msg::kColourUnknown && colour < msg::kColourCount) return {};
+  return fmt::format("{} colour: found {}, accepted {}", what, name_of(constants::kColour, colour),
+                     listed(constants::kColour, msg::kColourGreen));
+}
+
+std::string direction_problem(std::uint8_t direction, bool left_or_right) {
+  const bool turns = direction == msg::kDirectionLeft || direction == msg::kDirectionRight;
+  const bool any = direction != msg::kDirectionNone && direction < msg::kDirectionCount;
+  if (turns || (any && !left_or_right)) return {};
+  return fmt::format("a direction: found {}, accepted {}", name_of(constants::kDirection, direction),
+                     left_or_right ? "left or right" : "left, right, forwards or backwards");
+}
+
+std::string path_problem(const msg::Path& path) {
+  constexpr double kShortest_m = 1e-3;
+  if (path.point_count < 2 || path.point_count > msg::kMaxPathPoints)
+    return fmt::format("a path: found {} points, accepted 2 to {}", path.point_count, msg::kMaxPathPoints);
+  for (std::size_t i = 1; i < path.point_count; ++i) {
+    const double apart_m = std::hypot(path.x_m[i] - path.x_m[i - 1], path.y_m[i] - path.y_m[i - 1]);
+    if (!std::isfinite(apart_m) || apart_m <= kShortest_m) {
+      return fmt::format("a path: found point {} at the place of the point before, accepted at least 1 mm apart",
+                         i + 1);
+    }
+  }
+  return {};
+}
+
+std::string problem(Need need, const msg::TaskParameters& parameters, const msg::Path& path) {
+  switch (need) {
+    case Need::kLineColour:
+      return colour_problem("a line", parameters.line_colour);
+    case Need::kObjectColour:
+      return colour_problem("an object", parameters.object_colour);
+    case Need::kDropZoneColour:
+      return colour_problem("a drop zone", parameters.drop_zone_colour);
+    case Need::kDirection:
+      return direction_problem(parameters.direction, false);
+    case Need::kLeftOrRight:
+      return direction_problem(parameters.direction, true);
+    case Need::kPath:
+      return path_problem(path);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string task_parameter_refusal(std::uint8_t task, const msg::TaskParameters& parameters, const msg::Path& path) {
+  if (task == msg::kTaskNone || task >= msg::kTaskCount)
+    return fmt::format("task: found {}, accepted 1 to {}", task, msg::kTaskCount - 1);
+  for (const Row& row : kNeeds) {
+    if (row.task != task) continue;
+    const std::string missing = problem(row.need, parameters, path);
+    if (!missing.empty()) return fmt::format("{} needs {}", name_of(constants::kTask, task), missing);
+  }
+  return {};
+}
+
+}  // namespace constrictor

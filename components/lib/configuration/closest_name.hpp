@@ -1,0 +1,18 @@
+// "Did you mean ...?" for misspelt names.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace constrictor {
+
+/// The candidate that is most like `name`, if it is like enough to be what a person meant: at most one wrong, missing,
+/// surplus or swapped letter in three. Else the first candidate that begins with `name`; empty if there is none. Upper
+/// and lower case count as equal.
+[[nodiscard]] std::string closest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+/// ", did you mean 'CANDIDATE'?" for the end of an error message, or nothing.
+[[nodiscard]] std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace constrictor

@@ -1,0 +1,100 @@
+#include "cyclone/domain_claim.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace constrictor {
+
+namespace {
+
+/// Takes the domain's file lock; negative if another process has it. Children do not inherit it, because a child must
+/// not keep the claim of a launcher that died. The file is never removed: otherwise two processes could lock two files
+/// of one name.
+int try_lock(std::uint32_t domain) {
+  const auto file = run_directory() / ("domain-" + std::to_string(domain) + ".lock");
+  const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+  if (lock < 0 || ::flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
+  ::close(lock);
+  return -1;
+}
+
+/// Takes an abstract socket name, which belongs to the network namespace as the domain's ports do; negative if another
+/// process has it. Runs with different run directories (other users, tests) do not see each other's locks, but they use
+/// the same ports.
+int try_name(std::uint32_t domain) {
+  const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return -1;
+  const std::string name = "constrictor/domain/" + std::to_string(domain);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  name.copy(address.sun_path + 1,
+            sizeof address.sun_path -
+                1);  // the leading zero makes the name abstract: without a file, and freed with the socket
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0) return socket;
+  ::close(socket);
+  return -1;
+}
+
+/// True if the discovery port of the domain's first participant is in use: by another user's run, or by a program that
+/// claims no domain. Source: RTPS 2.3, 9.6.1.1: port 7400 + 250 domain + 10 + 2 participant.
+bool domain_in_use(std::uint32_t domain) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_ANY);
+  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
+  const bool taken = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  ::close(socket);
+  return taken;
+}
+
+}  // namespace
+
+std::filesystem::path run_directory() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  const std::filesystem::path directory = runtime && *runtime
+                                              ? std::filesystem::path(runtime) / "constrictor"
+                                              : std::filesystem::path("/tmp/constrictor-" + std::to_string(::getuid()));
+  std::filesystem::create_directories(directory);
+  return directory;
+}
+
+bool domain_claimed(std::uint32_t domain) {
+  const int lock = try_lock(domain);
+  if (lock >= 0) ::close(lock);
+  return lock < 0;
+}
+
+DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
+  for (std::uint32_t domain = wanted.value_or(1); domain <= wanted.value_or(100); ++domain) {
+    if (!wanted && domain_in_use(domain)) continue;
+    name_ = try_name(domain);
+    lock_ = name_ < 0 ? -1 : try_lock(domain);
+    domain_ = domain;
+    if (lock_ >= 0) return;
+    if (name_ >= 0) ::close(name_);
+  }
+  throw std::runtime_error(
+      (wanted ? "DDS domain " + std::to_string(*wanted) + " is" : "no free DDS domain: 1 to 100 are") +
+      " claimed on this host, in " + run_directory().string() + " or another directory of notes");
+}
+
+DomainClaim::~DomainClaim() {
+  if (lock_ < 0) return;
+  ::close(name_);
+  ::close(lock_);  // last: others wait for it and then take the domain
+}
+
+}  // namespace constrictor

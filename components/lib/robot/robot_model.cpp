@@ -1,0 +1,104 @@
+#include "robot/robot_model.hpp"
+
+#include <fmt/format.h>
+
+#include "configuration/configuration.hpp"
+
+namespace constrictor {
+namespace {
+
+// Message arrays (kMaxModules of common.idl) bound the count; lengths bound what the contact model is meant for.
+constexpr std::int64_t kMostModules = 64;
+// The grip of navigation bends the sixth to the eighth yaw joint: components/navigation/navigation.yaml.
+constexpr std::size_t kFewestYawJoints = 8;
+
+JointModel read_joint(Configuration& joints) {
+  JointModel joint;
+  joint.min_rad = joints.number("min_rad", {-3.0, 0.0});
+  joint.max_rad = joints.number("max_rad", {0.0, 3.0});
+  joint.max_speed_rad_s = joints.number("max_speed_rad_s", {0.01, 50.0});
+  joint.max_torque_nm = joints.number("max_torque_nm", {0.01, 100.0});
+  joint.servo_gain_1_s = joints.number("servo_gain_1_s", {0.1, 200.0});
+  joint.stiffness_nm_rad = joints.number("stiffness_nm_rad", {0.0, 10000.0}, 0.0);
+  joint.damping_nm_s_rad = joints.number("damping_nm_s_rad", {0.0, 100.0}, 0.0);
+  if (joint.stiffness_nm_rad == 0.0 && joint.damping_nm_s_rad > 0.0) {
+    throw joints.error("damping_nm_s_rad", "found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
+  }
+  return joint;
+}
+
+CameraModel read_camera(Configuration camera) {
+  CameraModel model;
+  model.width = static_cast<int>(camera.integer("width", 16, 4096));
+  model.height = static_cast<int>(camera.integer("height", 16, 4096));
+  model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8});
+  const std::vector<double> position = camera.numbers("position_m", {-1.0, 1.0}, 3, 3);
+  model.p_HC = {position[0], position[1], position[2]};
+  model.tilt_rad = camera.number("tilt_rad", {-1.5, 1.5});
+  model.period_ticks = static_cast<int>(camera.integer("period_ticks", 1, 1000));
+  model.latency_ticks = static_cast<int>(camera.integer("latency_ticks", 0, 100));
+  camera.finish();
+  return model;
+}
+
+void read_noise(Configuration noise, RobotModel& robot) {
+  robot.joint_position_noise_rad = noise.number("joint_position_rad", {0.0, 0.5}, 0.0);
+  robot.joint_torque_noise_nm = noise.number("joint_torque_nm", {0.0, 10.0}, 0.0);
+  robot.contact_force_noise_n = noise.number("contact_force_n", {0.0, 10.0}, 0.0);
+  robot.imu_rate_noise_rad_s = noise.number("imu_rate_rad_s", {0.0, 1.0}, 0.0);
+  robot.imu_acceleration_noise_m_s2 = noise.number("imu_acceleration_m_s2", {0.0, 10.0}, 0.0);
+  robot.imu_yaw_drift_rad_sqrt_s = noise.number("imu_yaw_drift_rad_sqrt_s", {0.0, 0.1}, 0.0);
+  noise.finish();
+}
+
+}  // namespace
+
+std::vector<std::size_t> RobotModel::yaw_joints() const {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].axis == JointAxis::kYaw) indices.push_back(i);
+  }
+  return indices;
+}
+
+RobotModel load_robot(const std::filesystem::path& file) {
+  Configuration root = Configuration::load(file);
+  RobotModel robot;
+  robot.name = root.text("name");
+
+  Configuration module = root.section("module");
+  robot.module_count = static_cast<std::size_t>(module.integer("count", 2, kMostModules));
+  robot.module_length_m = module.number("length_m", {0.02, 1.0});
+  robot.module_radius_m = module.number("radius_m", {0.005, 0.5});
+  robot.module_belly_half_width_m = module.number("belly_half_width_m", {0.0, robot.module_radius_m});
+  robot.module_mass_kg = module.number("mass_kg", {0.01, 20.0});
+  module.finish();
+
+  Configuration joints = root.section("joints");
+  const std::vector<std::string> pattern = joints.texts("axes", {"yaw", "pitch"});
+  if (pattern.empty()) throw joints.error("axes", "found a list of 0, accepted a list of yaw and pitch");
+  robot.joints.assign(robot.module_count - 1, read_joint(joints));
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    robot.joints[i].axis = pattern[i % pattern.size()] == "yaw" ? JointAxis::kYaw : JointAxis::kPitch;
+  }
+  if (robot.yaw_joints().size() < kFewestYawJoints) {
+    throw module.error(
+        "count", fmt::format("found {} modules with {} yaw joints, accepted a robot with at least {} yaw "
+                             "joints ({} modules if the axes alternate)",
+                             robot.module_count, robot.yaw_joints().size(), kFewestYawJoints, 2 * kFewestYawJoints));
+  }
+  robot.torque_filter_s = joints.number("torque_filter_s", {0.0, 5.0});
+  joints.finish();
+
+  Configuration skin = root.section("skin");
+  robot.friction_along = skin.number("friction_along", {0.0, 5.0});
+  robot.friction_across = skin.number("friction_across", {0.0, 5.0});
+  skin.finish();
+
+  robot.camera = read_camera(root.section("camera"));
+  read_noise(root.section("noise", false), robot);
+  root.finish();
+  return robot;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,71 @@
+// Reads the topic `request` into the latch of clients' requests, and tracks which clients are alive.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "component/client_requests.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor::dds {
+
+/// Topic on which clients send requests.
+inline constexpr const char* kRequestTopic = barrier_topics::kRequest;
+
+/// Tracks which writers that the reader of `request` has met are alive. DDS reports the end of a source only if the
+/// reader has taken a sample of it. A restarted process has none of the samples of its predecessor, so it must track
+/// the writers themselves.
+class WriterTracker {
+ public:
+  /// `grace`: time after the start in which a writer may still be discovered.
+  explicit WriterTracker(std::chrono::milliseconds grace) : grace_(grace) {}
+  /// From any thread: a writer has become alive or has ceased to be.
+  void note(dds_instance_handle_t writer, bool alive);
+  /// Processes what was noted.
+  void catch_up(dds_entity_t reader);
+  /// GUID of the writer; zeros if it has gone.
+  [[nodiscard]] WriterId id_of(dds_entity_t reader, dds_instance_handle_t writer);
+  /// Whether the writer is alive, or may still be discovered.
+  [[nodiscard]] bool lives(dds_entity_t reader, const WriterId& writer);
+
+ private:
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::chrono::milliseconds grace_;
+  std::mutex mutex_;
+  std::vector<std::pair<dds_instance_handle_t, bool>> news_;
+  std::map<dds_instance_handle_t, WriterId> ids_;
+  std::map<WriterId, bool> alive_;
+};
+
+/// Time after the start of `input`'s process in which the writer of a known source may be discovered. It is wall time,
+/// as leases are; deaths are latched at a tick, as requests are.
+inline constexpr std::chrono::milliseconds kWriterGrace{3000};
+
+/// Reads `request`: reliable, keep-all, volatile, so that requests from before the start are not obeyed. It matches
+/// writers of any liveliness and lease: DDS reports when the last writer of a source ends, is killed, or misses its
+/// lease.
+class ClientLink {
+ public:
+  ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::chrono::milliseconds grace = kWriterGrace);
+  /// Lets `requests` ask which writers are alive. This object must outlive the last such question.
+  void track_writers_for(ClientRequests& requests) const;
+  /// Moves what has arrived to `requests`. Requests to another robot are ignored. `refused(reason)` is called for a
+  /// request that violates its IDL.
+  void take(ClientRequests& requests, const std::function<void(const std::string&)>& refused) const;
+  [[nodiscard]] dds_entity_t get() const { return reader_.get(); }
+
+ private:
+  std::uint16_t robot_id_;
+  std::unique_ptr<WriterTracker> tracker_;  // outlives the reader, whose listener calls it
+  Entity reader_;
+};
+
+}  // namespace constrictor::dds

@@ -1,0 +1,17 @@
+// Checks the files of components without a run: what `--check` of a component's program does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/host.hpp"
+
+namespace constrictor {
+
+/// Builds each component once from its files (robot, scenario, configuration), with ports that are connected to
+/// nothing, and destroys it again. Joins no DDS domain and writes no file. Returns one line "NAME: what is wrong" for
+/// each component that cannot be built; an error that several components report is returned once.
+[[nodiscard]] std::vector<std::string> check_components(const HostOptions& options,
+                                                        const std::vector<ComponentFactory>& factories);
+
+}  // namespace constrictor

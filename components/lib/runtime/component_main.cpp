@@ -1,0 +1,121 @@
+#include "runtime/component_main.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
+#include "cyclone/entity.hpp"
+#include "log/log.hpp"
+#include "runtime/component_check.hpp"
+#include "runtime/host.hpp"
+#include "runtime/numeric_profile.hpp"
+#include "runtime/pacer.hpp"
+#include "runtime/version.hpp"
+
+namespace constrictor {
+namespace {
+
+const CLI::Validator kPace(
+    [](std::string& text) {
+      char* end = nullptr;
+      const double pace = std::strtod(text.c_str(), &end);
+      if (end != text.c_str() && *end == '\0' && Pacer::accepts(pace)) return std::string{};
+      return fmt::format("found '{}', accepted 0 or {} to {}", text, Pacer::kSlowest, Pacer::kFastest);
+    },
+    "");
+
+}  // namespace
+
+int component_main(int argc, char** argv, ComponentFactory factory) {
+  return host_main(argc, argv, {std::move(factory)});
+}
+
+int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
+  ensure_numeric_environment(argv);
+  Host::heed_signals();  // after the line above, which may start the program anew
+  std::string names;
+  for (const auto& factory : factories) names += (names.empty() ? "" : ",") + factory.name;
+  HostOptions options;
+  std::vector<std::string> config_files;
+  options.setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
+
+  CLI::App app{"Constrictor component " + names + ": takes part in a run on Cyclone DDS."};
+  app.set_version_flag("--version", kVersion);
+  app.add_option("--domain", options.domain, "DDS domain of the run")
+      ->envname("CONSTRICTOR_DOMAIN")
+      ->check(CLI::Range(0, 229));
+  app.add_option("--roster", options.roster, "every member of the run, comma separated (default: " + names + ")")
+      ->delimiter(',');
+  app.add_option("--plant", options.plant, "the member that is the plant");
+  app.add_option("--robot", options.setup.robot_file, "robot file (YAML)");
+  app.add_option("--scenario", options.setup.scenario_file,
+                 "scenario file (YAML); only components of the simulation read it");
+  app.add_option("--mission", options.setup.mission,
+                 "mission (YAML), for example '{sequence: [green, red], line_colour: blue}'; only planners read it");
+  app.add_option("--seed", options.setup.seed, "seed of the run");
+  app.add_option("--output", options.setup.output_dir, "folder for the files that this process writes");
+  app.add_option("--config", config_files,
+                 "NAME=FILE: configuration file of a component, instead of its default; may be repeated");
+  app.add_option("--incarnation", options.incarnation,
+                 "1 at the first start of the process in the run, and one more at each restart")
+      ->check(CLI::Range(1u, 1'000'000u));
+  app.add_option("--run-id", options.run_id,
+                 "number of the run that this process belongs to; 0: the first run that begins in the domain");
+  app.add_option("--pace", options.pace, "plant only: at most this many times real time; 0: as fast as possible")
+      ->check(kPace);
+  app.add_option("--operator-pace", options.operator_pace,
+                 "plant only: the same while an operator has authority; 0: no limit")
+      ->capture_default_str()
+      ->check(kPace);
+  app.add_flag("--realtime", options.realtime, "plant only: ticks follow the wall clock and wait for no member");
+  app.add_option("--max-sim-time", options.max_sim_time_s,
+                 "[s] simulated time at which the plant ends the run; 0: never")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--patience", options.patience_s,
+                 "[s] wall time to wait for another process before this one gives up; 0: for ever")
+      ->check(CLI::Range(0.0, 86400.0));
+  bool check = false;
+  app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
+  app.add_flag("--record", options.record, "plant only: record every message, images aside, for `constrictor diff`");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
+  }
+
+  try {
+    for (const auto& text : config_files) {
+      const auto equals = text.find('=');
+      if (equals == std::string::npos) throw ConfigurationError("--config: found '" + text + "', accepted NAME=FILE");
+      options.config_files[text.substr(0, equals)] = text.substr(equals + 1);
+    }
+    if (options.roster.empty()) {
+      for (const auto& factory : factories) options.roster.push_back(factory.name);
+    }
+    for (const auto& factory : factories) {
+      if (std::find(options.roster.begin(), options.roster.end(), factory.name) == options.roster.end()) {
+        throw ConfigurationError("--roster: found no '" + factory.name +
+                                 "', accepted a list that names every component of this process");
+      }
+    }
+    options.setup.max_sim_time_s = options.max_sim_time_s;
+    if (check) {
+      const std::vector<std::string> errors = check_components(options, factories);
+      for (const auto& error : errors) std::fprintf(stderr, "%s\n", error.c_str());
+      return errors.empty() ? exit_status::kOk : exit_status::kConfiguration;
+    }
+    return Host(std::move(options), std::move(factories)).run();
+  } catch (const ConfigurationError& error) {
+    Log(names).error("configuration: {}", error.what());
+    return exit_status::kConfiguration;
+  } catch (const std::exception& error) {
+    Log(names).error("{}", error.what());
+    return exit_status::kSoftware;
+  }
+}
+
+}  // namespace constrictor

@@ -1,0 +1,16 @@
+// main() of a component's program, and of programs that host several components.
+#pragma once
+
+#include <vector>
+
+#include "component/component.hpp"
+
+namespace constrictor {
+
+/// Parses arguments, builds and hosts one component. Returns the exit status; see exit_status in host.hpp.
+int component_main(int argc, char** argv, ComponentFactory factory);
+
+/// The same for several components in one process.
+int host_main(int argc, char** argv, std::vector<ComponentFactory> factories);
+
+}  // namespace constrictor

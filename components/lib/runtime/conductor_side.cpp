@@ -1,0 +1,154 @@
+#include "runtime/conductor_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "runtime/member_side.hpp"
+#include "runtime/numeric_profile.hpp"
+
+namespace constrictor {
+namespace {
+
+namespace wire = dds::barrier_topics;
+
+}  // namespace
+
+ConductorSide::ConductorSide(HostContext& context, Links& links, MemberSide& members)
+    : context_(context),
+      links_(links),
+      members_(members),
+      plant_(*members.plant()),
+      pacer_(context.options.realtime ? 1.0 : context.options.pace, context.options.operator_pace) {
+  make_conductor();
+  make_endpoints();
+}
+
+void ConductorSide::make_conductor() {
+  const HostOptions& options = context_.options;
+  std::random_device entropy;  // names the run; no result depends on it
+  ConductorOptions conductor;
+  conductor.run_id =
+      options.run_id != 0 ? options.run_id : (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
+  conductor.roster = options.roster;
+  conductor.plant = options.plant;
+  conductor.idl_hash = std::string(msg::kIdlHash);
+  conductor.config_hash = context_.config_hash;
+  conductor.numeric_profile = numeric_profile();
+  conductor.seed = options.setup.seed;
+  conductor.realtime = options.realtime;
+  conductor.period_ns = period_ns();
+  if (options.max_sim_time_s > 0) {
+    conductor.last_index = std::llround(options.max_sim_time_s * 1e9 / static_cast<double>(conductor.period_ns));
+  }
+  if (options.hash_log && !options.setup.output_dir.empty()) {
+    hash_log_ = std::make_unique<HashLog>(options.setup.output_dir, options.record);
+  }
+  conductor_ = std::make_unique<Conductor>(conductor, static_cast<ConductorSink&>(*this));
+}
+
+void ConductorSide::make_endpoints() {
+  const dds_entity_t participant = links_.participant();
+  tick_writer_ = {participant, wire::kTick};
+  epoch_writer_ = {participant, wire::kEpochStart};
+  resume_writer_ = {participant, wire::kResume};
+  refused_writer_ = {participant, wire::kRefused};
+  control_answer_writer_ = {participant, wire::kRunControlAnswer};
+  run_state_writer_ = {participant, wire::kRunState};
+  done_reader_ = dds::Reader<msg::TickDone>::member(participant, wire::kTickDone);
+  ready_reader_ = dds::Reader<msg::Ready>::member(participant, wire::kReady);
+  control_reader_ = dds::Reader<msg::RunControl>::member(participant, wire::kRunControl);
+  links_.attach(done_reader_, wire::kTickDone, [this](const msg::TickDone& m) { take_done(m); });
+  links_.attach(ready_reader_, wire::kReady, [this](const msg::Ready& m) { take_ready(m); });
+  // Without validation: a command that violates its IDL is answered, too.
+  links_.attach(control_reader_.get(),
+                [this] { control_reader_.take([this](const msg::RunControl& m) { take_control(m); }); });
+}
+
+std::int64_t ConductorSide::period_ns() const { return static_cast<const Plant&>(plant_.component()).period_ns(); }
+
+void ConductorSide::take_ready(const msg::Ready& message) {
+  const EpochId epoch{message.run_id, message.epoch};
+  if (const auto why = conductor_->foreign(message.component, epoch, message.incarnation))
+    return members_.reject(wire::kReady, *why);
+  conductor_->on_ready(message.component, epoch, message.incarnation);
+}
+
+void ConductorSide::take_done(const msg::TickDone& message) {
+  const auto reject = [this](const std::string& reason) { members_.reject(wire::kTickDone, reason); };
+  if (const auto why = conductor_->foreign(message.component, {message.run_id, message.epoch}, message.incarnation))
+    return reject(*why);
+  const auto step = dds::from_wire(message);
+  if (!step) return reject("checkpoint: damaged");
+  if (const auto why = conductor_->implausible(*step)) return reject(*why);
+  if (!conductor_->on_done(*step)) return;
+  context_.note_progress();
+  if (!hash_log_) return;
+  for (const auto& written : step->written) hash_log_->add(written.topic, written.bytes);
+}
+
+bool ConductorSide::tick() {
+  if (!conductor_->may_tick() || !pacer_.may_tick(conductor_->next_time_ns())) return false;
+  plant_.sample_plant(conductor_->next_index(), conductor_->next_time_ns(), period_ns());
+  conductor_->tick(plant_.published());
+  pacer_.ticked();
+  if (pacer_.holding()) publish_run_state(true);  // this was the last tick that `step` asked for
+  return true;
+}
+
+void ConductorSide::start_epoch(const EpochId& epoch, std::uint64_t seed) {
+  msg::EpochStart start{};
+  start.run_id = epoch.run_id;
+  start.epoch = epoch.epoch;
+  start.seed = seed;
+  dds::set_text(start.scenario, context_.options.setup.scenario_file.filename().string());
+  dds::set_text(start.config_hash, context_.config_hash);
+  epoch_writer_.write(start);
+  members_.on_epoch(epoch, seed);
+  pacer_.restart();
+  pacer_.operator_holds(false);
+  if (hash_log_) hash_log_->restart();
+}
+
+void ConductorSide::tick(const msg::Tick& message) {
+  tick_writer_.write(message);
+  members_.on_tick(message);
+}
+
+void ConductorSide::resume(const Resume& resume) {
+  std::string block;
+  resume_writer_.write(dds::to_wire(resume, block));
+}
+
+void ConductorSide::refuse(const Hello& hello, const std::string& reason) {
+  context_.log.warning("{} (pid {} on {}) refused: {}", hello.component, hello.pid, hello.host, reason);
+  msg::Refused message{};
+  dds::set_text(message.component, hello.component);
+  message.run_id = conductor_->run_id();
+  message.incarnation = hello.incarnation;
+  message.pid = hello.pid;
+  dds::set_text(message.host, hello.host);
+  dds::set_text(message.reason, reason);
+  refused_writer_.write(message);
+}
+
+void ConductorSide::record(const TopicInfo& topic, const Sample& sample) {
+  if (hash_log_) hash_log_->add(topic, sample);
+}
+
+void ConductorSide::report_waiting() {
+  for (const auto& owed : conductor_->owed()) {
+    members_.report_waiting(plant_, owed.what, owed.component, conductor_->next_index(),
+                            static_cast<std::uint64_t>(std::max<std::int64_t>(owed.have, 0)),
+                            static_cast<std::uint64_t>(owed.want));
+  }
+}
+
+void ConductorSide::finish(bool wait_for_final_tick) {
+  // The final tick must reach every member before its writer goes. The wait is bounded, because a stopped process must
+  // not keep the run from ending.
+  if (wait_for_final_tick) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
+  if (hash_log_) hash_log_->close();
+}
+
+}  // namespace constrictor

@@ -1,0 +1,89 @@
+// The conductor in the plant's process: it sends ticks at the run's pace, collects what the other members report, and
+// obeys `run_control`.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "barrier/conductor.hpp"
+#include "barrier/member.hpp"
+#include "runtime/hash_log.hpp"
+#include "runtime/host_context.hpp"
+#include "runtime/links.hpp"
+#include "runtime/pacer.hpp"
+#include "runtime/run_control_answers.hpp"
+#include "runtime/wire.hpp"
+
+namespace constrictor {
+
+class MemberSide;
+
+class ConductorSide : private ConductorSink {
+ public:
+  /// `members` has the plant. All arguments must outlive this object. Throws dds::Error, or std::runtime_error if the
+  /// hash log cannot be written.
+  ConductorSide(HostContext& context, Links& links, MemberSide& members);
+
+  [[nodiscard]] std::optional<EpochId> epoch() const { return conductor_->epoch(); }
+  /// Sends the next tick if the members and the pace allow it. Returns whether it did.
+  bool tick();
+  /// True while the pace, and not a member, keeps the next tick back.
+  [[nodiscard]] bool held() const { return pacer_.holding() || conductor_->may_tick(); }
+  /// [ns] time until the pace may allow the next tick.
+  [[nodiscard]] std::int64_t wait_ns() const { return pacer_.wait_ns(); }
+  /// Publishes RunState once a second, and at once if `changed`; not before the run has begun.
+  void publish_run_state(bool changed);
+
+  // What members of this process report.
+  void on_hello(const Hello& hello) { conductor_->on_hello(hello); }
+  void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
+  void on_done(const TickDone& step) { conductor_->on_done(step); }
+
+  /// Lets the pace depend on who has authority; samples of other topics and runs are ignored.
+  void note_authority(const TopicInfo& topic, const Sample& sample);
+  /// Adds a sample that a member of this process has written to the hash log, if there is one.
+  void record(const TopicInfo& topic, const Sample& sample);
+  /// Reports which members the next tick waits for.
+  void report_waiting();
+  /// Waits until the final tick is received, with a bound, if `wait_for_final_tick`; closes the hash log.
+  void finish(bool wait_for_final_tick);
+
+ private:
+  // ConductorSink
+  void start_epoch(const EpochId& epoch, std::uint64_t seed) override;
+  void tick(const msg::Tick& tick) override;
+  void resume(const Resume& resume) override;
+  void refuse(const Hello& hello, const std::string& reason) override;
+
+  void make_endpoints();
+  void make_conductor();
+  void take_done(const msg::TickDone& message);
+  void take_ready(const msg::Ready& message);
+  void take_control(const msg::RunControl& control);
+  /// Returns why the command is refused; empty if it was obeyed.
+  [[nodiscard]] std::string obey(const msg::RunControl& control);
+  [[nodiscard]] msg::RunState current_run_state() const;
+  [[nodiscard]] std::int64_t period_ns() const;
+
+  HostContext& context_;
+  Links& links_;
+  MemberSide& members_;
+  Member& plant_;
+  Pacer pacer_;
+  std::unique_ptr<HashLog> hash_log_;
+  std::unique_ptr<Conductor> conductor_;
+  RunControlAnswers control_answers_;
+  msg::RunState run_state_{};  ///< tick and real-time factor of the last second
+  HostContext::Clock::time_point last_run_state_{};
+  dds::Reader<msg::TickDone> done_reader_;
+  dds::Reader<msg::Ready> ready_reader_;
+  dds::Reader<msg::RunControl> control_reader_;
+  dds::Writer<msg::Tick> tick_writer_;
+  dds::Writer<msg::EpochStart> epoch_writer_;
+  dds::Writer<msg::Resume> resume_writer_;
+  dds::Writer<msg::Refused> refused_writer_;
+  dds::Writer<msg::RunControlAnswer> control_answer_writer_;
+  dds::Writer<msg::RunState> run_state_writer_;
+};
+
+}  // namespace constrictor

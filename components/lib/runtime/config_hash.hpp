@@ -1,0 +1,19 @@
+// Hashes of configuration: all processes of a run must have the same, and a restarted one the same as before.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace constrictor {
+
+/// SHA-256 in hexadecimal over the robot file's bytes, the roster and the plant's name. An empty path counts as an
+/// empty file.
+std::string run_config_hash(const std::filesystem::path& robot_file, const std::vector<std::string>& roster,
+                            const std::string& plant);
+
+/// SHA-256 in hexadecimal over the bytes of a component's own configuration file and of the scenario file. A file that
+/// does not exist counts as empty.
+std::string component_config_hash(const std::filesystem::path& config_file, const std::filesystem::path& scenario_file);
+
+}  // namespace constrictor

@@ -1,0 +1,114 @@
+#include "runtime/host.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "runtime/conductor_side.hpp"
+#include "runtime/config_hash.hpp"
+#include "runtime/host_context.hpp"
+#include "runtime/links.hpp"
+#include "runtime/member_side.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kWaitingReportAfter_s = 2.0;
+constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
+
+volatile std::sig_atomic_t g_stop = 0;
+void on_signal(int) { g_stop = 1; }
+
+std::string this_host() {
+  char name[64] = {};
+  ::gethostname(name, sizeof(name) - 1);
+  return name;
+}
+
+std::string names_of(const std::vector<ComponentFactory>& factories) {
+  std::vector<std::string> names;
+  for (const auto& factory : factories) names.push_back(factory.name);
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
+HostContext make_context(HostOptions options, const std::vector<ComponentFactory>& factories) {
+  const std::string identity = names_of(factories);
+  const std::string config_hash = run_config_hash(options.setup.robot_file, options.roster, options.plant);
+  return {std::move(options), identity, config_hash, this_host()};
+}
+
+}  // namespace
+
+class Host::Impl {
+ public:
+  Impl(HostOptions options, std::vector<ComponentFactory> factories)
+      : context_(make_context(std::move(options), factories)),
+        links_(context_.options.domain),
+        members_(context_, links_, std::move(factories)) {
+    links_.on_rejected([this](const std::string& topic, const std::string& reason) { members_.reject(topic, reason); });
+    if (!members_.plant()) return;
+    conductor_ = std::make_unique<ConductorSide>(context_, links_, members_);
+    members_.connect(*conductor_);
+  }
+
+  int run() {
+    if (!g_stop) members_.send_hello();
+    links_.take_all();
+    while (!context_.exit_status && !g_stop) {
+      members_.send_ready();
+      const bool stepped = members_.step();
+      const bool ticked = conductor_ && conductor_->tick();
+      if (stepped || ticked) context_.note_progress();
+      if (conductor_) conductor_->publish_run_state(false);
+      if (members_.all_ended()) break;
+      links_.wait(stepped || ticked ? 0 : longest_wait_ns());
+      if (!stepped && !ticked) check_patience();
+    }
+    const int status = context_.exit_status.value_or(exit_status::kOk);
+    members_.finish();
+    if (conductor_) conductor_->finish(status == exit_status::kOk);
+    return status;
+  }
+
+ private:
+  [[nodiscard]] dds_duration_t longest_wait_ns() const {
+    const dds_duration_t idle_ns = members_.all_ready() ? DDS_MSECS(100) : DDS_MSECS(10);
+    return conductor_ ? std::min<dds_duration_t>(conductor_->wait_ns(), idle_ns) : idle_ns;
+  }
+
+  /// Reports what this process waits for, and ends it when it has waited too long.
+  void check_patience() {
+    if (conductor_ && conductor_->held()) context_.note_progress();
+    const double waited_s = context_.waited_s();
+    const auto now = HostContext::Clock::now();
+    if (waited_s < kWaitingReportAfter_s || now - last_report_ < kWaitingReportInterval) return;
+    last_report_ = now;
+    if (conductor_) conductor_->report_waiting();
+    members_.report_waiting();
+    if (context_.options.patience_s > 0 && waited_s > context_.options.patience_s) {
+      context_.log.error("gave up after {:.0f} s of waiting; the lines above name what was missing", waited_s);
+      context_.exit_status = exit_status::kWaitedTooLong;
+    }
+  }
+
+  HostContext context_;
+  Links links_;
+  MemberSide members_;
+  std::unique_ptr<ConductorSide> conductor_;  ///< null: the plant is in another process
+  HostContext::Clock::time_point last_report_ = HostContext::Clock::now();
+};
+
+Host::Host(HostOptions options, std::vector<ComponentFactory> factories)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(factories))) {}
+Host::~Host() = default;
+void Host::heed_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+}
+int Host::run() { return impl_->run(); }
+
+}  // namespace constrictor

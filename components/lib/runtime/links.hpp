@@ -1,0 +1,53 @@
+// The DDS side of one process: its participant, and a wait set that calls a function when a reader has samples.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constrictor/reflect.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor {
+
+class Links {
+ public:
+  /// Receives the reason why a message on a topic was rejected.
+  using Reject = std::function<void(const std::string& topic, const std::string& reason)>;
+
+  /// Joins `domain`. Throws dds::Error.
+  explicit Links(std::uint32_t domain);
+  [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
+
+  /// Must be set before the first message is taken.
+  void on_rejected(Reject reject) { reject_ = std::move(reject); }
+  /// Calls `take` when `reader` has samples.
+  void attach(dds_entity_t reader, std::function<void()> take);
+  /// Calls `use(message)` for each message that obeys its IDL; others are rejected. Both `reader` and what `use` refers
+  /// to must outlive the last wait().
+  template <class T, class Use>
+  void attach(const dds::Reader<T>& reader, const char* topic, Use use) {
+    attach(reader.get(), [this, &reader, topic, use = std::move(use)] {
+      reader.take([&](const T& message) {
+        if (const auto violation = validate(message)) return reject_(topic, *violation);
+        use(message);
+      });
+    });
+  }
+
+  /// Takes everything that has arrived.
+  void take_all();
+  /// Waits until a message arrives, for at most `bound_ns`, and takes what has arrived.
+  void wait(dds_duration_t bound_ns);
+
+ private:
+  dds::Domain domain_;
+  dds::Entity wait_set_;
+  Reject reject_;
+  std::vector<std::function<void()>> takers_;  ///< by the number under which the reader is attached
+  std::vector<dds_attach_t> triggered_;
+};
+
+}  // namespace constrictor

@@ -1,0 +1,111 @@
+#include "runtime/member_bus.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+#include "cyclone/discovery.hpp"
+
+namespace constrictor::dds {
+namespace {
+
+template <class T>
+const dds_topic_descriptor_t* descriptor_of(const Topic<T>&) {
+  return &descriptor<T>();
+}
+
+const dds_topic_descriptor_t& descriptor_of_id(std::size_t topic_id) {
+  static const auto descriptors = std::apply(
+      [](const auto&... topic) {
+        return std::array<const dds_topic_descriptor_t*, topics::kCount>{descriptor_of(topic)...};
+      },
+      topics::kAll);
+  return *descriptors.at(topic_id);
+}
+
+bool names(const std::vector<std::string>& identities, std::string_view component) {
+  for (const auto& identity : identities) {
+    std::istringstream list(identity);
+    for (std::string name; std::getline(list, name, ',');) {
+      if (name == component) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity)
+    : participant_(participant) {
+  for (const auto& topic : topics::kInfos) {
+    const std::string name(topic.name);
+    if (writes.contains(topic.id)) {
+      writers_[topic.id] = Entity(create_writer(participant, descriptor_of_id(topic.id), name, topic.depth, identity),
+                                  "dds_create_writer");
+    }
+    if (reads.contains(topic.id)) {
+      readers_[topic.id] =
+          Entity(create_member_reader(participant, descriptor_of_id(topic.id), name, identity), "dds_create_reader");
+    }
+  }
+}
+
+void MemberBus::write(const TopicInfo& topic, const Sample& sample) const {
+  check(dds_write(writers_[topic.id].get(), sample.message.get()), "dds_write");
+}
+
+std::vector<std::pair<std::size_t, dds_entity_t>> MemberBus::readers() const {
+  std::vector<std::pair<std::size_t, dds_entity_t>> list;
+  for (std::size_t id = 0; id < readers_.size(); ++id) {
+    if (readers_[id]) list.emplace_back(id, readers_[id].get());
+  }
+  return list;
+}
+
+void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample&)>& use) const {
+  const auto& ops = topic_ops(topic_id);
+  take_all(readers_[topic_id].get(), [&](const void* message) { use(ops.copy(message)); });
+}
+
+Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of) const {
+  for (const auto& topic : topics::kInfos) {
+    if (readers_[topic.id] && !names(matched_user_data(readers_[topic.id].get(), false), topic.writer)) {
+      return {&topic, true, std::string(topic.writer)};
+    }
+    const auto readers = readers_of.find(topic.id);
+    if (!writers_[topic.id] || readers == readers_of.end()) continue;
+    const auto identities = matched_user_data(writers_[topic.id].get(), true);
+    for (const auto& reader : readers->second) {
+      if (!names(identities, reader)) return {&topic, false, reader};
+    }
+  }
+  return {};
+}
+
+std::string MemberBus::explain(const Unmatched& missing) const {
+  const char* here = missing.reader ? "reader" : "writer";
+  const char* there = missing.reader ? "writer" : "reader";
+  const std::string topic(missing.topic->name);
+  const Endpoint own = own_endpoint((missing.reader ? readers_ : writers_)[missing.topic->id].get(),
+                                    descriptor_of_id(missing.topic->id));
+  std::string text = topic + ": the " + here + " here (" + describe(own.qos) + ") has not met the " + there + " of " +
+                     missing.counterpart;
+  // Prefers an endpoint that names the component to one without user data, whose author may have forgotten it.
+  std::optional<Endpoint> found;
+  for (auto& endpoint : Discovery(participant_).endpoints()) {
+    if (endpoint.topic != topic || endpoint.writer != missing.reader) continue;
+    const bool named = names({endpoint.user_data}, missing.counterpart);
+    if (named || (endpoint.user_data.empty() && !found)) found = std::move(endpoint);
+    if (named) break;
+  }
+  if (!found) return text + ", which is not there";
+  const std::string why = missing.reader ? mismatch(*found, own) : mismatch(own, *found);
+  const bool nameless = found->user_data.empty();
+  text += (nameless ? std::string("; there is a ") + there + " without a name (" : std::string(" (")) +
+          describe(found->qos) + "); ";
+  if (!why.empty()) return text + why;
+  return text +
+         (nameless ? "its user data must be '" + missing.counterpart + "'" : "perhaps their type information differs");
+}
+
+}  // namespace constrictor::dds

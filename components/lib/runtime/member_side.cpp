@@ -1,0 +1,227 @@
+#include "runtime/member_side.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "runtime/conductor_side.hpp"
+#include "runtime/config_hash.hpp"
+#include "runtime/numeric_profile.hpp"
+#include "runtime/version.hpp"
+
+namespace constrictor {
+namespace {
+
+namespace wire = dds::barrier_topics;
+
+constexpr auto kMatchCheckInterval = std::chrono::milliseconds(10);
+
+}  // namespace
+
+MemberSide::MemberSide(HostContext& context, Links& links, std::vector<ComponentFactory> factories)
+    : context_(context), links_(links) {
+  const HostOptions& options = context.options;
+  const bool conducts = std::any_of(factories.begin(), factories.end(),
+                                    [&](const ComponentFactory& factory) { return factory.name == options.plant; });
+  members_.reserve(factories.size());
+  for (auto& factory : factories) {
+    Setup setup = options.setup;
+    const auto config = options.config_files.find(factory.name);
+    if (config != options.config_files.end()) setup.config_file = config->second;
+    const bool checkpoints = !conducts || options.record;
+    auto member = std::make_unique<Member>(std::move(factory), std::move(setup), options.incarnation, checkpoints,
+                                           static_cast<MemberSink&>(*this));
+    if (member->name() == options.plant) plant_ = member.get();
+    const std::string config_hash = component_config_hash(member->setup().config_file, member->setup().scenario_file);
+    members_.push_back({std::move(member), {}, false, config_hash});
+  }
+  if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
+    throw std::runtime_error(fmt::format("--plant: found '{}', accepted a component that is a plant", options.plant));
+  }
+  make_endpoints();
+}
+
+MemberSide::~MemberSide() = default;
+
+void MemberSide::connect(ConductorSide& conductor) { conductor_ = &conductor; }
+
+bool MemberSide::hosts(const std::string& component) const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [&](const LocalMember& local) { return local.member->name() == component; });
+}
+
+Hello MemberSide::hello_of(const LocalMember& local) const {
+  const Member& member = *local.member;
+  Hello hello;
+  hello.component = member.name();
+  hello.run_id = context_.options.run_id;
+  hello.incarnation = member.incarnation();
+  hello.pid = ::getpid();
+  hello.host = context_.host_name;
+  hello.idl_hash = std::string(msg::kIdlHash);
+  hello.config_hash = context_.config_hash;
+  hello.component_hash = local.config_hash;
+  hello.numeric_profile = numeric_profile();
+  hello.timing = member.timing();
+  hello.reads = member.reads();
+  hello.writes = member.writes();
+  return hello;
+}
+
+void MemberSide::send_hello() {
+  for (const auto& local : members_) {
+    const Hello hello = hello_of(local);
+    hello_writer_.write(dds::to_wire(hello, kVersion));
+    if (conductor_) conductor_->on_hello(hello);
+  }
+}
+
+void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
+  for (auto& local : members_) {
+    local.member->on_epoch(epoch, seed);
+    local.ready_sent = false;
+  }
+}
+
+void MemberSide::on_tick(const msg::Tick& tick) {
+  for (auto& local : members_) local.member->on_tick(tick);
+}
+
+void MemberSide::send_ready() {
+  // Each member for itself: after a restart the members of a process are resumed one by one.
+  const auto owes = [](const LocalMember& local) { return local.member->in_epoch() && !local.ready_sent; };
+  if (std::none_of(members_.begin(), members_.end(), owes)) return;
+  const auto now = HostContext::Clock::now();
+  if (now - last_match_check_ < kMatchCheckInterval) return;
+  last_match_check_ = now;
+  std::map<std::size_t, std::vector<std::string>> readers_of;
+  for (const auto& name : context_.options.roster) {
+    if (hosts(name)) continue;
+    const auto hello = hellos_.find(name);
+    if (hello == hellos_.end()) return;  // what it reads is not known yet
+    for (const auto& topic : topics::kInfos) {
+      if (hello->second.reads.contains(topic.id)) readers_of[topic.id].push_back(name);
+    }
+  }
+  unmatched_ = bus_->unmatched(readers_of);
+  if (!unmatched_.empty()) return;
+  for (auto& local : members_) {
+    if (!owes(local)) continue;
+    const Member& member = *local.member;
+    local.ready_sent = true;
+    if (conductor_) {
+      conductor_->on_ready(member);
+      continue;
+    }
+    msg::Ready ready{};
+    dds::set_text(ready.component, member.name());
+    ready.run_id = member.epoch().run_id;
+    ready.epoch = member.epoch().epoch;
+    ready.incarnation = member.incarnation();
+    ready_writer_.write(ready);
+  }
+}
+
+bool MemberSide::step() {
+  bool any = false;
+  for (auto& local : members_) {
+    for (;;) {
+      const auto start = HostContext::Clock::now();
+      if (!local.member->try_step()) break;
+      local.meter.add(HostContext::Clock::now() - start);
+      any = true;
+      if (local.meter.due(local.member->last_done())) publish_status(local, msg::kComponentRunning);
+    }
+  }
+  return any;
+}
+
+bool MemberSide::all_ended() const {
+  return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->ended(); });
+}
+
+bool MemberSide::all_ready() const {
+  return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.ready_sent; });
+}
+
+void MemberSide::publish(const TopicInfo& topic, const Sample& sample) {
+  for (auto& local : members_) {
+    if (local.member->reads().contains(topic.id)) local.member->on_sample(topic.id, sample);
+  }
+  if (conductor_) conductor_->note_authority(topic, sample);
+  bus_->write(topic, sample);
+  if (conductor_) conductor_->record(topic, sample);
+}
+
+void MemberSide::done(const TickDone& step) {
+  if (conductor_) return conductor_->on_done(step);
+  std::string block;
+  done_writer_.write(dds::to_wire(step, block));
+}
+
+void MemberSide::publish_status(LocalMember& local, std::uint8_t state) {
+  const Member& member = *local.member;
+  msg::ComponentStatus status{};
+  dds::set_text(status.component, member.name());
+  if (member.in_epoch()) {
+    status.run_id = member.epoch().run_id;
+    status.epoch = member.epoch().epoch;
+  }
+  status.incarnation = member.incarnation();
+  status.state = state;
+  status.tick = member.last_done();
+  local.meter.fill(status);
+  status.overruns = member.counters().skipped;
+  status.refused_count = member.counters().refused;
+  dds::set_text(status.last_refusal, member.counters().last_refusal);
+  dds::set_text(status.version, kVersion);
+  dds::set_text(status.idl_hash, std::string(msg::kIdlHash));
+  status.pid = ::getpid();
+  dds::set_text(status.host, context_.host_name);
+  status_writer_.write(status);
+}
+
+void MemberSide::report_waiting() {
+  if (!unmatched_.empty()) context_.log.warning("{}", bus_->explain(unmatched_));
+  for (auto& local : members_) {
+    const MissingInput missing = local.member->missing();
+    if (missing.topic) {
+      report_waiting(*local.member, std::string(missing.topic->name), std::string(missing.topic->writer), missing.tick,
+                     missing.have, missing.want);
+    } else if (!conductor_) {
+      report_waiting(*local.member, local.member->in_epoch() ? "Tick" : "EpochStart", context_.options.plant,
+                     missing.tick, 0, 1);
+    }
+    publish_status(local, msg::kComponentWaiting);
+  }
+}
+
+void MemberSide::report_waiting(const Member& waiter, const std::string& topic, const std::string& writer,
+                                std::int64_t tick, std::uint64_t have, std::uint64_t want) {
+  const double waited_s = context_.waited_s();
+  const std::string subject = waiter.name() == context_.identity ? "" : waiter.name() + " ";
+  context_.log.warning("{}waits for {} of {} at tick {} (has {}, needs {}) for {:.0f} s", subject, topic, writer, tick,
+                       have, want, waited_s);
+  msg::Waiting message{};
+  dds::set_text(message.component, waiter.name());
+  if (waiter.in_epoch()) message.run_id = waiter.epoch().run_id;
+  message.tick = tick;
+  dds::set_text(message.topic, topic);
+  dds::set_text(message.writer, writer);
+  message.have = have;
+  message.want = want;
+  message.waited_s = waited_s;
+  waiting_writer_.write(message);
+}
+
+void MemberSide::finish() {
+  // Only the final tick ends a run. A process that is stopped before it sends its last counts as a running one.
+  for (auto& local : members_)
+    publish_status(local, local.member->ended() ? msg::kComponentEnded : msg::kComponentRunning);
+  // By the plant's last status the launcher knows that the run has ended.
+  if (plant_ && plant_->ended()) dds_wait_for_acks(status_writer_.get(), DDS_SECS(1));
+}
+
+}  // namespace constrictor

@@ -1,0 +1,109 @@
+// The members of one process: they announce themselves, get ready, step, and exchange messages with the other members.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "barrier/member.hpp"
+#include "runtime/client_link.hpp"
+#include "runtime/host_context.hpp"
+#include "runtime/links.hpp"
+#include "runtime/member_bus.hpp"
+#include "runtime/status_meter.hpp"
+#include "runtime/wire.hpp"
+
+namespace constrictor {
+
+class ConductorSide;
+
+/// Without a conductor in the same process, ticks and epochs arrive over DDS; with one, by direct calls.
+class MemberSide : private MemberSink {
+ public:
+  /// Builds the components and their endpoints. `context` and `links` must outlive this object. Throws
+  /// ConfigurationError, dds::Error, or std::runtime_error if the member named as the plant is not a plant.
+  MemberSide(HostContext& context, Links& links, std::vector<ComponentFactory> factories);
+  ~MemberSide() override;
+  /// Connects the conductor of this process. To be called before any message is taken.
+  void connect(ConductorSide& conductor);
+
+  /// The plant if it is in this process, else null.
+  [[nodiscard]] Member* plant() const { return plant_; }
+  /// Announces every member.
+  void send_hello();
+  /// Sends Ready for each member that is in an epoch and whose endpoints have all met their counterparts.
+  void send_ready();
+  /// Does every step that is due. Returns whether there was one.
+  bool step();
+  [[nodiscard]] bool all_ended() const;
+  /// False while a member has still to send Ready.
+  [[nodiscard]] bool all_ready() const;
+
+  // What the conductor of this process sends.
+  void on_epoch(const EpochId& epoch, std::uint64_t seed);
+  void on_tick(const msg::Tick& tick);
+
+  /// Counts a rejected message in the ComponentStatus of a member of this process.
+  void reject(const std::string& topic, const std::string& reason);
+  /// Whether a message names the run of this process, if that run is known yet; otherwise the message is rejected.
+  [[nodiscard]] bool accept_run(const char* topic, std::uint64_t run_id);
+  /// Logs and publishes what each member waits for.
+  void report_waiting();
+  /// Logs and publishes that `waiter`, a member of this process, waits for a message of `writer`.
+  void report_waiting(const Member& waiter, const std::string& topic, const std::string& writer, std::int64_t tick,
+                      std::uint64_t have, std::uint64_t want);
+  /// Sends the last status of each member; at the end of the run also waits until it is received, with a bound.
+  void finish();
+
+ private:
+  struct LocalMember {
+    std::unique_ptr<Member> member;
+    StatusMeter meter;
+    bool ready_sent = false;  ///< in the present epoch
+    std::string config_hash;  ///< of its configuration and scenario file
+  };
+
+  // MemberSink
+  void publish(const TopicInfo& topic, const Sample& sample) override;
+  void done(const TickDone& done) override;
+
+  void make_endpoints();
+  void attach_barrier_readers();
+  void attach_inputs();
+  void take_epoch_start(const msg::EpochStart& start);
+  void take_resume(const msg::Resume& message);
+  void take_tick(const msg::Tick& tick);
+  void take_refused(const msg::Refused& message);
+  void take_hello(const msg::Hello& message);
+  void take_run_state(const msg::RunState& state);
+  [[nodiscard]] Hello hello_of(const LocalMember& local) const;
+  [[nodiscard]] bool hosts(const std::string& component) const;
+  /// The run of this process: the launcher's, else the one that has begun; 0: none yet.
+  [[nodiscard]] std::uint64_t run_id() const;
+  void publish_status(LocalMember& local, std::uint8_t state);
+
+  HostContext& context_;
+  Links& links_;
+  std::vector<LocalMember> members_;
+  Member* plant_ = nullptr;
+  ConductorSide* conductor_ = nullptr;  ///< null: it is in another process
+  std::unique_ptr<dds::MemberBus> bus_;
+  std::unique_ptr<dds::ClientLink> client_link_;  ///< null: no member of this process takes requests
+  dds::Reader<msg::Tick> tick_reader_;
+  dds::Reader<msg::EpochStart> epoch_reader_;
+  dds::Reader<msg::Resume> resume_reader_;
+  dds::Reader<msg::Refused> refused_reader_;
+  dds::Reader<msg::Hello> hello_reader_;
+  dds::Reader<msg::RunState> run_state_reader_;
+  dds::Writer<msg::Hello> hello_writer_;
+  dds::Writer<msg::TickDone> done_writer_;
+  dds::Writer<msg::Ready> ready_writer_;
+  dds::Writer<msg::Waiting> waiting_writer_;
+  dds::Writer<msg::ComponentStatus> status_writer_;
+  std::map<std::string, Hello> hellos_;  ///< of members in other processes
+  HostContext::Clock::time_point last_match_check_{};
+  dds::Unmatched unmatched_;  ///< result of the last check
+};
+
+}  // namespace constrictor

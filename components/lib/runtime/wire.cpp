@@ -1,0 +1,126 @@
+#include "runtime/wire.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace constrictor::dds {
+namespace {
+
+dds_sequence_octet borrow(std::string& block) {
+  dds_sequence_octet sequence{};
+  sequence._length = sequence._maximum = static_cast<std::uint32_t>(block.size());
+  sequence._buffer = reinterpret_cast<std::uint8_t*>(block.data());
+  sequence._release = false;
+  return sequence;
+}
+
+std::string bytes_of(const dds_sequence_octet& sequence) {
+  return {reinterpret_cast<const char*>(sequence._buffer), sequence._length};
+}
+
+}  // namespace
+
+msg::TickDone to_wire(const TickDone& done, std::string& block) {
+  msg::TickDone message{};
+  set_text(message.component, done.component);
+  message.run_id = done.epoch.run_id;
+  message.epoch = done.epoch.epoch;
+  message.incarnation = done.incarnation;
+  message.index = done.index;
+  if (done.published.size() > std::size(message.published))
+    throw std::logic_error(done.component + " writes too many topics");
+  message.published_count = static_cast<std::uint8_t>(done.published.size());
+  for (std::size_t i = 0; i < done.published.size(); ++i) {
+    message.published[i] = {done.published[i].topic, done.published[i].count};
+  }
+  if (done.consumed.size() > std::size(message.consumed))
+    throw std::logic_error(done.component + " reads too many topics");
+  message.consumed_count = static_cast<std::uint8_t>(done.consumed.size());
+  for (std::size_t i = 0; i < done.consumed.size(); ++i)
+    message.consumed[i] = {done.consumed[i].topic, done.consumed[i].count};
+  std::copy(done.output_hash.begin(), done.output_hash.end(), message.output_hash);
+  message.end_of_run = done.end_of_run;
+  block = pack_checkpoint(done.state, done.written);
+  message.checkpoint = borrow(block);
+  return message;
+}
+
+std::optional<TickDone> from_wire(const msg::TickDone& message) {
+  TickDone done;
+  done.component = message.component;
+  done.epoch = {message.run_id, message.epoch};
+  done.incarnation = message.incarnation;
+  done.index = message.index;
+  for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
+    done.published.push_back({message.published[i].topic, message.published[i].count});
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(message.consumed_count, std::size(message.consumed)); ++i) {
+    done.consumed.push_back({message.consumed[i].topic, message.consumed[i].count});
+  }
+  std::copy(std::begin(message.output_hash), std::end(message.output_hash), done.output_hash.begin());
+  done.end_of_run = message.end_of_run;
+  if (!unpack_checkpoint(bytes_of(message.checkpoint), done.state, done.written)) return {};
+  return done;
+}
+
+msg::Hello to_wire(const Hello& hello, const std::string& version) {
+  msg::Hello message{};
+  set_text(message.component, hello.component);
+  message.run_id = hello.run_id;
+  message.incarnation = hello.incarnation;
+  message.pid = hello.pid;
+  set_text(message.host, hello.host);
+  set_text(message.version, version);
+  set_text(message.idl_hash, hello.idl_hash);
+  set_text(message.config_hash, hello.config_hash);
+  set_text(message.component_hash, hello.component_hash);
+  set_text(message.numeric_profile, hello.numeric_profile);
+  message.period_ticks = hello.timing.period;
+  message.latency_ticks = hello.timing.latency;
+  message.reads = hello.reads.bits();
+  message.writes = hello.writes.bits();
+  return message;
+}
+
+Hello from_wire(const msg::Hello& message) {
+  Hello hello;
+  hello.component = message.component;
+  hello.run_id = message.run_id;
+  hello.incarnation = message.incarnation;
+  hello.pid = message.pid;
+  hello.host = message.host;
+  hello.idl_hash = message.idl_hash;
+  hello.config_hash = message.config_hash;
+  hello.component_hash = message.component_hash;
+  hello.numeric_profile = message.numeric_profile;
+  hello.timing = {message.period_ticks, message.latency_ticks};
+  hello.reads = TopicSet::from_bits(message.reads);
+  hello.writes = TopicSet::from_bits(message.writes);
+  return hello;
+}
+
+msg::Resume to_wire(const Resume& resume, std::string& block) {
+  msg::Resume message{};
+  set_text(message.component, resume.component);
+  message.run_id = resume.epoch.run_id;
+  message.epoch = resume.epoch.epoch;
+  message.incarnation = resume.incarnation;
+  message.index = resume.index;
+  message.seed = resume.seed;
+  block = pack_checkpoint(resume.state, resume.outputs);
+  message.checkpoint = borrow(block);
+  return message;
+}
+
+std::optional<Resume> from_wire(const msg::Resume& message) {
+  Resume resume;
+  resume.component = message.component;
+  resume.epoch = {message.run_id, message.epoch};
+  resume.incarnation = message.incarnation;
+  resume.index = message.index;
+  resume.seed = message.seed;
+  if (!unpack_checkpoint(bytes_of(message.checkpoint), resume.state, resume.outputs)) return {};
+  return resume;
+}
+
+}  // namespace constrictor::dds

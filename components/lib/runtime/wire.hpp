@@ -1,0 +1,26 @@
+// Converts the barrier's values (barrier/protocol.hpp) to and from their wire forms (idl/constrictor/barrier.idl).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "barrier/protocol.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor::dds {
+
+namespace barrier_topics = ::constrictor::barrier_topics;
+
+/// The message points to the bytes in `block`, which must outlive it. Throws std::logic_error if the member reads or
+/// writes more topics than the message has room for.
+msg::TickDone to_wire(const TickDone& done, std::string& block);
+/// `message` must have passed validate(). Empty if the checkpoint is damaged.
+std::optional<TickDone> from_wire(const msg::TickDone& message);
+msg::Hello to_wire(const Hello& hello, const std::string& version);
+Hello from_wire(const msg::Hello& message);
+msg::Resume to_wire(const Resume& resume, std::string& block);
+/// The same.
+std::optional<Resume> from_wire(const msg::Resume& message);
+
+}  // namespace constrictor::dds

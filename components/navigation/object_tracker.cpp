@@ -1,0 +1,103 @@
+#include "navigation/object_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace constrictor {
+namespace {
+
+constexpr std::size_t kPosesKept = 40;
+
+void miss(const ObjectTrackerConfig& config, Sighting& s) {
+  s.seen = 0;
+  ++s.missed;
+  if (s.missed >= config.lost_after) s.visible = false;
+}
+
+/// Radius from the image if it shows the whole width; otherwise the radius so far.
+double measured_radius_m(const ObjectTrackerConfig& config, const msg::Blob& blob, const Sighting& s) {
+  const bool whole = !blob.cut_left && !blob.cut_right && std::isfinite(blob.width_m) && blob.width_m > 0.0;
+  const double before_m = s.radius_m > 0.0 ? s.radius_m : config.object_radius_m;
+  if (!whole) return before_m;
+  const double now_m = std::clamp(0.5 * blob.width_m, config.min_radius_m, config.max_radius_m);
+  return before_m + 0.2 * (now_m - before_m);
+}
+
+void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, const Pose2& X_MH, std::int64_t tick,
+         Sighting& s) {
+  ++s.seen;
+  s.missed = 0;
+  s.seen_tick = tick;
+  s.bearing_rad = blob.bearing_rad;
+  s.range_m = blob.range_m;
+  if (s.seen >= config.found_after) s.visible = true;
+  if (!zone) s.radius_m = measured_radius_m(config, blob, s);
+  // If the image cuts the object at the bottom or at a side, the centre of the visible part is not the object's centre.
+  const bool whole = !blob.cut_bottom && !blob.cut_left && !blob.cut_right;
+  if (!std::isfinite(blob.range_m) || !std::isfinite(blob.bearing_rad) || (!whole && s.known)) return;
+  double radius_m = s.radius_m;
+  if (zone) {
+    radius_m = std::isfinite(blob.width_m) && blob.width_m > 0.0 ? 0.5 * blob.width_m : config.zone_radius_m;
+    radius_m = std::clamp(radius_m, 0.1, 0.6);
+    s.radius_m = radius_m;
+  }
+  const double distance_m = blob.range_m + radius_m;
+  const Eigen::Vector2d p_M =
+      X_MH.to_parent({distance_m * std::cos(blob.bearing_rad), distance_m * std::sin(blob.bearing_rad)});
+  if (!s.known || (p_M - s.p_M()).norm() > config.jump_m) s.weight = 0.0;
+  s.weight = std::min(config.memory_images, s.weight + 1.0);
+  s.x_m += (p_M.x() - s.x_m) / s.weight;
+  s.y_m += (p_M.y() - s.y_m) / s.weight;
+  s.known = true;
+}
+
+}  // namespace
+
+void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectTrackerState& state) {
+  state.poses.push_back({static_cast<double>(tick), X_MH.p.x(), X_MH.p.y(), X_MH.yaw_rad});
+  while (state.poses.size() > kPosesKept) state.poses.pop_front();
+}
+
+Pose2 remembered_pose(std::int64_t tick, const ObjectTrackerState& state) {
+  Pose2 pose;
+  double nearest = 1e18;
+  for (const auto& [at, x_m, y_m, yaw_rad] : state.poses) {
+    const double distance = std::abs(at - static_cast<double>(tick));
+    if (distance > nearest) continue;
+    nearest = distance;
+    pose.p = {x_m, y_m};
+    pose.yaw_rad = yaw_rad;
+  }
+  return pose;
+}
+
+void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
+                           ObjectTrackerState& state) {
+  const Pose2 X_MH = remembered_pose(percepts.exposure_tick, state);
+  std::array<const msg::Blob*, msg::kColourCount> object{};
+  std::array<const msg::Blob*, msg::kColourCount> zone{};
+  for (std::size_t i = 0; i < percepts.blob_count; ++i) {
+    const msg::Blob& blob = percepts.blobs[i];
+    if (blob.colour >= msg::kColourCount) continue;
+    const bool flat = blob.kind == msg::kBlobZone;
+    const bool undecided = blob.kind == msg::kBlobUndecided;
+    auto keep = [&blob](const msg::Blob*& best) {
+      if (!best || blob.area_fraction > best->area_fraction) best = &blob;
+    };
+    if (blob.kind == msg::kBlobObject || (undecided && state.objects[blob.colour].visible)) keep(object[blob.colour]);
+    if (flat || (undecided && state.zones[blob.colour].visible)) keep(zone[blob.colour]);
+  }
+  for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
+    auto take = [&](const msg::Blob* blob, bool flat, Sighting& s) {
+      if (blob) {
+        see(config, *blob, flat, X_MH, percepts.exposure_tick, s);
+      } else {
+        miss(config, s);
+      }
+    };
+    take(object[colour], false, state.objects[colour]);
+    take(zone[colour], true, state.zones[colour]);
+  }
+}
+
+}  // namespace constrictor

@@ -1,0 +1,77 @@
+// The object and the drop zone of each colour as navigation sees them: visible or not, debounced over images, and their
+// positions in the map.
+#pragma once
+
+#include <array>
+#include <cereal/types/array.hpp>
+#include <cereal/types/deque.hpp>
+#include <cstdint>
+#include <deque>
+
+#include "configuration/parameter_set.hpp"
+#include "constrictor/messages.hpp"
+#include "navigation/pose2.hpp"
+
+namespace constrictor {
+
+/// The object, or the drop zone, of one colour as seen so far.
+struct Sighting {
+  int seen = 0;          ///< consecutive images that showed it
+  int missed = 0;        ///< consecutive images that did not
+  bool visible = false;  ///< debounced
+  bool known = false;    ///< its position was measured at least once
+  double x_m = 0.0;      ///< centre in M
+  double y_m = 0.0;
+  double radius_m = 0.0;     ///< estimate
+  double weight = 0.0;       ///< number of images in the average of the position, limited to memory_images
+  double bearing_rad = 0.0;  ///< in the newest image that showed it, in frame G
+  double range_m = 0.0;      ///< to its nearest ground point in that image; NaN: unknown
+  std::int64_t seen_tick = -1;
+  [[nodiscard]] Eigen::Vector2d p_M() const { return {x_m, y_m}; }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(seen, missed, visible, known, x_m, y_m, radius_m, weight, bearing_rad, range_m, seen_tick);
+  }
+};
+
+struct ObjectTrackerConfig : ParameterSet {
+  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, Changes::kWhileRunning,
+                        "An object is visible after this number of consecutive images with it");
+  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, Changes::kWhileRunning,
+                       "An object is not visible after this number of consecutive images without it");
+  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, Changes::kAtStart,
+                               "Radius of an object until an image shows its whole width");
+  double min_radius_m =
+      add(min_radius_m, "min_radius_m", 0.06, "m", {0.0, 10.0}, Changes::kAtStart, "Smallest radius of an object");
+  double max_radius_m =
+      add(max_radius_m, "max_radius_m", 0.12, "m", {0.0, 10.0}, Changes::kAtStart, "Largest radius of an object");
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.0, 10.0}, Changes::kAtStart,
+                             "Radius of a zone until an image shows its whole width");
+  double jump_m = add(jump_m, "jump_m", 0.5, "m", {0.0, 10.0}, Changes::kWhileRunning,
+                      "An object seen farther than this from its averaged position has been moved");
+  double memory_images = add(memory_images, "memory_images", 8.0, "images", {1.0, 1000.0}, Changes::kAtStart,
+                             "Number of images over which a position is averaged");
+};
+
+struct ObjectTrackerState {
+  std::array<Sighting, msg::kColourCount> objects;  ///< by colour
+  std::array<Sighting, msg::kColourCount> zones;
+  std::deque<std::array<double, 4>> poses;  ///< (tick, x, y, yaw) of the head in M, newest last
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(objects, zones, poses);
+  }
+};
+
+/// Stores the pose of this tick, so that a later percept can be placed from where its image was taken.
+void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectTrackerState& state);
+
+/// Takes a new set of percepts. Of several blobs of one colour and kind the largest counts. An undecided blob counts
+/// for the object, and for the zone, of its colour that is visible already.
+void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
+                           ObjectTrackerState& state);
+
+/// Pose of the head in M at a tick: the stored pose of the nearest tick.
+Pose2 remembered_pose(std::int64_t tick, const ObjectTrackerState& state);
+
+}  // namespace constrictor

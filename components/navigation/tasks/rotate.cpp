@@ -1,0 +1,42 @@
+// Rotate (Tables XIII, XIV): the robot turns on the spot until the optional timeout, until another task starts, or
+// until it is cancelled.
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/motions.hpp"
+
+namespace constrictor {
+namespace {
+
+struct RotateState {
+  double run_s = 0.0;  ///< since the start
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(run_s);
+  }
+};
+
+class Rotate : public StatefulTask<RotateState> {
+ public:
+  void start(const TaskInput&, Grip&) override {}
+  void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
+    const RotateConfig& config = input.config.rotate;
+    const double sign = input.parameters.direction == msg::kDirectionLeft ? 1.0 : -1.0;
+    const double curvature_1_m = sign * (grip.carrying ? config.carry_curvature_1_m : config.curvature_1_m);
+    undulate(present_gait(input.config, grip), curvature_1_m, 1.0, grip, output);
+    output.phase = "rotate";
+    state_.run_s += input.tick.dt_s();
+    const double timeout_s = input.parameters.timeout_s;
+    if (!std::isfinite(timeout_s) || timeout_s <= 0.0) return;
+    output.progress = std::min(1.0, state_.run_s / timeout_s);
+    if (state_.run_s < timeout_s) return;
+    output.emit(msg::kEventTimeout);
+    output.succeed();
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Task> make_rotate() { return std::make_unique<Rotate>(); }
+
+}  // namespace constrictor

@@ -1,0 +1,58 @@
+// One process that the launcher started. It cannot outlive the launcher, and its output is kept in a log.
+#pragma once
+
+#include <sys/types.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace constrictor::cli {
+
+/// How a process ended.
+struct ChildExit {
+  int wait_status = 0;  ///< as waitpid reports it
+  double cpu_s = 0;     ///< [s] user and system time over the life of the process
+
+  /// Ended with exit status 0.
+  [[nodiscard]] bool clean() const { return wait_status == 0; }
+  /// Exit status; empty if a signal ended the process.
+  [[nodiscard]] std::optional<int> code() const;
+  /// Ended by SIGKILL or SIGTERM, which only other processes send.
+  [[nodiscard]] bool killed_from_outside() const {
+    return WIFSIGNALED(wait_status) && (WTERMSIG(wait_status) == SIGKILL || WTERMSIG(wait_status) == SIGTERM);
+  }
+  /// "ended with status 78 (configuration)", "was killed by signal 9 (Killed)".
+  [[nodiscard]] std::string describe() const;
+};
+
+class ChildProcess {
+ public:
+  /// Starts `argv` with the environment `environment` ("NAME=VALUE", complete); its output is appended to `log`. The
+  /// kernel kills the process when the thread that called this ends, however it ends. Throws std::system_error.
+  ChildProcess(const std::vector<std::string>& argv, const std::vector<std::string>& environment,
+               const std::filesystem::path& log);
+  ~ChildProcess();  ///< kills the process if it still runs
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  [[nodiscard]] bool running() const { return !exit_; }
+  /// Returns how the process ended, or nothing while it runs. Never waits.
+  const std::optional<ChildExit>& poll();
+  void signal(int number) const;
+  /// [MiB] memory in use, each shared page divided by the number of its users; 0 if it cannot be read.
+  [[nodiscard]] double pss_mib() const;
+
+ private:
+  pid_t pid_ = -1;
+  std::optional<ChildExit> exit_;
+};
+
+/// The last `count` lines of a log file after byte `offset`, without empty lines.
+std::vector<std::string> last_lines(const std::filesystem::path& log, std::uintmax_t offset, std::size_t count);
+
+}  // namespace constrictor::cli

@@ -1,0 +1,137 @@
+#include "cli/commands.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/launch_plan.hpp"
+#include "cli/run_difference.hpp"
+#include "cli/usage.hpp"
+#include "client/run_registry.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPoll = 20ms;
+constexpr auto kEndBound = 90s;  // longer than RunEnding's bounds together
+
+}  // namespace
+
+int end_command(std::optional<std::uint32_t> domain) {
+  const RunNote run = find_run(domain);
+  if (::kill(run.pid, SIGTERM) != 0) {
+    throw CommandError(
+        fmt::format("run {}: cannot signal its launcher (pid {}): {}", run.domain, run.pid, ::strerrordesc_np(errno)));
+  }
+  const auto end = Clock::now() + kEndBound;
+  while (domain_claimed(run.domain)) {
+    if (Clock::now() > end) {
+      fmt::print(stderr, "end: run {} (pid {}) did not end within {} s; `constrictor end` again kills its processes\n",
+                 run.domain, run.pid, kEndBound.count());
+      return exit_status::kWaitedTooLong;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+  const auto report = run.report_dir / "report.json";
+  std::ifstream file(report);
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  const std::string reason = json.is_object() ? json.value("reason", std::string()) : "";
+  fmt::print("run {} has ended{}; {}\n", run.domain, reason.empty() ? "" : ": " + reason, report.string());
+  return exit_status::kOk;
+}
+
+int diff_command(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto difference = compare_runs(a, b);
+  if (!difference) {
+    fmt::print("equal\n");
+    return exit_status::kOk;
+  }
+  fmt::print("first difference: tick {}, component {}, topic {}", difference->tick, difference->component,
+             difference->topic);
+  if (!difference->field.empty()) fmt::print(", field {}", difference->field);
+  fmt::print("\n  {}: {}\n  {}: {}\n", a.string(), difference->a, b.string(), difference->b);
+  if (difference->field.empty() && difference->a.starts_with("hash")) {
+    fmt::print("  (for the field and its values, record both runs with `constrictor run --record`)\n");
+  }
+  return exit_status::kFailed;
+}
+
+int host_command(int argc, char** argv) {
+  const std::filesystem::path program = program_folder() / "constrictor_host";
+  std::string names;
+  int next = 0;
+  for (; next < argc && argv[next][0] != '-'; ++next) names += (names.empty() ? "" : ",") + std::string(argv[next]);
+  std::vector<std::string> arguments = {program.string()};
+  if (!names.empty()) arguments.push_back(names);
+  arguments.insert(arguments.end(), argv + next, argv + argc);
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(program.c_str(), pointers.data());
+  std::perror(program.c_str());
+  return exit_status::kSoftware;
+}
+
+void add_commands(CLI::App& app, std::function<int()>& action) {
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
+  auto* end = app.add_subcommand("end", "end a run in order, with a complete report");
+  add_run_option(*end, *domain);
+  end->footer(help_footer(
+      "Asks the run's launcher to end the run and waits until its last process has ended. All components finish the\n"
+      "last tick, and the report component writes figure, objects, line and events. The same command again, while the\n"
+      "run is ending, kills its processes.",
+      {"constrictor end"},
+      "0 the run has ended; 64 wrong usage; 70 no run, or several and none chosen; 75 it did not end within 90 s"));
+  end->callback([&action, domain] { action = [domain] { return end_command(*domain); }; });
+
+  struct Directories {
+    std::string a, b;
+  };
+  auto runs = std::make_shared<Directories>();
+  auto* diff = app.add_subcommand("diff", "name the first tick, component, topic and field in which two runs differ");
+  diff->add_option("RUN_A", runs->a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
+  diff->add_option("RUN_B", runs->b, "report directory of another run")->required()->check(CLI::ExistingDirectory);
+  diff->footer(
+      "Compares the hashes of everything that was published at every tick. If both runs were made with\n"
+      "`constrictor run --record`, it also names the field and both values. Equal runs are equal in every bit of "
+      "every\n"
+      "message.\n\n"
+      "EXAMPLES\n"
+      "  constrictor run line --max-sim-time 5 --report a; constrictor run line --max-sim-time 5 --in-process --report "
+      "b\n"
+      "  constrictor diff a b\n\n"
+      "EXIT STATUS\n"
+      "  0 equal; 1 different; 64 wrong usage; 70 hashes.bin of a run is missing, damaged, or has no tick\n\n"
+      "ENVIRONMENT\n  none");
+  diff->callback([&action, runs] { action = [runs] { return diff_command(runs->a, runs->b); }; });
+
+  app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
+      ->footer(
+          "The process becomes `constrictor_host`. Components in it exchange messages through queues, and use DDS to\n"
+          "reach components elsewhere. If it hosts only some components of a run, --roster must name all of them.\n"
+          "`constrictor run --group` does this for you.\n\n"
+          "EXAMPLES\n"
+          "  constrictor host navigation --help      # all options\n"
+          "  constrictor host navigation control guidance --domain 5 --roster physics,navigation,control,guidance\n\n"
+          "EXIT STATUS\n"
+          "  0 the run is over, or SIGTERM; 64 wrong usage; 70 it failed; 75 it waited too long for another process;\n"
+          "  76 it was refused; 78 wrong configuration\n\n"
+          "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI");
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,29 @@
+// The smaller subcommands of `constrictor`: end, diff and host. Each function returns an exit status.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+namespace CLI {
+class App;
+}
+
+namespace constrictor::cli {
+
+/// Asks a run's launcher to end the run and waits until the launcher has ended. Throws CommandError if there is no such
+/// run.
+int end_command(std::optional<std::uint32_t> domain);
+
+/// Prints the first difference of two runs. Returns 0 if they are equal, 1 if they differ.
+int diff_command(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// `constrictor host NAME... [OPTION...]`: replaces this process by constrictor_host, which hosts these components.
+int host_command(int argc, char** argv);
+
+/// Adds these subcommands; the chosen one puts its function into `action`. `host` has only its help here, because its
+/// options are those of constrictor_host.
+void add_commands(CLI::App& app, std::function<int()>& action);
+
+}  // namespace constrictor::cli

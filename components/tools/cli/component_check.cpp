@@ -1,0 +1,94 @@
+// What the launcher asks constrictor_host: which components it hosts, and whether their files are correct.
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <system_error>
+#include <thread>
+
+#include "cli/child_process.hpp"
+#include "cli/launch_plan.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto kBound = 30s;  // normally a tenth of a second
+constexpr std::size_t kMostLines = 40;
+
+/// A file in memory for the output of a process.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("check", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  [[nodiscard]] std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+struct HostOutput {
+  ChildExit exit;
+  std::vector<std::string> lines;  ///< of output and errors together
+};
+
+/// Runs constrictor_host to its end. Throws std::runtime_error if it does not end within kBound.
+HostOutput run_host(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), (program_folder() / "constrictor_host").string());
+  const MemoryFile output;
+  ChildProcess host(arguments, run_environment(), output.path());
+  const auto end = std::chrono::steady_clock::now() + kBound;
+  while (!host.poll()) {
+    if (std::chrono::steady_clock::now() > end)
+      throw std::runtime_error(
+          fmt::format("constrictor_host {} did not end within {} s", arguments[1], kBound.count()));
+    std::this_thread::sleep_for(1ms);
+  }
+  return {*host.poll(), last_lines(output.path(), 0, kMostLines)};
+}
+
+}  // namespace
+
+std::vector<std::string> hosted_components() {
+  const HostOutput output = run_host({"--components"});
+  if (!output.exit.clean()) throw std::runtime_error("constrictor_host: " + output.exit.describe());
+  return output.lines;
+}
+
+void check_components(const RunOptions& options, const LaunchPlan& plan) {
+  std::vector<std::string> components;
+  for (const auto& process : plan.manifest.processes) {
+    if (!process.program.empty()) continue;
+    components.insert(components.end(), process.components.begin(), process.components.end());
+  }
+  if (components.empty()) return;
+  std::vector<std::string> arguments = {fmt::format("{}", fmt::join(components, ",")),
+                                        "--check",
+                                        "--robot",
+                                        plan.manifest.robot_file.string(),
+                                        "--scenario",
+                                        plan.manifest.scenario_file.string(),
+                                        "--seed",
+                                        std::to_string(options.seed)};
+  const auto mission = mission_arguments(plan.manifest);
+  arguments.insert(arguments.end(), mission.begin(), mission.end());
+  const auto configs = config_arguments(plan.manifest, components);
+  arguments.insert(arguments.end(), configs.begin(), configs.end());
+  const HostOutput output = run_host(std::move(arguments));
+  if (output.exit.clean()) return;
+  const std::string errors =
+      (output.lines.size() > 1 ? "\n  " : "") + fmt::format("{}", fmt::join(output.lines, "\n  "));
+  const int code = output.exit.code().value_or(exit_status::kSoftware);
+  if (code == exit_status::kConfiguration || code == exit_status::kUsage) throw ConfigurationError(errors);
+  throw std::runtime_error("the check of the components failed: " + output.exit.describe() + ": " + errors);
+}
+
+}  // namespace constrictor::cli

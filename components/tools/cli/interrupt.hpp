@@ -1,0 +1,13 @@
+// Ctrl-C: signals that only set a flag, so that a command can leave the run in a defined state before it ends.
+#pragma once
+
+namespace constrictor::cli {
+
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT only set a flag.
+void catch_interrupts();
+/// Number of the last such signal; 0: none.
+[[nodiscard]] int interrupt_signal();
+/// Exit status of a command that was ended by a signal.
+[[nodiscard]] inline int interrupt_status() { return 128 + interrupt_signal(); }
+
+}  // namespace constrictor::cli

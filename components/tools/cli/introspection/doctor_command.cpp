@@ -1,0 +1,170 @@
+#include "cli/introspection/doctor_command.hpp"
+
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/introspection/diagnosis.hpp"
+#include "cli/introspection/domain_view.hpp"
+#include "client/run_registry.hpp"
+#include "constrictor/json.hpp"
+#include "cyclone/endpoint.hpp"
+#include "runtime/host.hpp"
+#include "runtime/wire.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kFaults = 1;
+
+std::vector<NetworkInterface> interfaces() {
+  std::vector<NetworkInterface> list;
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) return list;
+  for (const ifaddrs* at = first; at; at = at->ifa_next) {
+    const bool known =
+        std::any_of(list.begin(), list.end(), [&](const auto& interface) { return interface.name == at->ifa_name; });
+    if (!known) list.push_back({at->ifa_name, (at->ifa_flags & IFF_UP) != 0, (at->ifa_flags & IFF_MULTICAST) != 0});
+  }
+  ::freeifaddrs(first);
+  return list;
+}
+
+/// The XML that CYCLONEDDS_URI holds or names.
+void read_configuration(Facts& facts) {
+  const char* uri = std::getenv("CYCLONEDDS_URI");
+  if (!uri || !*uri) return;
+  std::string text = uri;
+  if (text.find('<') == std::string::npos) {
+    const std::string path = text.rfind("file://", 0) == 0 ? text.substr(7) : text;
+    std::ifstream file(path);
+    if (!file) {
+      facts.dds_configuration_error = "cannot read " + path;
+      return;
+    }
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  facts.dds_configuration = text;
+}
+
+std::uint64_t receive_buffer_max() {
+  std::ifstream file("/proc/sys/net/core/rmem_max");
+  std::uint64_t bytes = 0;
+  file >> bytes;
+  return bytes;
+}
+
+void look(const DomainView& view, Facts& facts) {
+  view.settle(2500ms);
+  facts.participants = view.discovery().participants();
+  facts.endpoints = view.discovery().endpoints();
+  const auto hellos = dds::Reader<msg::Hello>::member(view.participant(), dds::barrier_topics::kHello);
+  for (int i = 0; i < 20; ++i) {
+    hellos.take([&](const msg::Hello& hello) { facts.hellos.push_back(hello); });
+    if (!facts.hellos.empty() && i > 10) break;
+    std::this_thread::sleep_for(20ms);
+  }
+}
+
+struct Diagnosis {
+  Facts facts;
+  std::vector<Finding> findings;
+};
+
+/// The facts that are the same in every domain.
+Facts facts_of_host() {
+  Facts facts;
+  for (const auto& run : live_runs()) facts.runs.push_back(run.domain);
+  facts.interfaces = interfaces();
+  facts.receive_buffer_max_bytes = receive_buffer_max();
+  facts.idl_hash = msg::kIdlHash;
+  read_configuration(facts);
+  return facts;
+}
+
+Diagnosis examine(std::uint32_t domain, const Facts& host) {
+  Diagnosis result{host, {}};
+  Facts& facts = result.facts;
+  facts.domain = domain;
+  std::string error;
+  try {
+    ViewOptions chosen;
+    chosen.domain = domain;
+    look(DomainView(chosen), facts);
+  } catch (const dds::Error& failed) {
+    error = failed.what();  // Cyclone does not start with a wrong configuration; the findings name the cause
+  }
+  auto& findings = result.findings = diagnose(facts);
+  if (!error.empty()) {
+    // The domain was not examined, so whether processes are in it is unknown.
+    std::erase_if(findings, [](const Finding& finding) {
+      return finding.fault == "nobody there" || finding.fault == "wrong domain";
+    });
+    findings.push_back({"no DDS", error,
+                        findings.empty() ? "unset CYCLONEDDS_URI, or correct it (deploy/README.md)"
+                                         : "cure the findings above first"});
+  }
+  return result;
+}
+
+nlohmann::ordered_json json_of(const Diagnosis& diagnosis) {
+  nlohmann::ordered_json json = {{"domain", diagnosis.facts.domain},
+                                 {"participants", diagnosis.facts.participants.size()}};
+  auto& list = json["findings"] = nlohmann::ordered_json::array();
+  for (const auto& finding : diagnosis.findings)
+    list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
+  return json;
+}
+
+void tell(const Diagnosis& diagnosis) {
+  fmt::print("domain {}: {} processes, {} readers and writers\n", diagnosis.facts.domain,
+             diagnosis.facts.participants.size(), diagnosis.facts.endpoints.size());
+  for (const auto& finding : diagnosis.findings)
+    fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+  if (diagnosis.findings.empty()) fmt::print("no fault found\n");
+}
+
+/// Examines the chosen domain; if none was chosen, those of all runs on this host; if there are no runs, domain 0.
+int doctor(const ViewOptions& options) {
+  const Facts host = facts_of_host();
+  std::vector<std::uint32_t> domains = host.runs;
+  if (options.domain) domains = {*options.domain};
+  if (domains.empty()) domains = {0};
+  bool well = true;
+  auto all = nlohmann::ordered_json::array();
+  for (const std::uint32_t domain : domains) {
+    const Diagnosis diagnosis = examine(domain, host);
+    well = well && diagnosis.findings.empty();
+    if (options.json) all.push_back(json_of(diagnosis));
+    else fmt::print("{}", domain == domains.front() ? "" : "\n"), tell(diagnosis);
+  }
+  if (options.json) fmt::print("{}\n", json_text(all.size() == 1 ? all.front() : all, 2));
+  return well ? exit_status::kOk : kFaults;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<ViewOptions>();
+  auto* sub = app.add_subcommand("doctor", "find faults that keep processes from communicating, and name the cure");
+  add_view_options(*sub, *options);
+  sub->footer(
+      "Finds: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two "
+      "members\n"
+      "of one name, small socket buffers. Without --run it examines the domains of all runs on this host; --json then\n"
+      "prints a list if there are several.\n\n"
+      "EXAMPLES\n  constrictor doctor\n  constrictor doctor --run 7 --json\n\n"
+      "EXIT STATUS\n  0 no fault found; 1 a fault was found; 64 wrong usage\n\nENVIRONMENT\n"
+      "  CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      DDS configuration; it is examined, too");
+  sub->callback([&action, options] { action = [options] { return doctor(*options); }; });
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,135 @@
+#include "cli/introspection/domain_view.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include "cli/usage.hpp"
+#include "client/run_registry.hpp"
+#include "configuration/closest_name.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/endpoint.hpp"
+#include "runtime/wire.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t g_interrupted = 0;
+void on_signal(int) { g_interrupted = 1; }
+
+}  // namespace
+
+void add_view_options(CLI::App& app, ViewOptions& options) {
+  app.add_option("--run", options.domain,
+                 "DDS domain of the run, or any other domain (default: the only run on this host)")
+      ->envname("CONSTRICTOR_DOMAIN")
+      ->check(whole_number(0, 229));
+  app.add_flag("--json", options.json, "print JSON instead of text, for scripts");
+}
+
+std::uint32_t chosen_domain(const ViewOptions& options) {
+  return options.domain ? *options.domain : find_run(std::nullopt).domain;
+}
+
+DomainView::DomainView(const ViewOptions& options)
+    : number_(chosen_domain(options)), domain_(number_), discovery_(domain_.participant()) {}
+
+bool DomainView::settle(std::chrono::milliseconds bound) const {
+  const auto end = Clock::now() + bound;
+  auto changed = Clock::now();
+  std::size_t before = 0;
+  while (Clock::now() < end) {
+    const std::size_t now = discovery_.endpoints().size();
+    if (now != before) changed = Clock::now();
+    before = now;
+    if (now > 0 && Clock::now() - changed > 250ms) break;
+    std::this_thread::sleep_for(20ms);
+  }
+  return before > 0;
+}
+
+void DomainView::settle_or_throw() const {
+  if (settle()) return;
+  std::string runs;
+  for (const auto& run : live_runs()) runs += fmt::format("{}{}", runs.empty() ? "" : ", ", run.domain);
+  throw CommandError(fmt::format("no process in DDS domain {}; {}", number_,
+                                 runs.empty() ? "no run on this host (start one with `constrictor run`)"
+                                              : "the runs on this host are in " + runs));
+}
+
+std::optional<dds::Endpoint> DomainView::find_writer(const std::string& topic, std::chrono::milliseconds bound) const {
+  const auto end = Clock::now() + bound;
+  do {
+    for (const auto& endpoint : discovery_.endpoints()) {
+      if (endpoint.writer && endpoint.topic == topic) return endpoint;
+    }
+    std::this_thread::sleep_for(20ms);
+  } while (Clock::now() < end && !interrupted());
+  return std::nullopt;
+}
+
+std::map<std::string, Member> DomainView::members() const {
+  const auto hellos = dds::Reader<msg::Hello>::member(participant(), dds::barrier_topics::kHello);
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(participant(), dds::barrier_topics::kStatus);
+  std::map<std::string, Member> found;
+  // Writers send what they keep for late readers as soon as they have met the reader. Members that never wrote are not
+  // waited for.
+  const auto end = Clock::now() + 1500ms;
+  auto changed = Clock::now();
+  while (Clock::now() < end && Clock::now() - changed < 300ms) {
+    hellos.take([&](const msg::Hello& hello) {
+      auto& member = found[hello.component];
+      if (!member.hello || member.hello->incarnation <= hello.incarnation) member.hello = hello;
+      changed = Clock::now();
+    });
+    statuses.take([&](const msg::ComponentStatus& status) {
+      auto& member = found[status.component];
+      if (!member.status) changed = Clock::now();
+      if (!member.status || member.status->incarnation <= status.incarnation) member.status = status;
+    });
+    std::this_thread::sleep_for(10ms);
+  }
+  return found;
+}
+
+std::string DomainView::name_of(const dds::Guid& participant, const std::vector<dds::Participant>& participants,
+                                const std::vector<dds::Endpoint>& endpoints) {
+  for (const auto& endpoint : endpoints) {
+    if (endpoint.participant == participant && !endpoint.user_data.empty()) return endpoint.user_data;
+  }
+  for (const auto& known : participants) {
+    if (known.guid == participant && !known.program.empty()) return known.program;
+  }
+  return dds::short_name(participant);
+}
+
+std::vector<std::string> topic_names(const DomainView& view) {
+  std::set<std::string> names;
+  for (const auto& info : topics::kInfos) names.emplace(info.name);
+  for (const auto& info : barrier_topics::kInfos) names.emplace(info.name);
+  for (const auto& endpoint : view.discovery().endpoints()) names.insert(endpoint.topic);
+  return {names.begin(), names.end()};
+}
+
+std::string no_such_topic(const DomainView& view, const std::string& topic) {
+  return fmt::format("no topic '{}' in DDS domain {}{} (see `constrictor topic list`)", topic, view.domain(),
+                     did_you_mean(topic, topic_names(view)));
+}
+
+bool interrupted() {
+  static const bool listening = [] {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+    return true;
+  }();
+  return listening && g_interrupted != 0;
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,158 @@
+#include "cli/introspection/node_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/introspection/domain_view.hpp"
+#include "cli/run_observer.hpp"
+#include "constrictor/constants.hpp"
+#include "constrictor/json.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  ViewOptions view;
+  std::string node;
+};
+
+/// One participant: what discovery found, and the newest Hello and status of its components.
+Json node_json(const dds::Participant& participant, const std::vector<dds::Participant>& participants,
+               const std::vector<dds::Endpoint>& endpoints, const std::map<std::string, Member>& members) {
+  const std::string name = DomainView::name_of(participant.guid, participants, endpoints);
+  Json node = {{"node", name},
+               {"host", participant.host},
+               {"pid", participant.pid},
+               {"process", participant.program},
+               {"participant", dds::short_name(participant.guid)}};
+  std::set<std::string> writes;
+  std::set<std::string> reads;
+  for (const auto& endpoint : endpoints) {
+    if (endpoint.participant == participant.guid) (endpoint.writer ? writes : reads).insert(endpoint.topic);
+  }
+  node["components"] = Json::array();
+  for (const auto& component : CLI::detail::split(name, ',')) {
+    const auto found = members.find(component);
+    if (found == members.end()) continue;
+    const auto& [hello, status] = found->second;
+    Json entry = {{"component", component}};
+    if (hello) {
+      entry["incarnation"] = hello->incarnation;
+      entry["version"] = hello->version;
+      entry["idl_hash"] = hello->idl_hash;
+      entry["config_hash"] = hello->config_hash;
+      entry["numeric_profile"] = hello->numeric_profile;
+      entry["period_ticks"] = hello->period_ticks;
+      entry["latency_ticks"] = hello->latency_ticks;
+    }
+    if (status) {
+      entry["state"] = name_of(constants::kComponent, status->state);
+      entry["tick"] = status->tick;
+    }
+    node["components"].push_back(entry);
+  }
+  node["writes"] = writes;
+  node["reads"] = reads;
+  return node;
+}
+
+std::vector<Json> nodes(const DomainView& view) {
+  view.settle_or_throw();
+  const auto members = view.members();
+  const auto participants = view.discovery().participants();
+  const auto endpoints = view.discovery().endpoints();
+  std::vector<Json> list;
+  for (const auto& participant : participants) list.push_back(node_json(participant, participants, endpoints, members));
+  std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) { return a["node"] < b["node"]; });
+  return list;
+}
+
+std::string first_of(const Json& node, const char* key) {
+  return node["components"].empty() ? "-" : node["components"][0].value(key, std::string("-"));
+}
+
+int list(const Options& options) {
+  const DomainView view(options.view);
+  const auto found = nodes(view);
+  if (options.view.json) {
+    fmt::print("{}\n", json_text(Json(found), 2));
+    return exit_status::kOk;
+  }
+  fmt::print("{:<28} {:<18} {:>8} {:<18} {:<10} {:<12} {:>6} {:>6}\n", "node", "host", "pid", "process", "version",
+             "IDL hash", "writes", "reads");
+  for (const auto& node : found) {
+    fmt::print("{:<28} {:<18} {:>8} {:<18} {:<10} {:<12} {:>6} {:>6}\n", node["node"].get<std::string>(),
+               node["host"].get<std::string>(), node["pid"].get<std::int64_t>(), node["process"].get<std::string>(),
+               first_of(node, "version"), first_of(node, "idl_hash").substr(0, 12), node["writes"].size(),
+               node["reads"].size());
+  }
+  return exit_status::kOk;
+}
+
+int info(const Options& options) {
+  const DomainView view(options.view);
+  Json chosen = Json::array();
+  for (const auto& node : nodes(view)) {
+    const auto names = CLI::detail::split(node["node"].get<std::string>(), ',');
+    if (node["node"] == options.node || std::to_string(node["pid"].get<std::int64_t>()) == options.node ||
+        std::count(names.begin(), names.end(), options.node) > 0) {
+      chosen.push_back(node);
+    }
+  }
+  if (chosen.empty()) {
+    std::fprintf(stderr,
+                 "node info: no process in DDS domain %u has the name or pid '%s' or hosts such a component "
+                 "(see `constrictor node list`)\n",
+                 view.domain(), options.node.c_str());
+    return exit_status::kSoftware;
+  }
+  if (options.view.json) {
+    fmt::print("{}\n", json_text(chosen, 2));
+    return exit_status::kOk;
+  }
+  for (const auto& node : chosen) {
+    fmt::print("{}: process {}, pid {} on {}, participant {}\n", node["node"].get<std::string>(),
+               node["process"].get<std::string>(), node["pid"].get<std::int64_t>(), node["host"].get<std::string>(),
+               node["participant"].get<std::string>());
+    for (const auto& component : node["components"]) {
+      fmt::print("\n");
+      for (const auto& [key, value] : component.items())
+        fmt::print("  {:<16} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value));
+    }
+    for (const char* side : {"writes", "reads"}) {
+      fmt::print("\n  {}:\n", side);
+      for (const auto& topic : node[side]) fmt::print("    {}\n", topic.get<std::string>());
+    }
+  }
+  return exit_status::kOk;
+}
+
+}  // namespace
+
+void add_node(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* node = app.add_subcommand("node", "list or describe the processes of a DDS domain");
+  node->require_subcommand(1);
+  node->footer(
+      "A node is a DDS participant: one per process and domain, also of programs that are no part of this project.\n\n"
+      "EXAMPLES\n"
+      "  constrictor node list\n  constrictor node info navigation --json\n\n"
+      "EXIT STATUS\n  0 done; 64 wrong usage; 70 no such node or run\n\nENVIRONMENT\n"
+      "  CONSTRICTOR_DOMAIN  the domain, like --run\n"
+      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
+  auto* list_app = node->add_subcommand("list", "list every process: host, pid, version, IDL hash");
+  add_view_options(*list_app, options->view);
+  list_app->callback([&action, options] { action = [options] { return list(*options); }; });
+  auto* info_app = node->add_subcommand("info", "describe one process: its components and its topics");
+  info_app->add_option("NODE", options->node, "a component, the name of a node, or a process id")->required();
+  add_view_options(*info_app, options->view);
+  info_app->callback([&action, options] { action = [options] { return info(*options); }; });
+}
+
+}  // namespace constrictor::cli

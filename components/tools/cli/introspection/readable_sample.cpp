@@ -1,0 +1,77 @@
+#include "cli/introspection/readable_sample.hpp"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "constrictor/constants.hpp"
+#include "constrictor/reflect.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Walks over the fields of a message type and the members of a decoded sample at the same time.
+class Reader {
+ public:
+  explicit Reader(Json& sample) : sample_(sample) {}
+
+  template <class T>
+  void operator()(const FieldInfo& info, const T& field) {
+    if (!sample_.contains(info.name)) return;
+    Json& value = sample_[info.name];
+    if (std::string_view(info.name).ends_with("_count") && info.has_range && value.is_number_unsigned()) {
+      count_ = value.get<std::size_t>();
+      capacity_ = static_cast<std::size_t>(info.max);
+    }
+    make_readable(info, field, value);
+  }
+
+ private:
+  template <class T>
+  static void make_readable(const FieldInfo& info, const T& field, Json& value) {
+    if constexpr (Described<T>) {
+      if (value.is_object()) Description<T>::visit(field, Reader(value));
+    } else if constexpr (std::is_integral_v<T> && sizeof(T) == 1) {
+      if (info.constants && value.is_number_unsigned() && value.get<std::uint64_t>() < info.constants->names.size())
+        value = name_of(*info.constants, value.get<std::uint8_t>());
+    }
+  }
+  template <class T, std::size_t N>
+  void make_readable(const FieldInfo& info, const T (&field)[N], Json& value) const {
+    if (!value.is_array()) return;  // a text is an array of characters in C++ only
+    if (N == capacity_ && count_ < value.size())
+      value.erase(value.begin() + static_cast<std::ptrdiff_t>(count_), value.end());
+    for (Json& element : value) make_readable(info, field[0], element);
+  }
+
+  Json& sample_;
+  std::size_t count_ = 0;     ///< in the newest ..._count field
+  std::size_t capacity_ = 0;  ///< largest value of that field
+};
+
+template <class Message>
+bool try_type(Json& sample, std::string_view name) {
+  if (name != Description<Message>::kName) return false;
+  const auto message = std::make_unique<Message>();  // only its fields' types matter; some types are large
+  Description<Message>::visit(std::as_const(*message), Reader(sample));
+  return true;
+}
+
+template <class... Messages>
+void try_types(TypeList<Messages...>, Json& sample, std::string_view name) {
+  static_cast<void>((try_type<Messages>(sample, name) || ...));
+}
+
+}  // namespace
+
+void make_readable(Json& sample, const std::string& type) {
+  constexpr std::string_view kModule = "constrictor::msg::";
+  if (!sample.is_object() || !type.starts_with(kModule)) return;
+  try_types(AllMessages{}, sample, std::string_view(type).substr(kModule.size()));
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,265 @@
+#include "cli/introspection/status_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "cli/introspection/domain_view.hpp"
+#include "cli/run_observer.hpp"
+#include "client/run_registry.hpp"
+#include "constrictor/constants.hpp"
+#include "constrictor/json.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr auto kPoll = 20ms;
+constexpr auto kRateWindow = 3500ms;
+constexpr std::size_t kColumns = 80;
+
+struct Options {
+  ViewOptions view;
+  bool watch = false;
+};
+
+/// Ticks per second of each component, from two of its statuses that arrived while this program ran.
+class RateMeter {
+ public:
+  void add(const RunView& view) {
+    const auto now = Clock::now();
+    for (const auto& [name, status] : view.components) {
+      auto& mark = marks_[name];
+      if (status.tick == mark.tick) continue;
+      if (mark.tick < 0 || status.tick < mark.tick) {
+        mark = {now, status.tick, mark.rate_hz, false};
+      } else if (!mark.live) {
+        // The first status may be an old one, kept for late readers, so the measurement begins with the second.
+        mark = {now, status.tick, mark.rate_hz, true};
+      } else if (now - mark.at > 200ms) {
+        mark.rate_hz =
+            static_cast<double>(status.tick - mark.tick) / std::chrono::duration<double>(now - mark.at).count();
+        mark.at = now;
+        mark.tick = status.tick;
+      }
+    }
+  }
+  /// NaN: not known yet.
+  [[nodiscard]] double rate_hz(const std::string& name) const {
+    const auto found = marks_.find(name);
+    return found == marks_.end() ? std::nan("") : found->second.rate_hz;
+  }
+
+ private:
+  struct Mark {
+    Clock::time_point at{};
+    std::int64_t tick = -1;
+    double rate_hz = std::nan("");
+    bool live = false;  ///< arrived while this program ran
+  };
+  std::map<std::string, Mark> marks_;
+};
+
+/// Wraps text at 80 columns. All lines are indented by `indent`; further lines by at least 2.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string lines(indent, ' ');
+  std::size_t column = indent;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool first = column == indent;
+    if (!first && column + 1 + word.size() > kColumns) {
+      lines += "\n" + std::string(std::max<std::size_t>(indent, 2), ' ');
+      column = std::max<std::size_t>(indent, 2);
+    } else if (!first) {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
+std::string run_line(const RunView& view) {
+  std::string line = progress_line(view, 0);
+  line = line.substr(0, line.rfind(','));
+  if (view.run_state) {
+    const auto& state = *view.run_state;
+    if (std::isfinite(state.real_time_factor)) line += fmt::format(", {:.1f}x real time", state.real_time_factor);
+    if (state.paused) line += ", paused";
+    if (state.realtime) line += ", on the wall clock";
+    else if (state.pace > 0)
+      line +=
+          fmt::format(", at most {:g}x{}", state.pace, state.operator_pace ? " while an operator has authority" : "");
+  }
+  line = wrapped(line, 0);
+  if (view.authority) {
+    const auto& authority = *view.authority;
+    std::string who = fmt::format("authority: {}{}{}", words_of(constants::kAuthority, authority.level),
+                                  *authority.source ? " " : "", authority.source);
+    if (authority.refused_count > 0)
+      who += fmt::format("; {} requests refused, the last that of {}: {}", authority.refused_count,
+                         authority.refused_source, authority.refusal);
+    line += "\n" + wrapped(who, 0);
+  }
+  return line;
+}
+
+std::string number(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+/// A table of at most 80 columns. It shows hosts only if the run has several.
+std::string table(const RunNote& run, const RunView& view, const RateMeter& rates) {
+  constexpr const char* kRow = "{:<12}{:<8}{:>8}{:>7}{:>8}{:>8}{:>9}{:>8}{:>4}{:>8}\n";
+  std::string text = fmt::format(kRow, "component", "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns",
+                                 "refused", "inc", "pid");
+  std::set<std::string> hosts;
+  for (const auto& [name, status] : view.components) hosts.insert(status.host);
+  for (const auto& name : run.roster) {
+    const auto found = view.components.find(name);
+    if (found == view.components.end()) {
+      text += fmt::format("{:<12}no status yet\n", name);
+      continue;
+    }
+    const auto& status = found->second;
+    text += fmt::format(kRow, name, name_of(constants::kComponent, status.state), status.tick,
+                        number(rates.rate_hz(name), "{:.1f}"), number(status.step_time_p50_us, "{:.0f}"),
+                        number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name),
+                        status.incarnation, status.pid);
+    if (hosts.size() > 1) text += fmt::format("{:<12}on {}\n", "", status.host);
+    if (*status.last_refusal) text += wrapped(fmt::format("last refusal: {}", status.last_refusal), 12) + "\n";
+  }
+  return text;
+}
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
+  Json json = {{"run", run.domain},
+               {"pid", run.pid},
+               {"scenario", run.scenario},
+               {"seed", view.seed(run.seed)},
+               {"report", run.report_dir.string()},
+               {"tick", view.tick},
+               {"sim_time_s", view.sim_time_s()}};
+  json["real_time_factor"] = view.run_state ? finite(view.run_state->real_time_factor) : Json(nullptr);
+  json["paused"] = view.run_state ? Json(view.run_state->paused) : Json(nullptr);
+  json["pace"] = view.run_state ? finite(view.run_state->pace) : Json(nullptr);
+  json["mission"] = view.mission ? Json(std::string(view.mission->state)) : Json(nullptr);
+  json["task"] = view.task ? Json(name_of(constants::kTask, view.task->task)) : Json(nullptr);
+  if (view.authority) {
+    json["authority"] = {{"level", words_of(constants::kAuthority, view.authority->level)},
+                         {"source", std::string(view.authority->source)},
+                         {"refused", view.authority->refused_count},
+                         {"refusal", std::string(view.authority->refusal)}};
+  }
+  auto& list = json["components"] = Json::array();
+  for (const auto& name : run.roster) {
+    const auto found = view.components.find(name);
+    if (found == view.components.end()) {
+      list.push_back({{"component", name}, {"state", nullptr}});
+      continue;
+    }
+    const auto& status = found->second;
+    list.push_back({{"component", name},
+                    {"state", name_of(constants::kComponent, status.state)},
+                    {"tick", status.tick},
+                    {"rate_hz", finite(rates.rate_hz(name))},
+                    {"step_time_p50_us", finite(status.step_time_p50_us)},
+                    {"step_time_p99_us", finite(status.step_time_p99_us)},
+                    {"overruns", view.overruns.at(name)},
+                    {"refused", view.refused.at(name)},
+                    {"last_refusal", std::string(status.last_refusal)},
+                    {"incarnation", status.incarnation},
+                    {"cpu_s", finite(status.cpu_s)},
+                    {"version", std::string(status.version)},
+                    {"pid", status.pid},
+                    {"host", std::string(status.host)}});
+  }
+  return json;
+}
+
+/// True once the launcher has removed its note or died. A plant that was killed publishes no end.
+bool is_gone(const RunNote& run) {
+  const auto runs = live_runs();
+  return std::none_of(runs.begin(), runs.end(),
+                      [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
+}
+
+int status(const Options& options) {
+  const auto runs = live_runs();
+  if (!options.view.json) {
+    for (const auto& run : runs) {
+      fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
+                 run.report_dir.string());
+    }
+    if (runs.size() > 1 && !options.view.domain) {
+      fmt::print("choose one with --run for its components\n");
+      return exit_status::kOk;
+    }
+  }
+  const RunNote run = find_run(options.view.domain);
+  RunObserver observer(run.domain);
+  RateMeter rates;
+  // Statuses are kept for late readers, but a rate needs two of them; the state of the run arrives once a second.
+  const auto start = Clock::now();
+  auto shown = start;
+  const bool screen = options.watch && !options.view.json && ::isatty(STDOUT_FILENO) != 0;
+  while (!interrupted()) {
+    for (const auto& line : observer.poll()) {
+      if (!options.view.json) fmt::print("{}\n", line);
+    }
+    rates.add(observer.view());
+    const auto now = Clock::now();
+    const bool complete = observer.view().components.size() >= run.roster.size() && observer.view().run_state &&
+                          std::all_of(run.roster.begin(), run.roster.end(),
+                                      [&](const auto& name) { return std::isfinite(rates.rate_hz(name)); });
+    const bool paused = observer.view().run_state && observer.view().run_state->paused && now - start > 500ms;
+    if (!options.watch && (complete || paused || now - start > kRateWindow)) break;
+    if (options.watch && now - shown > 1s) {
+      shown = now;
+      if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
+      else
+        fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()),
+                   table(run, observer.view(), rates));
+      std::fflush(stdout);
+      if (observer.view().ended(run.plant) || is_gone(run)) return exit_status::kOk;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+  if (options.watch) return exit_status::kOk;
+  if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates), 2));
+  else fmt::print("{}\n\n{}", run_line(observer.view()), table(run, observer.view(), rates));
+  return exit_status::kOk;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* sub = app.add_subcommand("status", "show the runs on this host, and the state of the components of one run");
+  add_view_options(*sub, options->view);
+  sub->add_flag("--watch,-w", options->watch, "update the table every second, until Ctrl-C or the end of the run");
+  sub->footer(
+      "Step times are those since a component's previous status, which it publishes every 50 ticks. Rates are in "
+      "ticks\n"
+      "per second of wall time. The column inc is the incarnation: 1, and one more after each restart.\n\n"
+      "EXAMPLES\n  constrictor status\n  constrictor status --watch\n"
+      "  constrictor status --json | jq '.components[].rate_hz'\n\n"
+      "EXIT STATUS\n  0 done; 64 wrong usage; 70 no run, or several and none chosen with --json\n\n"
+      "ENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
+  sub->callback([&action, options] { action = [options] { return status(*options); }; });
+}
+
+}  // namespace constrictor::cli

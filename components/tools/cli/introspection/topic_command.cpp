@@ -1,0 +1,186 @@
+#include "cli/introspection/topic_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/introspection/domain_view.hpp"
+#include "cli/introspection/topic_watch.hpp"
+#include "cli/usage.hpp"
+#include "client/command_error.hpp"
+#include "constrictor/json.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/type_tree.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  ViewOptions view;
+  WatchOptions watch;
+  bool all = false;
+};
+
+const TopicInfo* known(const std::string& topic) {
+  const auto found =
+      std::find_if(topics::kInfos.begin(), topics::kInfos.end(), [&](const auto& info) { return info.name == topic; });
+  return found == topics::kInfos.end() ? nullptr : &*found;
+}
+
+int list(const Options& options) {
+  const DomainView view(options.view);
+  view.settle_or_throw();
+  struct Row {
+    std::string type;
+    int writers = 0;
+    int readers = 0;
+  };
+  std::map<std::string, Row> rows;
+  for (const auto& endpoint : view.discovery().endpoints()) {
+    auto& row = rows[endpoint.topic];
+    row.type = endpoint.type;
+    ++(endpoint.writer ? row.writers : row.readers);
+  }
+  if (options.view.json) {
+    Json json = Json::array();
+    for (const auto& [name, row] : rows) {
+      const TopicInfo* info = known(name);
+      json.push_back({{"topic", name},
+                      {"type", row.type},
+                      {"writers", row.writers},
+                      {"readers", row.readers},
+                      {"what", info ? Json(std::string(info->doc)) : Json(nullptr)}});
+    }
+    fmt::print("{}\n", json_text(json, 2));
+    return exit_status::kOk;
+  }
+  fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "what");
+  for (const auto& [name, row] : rows) {
+    fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", name, row.type, row.writers, row.readers,
+               known(name) ? known(name)->doc : "");
+  }
+  return exit_status::kOk;
+}
+
+int info(const Options& options) {
+  const DomainView view(options.view);
+  view.settle();
+  const auto endpoints = view.discovery().endpoints();
+  const auto participants = view.discovery().participants();
+  std::vector<dds::Endpoint> here;
+  std::copy_if(endpoints.begin(), endpoints.end(), std::back_inserter(here),
+               [&](const auto& endpoint) { return endpoint.topic == options.watch.topic; });
+  if (here.empty()) {
+    throw CommandError(no_such_topic(view, options.watch.topic));
+  }
+  const auto with_type =
+      std::find_if(here.begin(), here.end(), [](const auto& endpoint) { return endpoint.type_info != nullptr; });
+  const auto tree =
+      with_type == here.end() ? nullptr : dds::TypeTree::find(view.participant(), *with_type, std::chrono::seconds(2));
+  const TopicInfo* topic = known(options.watch.topic);
+  Json json = {{"topic", options.watch.topic}, {"type", here.front().type}, {"keyed", here.front().keyed}};
+  if (topic) json["what"] = std::string(topic->doc), json["rate"] = std::string(topic->rate);
+  json["fields"] = tree ? Json(tree->text()) : Json(nullptr);
+  for (const bool writer : {true, false}) {
+    auto& list = json[writer ? "writers" : "readers"] = Json::array();
+    for (const auto& endpoint : here) {
+      if (endpoint.writer != writer) continue;
+      Json entry = {{"node", DomainView::name_of(endpoint.participant, participants, endpoints)},
+                    {"qos", dds::describe(endpoint.qos)}};
+      if (endpoint.type != here.front().type) entry["type"] = endpoint.type;
+      for (const auto& participant : participants) {
+        if (participant.guid == endpoint.participant) entry["host"] = participant.host, entry["pid"] = participant.pid;
+      }
+      for (const auto& other : here) {
+        if (writer || !other.writer) continue;
+        const std::string why = dds::mismatch(other, endpoint);
+        if (!why.empty())
+          entry["deaf_to"].push_back(DomainView::name_of(other.participant, participants, endpoints) + ": " + why);
+      }
+      list.push_back(entry);
+    }
+  }
+  if (options.view.json) {
+    fmt::print("{}\n", json_text(json, 2));
+    return exit_status::kOk;
+  }
+  fmt::print("{}  ({}, {})\n", options.watch.topic, here.front().type, here.front().keyed ? "keyed" : "without a key");
+  if (topic) fmt::print("{}; {}\n", topic->doc, topic->rate);
+  for (const char* side : {"writers", "readers"}) {
+    fmt::print("\n{}:\n", side);
+    for (const auto& entry : json[side]) {
+      fmt::print("  {:<20} {}  pid {} on {}\n", entry["node"].get<std::string>(), entry["qos"].get<std::string>(),
+                 entry.value("pid", 0), entry.value("host", std::string("?")));
+      if (entry.contains("deaf_to")) {
+        for (const auto& why : entry["deaf_to"])
+          fmt::print("  {:<20} cannot receive from {}\n", "", why.get<std::string>());
+      }
+    }
+  }
+  fmt::print("\n{}", tree ? tree->text() : "The writers of this topic do not describe its type.\n");
+  return exit_status::kOk;
+}
+
+CLI::App* add_watch(CLI::App& topic, Options& options, const char* name, const char* what) {
+  auto* app = topic.add_subcommand(name, what);
+  app->add_option("TOPIC", options.watch.topic, "name of the topic")->required();
+  add_view_options(*app, options.view);
+  app->add_option("--timeout", options.watch.timeout_s, "[s] give up when no sample has arrived for this long")
+      ->capture_default_str()
+      ->check(number(1e-3, 1e6, "s"));
+  return app;
+}
+
+}  // namespace
+
+void add_topic(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* topic = app.add_subcommand("topic", "list, describe, print or measure the topics of a DDS domain");
+  topic->require_subcommand(1);
+  topic->footer(
+      "Works on every topic of the domain, also on topics of other programs and other vendors' DDS. The writers "
+      "describe\n"
+      "the types; if they do not, echo prints the encoded bytes.\n\nEXAMPLES\n"
+      "  constrictor topic list\n  constrictor topic info joint_state\n"
+      "  constrictor topic echo task/event\n  constrictor topic echo guidance/pose --count 1 --json\n"
+      "  constrictor topic hz joint_state --for 5\n\nEXIT STATUS\n"
+      "  0 done; 1 no sample arrived in time; 64 wrong usage; 70 no such topic or run\n\nENVIRONMENT\n"
+      "  CONSTRICTOR_DOMAIN  the domain, like --run\n"
+      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
+  const auto act = [&action, options](CLI::App* sub, std::function<int(const Options&)> run) {
+    sub->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+  };
+  auto* list_app =
+      topic->add_subcommand("list", "list every topic with its type and the numbers of its writers and readers");
+  add_view_options(*list_app, options->view);
+  act(list_app, list);
+  auto* info_app = topic->add_subcommand(
+      "info", "describe a topic: type, fields, writers, readers, and which reader cannot receive from which writer");
+  info_app->add_option("TOPIC", options->watch.topic, "name of the topic")->required();
+  add_view_options(*info_app, options->view);
+  act(info_app, info);
+  auto* echo_app = add_watch(*topic, *options, "echo", "print the samples of a topic");
+  echo_app->add_option("--count,-n", options->watch.count, "end after this many samples (default: until Ctrl-C)")
+      ->check(whole_number());
+  echo_app->add_option("--field", options->watch.field,
+                       "print only this field, for example header.tick or position_rad");
+  echo_app->add_flag("--raw", options->watch.raw, "print the encoded bytes in hexadecimal");
+  act(echo_app, [](const Options& chosen) { return echo_command(chosen.view, chosen.watch); });
+  for (const char* name : {"hz", "delay"}) {
+    const bool hz = std::string(name) == "hz";
+    auto* meter_app = add_watch(*topic, *options, name,
+                                hz ? "measure how often samples arrive and how large they are"
+                                   : "measure how old samples are when they arrive, by the clocks of their writers");
+    meter_app->add_option("--for", options->watch.for_s, "[s] end after this time (default: until Ctrl-C)")
+        ->check(number(1e-3, 1e6, "s"));
+    act(meter_app, [hz](const Options& chosen) {
+      return hz ? hz_command(chosen.view, chosen.watch) : delay_command(chosen.view, chosen.watch);
+    });
+  }
+}
+
+}  // namespace constrictor::cli

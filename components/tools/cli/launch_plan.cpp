@@ -1,0 +1,155 @@
+#include "cli/launch_plan.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+
+#include "cli/usage.hpp"
+#include "component/data_path.hpp"
+#include "configuration/closest_name.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/numeric_profile.hpp"
+#include "runtime/pacer.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file with this path, or else one of the project's files with this name.
+fs::path find_file(const std::string& text, const NamedFiles& files) {
+  if (fs::is_regular_file(text)) return fs::absolute(text);
+  const auto names = names_of(files);
+  if (std::find(names.begin(), names.end(), text) != names.end()) return data_path(files.folder / (text + ".yaml"));
+  throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", files.kind, text,
+                                       fmt::join(names, ", "), did_you_mean(text, names)));
+}
+
+void require_file(const std::string& what, const fs::path& file) {
+  if (fs::is_regular_file(file)) return;
+  throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
+}
+
+void require_program(const ProcessPlan& process) {
+  if (process.program.empty()) return;
+  const fs::path program = program_folder() / process.program;
+  if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
+  throw ConfigurationError(
+      fmt::format("process {}: found program {}, accepted an executable file", process.name(), program.string()));
+}
+
+void add_config_files(LaunchManifest& manifest, const std::vector<std::string>& roster,
+                      const std::vector<std::string>& texts) {
+  for (const auto& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw UsageError("--config: found '" + text + "', accepted NAME=FILE");
+    const std::string name = text.substr(0, equals);
+    if (std::find(roster.begin(), roster.end(), name) == roster.end()) {
+      throw ConfigurationError(fmt::format("--config: found component '{}', accepted {}{}", name,
+                                           fmt::join(roster, ", "), did_you_mean(name, roster)));
+    }
+    manifest.config_files[name] = fs::absolute(text.substr(equals + 1));
+  }
+  for (const auto& [name, file] : manifest.config_files) require_file("configuration of " + name, file);
+}
+
+/// The options of the plant's process for --pace.
+std::vector<std::string> pace_arguments(const std::string& pace) {
+  if (pace == "lockstep") return {};
+  if (pace == "realtime") return {"--realtime"};
+  double factor = 0.0;
+  const auto [end, error] = std::from_chars(pace.data(), pace.data() + pace.size(), factor);
+  const bool is_factor = error == std::errc() && std::string_view(end, pace.data() + pace.size()) == "x";
+  if (!is_factor || !(factor > 0) || !Pacer::accepts(factor)) {
+    throw UsageError(fmt::format("--pace: found '{}', accepted lockstep, realtime, or a factor from {}x to {}x", pace,
+                                 Pacer::kSlowest, Pacer::kFastest));
+  }
+  return {"--pace", fmt::format("{}", factor)};
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const NamedFiles& files) {
+  std::vector<std::string> names;
+  std::error_code no_folder;
+  for (const auto& entry : fs::directory_iterator(data_path(files.folder), no_folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+LaunchPlan make_launch_plan(const RunOptions& options) {
+  pace_arguments(options.pace);  // for its check
+  LaunchPlan plan;
+  LaunchManifest& manifest = plan.manifest = load_manifest(find_file(options.manifest, kManifests));
+  plan.roster = manifest.roster();
+  if (!options.scenario.empty()) manifest.scenario_file = find_file(options.scenario, kScenarios);
+  if (!options.robot.empty()) manifest.robot_file = find_file(options.robot, kRobots);
+  require_file("scenario", manifest.scenario_file);
+  require_file("robot", manifest.robot_file);
+  add_config_files(manifest, plan.roster, options.config_files);
+  for (const auto& process : manifest.processes) require_program(process);
+  std::vector<std::vector<std::string>> groups;
+  if (options.in_process) groups.push_back(plan.roster);
+  for (const auto& group : options.groups) groups.push_back(CLI::detail::split(group, ','));
+  regroup(manifest, groups);
+  return plan;
+}
+
+std::vector<std::string> mission_arguments(const LaunchManifest& manifest) {
+  const std::string mission = Configuration::load(manifest.scenario_file).one_line("mission");
+  return mission.empty() ? std::vector<std::string>{} : std::vector<std::string>{"--mission", mission};
+}
+
+CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan, std::uint32_t domain,
+                              const fs::path& report_dir, std::uint64_t run_id) {
+  const LaunchManifest manifest = plan.manifest;
+  std::vector<std::string> common = {"--domain",   std::to_string(domain),
+                                     "--roster",   fmt::format("{}", fmt::join(plan.roster, ",")),
+                                     "--plant",    manifest.plant,
+                                     "--robot",    manifest.robot_file.string(),
+                                     "--scenario", manifest.scenario_file.string(),
+                                     "--seed",     std::to_string(options.seed),
+                                     "--output",   report_dir.string(),
+                                     "--patience", fmt::format("{}", manifest.patience_s),
+                                     "--run-id",   std::to_string(run_id)};
+  const auto mission = mission_arguments(manifest);
+  common.insert(common.end(), mission.begin(), mission.end());
+  if (options.max_sim_time_s > 0)
+    common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
+  std::vector<std::string> of_plant = pace_arguments(options.pace);
+  if (options.record) of_plant.emplace_back("--record");
+  return [=, programs = program_folder()](const ProcessPlan& process, std::uint32_t incarnation) {
+    std::vector<std::string> arguments;
+    if (process.program.empty() && process.components.size() == 1) {
+      arguments = {(programs / process.components.front()).string()};
+    } else {
+      const std::string program = process.program.empty() ? "constrictor_host" : process.program;
+      arguments = {(programs / program).string(), fmt::format("{}", fmt::join(process.components, ","))};
+    }
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    arguments.insert(arguments.end(), {"--incarnation", std::to_string(incarnation)});
+    const auto configs = config_arguments(manifest, process.components);
+    arguments.insert(arguments.end(), configs.begin(), configs.end());
+    const auto& hosted = process.components;
+    if (std::find(hosted.begin(), hosted.end(), manifest.plant) != hosted.end())
+      arguments.insert(arguments.end(), of_plant.begin(), of_plant.end());
+    return arguments;
+  };
+}
+
+std::vector<std::string> run_environment() {
+  for (const auto& [name, value] : numeric_environment()) ::setenv(name.c_str(), value.c_str(), 1);
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable; ++variable) variables.emplace_back(*variable);
+  return variables;
+}
+
+}  // namespace constrictor::cli

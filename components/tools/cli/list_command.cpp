@@ -1,0 +1,70 @@
+#include "cli/list_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <memory>
+
+#include "cli/child_process.hpp"
+#include "cli/launch_plan.hpp"
+#include "component/data_path.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+struct Options {
+  std::string kind;
+  bool names = false;
+};
+
+/// The first comment of a file, up to its first full stop or its first line that is no comment.
+std::string first_sentence(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  for (std::string line; std::getline(stream, line) && line.starts_with("#");) {
+    const auto begin = line.find_first_not_of("# ");
+    if (begin == std::string::npos) break;
+    text += (text.empty() ? "" : " ") + line.substr(begin);
+    if (const auto stop = text.find(". "); stop != std::string::npos) return text.substr(0, stop + 1);
+  }
+  return text;
+}
+
+int list_files(const NamedFiles& files, bool only_names) {
+  for (const auto& name : names_of(files)) {
+    if (only_names) fmt::print("{}\n", name);
+    else fmt::print("{:<14}{}\n", name, first_sentence(data_path(files.folder / (name + ".yaml"))));
+  }
+  return exit_status::kOk;
+}
+
+int list(const Options& options) {
+  for (const auto& files : {kScenarios, kRobots, kManifests}) {
+    if (options.kind == files.list_argument) return list_files(files, options.names);
+  }
+  const auto components = hosted_components();
+  for (const auto& name : components) fmt::print("{}\n", name);
+  return components.empty() ? exit_status::kSoftware : exit_status::kOk;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* sub =
+      app.add_subcommand("list", "list the scenarios, robots, manifests or components that can be chosen by name");
+  sub->add_option("KIND", options->kind, "scenarios, robots, manifests or components")
+      ->required()
+      ->check(CLI::IsMember({"scenarios", "robots", "manifests", "components"}));
+  sub->add_flag("--names", options->names, "print the names only, one per line, for scripts");
+  sub->footer(
+      "EXAMPLES\n  constrictor list scenarios\n  constrictor list components --names\n\n"
+      "EXIT STATUS\n  0 done; 64 wrong usage; 70 constrictor_host, which knows the components, does not start\n\n"
+      "ENVIRONMENT\n"
+      "  CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix");
+  sub->callback([&action, options] { action = [options] { return list(*options); }; });
+}
+
+}  // namespace constrictor::cli

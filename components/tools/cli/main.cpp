@@ -1,0 +1,78 @@
+// The command `constrictor`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/introspection/completion.hpp"
+#include "cli/introspection/doctor_command.hpp"
+#include "cli/introspection/node_command.hpp"
+#include "cli/introspection/status_command.hpp"
+#include "cli/introspection/topic_command.hpp"
+#include "cli/list_command.hpp"
+#include "cli/param_command.hpp"
+#include "cli/run_command.hpp"
+#include "cli/run_control.hpp"
+#include "cli/task_command.hpp"
+#include "cli/teleop_command.hpp"
+#include "cli/usage.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/host.hpp"
+#include "runtime/version.hpp"
+
+namespace {
+
+using namespace constrictor;
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
+  app.set_version_flag("--version", kVersion);
+  app.require_subcommand(1);
+  std::function<int()> action;
+  cli::add_run(app, action);
+  cli::add_list(app, action);
+  cli::add_commands(app, action);
+  cli::add_run_control(app, action);
+  cli::add_teleop(app, action);
+  cli::add_task(app, action);
+  cli::add_param(app, action);
+  cli::add_topic(app, action);
+  cli::add_node(app, action);
+  cli::add_status(app, action);
+  cli::add_doctor(app, action);
+  cli::add_completion(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (argc == 1) {
+      fmt::print("{}", app.help());
+      return exit_status::kUsage;
+    }
+    throw cli::UsageError(cli::explain_parse_error(app, error));
+  }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    // The options after `host NAME...` belong to constrictor_host.
+    const std::string first = argc > 1 ? argv[1] : "";
+    const std::string second = argc == 3 ? argv[2] : "";
+    if (first == "host" && second != "--help" && second != "-h") return cli::host_command(argc - 2, argv + 2);
+    return dispatch(argc, argv);
+  } catch (const cli::UsageError& error) {
+    fmt::print(stderr, "constrictor: {}\n", error.what());
+    return exit_status::kUsage;
+  } catch (const ConfigurationError& error) {
+    fmt::print(stderr, "constrictor: configuration: {}\n", error.what());
+    return exit_status::kConfiguration;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "constrictor: {}\n", error.what());
+    return exit_status::kSoftware;
+  }
+}

@@ -1,0 +1,98 @@
+#include "cli/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "component/data_path.hpp"
+#include "configuration/closest_name.hpp"
+#include "configuration/configuration.hpp"
+
+namespace constrictor::cli {
+
+std::string ProcessPlan::name() const {
+  std::string name;
+  for (const auto& component : components) name += (name.empty() ? "" : "+") + component;
+  return name;
+}
+
+std::vector<std::string> LaunchManifest::roster() const {
+  std::vector<std::string> names;
+  for (const auto& process : processes) names.insert(names.end(), process.components.begin(), process.components.end());
+  return names;
+}
+
+LaunchManifest load_manifest(const std::filesystem::path& file) {
+  Configuration root = Configuration::load(file);
+  LaunchManifest manifest;
+  manifest.plant = root.text("plant");
+  manifest.robot_file = data_path(root.text("robot"));
+  manifest.scenario_file = data_path(root.text("scenario"));
+  manifest.patience_s = root.number("patience_s", {1, 86400}, manifest.patience_s);
+  std::set<std::string> known;
+  for (Configuration& entry : root.list("processes")) {
+    ProcessPlan process;
+    process.components = entry.texts("components");
+    if (process.components.empty()) throw entry.error("components", "found none, accepted at least one component");
+    process.program = entry.text("program", {}, "");
+    process.restarts = static_cast<int>(entry.integer("restarts", 0, 1'000'000, process.restarts));
+    if (entry.has("environment")) process.environment = entry.texts("environment");
+    Configuration configs = entry.section("config", false);
+    for (const auto& component : process.components) {
+      if (!known.insert(component).second)
+        throw entry.error("components", "found " + component + " twice, accepted once");
+      if (configs.has(component)) manifest.config_files[component] = data_path(configs.text(component));
+      if (component == manifest.plant) process.restarts = 0;
+    }
+    configs.finish();
+    entry.finish();
+    manifest.processes.push_back(std::move(process));
+  }
+  if (!known.contains(manifest.plant))
+    throw root.error("plant", "found " + manifest.plant + ", accepted a component of processes");
+  root.finish();
+  return manifest;
+}
+
+void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string>>& groups) {
+  const std::vector<std::string> roster = manifest.roster();
+  std::set<std::string> grouped;
+  std::vector<ProcessPlan> processes;
+  for (const auto& group : groups) {
+    ProcessPlan together;
+    for (const auto& component : group) {
+      const auto home =
+          std::find_if(manifest.processes.begin(), manifest.processes.end(), [&](const ProcessPlan& process) {
+            return std::count(process.components.begin(), process.components.end(), component) > 0;
+          });
+      if (home == manifest.processes.end())
+        throw ConfigurationError(fmt::format("--group: found component '{}', accepted {}{}", component,
+                                             fmt::join(roster, ", "), did_you_mean(component, roster)));
+      if (!grouped.insert(component).second)
+        throw ConfigurationError("--group: found component '" + component + "' twice, accepted once");
+      together.components.push_back(component);
+      if (!home->program.empty()) together.program = home->program;
+      together.restarts = std::min(together.restarts, home->restarts);
+      together.environment.insert(together.environment.end(), home->environment.begin(), home->environment.end());
+    }
+    if (!together.components.empty()) processes.push_back(std::move(together));
+  }
+  for (ProcessPlan rest : manifest.processes) {
+    std::erase_if(rest.components, [&](const std::string& component) { return grouped.contains(component); });
+    if (!rest.components.empty()) processes.push_back(std::move(rest));
+  }
+  manifest.processes = std::move(processes);
+}
+
+std::vector<std::string> config_arguments(const LaunchManifest& manifest, const std::vector<std::string>& components) {
+  std::vector<std::string> arguments;
+  for (const auto& component : components) {
+    const auto config = manifest.config_files.find(component);
+    if (config == manifest.config_files.end()) continue;
+    arguments.insert(arguments.end(), {"--config", component + "=" + config->second.string()});
+  }
+  return arguments;
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,51 @@
+// A launch manifest of deploy/: the processes of a run, and the components that each of them hosts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace constrictor::cli {
+
+/// One process of a run.
+struct ProcessPlan {
+  std::vector<std::string> components;   ///< hosted by it, at least one
+  std::string program;                   ///< empty: the component's own, or constrictor_host for several
+  int restarts = 100;                    ///< how often it is restarted after it died; 0 for the plant's process
+  std::vector<std::string> environment;  ///< "NAME=VALUE", added to the launcher's
+
+  /// "control", or "navigation+control" if it hosts several.
+  [[nodiscard]] std::string name() const;
+};
+
+/// The program and its arguments for an incarnation of a process.
+using CommandLine = std::function<std::vector<std::string>(const ProcessPlan& process, std::uint32_t incarnation)>;
+
+struct LaunchManifest {
+  std::string plant;  ///< name of the component that is the plant
+  std::filesystem::path robot_file;
+  std::filesystem::path scenario_file;
+  double patience_s = 60.0;  ///< [s] wall time that a process waits for another one before it gives up
+  std::vector<ProcessPlan> processes;
+  std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: its default
+
+  /// Every component, in the order of the file.
+  [[nodiscard]] std::vector<std::string> roster() const;
+};
+
+/// Reads a manifest; paths in it are relative to the project's root. Throws ConfigurationError, also if a component is
+/// named twice or the plant is not among the components.
+LaunchManifest load_manifest(const std::filesystem::path& file);
+
+/// Puts each group of components into one process of its own; other components stay where they are. A run's identity
+/// depends on the manifest's roster() only, which must be taken before. Throws ConfigurationError if a component is
+/// unknown or in two groups.
+void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string>>& groups);
+
+/// The options "--config NAME=FILE" for those of `components` that do not use their default configuration.
+std::vector<std::string> config_arguments(const LaunchManifest& manifest, const std::vector<std::string>& components);
+
+}  // namespace constrictor::cli

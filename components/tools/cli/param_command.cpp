@@ -1,0 +1,205 @@
+#include "cli/param_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/interrupt.hpp"
+#include "cli/introspection/domain_view.hpp"
+#include "cli/operator.hpp"
+#include "client/parameters.hpp"
+#include "constrictor/json.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/domain.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  ViewOptions view;
+  bool names = false;
+  bool changed = false;
+  std::string name;                  ///< of get; of list: what names begin with
+  std::vector<std::string> changes;  ///< of set: NAME VALUE NAME VALUE ...
+  std::int64_t at_tick = 0;
+};
+
+std::string pending_text(const msg::Parameter& p) {
+  return p.pending_tick < 0 ? "" : fmt::format("  -> {} at tick {}", value_text(p, p.pending_value), p.pending_tick);
+}
+
+void report_silent(const ParameterView& view) {
+  for (const auto& owner : view.silent) {
+    std::fprintf(stderr,
+                 "param: %s has not published its parameters yet (has the run begun? see `constrictor status`)\n",
+                 owner.c_str());
+  }
+}
+
+int list(const Options& options) {
+  const dds::Domain domain(chosen_domain(options.view));
+  const ParameterView view = read_parameters(domain.participant());
+  Json json = Json::array();
+  bool begins = false;  // any of them with the prefix
+  std::size_t shown = 0;
+  if (!options.view.json && !options.names)
+    fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "what");
+  for (const auto& [name, owned] : view.parameters) {
+    const msg::Parameter& p = owned.parameter;
+    if (name.rfind(options.name, 0) != 0) continue;
+    begins = true;
+    if (options.changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
+    ++shown;
+    if (options.view.json) json.push_back(to_json(owned));
+    else if (options.names) fmt::print("{}\n", name);
+    else
+      fmt::print("{} {:<38} {:>9g} {:>9g} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, p.value,
+                 p.default_value, p.unit, fmt::format("{:g} to {:g}", p.minimum, p.maximum), p.doc, pending_text(p));
+  }
+  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
+  report_silent(view);
+  if (!begins && !view.parameters.empty())
+    std::fprintf(stderr, "param: no parameter begins with '%s'; `constrictor param list` lists all\n",
+                 options.name.c_str());
+  else if (begins && shown == 0 && !options.view.json)
+    std::fprintf(stderr, "param: none of these parameters was changed\n");
+  return begins ? exit_status::kOk : exit_status::kFailed;
+}
+
+int get(const Options& options) {
+  const dds::Domain domain(chosen_domain(options.view));
+  const ParameterView view = read_parameters(domain.participant());
+  const auto found = view.parameters.find(options.name);
+  if (found == view.parameters.end()) {
+    report_silent(view);
+    std::fprintf(stderr, "param: no parameter '%s'; `constrictor param list` lists all\n", options.name.c_str());
+    return exit_status::kFailed;
+  }
+  const msg::Parameter& p = found->second.parameter;
+  if (options.view.json) {
+    fmt::print("{}\n", json_text(to_json(found->second), 2));
+    return exit_status::kOk;
+  }
+  fmt::print("{}: {}{}\n  {}, of {}\n  accepted: {}; default: {}{}\n", p.name, value_text(p, p.value), pending_text(p),
+             p.doc, found->second.owner, accepted_text(p), value_text(p, p.default_value),
+             p.changed_tick < 0 ? "" : fmt::format("; changed at tick {}", p.changed_tick));
+  return exit_status::kOk;
+}
+
+int set(const Options& options) {
+  if (options.changes.size() % 2 != 0) {
+    std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
+    return exit_status::kUsage;
+  }
+  const std::size_t count = options.changes.size() / 2;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& text = options.changes[2 * i + 1];
+    char* end = nullptr;
+    values.push_back(std::strtod(text.c_str(), &end));
+    if (text.empty() || *end != '\0' || !std::isfinite(values.back())) {
+      std::fprintf(stderr, "param: VALUE of %s: found '%s', accepted a number\n", options.changes[2 * i].c_str(),
+                   text.c_str());
+      return exit_status::kUsage;
+    }
+  }
+  RequestClient client(chosen_domain(options.view), operator_options(unique_source("param"), 0ms, /*detached=*/true));
+  ParameterSetter setter(client);
+  if (const int failed = connect(client, "param"); failed != exit_status::kOk) return failed;
+  Json json = Json::array();
+  int status = exit_status::kOk;
+  for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
+    const std::string& name = options.changes[2 * i];
+    try {
+      const msg::ParameterChange change = setter.set(name, values[i], options.at_tick);
+      json.push_back({{"name", name},
+                      {"value", change.value},
+                      {"effective_tick", change.effective_tick},
+                      {"accepted_tick", change.header.tick}});
+      if (!options.view.json) fmt::print("{}: {:g} from tick {} on\n", name, change.value, change.effective_tick);
+    } catch (const CommandError& error) {
+      status = error.cause() == CommandError::Cause::kRefused       ? exit_status::kFailed
+               : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
+                                                                    : exit_status::kWaitedTooLong;
+      const bool refused = error.cause() == CommandError::Cause::kRefused;
+      if (refused) json.push_back({{"name", name}, {"value", values[i]}, {"refused", error.what()}});
+      if (!refused || !options.view.json)
+        std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
+      if (!refused) {
+        client.flush();
+        std::fprintf(stderr, "  %zu of %zu parameters were set; authority has not changed\n", i, count);
+      }
+    }
+  }
+  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
+  return status;
+}
+
+}  // namespace
+
+void add_param(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<Options>();
+  auto* param = app.add_subcommand("param", "list and change the parameters of a run while it runs");
+  param->require_subcommand(1);
+  param->footer(
+      "A parameter's name is that of its component and the keys in its configuration file: "
+      "navigation.travel.frequency_hz is `travel:\n"
+      "frequency_hz:` in navigation.yaml. Each component announces which of its parameters may change, with unit and "
+      "bounds.\n\n"
+      "A change takes effect at a tick: the next one, or the one that --at-tick names. The run's report records it. A "
+      "run with the same\n"
+      "changes at the same ticks has the same result, bit for bit (to repeat one: `parameter_changes` in a copy of\n"
+      "components/input/input.yaml, with `constrictor run --config input=FILE`). A reset restores the defaults. "
+      "Setting "
+      "a parameter takes\n"
+      "no authority. While an operator has authority, only operators may set parameters; this command does so as an "
+      "operator.\n\n"
+      "EXAMPLES\n"
+      "  constrictor param list\n"
+      "  constrictor param list navigation.follow_line\n"
+      "  constrictor param get navigation.travel.frequency_hz\n"
+      "  constrictor param set navigation.travel.frequency_hz 0.9\n"
+      "  constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
+      "2000\n"
+      "  constrictor param list --changed --json\n\n"
+      "EXIT STATUS\n"
+      "  0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no "
+      "answer;\n"
+      "  130 interrupted by Ctrl-C\n\n"
+      "ENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
+  const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
+    auto* sub = param->add_subcommand(name, what);
+    add_view_options(*sub, options->view);
+    sub->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+    return sub;
+  };
+  auto* list_app = add(
+      "list", "list the parameters with value, default, unit, accepted values and meaning; * marks changed ones", list);
+  list_app->add_option("PREFIX", options->name,
+                       "only names that begin with this text: a component, or component.section");
+  list_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
+  list_app->add_flag("--names", options->names, "only the names, one in each line")->excludes("--json");
+  add("get", "print one parameter", get)->add_option("NAME", options->name, "the parameter")->required();
+  auto* set_app = add("set", "change parameters", set);
+  set_app
+      ->add_option("CHANGES", options->changes,
+                   "NAME VALUE, as often as needed. They are set in this order; the first refusal ends the command")
+      ->required()
+      ->expected(2, 64)
+      ->option_text("NAME VALUE...");
+  set_app
+      ->add_option("--at-tick", options->at_tick,
+                   "tick at which the change takes effect; it must be in the future (default: the next tick)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{9'000'000'000'000'000}));
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,55 @@
+// What `constrictor run` shows while the run goes on.
+#pragma once
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+namespace constrictor::cli {
+
+/// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds.
+class ProgressDisplay {
+ public:
+  void show_status(const std::string& line) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ && (now - shown_ < kEvery)) return;
+    shown_ = now;
+    if (terminal_) std::printf("\r\033[K%s", line.c_str());
+    else std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+  }
+  /// Prints a line that stays.
+  void print(const std::string& line) {
+    std::printf("%s%s\n", terminal_ ? "\r\033[K" : "", line.c_str());
+    std::fflush(stdout);
+  }
+
+ private:
+  static constexpr std::chrono::seconds kEvery{5};
+  bool terminal_ = ::isatty(STDOUT_FILENO) == 1;
+  std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+};
+
+/// Simulated time over wall time in about the last second.
+class SpeedMeter {
+ public:
+  double factor(double sim_time_s) {
+    const auto now = std::chrono::steady_clock::now();
+    const double wall_s = std::chrono::duration<double>(now - since_).count();
+    if (wall_s < 1.0) return factor_;
+    factor_ = std::max(0.0, sim_time_s - sim_time_s_) / wall_s;
+    since_ = now;
+    sim_time_s_ = sim_time_s;
+    return factor_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  double sim_time_s_ = 0;
+  double factor_ = 0;
+};
+
+}  // namespace constrictor::cli

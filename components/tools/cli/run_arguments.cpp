@@ -1,0 +1,118 @@
+// The command lines of `constrictor run` and `constrictor check`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/run_command.hpp"
+#include "cli/usage.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+/// The options that `run` and `check` share: those that name files, and the seed.
+void add_file_options(CLI::App& app, RunOptions& options) {
+  app.add_option("SCENARIO", options.scenario,
+                 "a name (see `constrictor list scenarios`) or a file (default: the manifest's)");
+  app.add_option("--seed", options.seed, "seed of scene, masses, friction, light, noise and start pose")
+      ->capture_default_str()
+      ->check(whole_number());
+  app.add_option("--manifest", options.manifest, "launch manifest: a name (see `constrictor list manifests`) or a file")
+      ->capture_default_str();
+  app.add_option("--robot", options.robot,
+                 "robot: a name (see `constrictor list robots`) or a file (default: the manifest's)");
+  app.add_option("--config", options.config_files,
+                 "NAME=FILE: configuration file of a component, instead of its default; may be repeated")
+      ->allow_extra_args(false);
+}
+
+void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, std::function<int()>& action) {
+  auto* run = app.add_subcommand("run", "run a scenario, each component in a process of its own, and write a report");
+  add_file_options(*run, *options);
+  run->add_option("--pace", options->pace,
+                  "speed of simulated time: lockstep (as fast as possible), realtime (on the wall clock, late "
+                  "components\nare not waited for), or a limit such as 2x (0.001x to 1000x real time)")
+      ->capture_default_str();
+  run->add_flag("--in-process", options->in_process, "host all components in one process");
+  run->add_option("--group", options->groups,
+                  "host these components, separated by commas, in one process; may be repeated")
+      ->allow_extra_args(false)
+      ->excludes("--in-process");
+  run->add_option("--report", options->report_dir, "directory for the report (default: a new one below runs/)");
+  run->add_option("--max-sim-time", options->max_sim_time_s,
+                  "[s] end the run at this simulated time (default: no limit but the report component's)")
+      ->check(number(0.0, 1e6, "s"));
+  run->add_flag("--record", options->record,
+                "log all messages except images, so that `constrictor diff` can name fields");
+  run->add_option("--domain", options->domain, "DDS domain, 0 to 229 (default: the first free one of 1 to 100)")
+      ->envname("CONSTRICTOR_DOMAIN")
+      ->check(whole_number(0, 229));
+  run->footer(
+      "Checks all files first. Then starts the components of a launch manifest in a DDS domain of their own, shows "
+      "the\n"
+      "progress, restarts processes that died, and ends when the mission ends. The report directory then contains\n"
+      "report.json, figure.png, hashes.bin (for `constrictor diff`) and logs/.\n"
+      "In lock-step the result depends only on scenario, seed, robot and configurations; grouping, pace, load, killed\n"
+      "processes and hosts do not change it.\n"
+      "The first Ctrl-C (or SIGTERM) ends the run in order and writes the complete report; the second kills all\n"
+      "processes.\n\n"
+      "EXAMPLES\n"
+      "  constrictor run\n"
+      "  constrictor run line --seed 7 --report /tmp/seven\n"
+      "  constrictor run --in-process --pace realtime\n"
+      "  constrictor run --group physics,camera --group navigation,control\n"
+      "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"
+      "  constrictor run --config planner=components/planner/planner.yaml\n\n"
+      "EXIT STATUS\n"
+      "  0 the mission succeeded; 1 it did not; 64 wrong usage; 70 a process failed; 75 a process waited too long for\n"
+      "  another one; 76 a process was refused; 78 wrong configuration; 130 ended by Ctrl-C, 143 by SIGTERM or\n"
+      "  `constrictor end`, before the mission succeeded\n\n"
+      "FILES\n"
+      "  runs/                          reports, unless --report names another directory\n"
+      "  $XDG_RUNTIME_DIR/constrictor/  notes by which other commands find the run\n\n"
+      "ENVIRONMENT\n"
+      "  CONSTRICTOR_DOMAIN  the domain, like --domain\n"
+      "  CONSTRICTOR_DATA    directory of the default files, instead of the source tree or the install prefix\n"
+      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
+  run->callback([&action, options] { action = [options] { return run_command(*options); }; });
+}
+
+int check_command(const RunOptions& options) {
+  const LaunchPlan plan = make_launch_plan(options);
+  check_components(options, plan);
+  fmt::print("no errors: scenario {}, robot {}, {} components\n", plan.manifest.scenario_file.string(),
+             plan.manifest.robot_file.string(), plan.roster.size());
+  for (const auto& process : plan.manifest.processes) {
+    if (!process.program.empty())
+      fmt::print("not checked: the configuration of {}, which program {} hosts\n", process.name(), process.program);
+  }
+  return exit_status::kOk;
+}
+
+void add_check_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, std::function<int()>& action) {
+  auto* check = app.add_subcommand("check", "check manifest, scenario, robot and all configurations; start no run");
+  add_file_options(*check, *options);
+  check->footer(
+      "Every component reads its own files, as it does at the start of a run. `constrictor run` makes the same check\n"
+      "before it starts anything.\n\n"
+      "EXAMPLES\n"
+      "  constrictor check\n"
+      "  constrictor check line --robot serpens --seed 7\n"
+      "  constrictor check --config planner=components/planner/planner.yaml\n\n"
+      "EXIT STATUS\n"
+      "  0 no errors; 64 wrong usage; 78 wrong configuration, with file, line, key, what was found and what is "
+      "accepted\n\n"
+      "ENVIRONMENT\n"
+      "  CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix");
+  check->callback([&action, options] { action = [options] { return check_command(*options); }; });
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, std::function<int()>& action) {
+  add_run_app(app, std::make_shared<RunOptions>(), action);
+  add_check_app(app, std::make_shared<RunOptions>(), action);
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,176 @@
+#include "cli/run_control.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "cli/interrupt.hpp"
+#include "cli/operator.hpp"
+#include "cli/usage.hpp"
+#include "client/run_control_client.hpp"
+#include "client/run_registry.hpp"
+#include "runtime/host.hpp"
+#include "runtime/pacer.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Options {
+  std::optional<std::uint32_t> run;
+  std::uint64_t steps = 1;
+  std::uint64_t seed = 1;
+  std::string pace;
+};
+
+double parse_pace(const std::string& text) {
+  if (text == "lockstep") return 0.0;
+  char* end = nullptr;
+  const double pace = std::strtod(text.c_str(), &end);
+  const bool number = end != text.c_str() && (*end == '\0' || std::string(end) == "x");
+  if (!number || !(pace > 0.0 && Pacer::accepts(pace))) {
+    throw UsageError(fmt::format("PACE: found '{}', accepted lockstep or a factor such as 2x ({}x to {}x)", text,
+                                 Pacer::kSlowest, Pacer::kFastest));
+  }
+  return pace;
+}
+
+std::string pace_text(const msg::RunState& state) {
+  if (state.realtime) return "real-time pace";
+  std::string text =
+      state.pace > 0.0 ? fmt::format("at most {}x real time", state.pace) : "lock-step, as fast as it goes";
+  if (state.operator_pace) text += " while an operator has authority";
+  return text;
+}
+
+int control(const Options& options, std::uint8_t command) {
+  const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
+  const RunNote run = find_run(options.run);
+  catch_interrupts();
+  RunControlClient client(run.domain, 10s, [] { return interrupt_signal() != 0; });
+  try {
+    const msg::RunState state = command == msg::kRunStep    ? client.step(static_cast<std::uint32_t>(options.steps))
+                                : command == msg::kRunReset ? client.reset(options.seed)
+                                : command == msg::kRunPace  ? client.set_pace(pace)
+                                : command == msg::kRunPause ? client.pause()
+                                                            : client.resume();
+    if (command == msg::kRunReset)
+      fmt::print("run {}: reset to seed {}, epoch {}\n", run.domain, state.seed, state.epoch);
+    else if (state.paused) fmt::print("run {}: paused, next tick {}\n", run.domain, state.tick);
+    else fmt::print("run {}: runs, {}\n", run.domain, pace_text(state));
+    return exit_status::kOk;
+  } catch (const CommandError& error) {
+    if (error.cause() != CommandError::Cause::kInterrupted) throw;
+    std::fprintf(stderr, "%s\n", error.what());
+    return interrupt_status();
+  }
+}
+
+/// Sends a request of a kind without parameters and prints `granted` if it is granted.
+int ask(RequestClient& client, const char* command, std::uint8_t kind, const char* granted) {
+  const auto answer = client.wait_for_answer(client.ask(kind), 5s);
+  if (answer == RequestClient::Answer::kGranted) fmt::print("{}\n", granted);
+  return report_not_granted(client, answer, command);
+}
+
+int stop(RequestClient& client) {
+  return ask(client, "stop", msg::kRequestEmergencyStop,
+             "emergency stop: the robot holds its posture until `constrictor clear-stop`");
+}
+
+int clear_stop(RequestClient& client) {
+  return ask(client, "clear-stop", msg::kRequestClearStop,
+             "emergency stop cleared; the robot stands until `constrictor release` or another request");
+}
+
+/// Takes authority from a script or from nobody, and releases it.
+int release(RequestClient& client) {
+  // `input` refuses this while a person at a terminal has authority: they keep it.
+  const auto taken = client.wait_for_answer(client.ask(msg::kRequestTake), 5s);
+  if (taken == RequestClient::Answer::kRefused) return report_not_granted(client, taken, "release");
+  // Released in every other case, also after Ctrl-C: the first request may have been granted meanwhile.
+  const auto answer = client.wait_for_answer(client.ask(msg::kRequestRelease), 5s);
+  if (answer == RequestClient::Answer::kInterrupted && client.release(2s)) {
+    fmt::print("release: interrupted, but authority was released\n");
+    return interrupt_status();
+  }
+  if (answer == RequestClient::Answer::kGranted) fmt::print("authority released: a planner may take it\n");
+  return report_not_granted(client, answer, "release");
+}
+
+int operate(const Options& options, const char* command, int (*use)(RequestClient&)) {
+  RequestClient client(find_run(options.run).domain, operator_options(unique_source("operator")));
+  if (const int status = connect(client, command); status != exit_status::kOk) return status;
+  return use(client);
+}
+
+}  // namespace
+
+void add_run_control(CLI::App& app, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  const std::string time_status = fmt::format("0 done; {}, or no answer;\n  130 interrupted by Ctrl-C", kRunStatuses);
+  const std::string safety_status = fmt::format(
+      "0 done; 1 refused, with the reason; {};\n  75 no answer within 5 s; 130 interrupted by Ctrl-C", kRunStatuses);
+  const auto add = [&](const char* name, const char* text, std::function<int()> what, const std::string& footer) {
+    auto* sub = app.add_subcommand(name, text);
+    add_run_option(*sub, options->run);
+    sub->callback([&action, what = std::move(what)] { action = what; });
+    sub->footer(footer);
+    return sub;
+  };
+  const auto controls = [options](std::uint8_t command) {
+    return [options, command] { return control(*options, command); };
+  };
+  const auto operates = [options](const char* command, int (*use)(RequestClient&)) {
+    return [options, command, use] { return operate(*options, command, use); };
+  };
+  add("pause", "halt the ticks of a run", controls(msg::kRunPause),
+      help_footer("No process times out while the run is paused, and the result of the run does not change.",
+                  {"constrictor pause", "constrictor pause --run 3"}, time_status));
+  add("resume", "continue a paused run", controls(msg::kRunResume),
+      help_footer("The run continues at the pace that was set before the pause.", {"constrictor resume"}, time_status));
+  add("step", "pause a run and let it make one tick, or several", controls(msg::kRunStep),
+      help_footer(
+          "Waits until the ticks are done, as long as the run makes ticks. Ctrl-C ends the wait, not the steps.",
+          {"constrictor step", "constrictor step 50       # one second"},
+          fmt::format("0 done; {},\n  or no tick for 10 s; 130 interrupted by Ctrl-C", kRunStatuses)))
+      ->add_option("TICKS", options->steps, "number of ticks, 1 to 1000000")
+      ->check(whole_number())
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->capture_default_str();
+  add("pace", "limit how fast a run goes", controls(msg::kRunPace),
+      help_footer("While an operator has authority, lock-step is limited to real time. A pace that is set meanwhile "
+                  "replaces that limit.",
+                  {"constrictor pace lockstep", "constrictor pace 2x"}, time_status))
+      ->add_option("PACE", options->pace,
+                   "lockstep (as fast as possible), or at most N times real time: 2x (0.001x to 1000x)")
+      ->required();
+  add("reset", "begin a run again, with another seed", controls(msg::kRunReset),
+      help_footer("Processes and report directory stay. The run becomes the one that `constrictor run --seed SEED` "
+                  "makes.",
+                  {"constrictor reset 7"}, time_status))
+      ->add_option("SEED", options->seed, "the seed")
+      ->required()
+      ->check(whole_number());
+  add("stop", "latch an emergency stop: the robot holds its posture", operates("stop", stop),
+      help_footer("Anybody may request it at any time. It stays latched until `constrictor clear-stop`.",
+                  {"constrictor stop"},
+                  fmt::format("0 the stop is latched; {}; 75 no answer within 5 s;\n  130 interrupted by Ctrl-C: the "
+                              "request was sent, but is not confirmed",
+                              kRunStatuses)));
+  add("clear-stop", "clear an emergency stop; the robot does not move", operates("clear-stop", clear_stop),
+      help_footer("Nobody has authority afterwards; `constrictor release` lets the planner take it.",
+                  {"constrictor clear-stop && constrictor release"}, safety_status));
+  add("release", "give authority back to the planner, also after an emergency stop", operates("release", release),
+      help_footer("Releases the authority of a script (`constrictor task`), or of nobody. A person at `constrictor "
+                  "teleop` keeps theirs.",
+                  {"constrictor task wait --end && constrictor release"}, safety_status));
+}
+
+}  // namespace constrictor::cli

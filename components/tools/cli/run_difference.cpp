@@ -1,0 +1,122 @@
+#include "cli/run_difference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "constrictor/compare.hpp"
+#include "constrictor/topics.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Entry = HashLog::Entry;
+
+/// Messages of so many last ticks may be missing: the longest latency of a component, and a margin.
+constexpr std::int64_t kTail = 32;
+
+auto place(const Entry& entry) { return std::make_tuple(entry.tick, entry.topic, entry.sequence_number); }
+
+/// Last tick that the plant sampled; -1 if none.
+std::int64_t last_tick(const std::vector<Entry>& log) {
+  std::int64_t last = -1;
+  for (const auto& entry : log) {
+    if (topics::kInfos[entry.topic].writer == topics::kJointState.writer) last = std::max(last, entry.tick);
+  }
+  return last;
+}
+
+template <class T>
+std::optional<FieldDifference> field_difference(const std::string& a, const std::string& b) {
+  const auto left = parse_shared<T>(std::as_bytes(std::span(a)));
+  const auto right = parse_shared<T>(std::as_bytes(std::span(b)));
+  if (!left || !right) return FieldDifference{"", "unreadable", "unreadable"};
+  return first_difference(*left, *right);
+}
+
+RunDifference at(const Entry& entry) {
+  const TopicInfo& topic = topics::kInfos[entry.topic];
+  return {entry.tick, std::string(topic.writer), std::string(topic.name), "", "", ""};
+}
+
+RunDifference differing(const Entry& a, const Entry& b) {
+  RunDifference difference = at(a);
+  difference.a = fmt::format("hash {:016x}", a.hash);
+  difference.b = fmt::format("hash {:016x}", b.hash);
+  if (a.bytes.empty() || b.bytes.empty()) return difference;
+  std::apply(
+      [&](const auto&... topic) {
+        const auto look = [&](const auto& candidate) {
+          using Message = typename std::decay_t<decltype(candidate)>::message_type;
+          if (candidate.id != a.topic) return;
+          if (const auto field = field_difference<Message>(a.bytes, b.bytes)) {
+            difference.field = field->path;
+            difference.a = field->a;
+            difference.b = field->b;
+          }
+        };
+        (look(topic), ...);
+      },
+      topics::kAll);
+  return difference;
+}
+
+}  // namespace
+
+std::optional<RunDifference> first_run_difference(const std::vector<Entry>& a, const std::vector<Entry>& b) {
+  const std::int64_t end_a = last_tick(a);
+  const std::int64_t end_b = last_tick(b);
+  const std::int64_t end = std::min(end_a, end_b);
+  // A restarted member repeats its last step, so a log may contain the same message twice.
+  const auto past = [](const std::vector<Entry>& log, std::size_t i) {
+    const auto here = place(log[i]);
+    const auto hash = log[i].hash;
+    while (i < log.size() && place(log[i]) == here && log[i].hash == hash) ++i;
+    return i;
+  };
+  const auto missing = [&](const Entry& entry, bool in_a) {
+    RunDifference difference = at(entry);
+    (in_a ? difference.a : difference.b) = fmt::format("message {}", entry.sequence_number);
+    (in_a ? difference.b : difference.a) = "no message";
+    return difference;
+  };
+  const auto tolerated = [&](const Entry& entry) {
+    const bool plants = topics::kInfos[entry.topic].writer == topics::kJointState.writer;
+    return entry.tick > end - (plants ? 0 : kTail);
+  };
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() || j < b.size()) {
+    const bool only_a = j == b.size() || (i < a.size() && place(a[i]) < place(b[j]));
+    const bool only_b = !only_a && (i == a.size() || place(b[j]) < place(a[i]));
+    if (only_a) {
+      if (!tolerated(a[i])) return missing(a[i], true);
+      i = past(a, i);
+    } else if (only_b) {
+      if (!tolerated(b[j])) return missing(b[j], false);
+      j = past(b, j);
+    } else {
+      if (a[i].hash != b[j].hash) return differing(a[i], b[j]);
+      i = past(a, i);
+      j = past(b, j);
+    }
+  }
+  if (end_a == end_b) return std::nullopt;
+  return RunDifference{end, std::string(topics::kJointState.writer), "the run's length",
+                       "",  fmt::format("ends at tick {}", end_a),   fmt::format("ends at tick {}", end_b)};
+}
+
+std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto read = [](const std::filesystem::path& directory) {
+    auto log = HashLog::read(directory);
+    // Without a tick there is nothing to compare.
+    if (last_tick(log) < 0) throw std::runtime_error((directory / "hashes.bin").string() + ": contains no tick");
+    return log;
+  };
+  const auto log_a = read(a);
+  return first_run_difference(log_a, read(b));
+}
+
+}  // namespace constrictor::cli

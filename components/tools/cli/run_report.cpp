@@ -1,0 +1,78 @@
+#include "cli/run_report.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "constrictor/json.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t sum_over(const std::vector<std::string>& components, const std::map<std::string, std::uint64_t>& counts) {
+  std::uint64_t sum = 0;
+  for (const auto& component : components) {
+    const auto found = counts.find(component);
+    if (found != counts.end()) sum += found->second;
+  }
+  return sum;
+}
+
+RunVerdict judge(const RunOutcome& outcome, const RunView& view, const Json& mission) {
+  RunVerdict verdict;
+  verdict.success = outcome.error.empty() && mission.value("success", false);
+  verdict.sim_time_s = mission.value("sim_time_s", view.sim_time_s());
+  if (verdict.success) return verdict;
+  for (const std::string& reason : {outcome.error, mission.value("reason", std::string()), outcome.end_reason}) {
+    if (verdict.reason.empty()) verdict.reason = reason;
+  }
+  if (verdict.reason.empty())
+    verdict.reason = mission.empty() ? "no report component judged the mission" : "the report component gave no reason";
+  return verdict;
+}
+
+}  // namespace
+
+RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcome& outcome, const RunView& view,
+                        const std::vector<ProcessRecord>& processes) {
+  std::ifstream mission_file(report_dir / "mission.json");
+  Json mission = Json::parse(mission_file, nullptr, false);
+  if (!mission.is_object()) mission = Json::object();
+  const RunVerdict verdict = judge(outcome, view, mission);
+
+  // Every report has these keys, in this order; those of the mission are null if no report component took part.
+  Json report = Json::object();
+  report["success"] = verdict.success;
+  report["reason"] = verdict.reason;
+  report["seed"] = mission.value("seed", outcome.seed);  // a reset may have changed it
+  report["scenario"] = outcome.scenario;
+  report["sim_time_s"] = verdict.sim_time_s;
+  report["wall_time_s"] = outcome.wall_time_s;
+  report["real_time_factor"] = outcome.wall_time_s > 0 ? verdict.sim_time_s / outcome.wall_time_s : 0.0;
+  report["ticks"] = mission.value("ticks", view.tick + 1);
+  for (const char* key : {"state_hash", "objects", "line", "pose_error", "events", "states", "parameters"}) {
+    report[key] = mission.contains(key) ? mission[key] : Json(nullptr);
+  }
+  Json list = Json::array();
+  for (const auto& process : processes) {
+    list.push_back({{"name", process.name},
+                    {"cpu_s", process.cpu_s},
+                    {"max_pss_mib", process.max_pss_mib},
+                    {"restarts", process.restarts},
+                    {"overruns", sum_over(process.components, view.overruns)},
+                    {"refused", sum_over(process.components, view.refused)}});
+  }
+  report["processes"] = std::move(list);
+  if (!outcome.error.empty()) report["error"] = outcome.error;
+  for (const auto& [key, value] : mission.items()) {
+    if (!report.contains(key)) report[key] = value;
+  }
+  std::ofstream file(report_dir / "report.json");
+  file << json_text(report, 1) << "\n";
+  if (!file.flush()) throw std::runtime_error("cannot write " + (report_dir / "report.json").string());
+  return verdict;
+}
+
+}  // namespace constrictor::cli

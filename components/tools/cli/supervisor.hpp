@@ -1,0 +1,112 @@
+// Starts the processes of a run, restarts those that died, and ends them all.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/child_process.hpp"
+#include "cli/manifest.hpp"
+
+namespace constrictor::cli {
+
+/// One process of a run over all of its incarnations.
+struct ProcessRecord {
+  std::string name;  ///< as ProcessPlan::name()
+  std::vector<std::string> components;
+  double cpu_s = 0;        ///< [s] user and system time
+  double max_pss_mib = 0;  ///< [MiB] largest sample
+  std::uint32_t restarts = 0;
+};
+
+class Supervisor {
+ public:
+  /// Shows one line to the user.
+  using Print = std::function<void(const std::string& line)>;
+
+  /// `environment` is complete; each process's own variables are added to it. Output goes to `log_dir`/NAME.log.
+  Supervisor(LaunchManifest manifest, CommandLine command_line, std::vector<std::string> environment,
+             std::filesystem::path log_dir, Print print);
+  ~Supervisor();  ///< kills the processes that still run
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// Starts all processes. Throws std::system_error.
+  void start();
+
+  enum class State {
+    kRunning,
+    kEnded,   ///< the plant published that the run is over (expect_end()), and its process ended with status 0
+    kFailed,  ///< see failure()
+  };
+  /// Looks at the processes without waiting, and restarts those that died, up to the manifest's `restarts`. The run
+  /// fails if the plant's process dies, or ends without expect_end(); if a process ends with a status that a restart
+  /// cannot change (usage, configuration, refusal, a peer waited for too long, no such program); and if a process dies
+  /// five times by its own fault while the run stands at one tick.
+  State poll();
+  /// The newest tick of the run, -1 before the first. `held`: all members have finished it, and only the pace or a
+  /// pause keeps the next one back.
+  void run_is_at(std::int64_t tick, bool held);
+  void sample_memory();
+  /// The plant published that the run is over: processes end from now on, and none is restarted.
+  void expect_end() { ending_ = true; }
+  /// True if the plant's process ended with status 0. Without expect_end() soon afterwards the run has failed.
+  [[nodiscard]] bool plant_is_gone() const { return plant_gone_; }
+
+  /// Waits up to `grace` for all processes to end by themselves, then stop()s the others, which is a failure. Returns
+  /// early, with processes still running, once `give_up` returns true.
+  void finish(
+      std::chrono::seconds grace, const std::function<bool()>& give_up = [] { return false; });
+  /// Sends SIGTERM to all processes, and SIGKILL to those that have not ended 3 s later. `at_once`: only SIGKILL.
+  void stop(bool at_once = false);
+
+  /// Why the run failed; empty: it did not.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  /// The exit status of the command for this failure.
+  [[nodiscard]] int failure_status() const { return failure_status_; }
+  /// In the order of the manifest.
+  [[nodiscard]] std::vector<ProcessRecord> records() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Supervised {
+    ProcessPlan plan;
+    std::vector<ChildProcess> child;  ///< the present incarnation; empty before the start
+    ProcessRecord record;
+    std::uint32_t incarnation = 0;
+    Clock::time_point ended{};
+    std::uintmax_t log_offset = 0;  ///< [byte] where the output of this incarnation begins in its log
+    int deaths_without_tick = 0;    ///< by its own fault, since the newest tick
+    bool over = false;              ///< ended, and its exit was handled
+    [[nodiscard]] bool running() const { return !over && !child.empty(); }
+  };
+  void spawn(Supervised& process);
+  void handle_exit(Supervised& process, const ChildExit& exit);
+  /// `own_fault`: not killed from outside, so that a restart may end in the same way.
+  void restart(Supervised& process, const std::string& why, bool own_fault);
+  void handle_plants_end(const Supervised& plant);
+  void fail(const std::string& why, int status);
+  [[nodiscard]] bool is_plant(const Supervised& process) const;
+  [[nodiscard]] std::filesystem::path log_of(const Supervised& process) const;
+  /// True if no process runs. `handle_exits`: deaths are printed, and may be failures.
+  bool all_gone(bool handle_exits);
+  void signal_all(int number) const;
+
+  LaunchManifest manifest_;
+  CommandLine command_line_;
+  std::vector<std::string> environment_;
+  std::filesystem::path log_dir_;
+  Print print_;
+  std::vector<Supervised> processes_;
+  std::int64_t tick_ = -1;  ///< newest known
+  State state_ = State::kRunning;
+  bool ending_ = false;
+  bool plant_gone_ = false;
+  std::string failure_;
+  int failure_status_ = 0;
+};
+
+}  // namespace constrictor::cli

@@ -1,0 +1,223 @@
+#include "cli/task_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cli/interrupt.hpp"
+#include "cli/operator.hpp"
+#include "cli/task_names.hpp"
+#include "cli/task_request.hpp"
+#include "cli/task_wait.hpp"
+#include "cli/usage.hpp"
+#include "client/run_registry.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+/// All scripts of a run share one source, so that one script can cancel what another one started.
+constexpr const char* kSource = "task";
+
+struct Options {
+  std::optional<std::uint32_t> run;
+  std::string name;
+  std::map<std::string, std::string> parameters;
+  std::vector<std::string> path;  ///< points "X,Y"
+  TaskWaitOptions wait;
+};
+
+int with_client(const Options& options, int (*use)(RequestClient&, const Options&)) {
+  RequestClient client(find_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
+  if (const int status = connect(client, "task"); status != exit_status::kOk) return status;
+  return use(client, options);
+}
+
+/// The task and its parameters as a request. Throws UsageError if they are wrong or incomplete: a request that cannot
+/// be done must not be sent, because it would end the mission that runs.
+msg::Request request_of(const Options& options) {
+  const auto task = task_by_name(options.name);
+  if (!task) throw UsageError(fmt::format("TASK: found '{}', accepted {}", options.name, task_words()));
+  msg::Request request = task_request(*task);
+  for (const auto& [key, value] : options.parameters) {
+    if (value.empty()) continue;
+    const std::string problem = set_task_parameter(request.parameters, key, value);
+    if (!problem.empty()) throw UsageError("--" + problem);
+  }
+  std::string problem = set_path(request.path, options.path);
+  if (!problem.empty()) throw UsageError("--" + problem);
+  if ((*task == msg::kTaskFollowPath) != (request.path.point_count > 0)) {
+    throw UsageError(*task == msg::kTaskFollowPath ? "follow_path: found no --path, accepted one of 2 to 64 points"
+                                                   : "--path: accepted with follow_path only");
+  }
+  problem = task_problem(request);
+  if (!problem.empty()) throw UsageError(problem + " (constrictor task start --help)");
+  return request;
+}
+
+/// Ends an interrupted `task start`: gives authority back, so that no task runs that nobody has seen begin.
+int give_back(RequestClient& client) {
+  if (client.release(2s)) {
+    std::fprintf(stderr, "task: interrupted; the task was cancelled and authority released\n");
+  } else {
+    client.flush();
+    std::fprintf(stderr,
+                 "task: interrupted; the run does not answer. If it is paused it starts the task and releases "
+                 "authority as soon as it resumes; see `constrictor status`\n");
+  }
+  return interrupt_status();
+}
+
+/// Waits for the answers of `input`, which forwards the goal, and of navigation, which may refuse it.
+int start(RequestClient& client, const Options& options) {
+  const msg::Request request = request_of(options);
+  const bool held = client.holds_authority();
+  try {
+    const std::uint64_t goal = client.start_goal(request);
+    fmt::print("{} started, goal {}; `constrictor release` gives authority back\n", task_word(request.task),
+               goal_text(goal));
+    return exit_status::kOk;
+  } catch (const CommandError& error) {
+    if (error.cause() == CommandError::Cause::kInterrupted) return give_back(client);
+    std::fprintf(stderr, "task: %s\n", error.what());
+    // Navigation refuses what the robot cannot do now, after `input` has given authority to this command.
+    const bool took = !held && client.holds_authority();
+    if (took && error.cause() == CommandError::Cause::kRefused) {
+      std::fprintf(stderr, client.release(2s)
+                               ? "  authority was released: a planner may take it again\n"
+                               : "  authority is still with this script; `constrictor release` gives it back\n");
+    }
+    client.flush();
+    return error.cause() == CommandError::Cause::kRefused ? exit_status::kFailed : exit_status::kWaitedTooLong;
+  }
+}
+
+/// Lets the robot stand, which ends the task that runs.
+int cancel(RequestClient& client, const Options&) {
+  const auto answer = client.wait_for_answer(client.move(msg::kMotionStand), 5s);
+  if (answer == RequestClient::Answer::kGranted)
+    fmt::print("cancelled, the robot stands; `constrictor release` gives authority back\n");
+  return report_not_granted(client, answer, "task");
+}
+
+int list() {
+  for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) fmt::print("task   {}\n", task_word(task));
+  for (std::uint8_t event = 1; event < msg::kEventCount; ++event) fmt::print("event  {}\n", event_name(event));
+  return exit_status::kOk;
+}
+
+}  // namespace
+
+std::chrono::milliseconds parse_duration(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const double factor = unit == "ms"                  ? 1e-3
+                        : unit.empty() || unit == "s" ? 1.0
+                        : unit == "m"                 ? 60.0
+                        : unit == "h"                 ? 3600.0
+                                                      : 0.0;
+  if (end == text.c_str() || factor == 0.0 || !(value > 0.0 && value * factor <= 1e6)) {
+    throw UsageError(fmt::format("{}: found '{}', accepted a duration such as 5s, 500ms, 2m", option, text));
+  }
+  return std::chrono::milliseconds(std::llround(1e3 * value * factor));
+}
+
+void add_task(CLI::App& app, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  auto* task = app.add_subcommand("task", "start, cancel and wait for tasks from a script");
+  task->require_subcommand(1);
+  task->footer(help_footer(
+      "The tasks are those of the paper (Tables I to XV), and follow_path. A script has the level of an operator: it "
+      "takes authority from the\nplanner and keeps it until `constrictor release`.",
+      {"constrictor task start rotate --direction left --timeout-s 5",
+       "constrictor task wait --end && constrictor release",
+       "constrictor task wait --event \"object found\" --goal any      # of any goal, also the planner's"},
+      fmt::format("0 done; 1 refused, or the goal did not succeed; {};\n  75 no answer, or too late; 130 interrupted "
+                  "by Ctrl-C",
+                  kRunStatuses)));
+  const auto add = [&](const char* name, const char* text, std::function<int()> what) {
+    auto* sub = task->add_subcommand(name, text);
+    sub->callback([&action, what = std::move(what)] { action = what; });
+    return sub;
+  };
+  const auto of_run = [&](CLI::App* sub) {
+    add_run_option(*sub, options->run);
+    return sub;
+  };
+  auto* start_app =
+      of_run(add("start", "start a task as an operator; authority stays until `constrictor release`", [options] {
+        static_cast<void>(request_of(*options));  // wrong usage is reported also without a run
+        return with_client(*options, start);
+      }));
+  start_app->add_option("TASK", options->name, task_words())->required();
+  const std::string colours = colour_words();
+  for (const auto& [name, text] : std::initializer_list<std::pair<const char*, std::string>>{
+           {"line-colour", "of follow_line: " + colours},
+           {"object-colour", "of search_object, track_object, pregrasp: " + colours},
+           {"object-handle",
+            "of search_object, track_object, pregrasp: which object of that colour, 1 to 65535 (default: any)"},
+           {"drop-zone-colour", "of drop: " + colours},
+           {"direction", "of rotate: left, right; of explore: " + direction_words()},
+           {"timeout-s",
+            "[s] of rotate: end it after this simulated time, up to 3600 (default: rotate until another request)"}}) {
+    start_app->add_option(std::string("--") + name, options->parameters[name], text);
+  }
+  start_app
+      ->add_option("--path", options->path,
+                   "[m] of follow_path: 2 to 64 points X,Y on the map, x ahead and y left of the robot's first "
+                   "position; the path must pass within 1 m of the robot")
+      ->expected(2, static_cast<int>(msg::kMaxPathPoints))
+      ->option_text("X,Y X,Y...");
+  start_app->footer(help_footer(
+      "Waits for the answers of `input` and navigation, and prints the goal's number. Where the robot is on the map:\n"
+      "`constrictor topic echo guidance/pose --count 1`. A task that is refused leaves authority as it was. Ctrl-C "
+      "before the answers\ncancels the task and releases authority.",
+      {"constrictor task start follow_line --line-colour blue", "constrictor task start explore --direction forwards",
+       "constrictor task start follow_path --path 0,0 1,0 2,0.5"},
+      fmt::format(
+          "0 the task has begun; 1 refused, with the reason; {};\n  75 no answer within 5 s; 130 interrupted by "
+          "Ctrl-C",
+          kRunStatuses)));
+  of_run(add("cancel", "end the task that runs and stand still; authority stays until `constrictor release`",
+             [options] { return with_client(*options, cancel); }))
+      ->footer(help_footer("", {"constrictor task cancel && constrictor release"},
+                           fmt::format("0 cancelled; 1 refused; {}; 75 no answer within 5 s;\n  130 interrupted by "
+                                       "Ctrl-C",
+                                       kRunStatuses)));
+  auto* wait_app = of_run(add("wait", "wait for an event of a goal, or for its end",
+                              [options] { return task_wait(options->wait, options->run); }));
+  auto* what = wait_app->add_option_group("what");
+  what->add_option("--event", options->wait.event, event_words());
+  what->add_flag("--end", options->wait.end, "wait for the end of the goal");
+  what->require_option(1);
+  wait_app
+      ->add_option("--goal", options->wait.goal,
+                   "the number of a goal, as `task start` prints it, or any: events of all goals from now on (default: "
+                   "the newest goal)")
+      ->check([](const std::string& text) { return text == "any" ? std::string{} : whole_number()(text); });
+  wait_app->add_option("--timeout", options->wait.timeout, "longest wait, in wall time: 60s, 2m")
+      ->capture_default_str();
+  wait_app->footer(help_footer(
+      "Events of the goal that happened before this command count too: none is missed between `task start` and `task "
+      "wait`.\nAuthority does not change, also at Ctrl-C.",
+      {"constrictor task wait --end", "constrictor task wait --event \"line lost\" --timeout 2m",
+       "constrictor task wait --event \"object grasped\" --goal any"},
+      fmt::format("0 the event came, or the goal succeeded; 1 the goal ended without it or did not succeed, or the run "
+                  "ended;\n  {}; 75 too late; 130 interrupted by Ctrl-C",
+                  kRunStatuses)));
+  add("list", "list the tasks and events", list)
+      ->footer(
+          "EXAMPLES\n  constrictor task list\n\nEXIT STATUS\n  0 done; 64 wrong usage\n\n"
+          "ENVIRONMENT\n  none: it joins no run");
+}
+
+}  // namespace constrictor::cli

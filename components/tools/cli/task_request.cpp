@@ -1,0 +1,20 @@
+#include "cli/task_request.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/task_names.hpp"
+#include "client/goal_tracker.hpp"
+#include "component/task_parameters.hpp"
+
+namespace constrictor::cli {
+
+std::string task_problem(const msg::Request& request) {
+  return task_parameter_refusal(request.task, request.parameters, request.path);
+}
+
+std::string goal_text(std::uint64_t goal) {
+  if (goal_level(goal) == msg::kAuthorityOperator) return std::to_string(goal_number(goal));
+  return fmt::format("{} ({})", goal_number(goal), authority_name(goal_level(goal)));
+}
+
+}  // namespace constrictor::cli

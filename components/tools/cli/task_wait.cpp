@@ -1,0 +1,122 @@
+#include "cli/task_wait.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "cli/interrupt.hpp"
+#include "cli/task_command.hpp"
+#include "cli/task_names.hpp"
+#include "cli/task_request.hpp"
+#include "cli/usage.hpp"
+#include "client/goal_reader.hpp"
+#include "client/run_registry.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr auto kPoll = 10ms;
+/// After this time all messages that writers keep for late readers have arrived.
+constexpr auto kSettle = 200ms;
+/// After this time a TaskStatus proves the end of a goal, too: its event is lost.
+constexpr auto kEventLost = 1s;
+
+class Waiting {
+ public:
+  Waiting(const TaskWaitOptions& options, std::uint32_t domain)
+      : options_(options),
+        event_(options.end ? msg::kEventNone : *event_by_name(options.event)),
+        domain_(domain),
+        participant_(domain),
+        reader_(participant_.participant()),
+        any_(options.goal == "any") {}
+
+  int run(std::chrono::milliseconds bound) {
+    catch_interrupts();
+    for (const auto begin = Clock::now(); Clock::now() - begin < bound; std::this_thread::sleep_for(kPoll)) {
+      if (interrupt_signal() != 0) {
+        std::fprintf(stderr,
+                     "task: interrupted; the goal goes on, and authority has not changed (`constrictor task "
+                     "cancel` ends the goal)\n");
+        return interrupt_status();
+      }
+      reader_.poll();
+      if (goals().epoch() != 0 && !heard_) heard_ = Clock::now();
+      if (!heard_ || Clock::now() - *heard_ < kSettle) continue;
+      if (epoch_ == 0) from_ = goals().tick();
+      if (epoch_ != 0 && goals().epoch() != epoch_) {
+        if (!any_) return failed("the run was reset");
+        from_ = -1;
+      }
+      epoch_ = goals().epoch();
+      if (!any_ && goal_ == 0)
+        goal_ = options_.goal.empty() ? goals().newest() : goals().find(std::stoull(options_.goal));
+      if (const auto status = look(Clock::now() - *heard_ > kEventLost)) return *status;
+      if (!domain_claimed(domain_)) return failed("the run has ended");
+    }
+    std::fprintf(stderr, "task: no %s within %s\n", wanted().c_str(), options_.timeout.c_str());
+    return exit_status::kWaitedTooLong;
+  }
+
+ private:
+  [[nodiscard]] const GoalTracker& goals() const { return reader_.goals(); }
+  [[nodiscard]] std::string wanted() const {
+    const std::string what = options_.end ? "end" : fmt::format("\"{}\"", event_name(event_));
+    return goal_ == 0 ? what : fmt::format("{} of goal {}", what, goal_text(goal_));
+  }
+  [[nodiscard]] int failed(const std::string& why) const {
+    std::fprintf(stderr, "task: no %s: %s\n", wanted().c_str(), why.c_str());
+    return exit_status::kFailed;
+  }
+  /// The exit status, if the wait is over. `status_counts`: navigation's TaskStatus proves the end of a goal.
+  [[nodiscard]] std::optional<int> look(bool status_counts) const {
+    if (!options_.end) {
+      const auto* event = any_ ? goals().event_after(from_, event_) : goals().event(goal_, event_);
+      if (event) {
+        fmt::print("{} at {:.2f} s, goal {} {}\n", event_name(event->event),
+                   static_cast<double>(event->header.time_ns) * 1e-9, goal_text(event->goal_id), event->detail);
+        return exit_status::kOk;
+      }
+    }
+    const auto end = any_ || goal_ == 0 ? std::nullopt : goals().end(goal_, status_counts);
+    if (!end) return std::nullopt;
+    if (options_.end) {
+      fmt::print("{}{}{}\n", goal_state_name(end->state), end->reason.empty() ? "" : ": ", end->reason);
+      return end->state == msg::kGoalSucceeded ? exit_status::kOk : exit_status::kFailed;
+    }
+    // A grasp may be lost after its goal has succeeded. Every other event of a goal comes before its end.
+    if (event_ == msg::kEventObjectGraspLost || !status_counts) return std::nullopt;
+    return failed(fmt::format("it has {}", goal_state_name(end->state)));
+  }
+
+  const TaskWaitOptions& options_;
+  std::uint8_t event_;
+  std::uint32_t domain_;
+  dds::Domain participant_;
+  GoalReader reader_;
+  bool any_;
+  std::uint64_t goal_ = 0;  ///< 0: no such goal yet, or any
+  std::uint32_t epoch_ = 0;
+  std::int64_t from_ = -1;  ///< tick after which events of any goal count
+  std::optional<Clock::time_point> heard_;
+};
+
+}  // namespace
+
+int task_wait(const TaskWaitOptions& options, std::optional<std::uint32_t> run) {
+  if (!options.end && !event_by_name(options.event))
+    throw UsageError(fmt::format("--event: found '{}', accepted {}", options.event, event_words()));
+  if (options.goal == "any" && options.end)
+    throw UsageError("--goal: found 'any', accepted a goal's number together with --end");
+  const auto bound = parse_duration("--timeout", options.timeout);
+  return Waiting(options, find_run(run).domain).run(bound);
+}
+
+}  // namespace constrictor::cli

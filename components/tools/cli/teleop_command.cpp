@@ -1,0 +1,249 @@
+#include "cli/teleop_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "cli/interrupt.hpp"
+#include "cli/operator.hpp"
+#include "cli/task_names.hpp"
+#include "cli/task_request.hpp"
+#include "cli/teleop_drive.hpp"
+#include "cli/teleop_screen.hpp"
+#include "cli/terminal.hpp"
+#include "cli/usage.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
+#include "robot/drive_gait.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kTurn = 50ms;  // of the loop; well within the lease
+constexpr auto kRedraw = 100ms;
+constexpr auto kEscape = 400ms;  // after this time without a byte an escape character was the escape key
+constexpr const char* kInputMissing = "not sent: `input` is missing; the launcher restarts it";
+
+struct Options {
+  std::optional<std::uint32_t> run;
+  std::string drive;
+  std::string duration;
+};
+
+/// The full-screen client.
+class Teleop {
+ public:
+  explicit Teleop(const RunNote& run)
+      : client_(run.domain, operator_options(unique_source("teleop"), kTeleopLease)),
+        monitor_(run.domain, client_.participant(), run.plant),
+        observer_(client_.participant(), monitor_) {
+    screen_.run = fmt::format("{} {}", run.domain, run.scenario);
+    screen_.source = client_.source();
+  }
+
+  /// Why the program had to leave the run; empty: the user left it.
+  [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
+  /// What became of authority, for the user.
+  [[nodiscard]] const std::string& farewell() const { return farewell_; }
+
+  int loop() {
+    if (!client_.connect(5s)) return interrupt_signal() != 0 ? interrupt_status() : exit_status::kWaitedTooLong;
+    auto drawn = Clock::now() - kRedraw;
+    auto heard = Clock::now();
+    std::string typed;
+    while (interrupt_signal() == 0) {
+      if (!terminal_.read(typed, kTurn)) break;
+      monitor_.poll();
+      observer_.poll();
+      if (!over().empty()) return exit_status::kFailed;  // before poll(), which would repeat unanswered requests
+      client_.poll();
+      if (!typed.empty()) heard = Clock::now();
+      keys_.add(typed);
+      const bool quiet = Clock::now() - heard > kEscape;
+      for (std::string key = keys_.next(quiet); !key.empty(); key = keys_.next(quiet)) {
+        if (screen_.prompt) type(key);
+        else if (!act(action_of(key))) return leave();
+      }
+      show_answer();
+      if (Clock::now() - drawn < kRedraw && typed.empty()) continue;
+      drawn = Clock::now();
+      screen_.authority = client_.authority();
+      screen_.view = observer_.view();
+      const ScreenSize size = terminal_.size();
+      terminal_.draw(render(screen_, size), size);
+    }
+    return leave();
+  }
+
+ private:
+  /// Releases authority if this program has it: the robot then stands. If no answer comes, DDS reports the end of this
+  /// program to `input`, which releases it half a second later.
+  int leave() {
+    if (!client_.holds_authority() && number_ == 0) farewell_ = authority_text(client_) + " (this program had none)";
+    else if (client_.release(2s)) farewell_ = "authority was released, the robot stands";
+    else farewell_ = "no answer within 2 s; authority ends with this program, at the latest when the run resumes";
+    return exit_status::kOk;
+  }
+
+  /// False: quit.
+  bool act(TeleopAction action) {
+    if (action == TeleopAction::kQuit) return false;
+    const RunAttachment& run = monitor_.attachment();
+    if (action == TeleopAction::kEmergencyStop ? !run.may_stop() : !run.may_send()) {
+      if (action != TeleopAction::kNone) screen_.notice = kInputMissing;
+      return true;
+    }
+    if (screen_.drive.apply(action)) {
+      const bool moves = screen_.drive.forward != 0.0 || screen_.drive.turn != 0.0;
+      const DriveGait gait = drive_gait(screen_.drive.drive_m_s(), screen_.drive.turn_rad_s());
+      if (moves) asked("drive", client_.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m));
+      else if (action == TeleopAction::kStand) asked("stand", client_.move(msg::kMotionStand));
+      return true;
+    }
+    const auto still = [this] { screen_.drive.forward = screen_.drive.turn = 0.0; };
+    switch (action) {
+      case TeleopAction::kLookLeft:
+      case TeleopAction::kLookAhead:
+      case TeleopAction::kLookRight:
+        still();
+        asked("look", client_.move(msg::kMotionLook, 0.0, 0.0, screen_.drive.look_rad));
+        break;
+      case TeleopAction::kWrapLeft:
+      case TeleopAction::kWrapRight:
+        still();
+        asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, action == TeleopAction::kWrapLeft ? 1.0 : -1.0));
+        break;
+      case TeleopAction::kSqueeze:
+        still();
+        asked("squeeze", client_.move(msg::kMotionSqueeze));
+        break;
+      case TeleopAction::kOpen:
+        still();
+        asked("open", client_.move(msg::kMotionOpen));
+        break;
+      case TeleopAction::kEmergencyStop:
+        still();
+        asked("emergency stop", client_.ask(msg::kRequestEmergencyStop));
+        break;
+      case TeleopAction::kClearStop:
+        asked("clear stop", client_.ask(msg::kRequestClearStop));
+        break;
+      case TeleopAction::kRelease:
+        still();
+        asked("release", client_.ask(msg::kRequestRelease));
+        break;
+      case TeleopAction::kCancel:
+        still();
+        asked("cancel: stand", client_.move(msg::kMotionStand));
+        break;
+      case TeleopAction::kTask:
+        screen_.prompt = "";
+        break;
+      default:
+        break;
+    }
+    return true;
+  }
+
+  /// Takes keys for the task line.
+  void type(const std::string& typed) {
+    if (typed.size() != 1) return;  // arrows and the like
+    const char key = typed.front();
+    if (key == '\033' || key == '\003') {
+      screen_.prompt.reset();
+    } else if (key == '\r' || key == '\n') {
+      msg::Request request = task_request(msg::kTaskNone);
+      number_ = 0;
+      screen_.notice = parse_task(*screen_.prompt, request.task, request.parameters, request.path);
+      if (screen_.notice.empty()) screen_.notice = task_problem(request);
+      screen_.prompt.reset();
+      if (screen_.notice.empty() && !monitor_.attachment().may_send()) screen_.notice = kInputMissing;
+      if (!screen_.notice.empty()) return;
+      screen_.drive.forward = screen_.drive.turn = 0.0;
+      asked(task_word(request.task), client_.ask(request));
+    } else if (key == '\177' || key == '\b') {
+      if (!screen_.prompt->empty()) screen_.prompt->pop_back();
+    } else if (key >= ' ' && screen_.prompt->size() < 70) {
+      *screen_.prompt += key;
+    }
+  }
+
+  void asked(const std::string& what, std::uint64_t number) {
+    screen_.notice = "asked: " + what;
+    request_ = what;
+    number_ = number;
+  }
+  void show_answer() {
+    if (number_ == 0) return;
+    const msg::RequestAnswer* answer = client_.answer(number_);
+    if (!answer) return;
+    screen_.notice = answer->granted ? "granted: " + request_ : std::string("REFUSED: ") + answer->reason;
+    number_ = 0;
+  }
+
+  Terminal terminal_;  // first: it forks, and the client starts threads
+  RequestClient client_;
+  RunMonitor monitor_;
+  TeleopObserver observer_;
+  KeyReader keys_;
+  TeleopScreen screen_;
+  std::uint64_t number_ = 0;  ///< request that is not answered yet; 0: none
+  std::string request_;       ///< what it asks for
+  std::string farewell_;
+};
+
+int teleop(const Options& options) {
+  if (!options.drive.empty()) return teleop_drive(options.drive, options.duration, options.run);
+  if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
+  const RunNote run = find_run(options.run);
+  int status = exit_status::kOk;
+  std::string over;
+  std::string farewell;
+  {
+    Teleop client(run);
+    status = client.loop();
+    over = client.over();
+    farewell = client.farewell();
+  }
+  // The terminal is restored: what is printed now stays on it.
+  if (!over.empty()) std::fprintf(stderr, "teleop: %s; the robot holds its posture\n", over.c_str());
+  else if (status == exit_status::kWaitedTooLong) {
+    std::fprintf(stderr,
+                 "teleop: run %u: no subscriber on topic \"request\" (is `input` running? see `constrictor "
+                 "status`)\n",
+                 run.domain);
+  } else if (!farewell.empty()) {
+    fmt::print("teleop: {}\n", farewell);
+  }
+  return status;
+}
+
+}  // namespace
+
+void add_teleop(CLI::App& app, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  auto* sub = app.add_subcommand("teleop", "drive the robot by hand in a terminal; with --drive from a script");
+  add_run_option(*sub, options->run);
+  sub->add_option("--drive", options->drive,
+                  "SPEED,TURN in m/s and rad/s (0.3,0.5): drive without a screen, then stand and release authority");
+  sub->add_option("--for", options->duration,
+                  "with --drive: how long, in wall time: 5s, 500ms, 2m (default: until Ctrl-C)");
+  sub->footer(help_footer(
+      "The first key that moves the robot takes authority; q or Ctrl-C releases it. The screen shows the keys; the "
+      "space bar is the emergency\nstop. If this program or its terminal dies, the robot holds its posture within half "
+      "a second. The terminal needs 40x10 characters.",
+      {"constrictor teleop", "constrictor teleop --run 3", "constrictor teleop --drive 0.3,0.2 --for 5s"},
+      fmt::format("0 done; 1 refused, authority lost, or the run is gone; {}, or no terminal;\n"
+                  "  75 no answer from `input`; 130 --drive ended by Ctrl-C",
+                  kRunStatuses)));
+  sub->callback([&action, options] { action = [options] { return teleop(*options); }; });
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,80 @@
+#include "cli/teleop_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "cli/interrupt.hpp"
+#include "cli/operator.hpp"
+#include "cli/task_command.hpp"
+#include "cli/usage.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
+#include "robot/drive_gait.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr auto kTurn = 50ms;  // of the loop; well within the lease
+
+DriveGait parse_drive(const std::string& text) {
+  double speed_m_s = 0.0;
+  double turn_rad_s = 0.0;
+  char rest = 0;
+  const int count = std::sscanf(text.c_str(), "%lf,%lf%c", &speed_m_s, &turn_rad_s, &rest);
+  if (count != 2 || !(std::abs(speed_m_s) <= 2.0) || !(std::abs(turn_rad_s) <= 4.0)) {
+    throw UsageError(
+        fmt::format("--drive: found '{}', accepted SPEED,TURN in m/s (to 2) and rad/s (to 4), as 0.3,0.5", text));
+  }
+  return drive_gait(speed_m_s, turn_rad_s);
+}
+
+/// Ends a drive: the robot stands and this program has no authority. Prints what was reached.
+void stand_and_release(RequestClient& client) {
+  client.move(msg::kMotionStand);
+  if (client.release(2s)) {
+    fmt::print("the robot stands, authority was released\n");
+  } else {
+    // The lease does the rest: the source is dead half a second after the end of this process.
+    fmt::print(
+        "no answer within 2 s: the robot holds and loses this program's authority 0.5 s after its end, or when "
+        "the run resumes\n");
+  }
+}
+
+}  // namespace
+
+int teleop_drive(const std::string& speed_and_turn, const std::string& duration, std::optional<std::uint32_t> run) {
+  const DriveGait gait = parse_drive(speed_and_turn);
+  const auto bound = duration.empty() ? std::chrono::milliseconds(24h * 365) : parse_duration("--for", duration);
+  const RunNote note = find_run(run);
+  RequestClient client(note.domain, operator_options(unique_source("teleop"), kTeleopLease));
+  if (const int status = connect(client, "teleop"); status != exit_status::kOk) return status;
+  RunMonitor monitor(note.domain, client.participant(), note.plant);
+  const auto answer = client.wait_for_answer(client.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m), 5s);
+  if (answer == RequestClient::Answer::kInterrupted) stand_and_release(client);
+  if (answer != RequestClient::Answer::kGranted) return report_not_granted(client, answer, "teleop");
+  fmt::print("driving as {}\n", client.source());
+  std::fflush(stdout);
+  for (const auto start = Clock::now(); Clock::now() - start < bound && interrupt_signal() == 0;) {
+    std::this_thread::sleep_for(kTurn);
+    monitor.poll();
+    if (!monitor.attachment().over().empty()) {
+      std::fprintf(stderr, "teleop: %s\n", monitor.attachment().over().c_str());
+      return exit_status::kFailed;
+    }
+    client.poll();
+    if (client.holds_authority()) continue;
+    std::fprintf(stderr, "teleop: another source took authority (%s)\n", authority_text(client).c_str());
+    return exit_status::kFailed;
+  }
+  stand_and_release(client);
+  return interrupt_signal() != 0 ? interrupt_status() : exit_status::kOk;
+}
+
+}  // namespace constrictor::cli

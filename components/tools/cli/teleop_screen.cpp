@@ -1,0 +1,180 @@
+#include "cli/teleop_screen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "cli/task_names.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+constexpr ScreenSize kLargest{120, 24};
+constexpr std::size_t kCell = 27;  // columns of a joint
+constexpr std::size_t kJoints = 24;
+constexpr int kBar = 12;
+constexpr double kFullBar_nm = 6.0;
+constexpr double kSilent_s = 2.5;  // the conductor sends a RunState once a second at least
+
+/// Lines that are shown together or not at all. Those with the highest `rank` are left out first.
+struct Block {
+  int rank;
+  std::vector<std::string> lines;
+};
+
+/// `text` cut to the screen, with "?" for each character that is not printable.
+std::string line(std::string text, std::size_t columns) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  if (text.size() > columns) text.resize(columns);
+  return text;
+}
+
+/// The help in lines of at most `columns`; its entries, which two blanks separate, are not broken.
+std::vector<std::string> help_lines(std::size_t columns) {
+  std::vector<std::string> lines(1);
+  for (const std::string_view text : {kTeleopHelp[0], kTeleopHelp[1]}) {
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find("  ", at), text.size());
+      const std::string_view entry = text.substr(at, end - at);
+      const bool fits = lines.back().empty() || lines.back().size() + 2 + entry.size() <= columns;
+      if (!fits) lines.emplace_back();
+      if (!lines.back().empty()) lines.back() += "  ";
+      lines.back() += entry;
+      at = end + 2;
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> too_small(ScreenSize size) {
+  std::vector<std::string> lines = {
+      "SPACE emergency stop", "q quit", fmt::format("terminal too small: {}x{}", size.columns, size.rows),
+      fmt::format("make it {}x{} or larger", kSmallestScreen.columns, kSmallestScreen.rows)};
+  for (auto& text : lines) text = line(text, size.columns);
+  lines.resize(std::min(lines.size(), size.rows));
+  return lines;
+}
+
+std::string authority_line(const TeleopScreen& s) {
+  if (!s.authority) return "authority  waiting for `input`";
+  const msg::Authority& a = *s.authority;
+  std::string text = fmt::format("authority  {}", authority_name(a.level));
+  if (*a.source) text += fmt::format(" {}{}", a.source, s.source == a.source ? " (you)" : "");
+  return text + fmt::format("   refused {}", a.refused_count);
+}
+
+std::string time_line(const TeleopScreen& s) {
+  std::string text = fmt::format("teleop  run {:.22}", s.run);
+  if (s.view.run) text += fmt::format(" seed {}", s.view.run->seed);  // a reset changes it
+  if (!s.view.run) return text + "  waiting for it";
+  const msg::RunState& run = *s.view.run;
+  text += fmt::format("  tick {}", run.tick);
+  if (s.view.silent_s > kSilent_s) return text + fmt::format("  SILENT for {:.0f} s", s.view.silent_s);
+  if (run.paused) return text + "  PAUSED";
+  const std::string pace = run.realtime     ? "real time"
+                           : run.pace > 0.0 ? fmt::format("at most {}x", run.pace)
+                                            : "lock-step";
+  if (std::isfinite(run.real_time_factor)) text += fmt::format("  {:.2f}x", run.real_time_factor);
+  return text + fmt::format(" ({}{})", pace, run.operator_pace ? ", operator" : "");
+}
+
+std::string task_line(const TeleopScreen& s) {
+  if (!s.view.task) return "task       -";
+  const msg::TaskStatus& t = *s.view.task;
+  return fmt::format("task       {} {} {}  {:3.0f} %{}  {}", task_word(t.task), goal_state_name(t.goal_state), t.phase,
+                     100.0 * t.progress, t.carrying ? "  carrying" : "", t.reason);
+}
+
+std::string joint_cell(const msg::JointState& joints, std::size_t j) {
+  const double torque_nm = joints.torque_nm[j];
+  const int full = static_cast<int>(std::lround(std::clamp(std::abs(torque_nm) / kFullBar_nm, 0.0, 1.0) * kBar));
+  return fmt::format("{:2} {:+5.2f}|{:<{}}|{:4.1f} ", j, joints.position_rad[j],
+                     std::string(static_cast<std::size_t>(full), '#'), kBar, std::abs(torque_nm));
+}
+
+std::vector<std::string> joint_lines(const TeleopScreen& s, std::size_t columns) {
+  std::vector<std::string> lines = {
+      fmt::format("joints     angle [rad], torque [Nm], a full bar is {:.0f} Nm", kFullBar_nm)};
+  const std::size_t across = std::max<std::size_t>((columns + 1) / kCell, 1);  // a cell ends with a blank
+  const std::size_t rows = (kJoints + across - 1) / across;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::string text;
+    const std::size_t count = s.view.joints ? std::min<std::size_t>(s.view.joints->joint_count, kJoints) : 0;
+    for (std::size_t j = row; j < count; j += rows) text += joint_cell(*s.view.joints, j);
+    lines.push_back(text);
+  }
+  return lines;
+}
+
+std::string contact_line(const TeleopScreen& s) {
+  std::string text = "touch      ";
+  if (!s.view.contacts) return text + "-";
+  for (std::size_t m = 0; m < std::min<std::size_t>(s.view.contacts->module_count, msg::kMaxModules); ++m) {
+    const msg::Vector3& f = s.view.contacts->force_n[m];
+    const double lateral_n = std::hypot(f.x, f.y);
+    text += lateral_n < 0.5 ? '.' : lateral_n < 2.0 ? 'o' : lateral_n < 8.0 ? 'O' : '#';
+  }
+  return text + "  head to tail";
+}
+
+std::string mission_line(const TeleopScreen& s) {
+  if (!s.view.mission) return "mission    no planner";
+  const msg::MissionStatus& m = *s.view.mission;
+  return fmt::format("mission    {} {} of {}  {}", m.state, m.object_index, m.object_count, m.reason);
+}
+
+std::vector<std::string> event_lines(const TeleopScreen& s) {
+  std::vector<std::string> lines = {"events"};
+  lines.insert(lines.end(), s.view.events.begin(), s.view.events.end());
+  return lines;
+}
+
+/// Keeps the blocks with the lowest ranks that have at most `rows` lines together, in their order on the screen.
+void fit(std::vector<Block>& blocks, std::size_t rows) {
+  std::vector<Block*> by_rank;
+  for (Block& block : blocks) by_rank.push_back(&block);
+  std::stable_sort(by_rank.begin(), by_rank.end(), [](const Block* a, const Block* b) { return a->rank < b->rank; });
+  for (Block* block : by_rank) {
+    if (block->lines.size() > rows) block->lines.clear();
+    rows -= block->lines.size();
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> render(const TeleopScreen& s, ScreenSize size) {
+  if (size.columns < kSmallestScreen.columns || size.rows < kSmallestScreen.rows) return too_small(size);
+  size = {std::min(size.columns, kLargest.columns), std::min(size.rows, kLargest.rows)};
+  const std::string drive =
+      fmt::format("drive      {:+.1f} m/s  turn {:+.2f} rad/s   speed {:.1f} m/s   look {:+.2f} rad",
+                  s.drive.drive_m_s(), s.drive.turn_rad_s(), s.drive.speed_m_s, s.drive.look_rad);
+  std::vector<Block> above = {{0, {time_line(s)}},
+                              {0, {authority_line(s)}},
+                              {2, {task_line(s)}},
+                              {5, {mission_line(s)}},
+                              {1, {drive}},
+                              {7, joint_lines(s, size.columns)},
+                              {6, {contact_line(s)}},
+                              {4, event_lines(s)},
+                              {3, help_lines(size.columns)}};
+  fit(above, size.rows - 3);  // the lines below are always there
+  const std::vector<std::string> help = std::move(above.back().lines);
+  above.pop_back();
+
+  std::vector<std::string> lines;
+  for (const Block& block : above) lines.insert(lines.end(), block.lines.begin(), block.lines.end());
+  while (lines.size() + help.size() + 3 < size.rows) lines.emplace_back();
+  lines.push_back(s.prompt ? "" : s.notice);
+  lines.insert(lines.end(), help.begin(), help.end());
+  // In the prompt the space bar is a blank between words.
+  lines.push_back(s.prompt ? "Esc SPACE emergency stop  Enter start" : kTeleopHelp[2]);
+  lines.push_back(s.prompt ? "task> " + *s.prompt + "_" : "");
+  for (auto& text : lines) text = line(text, size.columns);
+  return lines;
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,37 @@
+// The screen of `constrictor teleop` as text. Pure: no terminal, no DDS.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/teleop_keys.hpp"
+#include "cli/teleop_view.hpp"
+
+namespace constrictor::cli {
+
+/// Size of a terminal in characters.
+struct ScreenSize {
+  std::size_t columns = 80;
+  std::size_t rows = 24;
+  bool operator==(const ScreenSize&) const = default;
+};
+
+/// The smallest screen that shows who has authority, what is driven, the notice and the emergency-stop key.
+inline constexpr ScreenSize kSmallestScreen{40, 10};
+
+struct TeleopScreen {
+  std::string run;     ///< "3 case_study"
+  std::string source;  ///< this program's source name
+  std::optional<msg::Authority> authority;
+  TeleopView view;
+  TeleopDrive drive;
+  std::string notice;                 ///< the answer to the last request
+  std::optional<std::string> prompt;  ///< a task that is being typed; empty: none
+};
+
+/// At most `size.rows` lines of at most `size.columns` printable characters. What matters least is left out first; the
+/// key of the emergency stop is always shown. Below kSmallestScreen a message says how large the terminal must be.
+std::vector<std::string> render(const TeleopScreen& screen, ScreenSize size = {});
+
+}  // namespace constrictor::cli

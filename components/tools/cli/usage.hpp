@@ -1,0 +1,48 @@
+// What all subcommands have in common: errors of usage, checks of numbers, and the last part of --help.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace CLI {
+class App;
+class ParseError;
+class Validator;
+}  // namespace CLI
+
+namespace constrictor::cli {
+
+/// An invalid value on the command line: exit status 64. The message names the option, what was found and what is
+/// accepted.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Accepts only decimal digits that make a number from `min` to `max`. CLI11 alone would read "-1" as a very large
+/// number and replace a number above 2^64 - 1 by 2^64 - 1.
+CLI::Validator whole_number(std::uint64_t min = 0, std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
+
+/// Accepts only finite numbers from `min` to `max`; `unit`, for example "s", is shown in the error message.
+CLI::Validator number(double min, double max, const std::string& unit);
+
+/// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN.
+void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);
+
+/// The last part of a --help: remarks, EXAMPLES (one per line), EXIT STATUS, and the ENVIRONMENT of every command that
+/// joins a run.
+std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,
+                        const std::string& exit_status);
+
+/// The exit statuses of every command that looks for a run, for its help_footer().
+inline constexpr const char* kRunStatuses = "64 wrong usage; 70 no run, or several and none chosen";
+
+/// What is wrong with a command line that `app` could not parse, with the closest name for a mistyped subcommand or
+/// option.
+std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace constrictor::cli

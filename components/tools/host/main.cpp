@@ -1,0 +1,49 @@
+// constrictor_host NAME[,NAME...] [OPTION...]: hosts several components in one process.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <sstream>
+
+#include "configuration/closest_name.hpp"
+#include "host/known_components.hpp"
+#include "runtime/component_main.hpp"
+#include "runtime/host.hpp"
+#include "runtime/numeric_profile.hpp"
+#include "runtime/version.hpp"
+
+int main(int argc, char** argv) {
+  using namespace constrictor;
+  const std::string first = argc > 1 ? argv[1] : "--help";
+  if (first == "--version") {
+    std::printf("%s\n", kVersion);
+    return exit_status::kOk;
+  }
+  if (first == "--components") {
+    for (const auto& [name, make] : known_components()) std::printf("%s\n", name.c_str());
+    return exit_status::kOk;
+  }
+  if (first[0] == '-') {
+    std::printf(
+        "usage: constrictor_host NAME[,NAME...] [OPTION...]\n"
+        "       constrictor_host --components      # print the names, one per line\n"
+        "All components have the same options: constrictor_host NAME --help. Components:");
+    for (const auto& [name, make] : known_components()) std::printf(" %s", name.c_str());
+    std::printf("\n");
+    return first == "--help" ? exit_status::kOk : exit_status::kUsage;
+  }
+  ensure_numeric_environment(argv);  // with all arguments, because it may start the program anew
+  std::vector<ComponentFactory> factories;
+  std::istringstream names(first);
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto known = known_components().find(name);
+    if (known == known_components().end()) {
+      std::vector<std::string> accepted;
+      for (const auto& [other, make] : known_components()) accepted.push_back(other);
+      fmt::print(stderr, "constrictor_host: found component '{}', accepted {}{}\n", name, fmt::join(accepted, ", "),
+                 did_you_mean(name, accepted));
+      return exit_status::kUsage;
+    }
+    factories.push_back(known->second());
+  }
+  return host_main(argc - 1, argv + 1, std::move(factories));
+}

@@ -1,0 +1,231 @@
+#include "ros_bridge/ros_translator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "constrictor/image.hpp"
+#include "constrictor/reflect.hpp"
+#include "robot/kinematics.hpp"
+
+namespace constrictor::ros {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+// The message structs have char* members, but no code writes through them.
+char* text(const char* literal) { return const_cast<char*>(literal); }
+char* text(const std::string& name) { return const_cast<char*>(name.c_str()); }
+
+builtin_interfaces_msg_dds__Time_ time_of(std::int64_t time_ns) {
+  return {static_cast<std::int32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
+}
+
+std_msgs_msg_dds__Header_ header_of(std::int64_t time_ns, char* frame) { return {time_of(time_ns), frame}; }
+
+dds_sequence_double borrow(const double* values, std::size_t count) {
+  dds_sequence_double sequence{};
+  sequence._length = sequence._maximum = static_cast<std::uint32_t>(count);
+  sequence._buffer = const_cast<double*>(values);
+  return sequence;
+}
+
+geometry_msgs_msg_dds__Vector3_ vector_of(const msg::Vector3& v) { return {v.x, v.y, v.z}; }
+geometry_msgs_msg_dds__Quaternion_ rotation_of(const msg::Quaternion& q) { return {q.x, q.y, q.z, q.w}; }
+geometry_msgs_msg_dds__Quaternion_ yaw_rotation(double yaw_rad) {
+  return {0, 0, std::sin(0.5 * yaw_rad), std::cos(0.5 * yaw_rad)};
+}
+
+std::string numbered(const char* prefix, std::size_t number) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%s%02zu", prefix, number);
+  return name;
+}
+
+bool sayable(std::int64_t time_ns) {
+  return time_ns >= 0 && time_ns / kSecond_ns <= std::numeric_limits<std::int32_t>::max();
+}
+
+bool is_rotation(const msg::Quaternion& q) {
+  return std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 0.01;
+}
+
+/// Why no message with this header can be represented; empty: it can.
+template <class T>
+std::string broken(const T& message) {
+  if (auto violation = validate(message)) return *std::move(violation);
+  return sayable(message.header.time_ns)
+             ? ""
+             : "header.time_ns: found " + std::to_string(message.header.time_ns) + ", accepted a time of ROS";
+}
+
+}  // namespace
+
+std::string unfit(const msg::Tick& tick) {
+  if (auto violation = validate(tick)) return *std::move(violation);
+  return sayable(tick.time_ns) ? "" : "time_ns: found " + std::to_string(tick.time_ns) + ", accepted a time of ROS";
+}
+
+std::string unfit(const msg::JointState& joints) { return broken(joints); }
+std::string unfit(const msg::RobotPose& pose) { return broken(pose); }
+
+std::string unfit(const msg::ImuState& imu) {
+  std::string reason = broken(imu);
+  if (reason.empty() && !is_rotation(imu.orientation))
+    reason = "orientation: found no rotation, accepted a unit quaternion";
+  return reason;
+}
+
+std::string unfit(const msg::CameraInfo& info) {
+  std::string reason = broken(info);
+  if (reason.empty() && !is_rotation(info.X_HC.orientation))
+    reason = "X_HC.orientation: found no rotation, accepted a unit quaternion";
+  return reason;
+}
+
+std::string unfit(const msg::CameraImage& image) {
+  std::string reason = broken(image);
+  if (reason.empty()) reason = image_violation(image);
+  if (!reason.empty()) return reason;
+  if (image.exposure_tick >= 0 && image.exposure_tick <= image.header.tick) return "";
+  return "exposure_tick: found " + std::to_string(image.exposure_tick) + ", accepted 0 to the tick of the message";
+}
+
+std::string joint_name(std::size_t joint) { return numbered("joint_", joint); }
+std::string module_frame(std::size_t module) { return module == 0 ? "base_link" : numbered("module_", module); }
+
+Translator::Translator(RobotModel robot) : robot_(std::move(robot)) {
+  for (std::size_t i = 0; i < robot_.joints.size(); ++i) joint_names_.push_back(joint_name(i));
+  for (std::size_t i = 0; i < robot_.module_count; ++i) module_frames_.push_back(module_frame(i));
+  for (auto& name : joint_names_) joint_name_pointers_.push_back(name.data());
+}
+
+Clock Translator::clock(std::int64_t time_ns) const { return {time_of(time_ns)}; }
+
+JointState Translator::joint_state(const msg::JointState& joints) {
+  const std::size_t count = std::min<std::size_t>(joints.joint_count, joint_names_.size());
+  JointState message{};
+  message.header = header_of(joints.header.time_ns, text(""));
+  message.name._length = message.name._maximum = static_cast<std::uint32_t>(count);
+  message.name._buffer = joint_name_pointers_.data();
+  message.position = borrow(joints.position_rad, count);
+  message.velocity = borrow(joints.velocity_rad_s, count);
+  message.effort = borrow(joints.torque_nm, count);
+  return message;
+}
+
+Imu Translator::imu(const msg::ImuState& imu) {
+  Imu message{};  // covariances of 0: unknown
+  message.header = header_of(imu.header.time_ns, text(module_frames_.front()));
+  message.orientation = rotation_of(imu.orientation);
+  message.angular_velocity = vector_of(imu.angular_velocity_rad_s);
+  message.linear_acceleration = vector_of(imu.linear_acceleration_m_s2);
+  return message;
+}
+
+Image Translator::image(const msg::CameraImage& image) {
+  Image message{};
+  // The time of the exposure: the message itself comes later.
+  const std::int64_t tick_ns = image.header.tick > 0 ? image.header.time_ns / image.header.tick : 0;
+  message.header = header_of(tick_ns * image.exposure_tick, text("camera_optical"));
+  message.height = image.height;
+  message.width = image.width;
+  message.encoding = text("rgb8");
+  message.step = 3u * image.width;
+  message.data = image.data;
+  message.data._release = false;
+  return message;
+}
+
+CameraInfo Translator::camera_info(const msg::CameraInfo& info) {
+  static const double kNoDistortion[5] = {};
+  CameraInfo message{};
+  message.header = header_of(info.header.time_ns, text("camera_optical"));
+  message.height = info.height;
+  message.width = info.width;
+  message.distortion_model = text("plumb_bob");
+  message.d = borrow(kNoDistortion, 5);
+  // ROS counts pixel centres from 0, CameraInfo from 0.5.
+  const double cx = info.cx - 0.5;
+  const double cy = info.cy - 0.5;
+  const double k[9] = {info.fx, 0, cx, 0, info.fy, cy, 0, 0, 1};
+  const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double p[12] = {info.fx, 0, cx, 0, 0, info.fy, cy, 0, 0, 0, 1, 0};
+  std::copy(std::begin(k), std::end(k), message.k);
+  std::copy(std::begin(r), std::end(r), message.r);
+  std::copy(std::begin(p), std::end(p), message.p);
+  return message;
+}
+
+Odometry Translator::odometry(const msg::RobotPose& pose, const msg::ImuState& imu) {
+  Odometry message{};
+  message.header = header_of(pose.header.time_ns, text("odom"));
+  message.child_frame_id = text(module_frames_.front());
+  message.pose.pose.position = {pose.x_m, pose.y_m, robot_.module_radius_m};
+  message.pose.pose.orientation = yaw_rotation(pose.yaw_rad);
+  // Row-major 6 x 6 of (x, y, z, roll, pitch, yaw) from 3 x 3 of (x, y, yaw).
+  constexpr std::size_t kAxis[3] = {0, 1, 5};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      message.pose.covariance[6 * kAxis[row] + kAxis[column]] = pose.covariance[3 * row + column];
+    }
+  }
+  message.twist.twist.linear.x = pose.speed_m_s;
+  message.twist.twist.angular.z = imu.angular_velocity_rad_s.z;
+  return message;
+}
+
+TFMessage Translator::tf_message() {
+  TFMessage message{};
+  message.transforms._length = message.transforms._maximum = static_cast<std::uint32_t>(transforms_.size());
+  message.transforms._buffer = transforms_.data();
+  return message;
+}
+
+TFMessage Translator::transforms(const msg::RobotPose& pose, const msg::JointState& joints) {
+  const std::int64_t time_ns = pose.header.time_ns;
+  transforms_.clear();
+  transforms_.push_back({header_of(time_ns, text("odom")),
+                         text(module_frames_.front()),
+                         {{pose.x_m, pose.y_m, robot_.module_radius_m}, yaw_rotation(pose.yaw_rad)}});
+  const std::size_t count = std::min<std::size_t>(joints.joint_count, robot_.joints.size());
+  const auto poses = module_poses(robot_, std::span(joints.position_rad, count));
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Isometry3d X = poses[i - 1].inverse() * poses[i];
+    const Eigen::Quaterniond q(X.linear());
+    const Eigen::Vector3d p = X.translation();
+    transforms_.push_back({header_of(time_ns, text(module_frames_[i - 1])),
+                           text(module_frames_[i]),
+                           {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}});
+  }
+  return tf_message();
+}
+
+TFMessage Translator::camera_transform(const msg::CameraInfo& info) {
+  transforms_.clear();
+  transforms_.push_back({header_of(info.header.time_ns, text(module_frames_.front())),
+                         text("camera_optical"),
+                         {vector_of(info.X_HC.position_m), rotation_of(info.X_HC.orientation)}});
+  return tf_message();
+}
+
+Drive drive_of(const Twist& twist, const DriveConfig& config) {
+  constexpr double kStill = 0.01;
+  const double speed_m_s = twist.linear.x;
+  const double turn_rad_s = twist.angular.z;
+  if (!std::isfinite(speed_m_s) || !std::isfinite(turn_rad_s)) return {};
+  if (std::abs(speed_m_s) < kStill && std::abs(turn_rad_s) < kStill) return {};
+  const double limit = config.max_curvature_1_m;
+  // A path of curvature k driven at speed v turns at k v; backwards the same turning rate needs the other curvature.
+  const double wanted_1_m = std::abs(speed_m_s) < kStill ? std::copysign(limit, turn_rad_s) : turn_rad_s / speed_m_s;
+  const double for_speed_hz = std::abs(speed_m_s) / config.advance_per_cycle_m;
+  const double for_turn_hz = std::abs(wanted_1_m) < limit ? 0.0 : std::abs(turn_rad_s) / config.turn_rate_at_1hz_rad_s;
+  const double frequency_hz = std::min(config.max_frequency_hz, std::max(for_speed_hz, for_turn_hz));
+  return {std::copysign(frequency_hz, speed_m_s <= -kStill ? -1.0 : 1.0), std::clamp(wanted_1_m, -limit, limit)};
+}
+
+}  // namespace constrictor::ros

@@ -1,0 +1,96 @@
+// Translates the robot's messages into ROS 2 messages, and a ROS 2 velocity into a direct motion. Pure: no DDS calls,
+// no clock.
+//
+// Frames follow REP 103 and 105: `odom` is guidance's map frame M (z up, origin on the ground below the head's first
+// position), `base_link` is the head module, `module_01` … are the others by a chain of joints, `camera_optical` is the
+// camera. Units are SI on both sides.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "constrictor/messages.hpp"
+#include "robot/robot_model.hpp"
+#include "ros_types.h"
+
+namespace constrictor::ros {
+
+using Clock = rosgraph_msgs_msg_dds__Clock_;
+using JointState = sensor_msgs_msg_dds__JointState_;
+using Imu = sensor_msgs_msg_dds__Imu_;
+using Image = sensor_msgs_msg_dds__Image_;
+using CameraInfo = sensor_msgs_msg_dds__CameraInfo_;
+using Odometry = nav_msgs_msg_dds__Odometry_;
+using TFMessage = tf2_msgs_msg_dds__TFMessage_;
+using Twist = geometry_msgs_msg_dds__Twist_;
+
+/// Why ROS 2 cannot represent a message of the robot; empty if it can. Reasons: a value outside the range in the IDL, a
+/// time that ROS 2 cannot express, a quaternion that is not a rotation, an image with missing pixels. ROS 2 tools do
+/// not check these things.
+[[nodiscard]] std::string unfit(const msg::Tick& tick);
+[[nodiscard]] std::string unfit(const msg::JointState& joints);
+[[nodiscard]] std::string unfit(const msg::ImuState& imu);
+[[nodiscard]] std::string unfit(const msg::RobotPose& pose);
+[[nodiscard]] std::string unfit(const msg::CameraInfo& info);
+[[nodiscard]] std::string unfit(const msg::CameraImage& image);
+
+/// Name of a joint by its place: joint_00 is next to the head.
+[[nodiscard]] std::string joint_name(std::size_t joint);
+/// Frame of a module; module 0 is base_link.
+[[nodiscard]] std::string module_frame(std::size_t module);
+
+/// Translates messages for which unfit() is empty. The returned messages point into memory of the translator (names)
+/// and of the argument (pixels): write them before either changes.
+class Translator {
+ public:
+  explicit Translator(RobotModel robot);
+  Translator(const Translator&) = delete;
+  Translator& operator=(const Translator&) = delete;
+
+  [[nodiscard]] Clock clock(std::int64_t time_ns) const;
+  /// Effort is the servo's torque [Nm].
+  [[nodiscard]] JointState joint_state(const msg::JointState& joints);
+  [[nodiscard]] Imu imu(const msg::ImuState& imu);
+  /// rgb8.
+  [[nodiscard]] Image image(const msg::CameraImage& image);
+  /// plumb_bob without distortion.
+  [[nodiscard]] CameraInfo camera_info(const msg::CameraInfo& info);
+  /// Pose in odom, velocity in base_link; the turning rate is the newest of `imu`. Components that motion in the plane
+  /// does not have are 0.
+  [[nodiscard]] Odometry odometry(const msg::RobotPose& pose, const msg::ImuState& imu);
+  /// odom -> base_link by the estimate, and the chain of modules by the joint angles, at the pose's time.
+  [[nodiscard]] TFMessage transforms(const msg::RobotPose& pose, const msg::JointState& joints);
+  /// base_link -> camera_optical; constant in a run.
+  [[nodiscard]] TFMessage camera_transform(const msg::CameraInfo& info);
+
+ private:
+  using TransformStamped = geometry_msgs_msg_dds__TransformStamped_;
+  TFMessage tf_message();
+
+  RobotModel robot_;
+  std::vector<std::string> joint_names_, module_frames_;
+  std::vector<char*> joint_name_pointers_;
+  std::vector<TransformStamped> transforms_;
+};
+
+/// How a velocity becomes an undulation.
+struct DriveConfig {
+  double advance_per_cycle_m = 0.9;  ///< travel of one wave; Source: the gait's measured speed, sim/world/README.md
+  double max_frequency_hz = 1.0;
+  double max_curvature_1_m = 2.3;       ///< the curvature with which navigation turns on the spot
+  double turn_rate_at_1hz_rad_s = 1.8;  ///< turning on the spot at the largest curvature
+};
+
+struct Drive {
+  double frequency_hz = 0.0;   ///< 0: stand
+  double curvature_1_m = 0.0;  ///< positive left
+  bool operator==(const Drive&) const = default;
+};
+
+/// The motion for forward speed linear.x [m/s] and turning rate angular.z [rad/s]; other components are ignored. Stand
+/// if the velocity is too low to move, or not finite.
+[[nodiscard]] Drive drive_of(const Twist& twist, const DriveConfig& config = {});
+
+}  // namespace constrictor::ros

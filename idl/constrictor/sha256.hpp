@@ -1,0 +1,34 @@
+// SHA-256 and hexadecimal text: the only place that calls OpenSSL for them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace constrictor {
+
+/// SHA-256 over bytes given in pieces.
+class Sha256 {
+ public:
+  using Digest = std::array<std::uint8_t, 32>;
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+  void update(std::span<const std::byte> bytes);
+  /// Returns the digest; the next update() begins a new one.
+  [[nodiscard]] Digest finish();
+
+ private:
+  void* context_;
+};
+
+/// SHA-256 of bytes given at once.
+[[nodiscard]] Sha256::Digest sha256(std::span<const std::byte> bytes);
+
+/// Lower-case hexadecimal text, two digits a byte.
+[[nodiscard]] std::string hex(std::span<const std::uint8_t> bytes);
+
+}  // namespace constrictor

@@ -1,4 +1,0 @@
-#include "runtime/component_main.hpp"
-#include "sim/camera/overview.hpp"
-
-int main(int argc, char** argv) { return constrictor::component_main(argc, argv, constrictor::make_overview_factory()); }

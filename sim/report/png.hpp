@@ -1,0 +1,17 @@
+// PNG files, by libpng. OpenCV's own module for image files is not used: it needs 72 more packages.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+
+namespace constrictor::report {
+
+/// The bytes of a PNG file that shows `bgr` (8 bits, 3 channels, blue first). Throws std::runtime_error if libpng
+/// fails; the image must not be empty.
+[[nodiscard]] std::string encode_png(const cv::Mat& bgr);
+
+/// The image in a PNG file (8 bits, 3 channels, blue first); an empty image if the file is missing or is no PNG file.
+[[nodiscard]] cv::Mat read_png(const std::filesystem::path& file);
+
+}  // namespace constrictor::report

@@ -1,0 +1,123 @@
+// Report's files at the end of a run: mission.json and figure.png.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "constrictor/constants.hpp"
+#include "constrictor/image.hpp"
+#include "constrictor/json.hpp"
+#include "constrictor/sha256.hpp"
+#include "sim/report/figure.hpp"
+#include "sim/report/png.hpp"
+#include "sim/report/report.hpp"
+
+namespace constrictor {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+/// The lines of a journal, each of which is a JSON value.
+ordered_json lines_of(const std::string& journal) {
+  ordered_json lines = ordered_json::array();
+  for (std::size_t at = 0; at < journal.size();) {
+    const std::size_t end = journal.find('\n', at);
+    lines.push_back(ordered_json::parse(journal.substr(at, end - at)));
+    at = end + 1;
+  }
+  return lines;
+}
+
+/// `mission_ended`: whether a moment without an event is the end of the mission or only the end of the run.
+std::string caption_of(const report::Moment& moment, bool mission_ended) {
+  const std::string colour =
+      moment.colour == msg::kColourUnknown ? "" : std::string(name_of(constants::kColour, moment.colour)) + " ";
+  switch (moment.event) {
+    case msg::kEventLineFound:
+      return "line found";
+    case msg::kEventObjectFound:
+      return colour + "object found";
+    case msg::kEventObjectPregrasped:
+      return colour + "object pregrasped";
+    case msg::kEventObjectGrasped:
+      return colour + "object grasped";
+    case msg::kEventDroppingDone:
+      return colour + "object dropped";
+    default:
+      return mission_ended ? "end of the mission" : "end of the run";
+  }
+}
+
+}  // namespace
+
+std::string Report::mission_json(const Tick& tick) const {
+  ordered_json json;
+  json["success"] = success();
+  json["seed"] = scene_->seed;
+  json["scenario"] = scene_->scenario;
+  json["sim_time_s"] = tick.time_s();
+  json["ticks"] = tick.index;
+  json["state_hash"] = hex(world_->state_hash);
+  json["reason"] = failure();
+  json["mission"] = success() ? "succeeded" : state_.mission == msg::kMissionRunning ? "unfinished" : "failed";
+  json["recoveries"] = state_.recoveries;
+  json["objects"] = ordered_json::array();
+  for (std::size_t i = 0; i < state_.ledger.objects.size(); ++i) {
+    const report::ObjectRecord& record = state_.ledger.objects[i];
+    const report::ZoneVerdict verdict = report::judge_zone(*scene_, *world_, i);
+    json["objects"].push_back({{"colour", name_of(constants::kColour, scene_->objects[i].colour)},
+                               {"grasped", record.grasped},
+                               {"dropped", record.dropped},
+                               {"in_zone", verdict.in_zone},
+                               {"zone_distance_m", verdict.distance_m}});
+  }
+  const double visible = state_.percepts_following > 0 ? static_cast<double>(state_.percepts_visible) /
+                                                             static_cast<double>(state_.percepts_following)
+                                                       : std::nan("");
+  json["line"] = {{"rms_cross_track_m", state_.cross_track.rms()},
+                  {"max_cross_track_m", state_.cross_track.max()},
+                  {"visible_fraction", visible}};
+  json["pose_error"] = {{"rms_m", state_.pose_error_m.rms()},
+                        {"rms_rad", state_.pose_error_rad.rms()},
+                        {"max_m", state_.pose_error_m.max()}};
+  json["events"] = lines_of(events_.read(state_.events_length));
+  json["states"] = lines_of(states_.read(state_.states_length));
+  json["parameters"] = lines_of(parameters_.read(state_.parameters_length));
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+void Report::draw(const Tick& tick) const {
+  std::vector<report::FigureRow> rows;
+  for (const report::Moment& moment : report::figure_rows(state_.album.moments)) {
+    const report::MomentFiles files(folder_, moment);
+    report::FigureRow row{
+        moment.time_s, caption_of(moment, state_.mission_end_tick >= 0), moment.state, moment.colour, {}, {}, {}};
+    if (moment.has_scene) row.scene = files.scene;
+    if (moment.camera_exposure >= 0) row.camera = files.camera;
+    if (moment.has_processed) row.processed = files.processed;
+    rows.push_back(std::move(row));
+  }
+  const std::string outcome = success() ? "succeeded" : "did not succeed";
+  const report::FigureHeading heading{"Line following and whole-body grasping",
+                                      fmt::format("scenario {}, seed {}: {} after {:.1f} s",
+                                                  std::string(scene_->scenario), scene_->seed, outcome, tick.time_s()),
+                                      failure()};
+  const cv::Mat figure = report::draw_figure(heading, rows, report::parse_torques(torques_.read(state_.torques_length)),
+                                             config_.torque_window_s);
+  report::replace_file(folder_ / "figure.png", report::encode_png(figure));
+}
+
+void Report::write_files(const Tick& tick) {
+  if (folder_.empty()) return;
+  const auto newest = [](const Latest<msg::CameraImage>& image) {
+    return image && image_violation(*image).empty() ? &*image : nullptr;
+  };
+  state_.album.finish(folder_, newest(processed_), newest(overview_));
+  draw(tick);
+  report::replace_file(folder_ / "mission.json", mission_json(tick));  // the last file: it shows that the others exist
+}
+
+}  // namespace constrictor

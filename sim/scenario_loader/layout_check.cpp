@@ -1,0 +1,103 @@
+#include "sim/scenario_loader/layout_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace constrictor {
+namespace {
+
+using Eigen::Vector2d;
+
+/// The footprint of an upright solid: a disc or a rectangle.
+struct Footprint {
+  std::string name;
+  bool disc = true;
+  Vector2d centre{0.0, 0.0};
+  double radius = 0.0;
+  Vector2d half{0.0, 0.0};
+  double yaw = 0.0;
+
+  [[nodiscard]] Vector2d to_local(const Vector2d& p) const {
+    const Vector2d d = p - centre;
+    return {std::cos(yaw) * d.x() + std::sin(yaw) * d.y(), -std::sin(yaw) * d.x() + std::cos(yaw) * d.y()};
+  }
+  [[nodiscard]] std::array<Vector2d, 4> corners() const {
+    std::array<Vector2d, 4> result;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vector2d p(i & 1U ? half.x() : -half.x(), i & 2U ? half.y() : -half.y());
+      result[i] = centre + Vector2d(std::cos(yaw) * p.x() - std::sin(yaw) * p.y(),
+                                    std::sin(yaw) * p.x() + std::cos(yaw) * p.y());
+    }
+    return result;
+  }
+};
+
+Footprint footprint(std::string name, BodyShape shape, const Eigen::Vector3d& size, const Vector2d& at, double yaw) {
+  return {std::move(name), shape == BodyShape::kCylinder, at, size.x(), 0.5 * size.head<2>(), yaw};
+}
+
+bool rectangle_hits_disc(const Footprint& rectangle, const Footprint& disc) {
+  const Vector2d p = rectangle.to_local(disc.centre);
+  const Vector2d q = p.cwiseMax(-rectangle.half).cwiseMin(rectangle.half);
+  return (p - q).norm() < disc.radius;
+}
+
+/// Two rectangles do not overlap if the sides of one of them separate them (separating axis theorem).
+bool rectangles_hit(const Footprint& a, const Footprint& b) {
+  for (const auto& [one, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    Vector2d low = Vector2d::Constant(INFINITY);
+    Vector2d high = Vector2d::Constant(-INFINITY);
+    for (const Vector2d& corner : other->corners()) {
+      const Vector2d p = one->to_local(corner);
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    if ((low.array() >= one->half.array()).any() || (high.array() <= -one->half.array()).any()) return false;
+  }
+  return true;
+}
+
+bool overlap(const Footprint& a, const Footprint& b) {
+  if (a.disc && b.disc) return (a.centre - b.centre).norm() < a.radius + b.radius;
+  if (a.disc) return rectangle_hits_disc(b, a);
+  if (b.disc) return rectangle_hits_disc(a, b);
+  return rectangles_hit(a, b);
+}
+
+}  // namespace
+
+std::string find_overlap(const Scenario& scenario, double body_length_m, double body_half_width_m) {
+  std::vector<Footprint> moving;  // no two of them may overlap
+  const Vector2d forward(std::cos(scenario.start_yaw_rad), std::sin(scenario.start_yaw_rad));
+  // From the nose to the tail, with 0.1 m to spare at each end.
+  Footprint robot{"the robot's body at the start",
+                  false,
+                  scenario.start_m - 0.5 * body_length_m * forward,
+                  0.0,
+                  Vector2d(0.5 * body_length_m + 0.1, body_half_width_m),
+                  scenario.start_yaw_rad};
+  moving.push_back(robot);
+  for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+    const ScenarioObject& object = scenario.objects[i];
+    moving.push_back(
+        footprint(fmt::format("objects[{}]", i), object.shape, object.size_m, object.position_m, object.yaw_rad));
+  }
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (overlap(moving[i], moving[j])) return moving[i].name + " overlaps " + moving[j].name;
+    }
+    for (std::size_t j = 0; j < scenario.obstacles.size(); ++j) {
+      const ScenarioObstacle& obstacle = scenario.obstacles[j];
+      const Footprint fixed = footprint(fmt::format("obstacles[{}]", j), obstacle.shape, obstacle.size_m,
+                                        obstacle.position_m, obstacle.yaw_rad);
+      if (overlap(moving[i], fixed)) return moving[i].name + " overlaps " + fixed.name;
+    }
+  }
+  return {};
+}
+
+}  // namespace constrictor

@@ -1,0 +1,36 @@
+// A line on the ground as a chain of arcs, and the frames at both ends.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace constrictor {
+
+/// A segment of constant curvature. A positive curvature bends to the left.
+struct LineSegment {
+  double length_m = 0.0;
+  double curvature_1_m = 0.0;
+};
+
+/// A position and a direction on the ground, in W.
+struct PlanarFrame {
+  Eigen::Vector2d origin_m{0.0, 0.0};
+  double yaw_rad = 0.0;
+
+  /// A point given as (ahead, left) in W.
+  [[nodiscard]] Eigen::Vector2d point(const Eigen::Vector2d& p) const {
+    return origin_m + Eigen::Rotation2Dd(yaw_rad) * p;
+  }
+};
+
+struct LinePath {
+  PlanarFrame begin;
+  PlanarFrame end;                        ///< its x axis points on beyond the line
+  std::vector<Eigen::Vector2d> points_m;  ///< in W, at most `most_points`
+};
+
+/// Joins the segments with continuous heading. The points are 0.02 m apart, or further on long lines.
+[[nodiscard]] LinePath make_line_path(const PlanarFrame& begin, const std::vector<LineSegment>& segments,
+                                      std::size_t most_points);
+
+}  // namespace constrictor

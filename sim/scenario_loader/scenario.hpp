@@ -1,0 +1,89 @@
+// One concrete scene, after the seed has chosen every variation. The world is built from it. World frame W: z up,
+// ground at z = 0. SI units.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace constrictor {
+
+enum class BodyShape : std::uint8_t { kCylinder = 0, kBox = 1 };  // numbers of simulation.idl
+
+/// An object that the robot can grasp. It starts upright on the ground.
+struct ScenarioObject {
+  std::uint8_t colour = 0;  ///< msg::kColour…
+  BodyShape shape = BodyShape::kCylinder;
+  Eigen::Vector3d size_m{0.085, 0.085, 0.15};  ///< cylinder: radius, radius, height; box: extents
+  double mass_kg = 0.4;
+  Eigen::Vector2d position_m{0.0, 0.0};
+  double yaw_rad = 0.0;
+
+  /// [m] radius of the circle about its axis that contains its footprint.
+  [[nodiscard]] double footprint_radius_m() const {
+    return shape == BodyShape::kCylinder ? size_m.x() : 0.5 * size_m.head<2>().norm();
+  }
+};
+
+/// A coloured disc on the ground.
+struct ScenarioZone {
+  std::uint8_t colour = 0;
+  Eigen::Vector2d position_m{0.0, 0.0};
+  double radius_m = 0.2;
+};
+
+/// A wall (box) or peg (upright cylinder) that stands on the ground and never moves.
+struct ScenarioObstacle {
+  BodyShape shape = BodyShape::kBox;
+  Eigen::Vector3d size_m{0.1, 0.1, 0.1};
+  Eigen::Vector2d position_m{0.0, 0.0};
+  double yaw_rad = 0.0;
+};
+
+/// A scripted force on an object, for example to pull it out of a grasp. It begins at `at_s`, or once the object is
+/// `displaced_m` away from its start; the other one of the two is NaN. It lasts `duration_s`.
+struct ScenarioPerturbation {
+  std::size_t object = 0;
+  double at_s = 0.0;
+  double displaced_m = 0.0;
+  double duration_s = 0.0;
+  Eigen::Vector3d force_n{0.0, 0.0, 0.0};  ///< in W, at the object's centre
+};
+
+/// Coulomb coefficients of all contacts but those of the skin with the ground.
+struct ScenarioFriction {
+  double ground_scale = 1.0;  ///< multiplies the robot's own coefficients on the ground
+  double object_robot = 0.5;
+  double object_ground = 0.4;  ///< also of objects with objects and with obstacles
+  double robot_robot = 0.2;
+};
+
+struct ScenarioLight {
+  Eigen::Vector3d direction{0.3, -0.4, 0.85};  ///< unit vector from the scene to the light
+  double intensity = 1.0;
+  double ambient = 0.35;
+};
+
+struct Scenario {
+  std::string name;
+  std::uint64_t seed = 0;
+  std::vector<Eigen::Vector2d> line_m;  ///< points from the zones to the objects; empty: no line
+  double line_width_m = 0.05;
+  std::uint8_t line_colour = 3;  ///< msg::kColourBlue
+  std::vector<ScenarioObject> objects;
+  std::vector<ScenarioZone> zones;
+  std::vector<ScenarioObstacle> obstacles;
+  std::vector<ScenarioPerturbation> perturbations;
+  ScenarioFriction friction;
+  ScenarioLight light;
+  Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  ///< linear RGB
+  Eigen::Vector2d start_m{0.0, 0.0};             ///< centre of the head; the body lies straight behind it
+  double start_yaw_rad = 0.0;
+  double start_height_m = 0.0;   ///< [m] of the body above the ground; only tests set it
+  bool sensor_noise = true;      ///< false: the noise in the robot file is ignored
+  double camera_noise_sd = 0.0;  ///< standard deviation of pixels; the full scale is 1
+};
+
+}  // namespace constrictor

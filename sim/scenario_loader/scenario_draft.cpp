@@ -1,0 +1,220 @@
+#include "sim/scenario_loader/scenario_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "constrictor/constants.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kFar_m = 50.0;  // greatest distance from the origin
+// Sizes of the arrays in SceneDescription (simulation.idl).
+constexpr std::size_t kMostObjects = 16;
+constexpr std::size_t kMostZones = 8;
+constexpr std::size_t kMostObstacles = 64;
+constexpr std::size_t kMostSegments = 64;
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<std::string>& colours() {
+  static const std::vector<std::string> names = names_of(constants::kColour, msg::kColourGreen);
+  return names;
+}
+
+std::uint8_t colour_number(const std::string& name) { return *value_of(constants::kColour, name); }
+
+std::uint8_t read_colour(Configuration& from) { return colour_number(from.text("colour", colours())); }
+
+Placement read_placement(Configuration& from) {
+  Placement placement;
+  placement.frame = from.text("frame", {"world", "line_begin", "line_end"}, "world");
+  const std::vector<double> position = from.numbers("position_m", {-kFar_m, kFar_m}, 2, 2);
+  placement.position_m = {position[0], position[1]};
+  placement.yaw_rad = from.number("yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
+  return placement;
+}
+
+/// Reads shape and size of an object or obstacle.
+std::pair<BodyShape, Eigen::Vector3d> read_shape(Configuration& from, double largest_m) {
+  if (from.text("shape", {"cylinder", "box"}, "cylinder") == "cylinder") {
+    const double radius = from.number("radius_m", {0.005, largest_m});
+    return {BodyShape::kCylinder, {radius, radius, from.number("height_m", {0.01, 3.0})}};
+  }
+  const std::vector<double> size = from.numbers("size_m", {0.01, 2.0 * largest_m}, 3, 3);
+  return {BodyShape::kBox, {size[0], size[1], size[2]}};
+}
+
+void read_line(Configuration line, ScenarioDraft& draft) {
+  draft.fixed.line_colour = read_colour(line);
+  draft.fixed.line_width_m = line.number("width_m", {0.005, 0.5});
+  const std::vector<double> begin = line.numbers("begin_m", {-kFar_m, kFar_m}, 2, 2);
+  draft.line_begin.origin_m = {begin[0], begin[1]};
+  draft.line_begin.yaw_rad = line.number("begin_yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
+  for (Configuration& segment : line.list("segments")) {
+    draft.segments.push_back(
+        {segment.number("length_m", {0.02, 50.0}), segment.number("curvature_1_m", {-5.0, 5.0}, 0.0)});
+    segment.finish();
+  }
+  if (draft.segments.empty() || draft.segments.size() > kMostSegments) {
+    throw line.error("segments", fmt::format("found a list of {}, accepted a list of 1 to {} maps",
+                                             draft.segments.size(), kMostSegments));
+  }
+  line.finish();
+}
+
+void read_bodies(Configuration& root, ScenarioDraft& draft) {
+  for (Configuration& from : root.list("objects", false)) {
+    ScenarioObject object;
+    object.colour = read_colour(from);
+    std::tie(object.shape, object.size_m) = read_shape(from, 0.5);
+    object.mass_kg = from.number("mass_kg", {0.02, 20.0});
+    draft.objects.push_back(read_placement(from));
+    draft.fixed.objects.push_back(object);
+    from.finish();
+  }
+  for (Configuration& from : root.list("zones", false)) {
+    ScenarioZone zone;
+    zone.colour = read_colour(from);
+    zone.radius_m = from.number("radius_m", {0.02, 5.0});
+    draft.zones.push_back(read_placement(from));
+    draft.fixed.zones.push_back(zone);
+    from.finish();
+  }
+  for (Configuration& from : root.list("obstacles", false)) {
+    ScenarioObstacle obstacle;
+    std::tie(obstacle.shape, obstacle.size_m) = read_shape(from, 20.0);
+    draft.obstacles.push_back(read_placement(from));
+    draft.fixed.obstacles.push_back(obstacle);
+    from.finish();
+  }
+  const auto limit = [&](const char* key, std::size_t found, std::size_t most) {
+    if (found > most) throw root.error(key, fmt::format("found a list of {}, accepted a list of 0 to {}", found, most));
+  };
+  limit("objects", draft.objects.size(), kMostObjects);
+  limit("zones", draft.zones.size(), kMostZones);
+  limit("obstacles", draft.obstacles.size(), kMostObstacles);
+}
+
+/// Checks that the mission can be carried out in this scene. The simulation does not use the mission otherwise: the
+/// launcher passes this section to the planner.
+void check_mission(Configuration mission, const Scenario& scenario) {
+  const std::vector<std::string> sequence = mission.texts("sequence", colours());
+  for (const std::string& colour : sequence) {
+    const std::uint8_t number = colour_number(colour);
+    const auto has_colour = [number](const auto& body) { return body.colour == number; };
+    const auto wanted = std::count(sequence.begin(), sequence.end(), colour);
+    const auto found = std::count_if(scenario.objects.begin(), scenario.objects.end(), has_colour);
+    if (found < wanted) {
+      throw mission.error("sequence", fmt::format("found {} {} times, accepted at most the number of {} objects, {}",
+                                                  colour, wanted, colour, found));
+    }
+    if (std::none_of(scenario.zones.begin(), scenario.zones.end(), has_colour)) {
+      throw mission.error("sequence", fmt::format("found {}, accepted colours for which there is a zone", colour));
+    }
+  }
+  const std::string line_colour = mission.text("line_colour", colours());
+  if (colour_number(line_colour) != scenario.line_colour) {
+    throw mission.error("line_colour", fmt::format("found {}, accepted the colour of the line, {}", line_colour,
+                                                   name_of(constants::kColour, scenario.line_colour)));
+  }
+  mission.finish();
+}
+
+void read_perturbations(Configuration& root, Scenario& scenario) {
+  for (Configuration& from : root.list("perturbations", false)) {
+    ScenarioPerturbation perturbation;
+    const auto last = static_cast<std::int64_t>(scenario.objects.size()) - 1;
+    if (last < 0)
+      throw from.error("object", "found a force on an object, accepted no force because the scenario has no objects");
+    perturbation.object = static_cast<std::size_t>(from.integer("object", 0, last));
+    const bool timed = from.has("at_s");
+    if (timed == from.has("when_displaced_m")) {
+      throw from.error("at_s", "found both or neither of at_s and when_displaced_m, accepted one of them");
+    }
+    perturbation.at_s = timed ? from.number("at_s", {0.0, 1e5}) : kNever;
+    perturbation.displaced_m = timed ? kNever : from.number("when_displaced_m", {0.001, 100.0});
+    perturbation.duration_s = from.number("duration_s", {0.02, 1e4});
+    const std::vector<double> force = from.numbers("force_n", {-500.0, 500.0}, 3, 3);
+    perturbation.force_n = {force[0], force[1], force[2]};
+    scenario.perturbations.push_back(perturbation);
+    from.finish();
+  }
+}
+
+void read_surroundings(Configuration& root, Scenario& scenario) {
+  Configuration friction = root.section("friction", false);
+  scenario.friction.ground_scale = friction.number("ground_scale", {0.1, 5.0}, scenario.friction.ground_scale);
+  scenario.friction.object_robot = friction.number("object_robot", {0.0, 5.0}, scenario.friction.object_robot);
+  scenario.friction.object_ground = friction.number("object_ground", {0.0, 5.0}, scenario.friction.object_ground);
+  scenario.friction.robot_robot = friction.number("robot_robot", {0.0, 5.0}, scenario.friction.robot_robot);
+  friction.finish();
+
+  Configuration light = root.section("light", false);
+  if (light.has("direction")) {
+    const std::vector<double> direction = light.numbers("direction", {-1.0, 1.0}, 3, 3);
+    scenario.light.direction = {direction[0], direction[1], direction[2]};
+  }
+  if (scenario.light.direction.z() <= 0.05) {
+    throw light.error("direction", "found a light at or below the horizon, accepted a third number above 0.05");
+  }
+  scenario.light.intensity = light.number("intensity", {0.05, 3.0}, scenario.light.intensity);
+  scenario.light.ambient = light.number("ambient", {0.0, 1.0}, scenario.light.ambient);
+  light.finish();
+
+  if (root.has("ground_colour")) {
+    const std::vector<double> colour = root.numbers("ground_colour", {0.0, 1.0}, 3, 3);
+    scenario.ground_colour = {colour[0], colour[1], colour[2]};
+  }
+  Configuration noise = root.section("noise", false);
+  scenario.sensor_noise = noise.flag("sensors", true);
+  scenario.camera_noise_sd = noise.number("camera_sd", {0.0, 0.3}, 0.0);
+  noise.finish();
+}
+
+Variation read_variation(Configuration from) {
+  Variation variation;
+  variation.mirror_line = from.flag("mirror_line", false);
+  variation.object_sides = from.flag("object_sides", false);
+  variation.zone_sides = from.flag("zone_sides", false);
+  variation.line_curvature = from.number("line_curvature", {0.0, 0.9}, 0.0);
+  variation.line_length = from.number("line_length", {0.0, 0.9}, 0.0);
+  variation.object_position_m = from.number("object_position_m", {0.0, 5.0}, 0.0);
+  variation.zone_position_m = from.number("zone_position_m", {0.0, 5.0}, 0.0);
+  variation.start_position_m = from.number("start_position_m", {0.0, 5.0}, 0.0);
+  variation.start_yaw_rad = from.number("start_yaw_rad", {0.0, std::numbers::pi}, 0.0);
+  variation.radius = from.number("radius", {0.0, 0.9}, 0.0);
+  variation.mass = from.number("mass", {0.0, 0.9}, 0.0);
+  variation.friction = from.number("friction", {0.0, 0.9}, 0.0);
+  variation.light_intensity = from.number("light_intensity", {0.0, 0.9}, 0.0);
+  variation.light_direction_rad = from.number("light_direction_rad", {0.0, 1.0}, 0.0);
+  variation.camera_noise = from.number("camera_noise", {0.0, 1.0}, 0.0);
+  from.finish();
+  return variation;
+}
+
+}  // namespace
+
+ScenarioDraft read_scenario_draft(Configuration root) {
+  ScenarioDraft draft;
+  draft.fixed.name = root.text("name");
+  if (draft.fixed.name.empty() || draft.fixed.name.size() > 63) {
+    throw root.error("name", fmt::format("found {} letters, accepted 1 to 63", draft.fixed.name.size()));
+  }
+  if (root.has("line")) read_line(root.section("line"), draft);
+  read_bodies(root, draft);
+  if (root.has("mission")) check_mission(root.section("mission"), draft.fixed);
+  read_perturbations(root, draft.fixed);
+  read_surroundings(root, draft.fixed);
+  Configuration start = root.section("start");
+  draft.start = read_placement(start);
+  start.finish();
+  draft.variation = read_variation(root.section("variation", false));
+  root.finish();
+  return draft;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,58 @@
+// A scenario file before the seed has chosen its variation.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "configuration/configuration.hpp"
+#include "sim/scenario_loader/line_path.hpp"
+#include "sim/scenario_loader/scenario.hpp"
+
+namespace constrictor {
+
+inline constexpr std::size_t kMostLinePoints = 512;  ///< size of the arrays in SceneDescription (simulation.idl)
+
+/// A position relative to the world or to an end of the line.
+struct Placement {
+  std::string frame;                     ///< "world", "line_begin" or "line_end"
+  Eigen::Vector2d position_m{0.0, 0.0};  ///< in the frame
+  double yaw_rad = 0.0;
+};
+
+/// Ranges of the variation about the values of the file. The names without a unit are relative.
+struct Variation {
+  bool mirror_line = false;
+  bool object_sides = false;
+  bool zone_sides = false;
+  double line_curvature = 0.0;
+  double line_length = 0.0;
+  double object_position_m = 0.0;
+  double zone_position_m = 0.0;
+  double start_position_m = 0.0;
+  double start_yaw_rad = 0.0;
+  double radius = 0.0;
+  double mass = 0.0;
+  double friction = 0.0;
+  double light_intensity = 0.0;
+  double light_direction_rad = 0.0;
+  double camera_noise = 0.0;
+};
+
+/// A scenario file as it was read, before a seed is applied. `fixed` holds the values that do not depend on the frames
+/// of the line.
+struct ScenarioDraft {
+  Scenario fixed;
+  PlanarFrame line_begin;
+  std::vector<LineSegment> segments;
+  std::vector<Placement> objects;
+  std::vector<Placement> zones;
+  std::vector<Placement> obstacles;
+  Placement start;
+  Variation variation;
+};
+
+/// Reads and checks the keys of a scenario file. Throws ConfigurationError.
+[[nodiscard]] ScenarioDraft read_scenario_draft(Configuration root);
+
+}  // namespace constrictor

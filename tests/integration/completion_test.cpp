@@ -1,0 +1,90 @@
+// The completion scripts, as each shell calls them.
+#include <sstream>
+
+#include "integration/introspection_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// What each shell offers for command lines; the last word of each is what is being typed.
+class Completion : public Introspection {
+ protected:
+  using Words = std::vector<std::string>;
+
+  /// What a shell offers for each of the lines, blanks around each word.
+  [[nodiscard]] Words offers(const std::string& shell, const std::vector<Words>& lines) const {
+    Process script({program("constrictor"), "completion", shell});
+    EXPECT_EQ(script.wait(20s), 0) << script.errors();
+    write("constrictor." + shell, script.output());
+    std::string text = shell == "zsh" ? "autoload -Uz compinit && compinit -u -D\n" : "";
+    text += "source " + (dir_ / ("constrictor." + shell)).string() + "\n";
+    if (shell != "fish") {
+      // As the shell calls it; zsh by its bash-compatible completion, which picks those that begin as typed later.
+      text += "offer() {\n" + std::string(shell == "zsh" ? "emulate -L sh\n" : "") +
+              "COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _constrictor; echo \"\" ${COMPREPLY[@]} \"\"\n}\n";
+    }
+    for (const auto& words : lines) {
+      if (shell == "fish") {
+        std::string line = "constrictor";
+        for (const auto& word : words) line += " " + word;
+        text += "echo '' (complete -C '" + line + "' | string replace -r '\\t.*' '') ''\n";
+      } else {
+        text += "offer constrictor";
+        for (const auto& word : words) text += " '" + word + "'";
+        text += "\n";
+      }
+    }
+    write("offer." + shell, text);
+    // Some words are the output of `constrictor list`.
+    auto environment = environment_;
+    environment["PATH"] = std::filesystem::path(program("constrictor")).parent_path().string() + ":/usr/bin:/bin";
+    Process process({"/usr/bin/" + shell, (dir_ / ("offer." + shell)).string()}, environment);
+    EXPECT_EQ(process.wait(30s), 0) << process.errors();
+    Words offered;
+    std::istringstream output(process.output());
+    for (std::string line; std::getline(output, line);) offered.push_back(line);
+    return offered;
+  }
+};
+
+TEST_F(Completion, EveryShellOffersTheWordsOfTheSubcommandAndNoOthers) {
+  struct Case {
+    Words typed;
+    std::string offered;
+    std::string not_offered;
+  };
+  const std::vector<Case> cases = {{{""}, "teleop", "echo"},
+                                   {{"te"}, "teleop", "topic"},
+                                   {{"topic", ""}, "echo", "teleop"},
+                                   {{"topic", "echo", ""}, "joint_state", "hz"},
+                                   {{"topic", "echo", "--ti"}, "--timeout", "--count"},
+                                   {{"task", "wait", "--"}, "--event", "--line-colour"},
+                                   {{"task", "wait", "--"}, "--end", "--path"},
+                                   {{"task", "wait", "--event", ""}, "line_lost", "--timeout"},
+                                   {{"task", "start", ""}, "follow_line", "wait"},
+                                   {{"task", "start", "rotate", "--"}, "--direction", "--event"},
+                                   {{"task", "start", "follow_line", "--line-colour", "b"}, "blue", "backwards"},
+                                   {{"completion", ""}, "fish", "list"},
+                                   {{"list", ""}, "robots", "fish"},
+                                   {{"run", ""}, "case_study", "fish"},
+                                   {{"check", "--robot", ""}, "serpens", "--seed"},
+                                   {{"node", "info", "n"}, "navigation", "list"}};
+  std::vector<Words> lines;
+  for (const auto& c : cases) lines.push_back(c.typed);
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
+    const Words offered = offers(shell, lines);
+    ASSERT_EQ(offered.size(), cases.size()) << shell;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      EXPECT_NE(offered[i].find(" " + cases[i].offered + " "), std::string::npos)
+          << shell << " " << cases[i].offered << ": " << offered[i];
+      if (shell == "zsh" && !cases[i].not_offered.starts_with(cases[i].typed.back())) continue;
+      EXPECT_EQ(offered[i].find(" " + cases[i].not_offered + " "), std::string::npos)
+          << shell << " " << cases[i].not_offered << ": " << offered[i];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace constrictor::testing

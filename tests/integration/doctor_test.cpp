@@ -1,0 +1,108 @@
+// The doctor on real processes: a run of toys, and programs that are no part of the project.
+#include "cyclone/domain.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "cyclone/endpoint.hpp"
+#include "integration/introspection_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A running conductor refuses a second member at once; before the run has begun both are there and wait.
+TEST_F(Introspection, TheDoctorFindsASecondMember) {
+  const DomainClaim claim;
+  const std::vector<std::string> arguments = {program("toy_host"), "navigation",
+                                              "--domain",          std::to_string(claim.domain()),
+                                              "--roster",          "physics,navigation,control"};
+  const Process first(arguments, environment_);
+  const Process second(arguments, environment_);
+  EXPECT_TRUE(eventually([&] {
+    command({"doctor", "--run", std::to_string(claim.domain()), "--json"});
+    return output_.find("two members of one name") != std::string::npos;
+  })) << output_;
+  EXPECT_NE(output_.find(std::to_string(first.pid())), std::string::npos) << output_;
+  EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
+}
+
+// Constrictor's own plants refuse each other; a driver of somebody's may not.
+TEST_F(Introspection, TheDoctorFindsASecondPlant) {
+  Process run = toys();
+  const Process second = foreign(domain(), "plant");
+  std::vector<std::string> found;
+  EXPECT_TRUE(eventually([&] {
+    found = faults(domain());
+    return std::count(found.begin(), found.end(), "two plants") == 1;
+  })) << output_;
+  EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(Introspection, TheDoctorFindsThatTheRunIsInAnotherDomain) {
+  Process run = toys();
+  const DomainClaim empty;
+  EXPECT_EQ(faults(empty.domain()), std::vector<std::string>{"wrong domain"}) << output_;
+  EXPECT_NE(output_.find("--run " + std::to_string(domain())), std::string::npos) << output_;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
+TEST_F(Introspection, TheDoctorFindsInterfacesThatCannotWorkAndBuffersThatAreSmall) {
+  const DomainClaim claim;
+  const auto with = [this](const std::string& general) {
+    environment_["CYCLONEDDS_URI"] = "<CycloneDDS><Domain><General>" + general + "</General></Domain></CycloneDDS>";
+  };
+  with("<Interfaces><NetworkInterface name=\"nosuch0\"/></Interfaces>");
+  auto found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "wrong interface"), 1) << output_;
+  EXPECT_NE(output_.find("name one of"), std::string::npos) << output_;
+  with("<Interfaces><NetworkInterface name=\"lo\"/></Interfaces><AllowMulticast>false</AllowMulticast>");
+  found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "missing multicast"), 1) << output_;
+  // By this host's own limit, which is not for a test to change.
+  std::uint64_t limit_bytes = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> limit_bytes;
+  EXPECT_EQ(std::count(found.begin(), found.end(), "small socket buffers"), limit_bytes < 1024 * 1024 ? 1 : 0)
+      << limit_bytes << output_;
+}
+
+TEST_F(Introspection, TheDoctorFindsAConfigurationThatCannotBeReadOrIsWrong) {
+  using Faults = std::vector<std::string>;
+  const DomainClaim claim;
+  environment_["CYCLONEDDS_URI"] = "file:///nosuch/cyclonedds.xml";
+  EXPECT_EQ(faults(claim.domain()), (Faults{"unreadable configuration", "no DDS"})) << output_;
+  EXPECT_NE(output_.find("cannot read /nosuch/cyclonedds.xml"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("cure the findings above first"), std::string::npos) << output_;
+  write("unclosed.xml", "<CycloneDDS><Domain>\n");
+  for (const std::string wrong :
+       {"<CycloneDDS><Domain></CycloneDDS>", "<CycloneDDS><Domain><Nonsense>3</Nonsense></Domain></CycloneDDS>",
+        "file://UNCLOSED"}) {
+    environment_["CYCLONEDDS_URI"] = wrong == "file://UNCLOSED" ? "file://" + (dir_ / "unclosed.xml").string() : wrong;
+    EXPECT_EQ(faults(claim.domain()), Faults{"no DDS"}) << wrong << output_;
+    EXPECT_NE(output_.find("unset CYCLONEDDS_URI, or correct it"), std::string::npos) << output_;
+  }
+}
+
+TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndOneTopicOfTwoTypes) {
+  const DomainClaim claim;
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"}) << output_;
+  const Process talker = foreign(claim.domain(), "final");
+  const dds::Domain domain(claim.domain());
+  const auto other = dds::Reader<msg::RunState>::observer(domain.participant(), "weather");
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"differing type"}) << output_;
+  EXPECT_NE(output_.find("foreign::Weather"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("constrictor::msg::RunState"), std::string::npos) << output_;
+}
+
+TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
+  const DomainClaim claim;
+  const Process deaf = foreign(claim.domain(), "silent_qos");
+  const Process other = foreign(claim.domain(), "other_idl");
+  const auto found = faults(claim.domain());
+  EXPECT_EQ(std::count(found.begin(), found.end(), "differing QoS"), 1) << output_;
+  EXPECT_EQ(std::count(found.begin(), found.end(), "differing IDL hash"), 1) << output_;
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,93 @@
+// A run of toy components under the real launcher, and what it leaves behind.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "runtime/host.hpp"
+#include "support/eventually.hpp"
+#include "support/process.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::testing {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+inline constexpr const char* kManifest =
+    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
+    "4\nprocesses:\n"
+    "  - {components: [physics], program: toy_host}\n  - {components: [navigation], program: toy_host}\n"
+    "  - {components: [control], program: toy_host}\n  - {components: [planner], program: toy_host}\n"
+    "  - {components: [report], program: toy_host}\n";
+
+inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  return text.replace(text.find(what), what.size(), with);
+}
+
+class RunCommand : public ::testing::Test {
+ protected:
+  RunCommand() { write("toys.yaml", kManifest); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
+  [[nodiscard]] Process command(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), program("constrictor"));
+    return Process(std::move(arguments), environment_);
+  }
+  /// A run of so many ticks of 20 ms that reports to `report`.
+  [[nodiscard]] Process run(long ticks, const std::string& report, std::vector<std::string> more = {},
+                            const std::string& manifest = "toys.yaml") const {
+    const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
+    write(scenario, "");
+    std::vector<std::string> arguments = {"run",        (dir_ / scenario).string(),
+                                          "--manifest", (dir_ / manifest).string(),
+                                          "--report",   (dir_ / report).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return command(arguments);
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
+  }
+  [[nodiscard]] std::string log(const std::string& report, const std::string& process) const {
+    std::ifstream file(dir_ / report / "logs" / (process + ".log"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Signals a member's process once it is there, and nobody else.
+  void kill_member(const std::string& name, int signal) const {
+    ASSERT_TRUE(eventually([&] { return members().contains(name); })) << name;
+    const pid_t pid = members()[name];
+    ASSERT_GT(pid, 0) << name;
+    ::kill(pid, signal);
+  }
+  /// Processes that report into this test's directory: name of what each hosts, and pid.
+  [[nodiscard]] std::map<std::string, pid_t> members() const {
+    std::map<std::string, pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string pid = entry.path().filename();
+      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::ifstream file(entry.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(file), {}};
+      const auto name = line.find('\0');
+      if (line.find(dir_.string()) == std::string::npos || line.find("--incarnation") == std::string::npos) continue;
+      found[line.substr(name + 1).c_str()] = std::stoi(pid);
+    }
+    return found;
+  }
+  void expect_nobody_left() const {
+    EXPECT_TRUE(eventually([&] { return members().empty(); })) << members().begin()->first << " is left";
+  }
+  [[nodiscard]] std::string state_hash(const std::string& name) const {
+    return report(name).value("state_hash", "none");
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path dir_ = folder_.path();
+  std::map<std::string, std::string> environment_;
+};
+
+}  // namespace constrictor::testing

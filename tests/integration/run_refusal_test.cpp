@@ -1,0 +1,79 @@
+// What `constrictor run` refuses before it starts anything, `check` and `list`.
+#include "integration/run_command_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
+  struct Case {
+    std::vector<std::string> options;
+    int status;
+    std::string said;
+  };
+  write("typo.yaml", replaced(kManifest, "plant:", "plannt:"));
+  write("missing.yaml", replaced(kManifest, "[planner], program: toy_host", "[planner], program: no_such_program"));
+  write("unknown.yaml", replaced(kManifest, "[planner], program: toy_host", "[plannr]"));
+  write("robot.yaml", "name: none\n");
+  const auto file = [this](const char* name) { return (dir_ / name).string(); };
+  const std::vector<Case> cases = {
+      {{"--manifest", file("typo.yaml")}, exit_status::kConfiguration, "typo.yaml:1"},
+      {{"--manifest", file("missing.yaml")}, exit_status::kConfiguration, "no_such_program"},
+      {{"--manifest", file("unknown.yaml")}, exit_status::kConfiguration, "did you mean 'planner'?"},
+      {{"nowhere"}, exit_status::kConfiguration, "scenario: found 'nowhere'"},
+      {{"--robot", file("robot.yaml")}, exit_status::kConfiguration, "robot.yaml:1: module: "},
+      {{"--config", "nav=" + file("robot.yaml")}, exit_status::kConfiguration, "did you mean 'navigation'?"},
+      {{"--config", "navigation=missing"}, exit_status::kConfiguration, "configuration of navigation: found no file"},
+      {{"--config", "navigation=" + file("robot.yaml")},
+       exit_status::kConfiguration,
+       "navigation: " + file("robot.yaml")},
+      {{"--pace", "fast"}, exit_status::kUsage, "--pace: found 'fast'"},
+      {{"--seed", "18446744073709551616"}, exit_status::kUsage, "found '18446744073709551616'"},
+      {{"--max-sim-time", "nan"}, exit_status::kUsage, "found 'nan'"},
+      {{"--sead", "3"}, exit_status::kUsage, "did you mean '--seed'?"},
+  };
+  for (const auto& [options, status, said] : cases) {
+    std::vector<std::string> arguments = {"run", "--report", file("r")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    Process refused = command(arguments);
+    EXPECT_EQ(refused.wait(30s), status) << options.front() << refused.output() << refused.errors();
+    EXPECT_NE(refused.errors().find(said), std::string::npos) << said << " in: " << refused.errors();
+    EXPECT_FALSE(fs::exists(dir_ / "r")) << "no run directory: " << options.front();
+    EXPECT_EQ(refused.output(), "") << "no run: " << options.front();
+  }
+}
+
+TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
+  Process correct = command({"check", "line", "--robot", "serpens"});
+  EXPECT_EQ(correct.wait(30s), exit_status::kOk) << correct.errors();
+  EXPECT_NE(correct.output().find("no errors: "), std::string::npos) << correct.output();
+  write("bad.yaml", "travel: 3\n");
+  const std::string bad = (dir_ / "bad.yaml").string();
+  Process wrong = command({"check", "--config", "planner=" + bad, "--config", "control=" + bad});
+  EXPECT_EQ(wrong.wait(30s), exit_status::kConfiguration) << wrong.output();
+  for (const char* component : {"planner", "control"}) {
+    EXPECT_NE(wrong.errors().find(component + (": " + bad + ":")), std::string::npos)
+        << "all errors, not only the first: " << wrong.errors();
+  }
+  Process foreign = command({"check", "--manifest", (dir_ / "toys.yaml").string()});
+  EXPECT_EQ(foreign.wait(30s), exit_status::kOk) << foreign.errors();
+  EXPECT_NE(foreign.output().find("not checked: the configuration of planner"), std::string::npos) << foreign.output();
+  EXPECT_FALSE(fs::exists("runs"));
+}
+
+TEST_F(RunCommand, ListNamesEverythingThatCanBeChosenByName) {
+  const std::vector<std::pair<std::string, std::string>> expected = {
+      {"scenarios", "case_study"}, {"robots", "mamba"}, {"manifests", "manual"}, {"components", "navigation"}};
+  for (const auto& [kind, name] : expected) {
+    Process list = command({"list", kind, "--names"});
+    EXPECT_EQ(list.wait(20s), exit_status::kOk) << list.errors();
+    EXPECT_NE(("\n" + list.output()).find("\n" + name + "\n"), std::string::npos) << kind << ": " << list.output();
+  }
+  Process described = command({"list", "scenarios"});
+  EXPECT_EQ(described.wait(20s), exit_status::kOk);
+  EXPECT_NE(described.output().find("case_study    "), std::string::npos) << described.output();
+  Process wrong = command({"list", "scenario"});
+  EXPECT_EQ(wrong.wait(20s), exit_status::kUsage);
+}
+
+}  // namespace
+}  // namespace constrictor::testing

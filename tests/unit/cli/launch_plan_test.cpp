@@ -1,0 +1,138 @@
+// What is refused before a run starts, by the files of the project and by files of this test.
+#include "cli/launch_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cli/usage.hpp"
+#include "configuration/configuration.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+class LaunchPlanTest : public ::testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_.path() / name) << text;
+    return (folder_.path() / name).string();
+  }
+  /// Why the options are refused; empty: they are accepted.
+  static std::string error(const RunOptions& options) {
+    try {
+      static_cast<void>(make_launch_plan(options));
+    } catch (const ConfigurationError& error) {
+      return error.what();
+    } catch (const UsageError& error) {
+      return std::string("usage: ") + error.what();
+    }
+    return "";
+  }
+  static void expect_refused(const RunOptions& options, std::initializer_list<std::string> parts) {
+    for (const auto& part : parts)
+      EXPECT_NE(error(options).find(part), std::string::npos) << part << ": " << error(options);
+  }
+
+  const testing::TemporaryFolder folder_;
+  RunOptions options_;
+};
+
+TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
+  options_.scenario = "line";
+  options_.robot = "serpens";
+  const LaunchPlan plan = make_launch_plan(options_);
+  EXPECT_EQ(plan.manifest.scenario_file.filename(), "line.yaml");
+  EXPECT_EQ(plan.manifest.robot_file.filename(), "serpens.yaml");
+  EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
+  EXPECT_EQ(names_of(kManifests), (std::vector<std::string>{"case_study", "manual"}));
+}
+
+TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {
+  options_.scenario = "lime";
+  expect_refused(options_, {"scenario: found 'lime'", "case_study, line", "did you mean 'line'?"});
+  options_ = {};
+  options_.robot = "momba";
+  expect_refused(options_, {"robot: found 'momba'", "did you mean 'mamba'?"});
+  options_ = {};
+  options_.manifest = "manuel";
+  expect_refused(options_, {"manifest: found 'manuel'", "did you mean 'manual'?"});
+}
+
+TEST_F(LaunchPlanTest, RefusesAConfigurationOfAComponentThatIsNotInTheRoster) {
+  options_.config_files = {"nav=" + write("nav.yaml", "")};
+  expect_refused(options_,
+                 {"--config: found component 'nav'", "accepted physics, camera", "did you mean 'navigation'?"});
+}
+
+TEST_F(LaunchPlanTest, RefusesAConfigurationFileThatDoesNotExist) {
+  options_.config_files = {"navigation=missing.yaml"};
+  expect_refused(options_, {"configuration of navigation: found no file /", "missing.yaml"});
+}
+
+TEST_F(LaunchPlanTest, RefusesConfigurationsThatAreNotNameAndFile) {
+  for (const char* text : {"navigation", "=file.yaml", "navigation="}) {
+    options_.config_files = {text};
+    expect_refused(options_, {"usage: --config", "accepted NAME=FILE"});
+  }
+}
+
+TEST_F(LaunchPlanTest, RefusesAProgramThatIsNoExecutableFile) {
+  const std::string program = write("not_executable", "#!/bin/sh\n");
+  options_.manifest = write("m.yaml",
+                            "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: "
+                            "sim/scenarios/line.yaml\nprocesses:\n  - {components: [physics], program: " +
+                                program + "}\n");
+  expect_refused(options_, {"process physics: found program " + program, "accepted an executable file"});
+}
+
+TEST_F(LaunchPlanTest, RefusesAPaceThatIsNone) {
+  for (const char* pace : {"fast", "", "0x", "-1x", "2", "nanx", "infx", "2xx", "0.0001x", "1001x"}) {
+    options_.pace = pace;
+    expect_refused(options_, {"usage: --pace", "accepted lockstep, realtime"});
+  }
+  for (const char* pace : {"lockstep", "realtime", "2x", "0.5x", "1000x"}) {
+    options_.pace = pace;
+    EXPECT_EQ(error(options_), "") << pace;
+  }
+}
+
+TEST_F(LaunchPlanTest, TheRosterDoesNotDependOnTheDistribution) {
+  const LaunchPlan each = make_launch_plan(options_);
+  options_.groups = {"report,physics"};
+  const LaunchPlan grouped = make_launch_plan(options_);
+  options_.groups.clear();
+  options_.in_process = true;
+  const LaunchPlan one = make_launch_plan(options_);
+  EXPECT_EQ(each.roster, grouped.roster);
+  EXPECT_EQ(each.roster, one.roster);
+  EXPECT_EQ(each.manifest.processes.size(), each.roster.size());
+  EXPECT_EQ(grouped.manifest.processes.size(), each.roster.size() - 1);
+  EXPECT_EQ(one.manifest.processes.size(), 1u);
+}
+
+TEST_F(LaunchPlanTest, CommandLinesNameTheConfigurationOfTheHostedComponentsOnly) {
+  const std::string file = write("mine.yaml", "");
+  options_.config_files = {"planner=" + file};
+  options_.max_sim_time_s = 7.5;
+  const LaunchPlan plan = make_launch_plan(options_);
+  const CommandLine command_line = make_command_line(options_, plan, 5, "/tmp/r", 42);
+  const auto joined = [&](const std::string& name, std::uint32_t incarnation) {
+    for (const auto& process : plan.manifest.processes) {
+      if (process.name() != name) continue;
+      std::string text;
+      for (const auto& argument : command_line(process, incarnation)) text += argument + " ";
+      return text;
+    }
+    return std::string();
+  };
+  EXPECT_NE(joined("planner", 3).find("/planner --domain 5 --roster physics,camera,"), std::string::npos);
+  EXPECT_NE(joined("planner", 3).find("--incarnation 3 --config planner=" + file), std::string::npos);
+  EXPECT_NE(joined("planner", 3).find("--mission "), std::string::npos) << "the planner does not read the scenario";
+  EXPECT_NE(joined("report", 1).find("--max-sim-time 7.5"), std::string::npos) << "the report names this limit";
+  EXPECT_NE(joined("physics", 1).find("--max-sim-time 7.5"), std::string::npos);
+  EXPECT_EQ(joined("physics", 1).find("--config"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace constrictor::cli

@@ -1,0 +1,174 @@
+// The supervisor with shell scripts in place of components.
+#include "cli/supervisor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "runtime/host.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using State = Supervisor::State;
+
+constexpr const char* kWaitForever = "exec sleep 1000";
+
+class SupervisorTest : public ::testing::Test {
+ protected:
+  /// A run of a plant and two members that execute these scripts. $1 is the incarnation.
+  void start(const std::string& plant, const std::string& member, int restarts = 100) {
+    LaunchManifest manifest;
+    manifest.plant = "physics";
+    manifest.processes = {
+        {{"control"}, "", restarts, {"WORD=hello"}}, {{"physics"}, "", 0, {}}, {{"input"}, "", 9, {}}};
+    const auto command_line = [=](const ProcessPlan& process, std::uint32_t incarnation) {
+      const std::string script = process.name() == "physics"   ? plant
+                                 : process.name() == "control" ? member
+                                                               : kWaitForever;
+      return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(incarnation)};
+    };
+    supervisor_ = std::make_unique<Supervisor>(manifest, command_line, std::vector<std::string>{"PATH=/usr/bin:/bin"},
+                                               folder_.path() / "logs",
+                                               [this](const std::string& line) { printed_ += line + "\n"; });
+    supervisor_->start();
+  }
+  /// Polls until `condition` holds; false if it does not within the bound.
+  template <class Condition>
+  bool poll_until(Condition&& condition, std::chrono::seconds bound = 30s) {
+    const auto end = std::chrono::steady_clock::now() + bound;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      supervisor_->poll();
+      std::this_thread::sleep_for(1ms);
+    }
+    return true;
+  }
+  bool poll_until_over() {
+    return poll_until([this] { return supervisor_->poll() != State::kRunning; });
+  }
+  [[nodiscard]] bool printed(const std::string& text) const { return printed_.find(text) != std::string::npos; }
+  [[nodiscard]] std::string log(const std::string& name) const {
+    std::ifstream file(folder_.path() / "logs" / (name + ".log"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  [[nodiscard]] ProcessRecord record(std::size_t index) const { return supervisor_->records().at(index); }
+
+  const testing::TemporaryFolder folder_;
+  std::string printed_;
+  std::unique_ptr<Supervisor> supervisor_;
+};
+
+TEST_F(SupervisorTest, RestartsAMemberThatDiesAsTheNextIncarnation) {
+  start(kWaitForever, "[ $1 = 1 ] && { echo incarnation $1 fails; exit 3; }; echo incarnation $1 lives $WORD; " +
+                          std::string(kWaitForever));
+  ASSERT_TRUE(poll_until([&] { return log("control").find("incarnation 2 lives hello") != std::string::npos; }))
+      << printed_;
+  EXPECT_EQ(record(0).restarts, 1u);
+  EXPECT_TRUE(printed("control: incarnation 1 fails\n")) << "the last lines of its log: " << printed_;
+  EXPECT_TRUE(printed("control ended with status 3; restarted as incarnation 2\n")) << printed_;
+  EXPECT_EQ(supervisor_->poll(), State::kRunning);
+}
+
+TEST_F(SupervisorTest, FailsWhenTheManifestsRestartsAreUsedUp) {
+  start(kWaitForever, "exit 3", 2);
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kFailed);
+  EXPECT_EQ(supervisor_->failure(), "control ended with status 3, and the manifest allows 2 restarts");
+  EXPECT_EQ(supervisor_->failure_status(), exit_status::kSoftware);
+}
+
+TEST_F(SupervisorTest, FailsWhenAMemberDiesFiveTimesAtOneTick) {
+  start(kWaitForever, "exit 3");
+  supervisor_->run_is_at(7, false);
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->failure(),
+            "control died 5 times in a row while the run stood at tick 7; the last time it ended with status 3");
+  EXPECT_EQ(record(0).restarts, 4u);
+}
+
+TEST_F(SupervisorTest, DeathsDoNotCountAsLongAsTheRunGoesOn) {
+  start(kWaitForever, "[ $1 -lt 9 ] && exit 3; " + std::string(kWaitForever));
+  std::int64_t tick = 0;
+  EXPECT_TRUE(poll_until([&] {
+    supervisor_->run_is_at(++tick, false);
+    return record(0).restarts == 8u;
+  })) << printed_;
+  EXPECT_EQ(supervisor_->poll(), State::kRunning) << supervisor_->failure();
+}
+
+TEST_F(SupervisorTest, DeathsDoNotCountWhileAPauseHoldsTheRun) {
+  start(kWaitForever, "[ $1 -lt 9 ] && exit 3; " + std::string(kWaitForever));
+  EXPECT_TRUE(poll_until([&] {
+    supervisor_->run_is_at(7, true);
+    return record(0).restarts == 8u;
+  })) << printed_;
+  EXPECT_EQ(supervisor_->poll(), State::kRunning) << supervisor_->failure();
+}
+
+TEST_F(SupervisorTest, DoesNotRestartAfterAStatusThatARestartCannotChange) {
+  for (const int status :
+       {exit_status::kUsage, exit_status::kConfiguration, exit_status::kRefused, exit_status::kWaitedTooLong}) {
+    start(kWaitForever, "exit " + std::to_string(status));
+    ASSERT_TRUE(poll_until_over());
+    EXPECT_EQ(supervisor_->failure_status(), status);
+    EXPECT_EQ(record(0).restarts, 0u) << status;
+  }
+  start(kWaitForever, "exec /nowhere/program 2>&1");
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->failure_status(), exit_status::kSoftware);
+}
+
+TEST_F(SupervisorTest, DoesNotRepeatTheNameInALineThatBeginsWithIt) {
+  start(kWaitForever, "echo 'control: configuration: x.yaml:1: y'; exit 78");
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_TRUE(printed("control: configuration: x.yaml:1: y\n")) << printed_;
+  EXPECT_FALSE(printed("control: control:")) << printed_;
+}
+
+TEST_F(SupervisorTest, FailsWhenThePlantDies) {
+  start("kill -SEGV $$", kWaitForever);
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kFailed);
+  EXPECT_EQ(supervisor_->failure(), "physics, the plant, was killed by signal 11 (Segmentation fault)");
+}
+
+TEST_F(SupervisorTest, FailsWhenThePlantEndsBeforeTheRun) {
+  start("exit 0", kWaitForever);
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kFailed);
+  EXPECT_NE(supervisor_->failure().find("physics, the plant (pid "), std::string::npos) << supervisor_->failure();
+}
+
+TEST_F(SupervisorTest, EndsWithThePlantOnceTheEndIsExpected) {
+  start("exit 0", kWaitForever);
+  supervisor_->expect_end();
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kEnded);
+  supervisor_->finish(0s);
+  EXPECT_EQ(supervisor_->failure(), "control did not end within 0 s of the run's end");
+}
+
+TEST_F(SupervisorTest, FinishReturnsEarlyWhenItIsToldToGiveUp) {
+  start("exit 0", kWaitForever);
+  supervisor_->expect_end();
+  ASSERT_TRUE(poll_until_over());
+  supervisor_->finish(100s, [] { return true; });
+  EXPECT_EQ(supervisor_->failure(), "");
+}
+
+TEST_F(SupervisorTest, StopsAlsoAProcessThatIgnoresSigtermOrIsStopped) {
+  start("trap '' TERM; echo ready; while :; do sleep 0.01; done", "kill -STOP $$");
+  ASSERT_TRUE(poll_until([&] { return log("physics") == "ready\n"; }));
+  const auto start = std::chrono::steady_clock::now();
+  supervisor_->stop();
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 3s) << "SIGKILL comes 3 s after SIGTERM";
+  EXPECT_GT(record(1).cpu_s, 0.0);
+}
+
+}  // namespace
+}  // namespace constrictor::cli

@@ -1,0 +1,71 @@
+#include "cli/usage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+
+namespace constrictor::cli {
+namespace {
+
+/// A command line as main.cpp has it.
+class CommandLineTest : public ::testing::Test {
+ protected:
+  CommandLineTest() {
+    app_.require_subcommand(1);
+    auto* run = app_.add_subcommand("run");
+    run->add_option("--seed", seed_)->check(whole_number());
+    run->add_option("--max-sim-time", limit_s_)->check(number(0.0, 1e6, "s"));
+    run->add_option("--domain", domain_)->check(whole_number(0, 229));
+    auto* topic = app_.add_subcommand("topic");
+    topic->require_subcommand(1);
+    topic->add_subcommand("echo")->add_flag("--json");
+  }
+  /// What is wrong with a command line; empty: nothing.
+  std::string error(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());
+    try {
+      app_.parse(words);
+    } catch (const CLI::ParseError& error) {
+      return explain_parse_error(app_, error);
+    }
+    return "";
+  }
+
+  CLI::App app_{"test", "constrictor"};
+  std::uint64_t seed_ = 0;
+  std::uint64_t domain_ = 0;
+  double limit_s_ = 0.0;
+};
+
+TEST_F(CommandLineTest, AcceptsTheLargestSeedAndNoLargerOne) {
+  EXPECT_EQ(error({"run", "--seed", "18446744073709551615"}), "");
+  EXPECT_EQ(seed_, 18446744073709551615u);
+  for (const std::string seed : {"18446744073709551616", "-1", "+1", "1.5", "1e3", "0x10", " 1", "seven"}) {
+    EXPECT_NE(error({"run", "--seed=" + seed}).find("accepted a whole number from 0 to 18446744073709551615"),
+              std::string::npos)
+        << seed << ": " << error({"run", "--seed=" + seed});
+  }
+  EXPECT_NE(error({"run", "--seed="}).find("--seed: 1 required"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, AcceptsOnlyFiniteNumbersWithinBounds) {
+  EXPECT_EQ(error({"run", "--max-sim-time", "1e6"}), "");
+  EXPECT_EQ(limit_s_, 1e6);
+  for (const std::string limit : {"nan", "inf", "1000001", "-0.1", "ten", "10s"}) {
+    EXPECT_NE(error({"run", "--max-sim-time=" + limit}).find("accepted a number from 0 to 1e+06 s"), std::string::npos)
+        << limit;
+  }
+  EXPECT_NE(error({"run", "--domain", "230"}).find("accepted a whole number from 0 to 229"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, NamesTheClosestSubcommandOrOption) {
+  EXPECT_EQ(error({"rnu"}), "no subcommand 'rnu', did you mean 'run'? (see constrictor --help)");
+  EXPECT_EQ(error({"topic", "ecko"}), "no subcommand 'ecko', did you mean 'echo'? (see constrictor topic --help)");
+  EXPECT_EQ(error({"run", "--sead", "3"}), "no option '--sead', did you mean '--seed'? (see constrictor run --help)");
+  EXPECT_EQ(error({"run", "--sead=3"}), "no option '--sead', did you mean '--seed'? (see constrictor run --help)");
+  EXPECT_EQ(error({"run", "--quite-different"}), "no option '--quite-different' (see constrictor run --help)");
+  EXPECT_EQ(error({"run", "elsewhere"}), "unexpected argument 'elsewhere' (see constrictor run --help)");
+}
+
+}  // namespace
+}  // namespace constrictor::cli

@@ -1,0 +1,104 @@
+// Suspensions of the mission while somebody else has authority, and objects that others drop.
+#include <gtest/gtest.h>
+
+#include "scripted_planner.hpp"
+
+namespace constrictor {
+namespace {
+
+using enum MissionState;
+
+TEST_F(PlannerTest, AnOperatorSuspendsTheMissionWhichContinuesWithASearch) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  authority_.level = msg::kAuthorityOperator;
+  see_nothing();
+  for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step());
+  EXPECT_TRUE(memory_.suspended);
+  EXPECT_EQ(memory_.recoveries, 0);
+  authority_.level = msg::kAuthorityNone;
+  ASSERT_TRUE(step());
+  EXPECT_EQ(memory_.state, kSearchLine);  // with the object
+  carry();
+}
+
+TEST_F(PlannerTest, ObjectsDroppedByOthersCountAsDelivered) {
+  const auto dropped = [](std::uint8_t level, std::uint8_t colour) {
+    msg::TaskEvent event{};
+    event.goal_id = (std::uint64_t{level} << 48) + 7;
+    event.event = msg::kEventDroppingDone;
+    event.goal_state = msg::kGoalRunning;
+    event.colour = colour;
+    return event;
+  };
+  find_line();
+  authority_.level = msg::kAuthorityExternal;
+  step({dropped(msg::kAuthorityExternal, msg::kColourRed)});
+  authority_.level = msg::kAuthorityNone;
+  step();
+  EXPECT_EQ(memory_.object_index, 0);  // green comes first
+  EXPECT_NE(memory_.state, MissionState::kDone);
+  authority_.level = msg::kAuthorityOperator;
+  step();
+  step({dropped(msg::kAuthorityOperator, msg::kColourGreen)});
+  authority_.level = msg::kAuthorityNone;
+  EXPECT_FALSE(step());
+  EXPECT_EQ(memory_.object_index, 2);
+  EXPECT_EQ(memory_.state, MissionState::kDone);
+}
+
+// The last event of the drop crosses the change of authority.
+TEST_F(PlannerTest, ItsOwnDropCountsAsDeliveredAlsoIfAuthorityChangesAtThatMoment) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  steps(4);
+  ASSERT_EQ(last_.task, msg::kTaskDrop);
+  status_.carrying = false;
+  auto done = event(msg::kEventDroppingDone, msg::kGoalSucceeded);
+  done.colour = msg::kColourGreen;
+  authority_.level = msg::kAuthorityExternal;
+  step({done});
+  see_nothing();
+  steps(100);
+  authority_.level = msg::kAuthorityNone;
+  step();
+  EXPECT_EQ(memory_.object_index, 1) << "red is next";
+}
+
+TEST_F(PlannerTest, SkipsAnObjectThatSomebodyElseDropped) {
+  find_line();
+  authority_.level = msg::kAuthorityExternal;
+  msg::TaskEvent event{};
+  event.goal_id = std::uint64_t{msg::kAuthorityExternal} << 48;
+  event.event = msg::kEventDroppingDone;
+  event.colour = msg::kColourRed;
+  step({event});
+  authority_.level = msg::kAuthorityNone;
+  step();
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  drop(msg::kColourGreen);
+  EXPECT_EQ(memory_.state, MissionState::kDone);
+}
+
+TEST_F(PlannerTest, AfterAnEmergencyStopWaitsUntilSomebodyReleasesAuthority) {
+  find_line();
+  authority_.level = msg::kAuthorityEmergencyStop;
+  authority_.emergency_stop = true;
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(step());
+  authority_.emergency_stop = false;
+  authority_.level = msg::kAuthorityNone;
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(step());
+  authority_.level = msg::kAuthorityOperator;
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(step());
+  authority_.level = msg::kAuthorityNone;
+  EXPECT_TRUE(step());
+  EXPECT_FALSE(memory_.suspended);
+}
+
+}  // namespace
+}  // namespace constrictor

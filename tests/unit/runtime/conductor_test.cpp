@@ -1,0 +1,270 @@
+// The conductor, spoken to directly: whom it accepts, when a tick comes, what the tick makes visible, and which reports
+// of members cannot be true.
+#include "barrier/conductor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "barrier_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+constexpr std::uint8_t kEvents = topics::kTaskEvent.id;
+constexpr std::uint8_t kJoints = topics::kJointState.id;
+
+class ConductorTest : public ::testing::Test {
+ protected:
+  static ConductorOptions options() {
+    ConductorOptions options;
+    options.run_id = kEpoch.run_id;
+    options.roster = {"physics", "navigation"};
+    options.plant = "physics";
+    options.idl_hash = "idl";
+    options.config_hash = "config";
+    options.numeric_profile = "profile";
+    return options;
+  }
+  static Hello hello(const std::string& component, std::uint32_t incarnation = 1) {
+    Hello hello;
+    hello.component = component;
+    hello.incarnation = incarnation;
+    hello.pid = 100 + static_cast<int>(incarnation);
+    hello.host = "here";
+    hello.idl_hash = "idl";
+    hello.config_hash = "config";
+    hello.component_hash = "own";
+    hello.numeric_profile = "profile";
+    hello.writes = component == "navigation" ? TopicSet::of(topics::kTaskEvent) : TopicSet::of(topics::kJointState);
+    return hello;
+  }
+  void begin() {
+    conductor_.on_hello(hello("physics"));
+    conductor_.on_hello(hello("navigation"));
+    conductor_.on_ready("physics", kEpoch, 1);
+    conductor_.on_ready("navigation", kEpoch, 1);
+  }
+  /// A step of navigation at tick `index` after which it has written `count` events.
+  static TickDone step(std::int64_t index, std::uint64_t count, std::uint32_t incarnation = 1) {
+    TickDone done;
+    done.component = "navigation";
+    done.epoch = kEpoch;
+    done.incarnation = incarnation;
+    done.index = index;
+    done.published = {{kEvents, count}};
+    done.state = "state after " + std::to_string(index);
+    done.written = {{kEvents, "event of " + std::to_string(index)}};
+    return done;
+  }
+  static TickDone plant_step(std::int64_t index) {
+    TickDone done;
+    done.component = "physics";
+    done.epoch = kEpoch;
+    done.index = index;
+    return done;
+  }
+  void tick() { conductor_.tick({{kJoints, static_cast<std::uint64_t>(conductor_.next_index() + 1)}}); }
+  /// Ticks 0 to `last`, with one event in each step.
+  void run_to(std::int64_t last) {
+    for (std::int64_t k = conductor_.next_index(); k <= last; ++k) {
+      ASSERT_TRUE(conductor_.may_tick()) << k;
+      tick();
+      conductor_.on_done(plant_step(k));
+      conductor_.on_done(step(k, static_cast<std::uint64_t>(k + 1)));
+    }
+  }
+  [[nodiscard]] std::string last_refusal() const {
+    return record_.refusals.empty() ? "" : record_.refusals.back().second;
+  }
+
+  ConductorRecord record_;
+  Conductor conductor_{options(), static_cast<ConductorSink&>(record_)};
+};
+
+TEST_F(ConductorTest, TheEpochBeginsWithTheLastHelloAndTicksWithTheLastReady) {
+  conductor_.on_hello(hello("physics"));
+  EXPECT_TRUE(record_.epochs.empty());
+  ASSERT_EQ(conductor_.owed().size(), 1u);
+  EXPECT_EQ(conductor_.owed()[0].component, "navigation");
+  EXPECT_STREQ(conductor_.owed()[0].what, "Hello");
+  conductor_.on_hello(hello("navigation"));
+  ASSERT_EQ(record_.epochs.size(), 1u);
+  EXPECT_EQ(record_.epochs[0].first, kEpoch);
+  conductor_.on_ready("physics", kEpoch, 1);
+  conductor_.on_ready("navigation", {kEpoch.run_id, 9}, 1);
+  conductor_.on_ready("navigation", kEpoch, 2);
+  conductor_.on_ready("nobody", kEpoch, 1);
+  EXPECT_FALSE(conductor_.may_tick());
+  EXPECT_STREQ(conductor_.owed().at(0).what, "Ready");
+  conductor_.on_ready("navigation", kEpoch, 1);
+  EXPECT_TRUE(conductor_.may_tick());
+}
+
+TEST_F(ConductorTest, ATickWaitsForTheStepsThatItMakesVisible) {
+  begin();
+  tick();
+  EXPECT_FALSE(conductor_.may_tick());
+  conductor_.on_done(plant_step(0));
+  EXPECT_FALSE(conductor_.may_tick());
+  ASSERT_EQ(conductor_.owed().size(), 1u);
+  EXPECT_STREQ(conductor_.owed()[0].what, "TickDone");
+  conductor_.on_done(step(0, 2));
+  ASSERT_TRUE(conductor_.may_tick());
+  EXPECT_EQ(record_.ticks.back().visible[kEvents], 0u);
+  EXPECT_EQ(record_.ticks.back().visible[kJoints], 1u) << "the plant's samples are visible in their own tick";
+  tick();
+  EXPECT_EQ(record_.ticks.back().visible[kEvents], 2u);
+  EXPECT_EQ(record_.ticks.back().incarnations[kEvents], 1u);
+}
+
+TEST_F(ConductorTest, OthersThanTheRunsMembersAreRefusedWithTheReason) {
+  conductor_.on_hello(hello("nobody"));
+  EXPECT_EQ(last_refusal(), "no component of this name is in the roster");
+  const auto refused = [&](const auto& change, const std::string& reason) {
+    Hello other = hello("navigation");
+    change(other);
+    conductor_.on_hello(other);
+    EXPECT_EQ(last_refusal(), reason);
+  };
+  refused([](Hello& h) { h.idl_hash = "x"; }, "IDL hash differs: found x, the run has idl");
+  refused([](Hello& h) { h.config_hash = "x"; }, "configuration hash differs: found x, the run has config");
+  refused([](Hello& h) { h.numeric_profile = "x"; }, "numeric profile differs: found x, the run has profile");
+  conductor_.on_hello(hello("physics"));
+  EXPECT_TRUE(record_.epochs.empty()) << "navigation has not joined";
+  begin();
+  const std::size_t refusals = record_.refusals.size();
+  conductor_.on_hello(hello("navigation"));
+  EXPECT_EQ(record_.refusals.size(), refusals) << "a repeated Hello";
+  refused([](Hello& h) { h.pid = 4711; },
+          "two members of one name: incarnation 1 runs as pid 101 on here; a replacement "
+          "needs a higher --incarnation");
+  conductor_.on_hello(hello("physics", 2));
+  EXPECT_EQ(last_refusal(), "the plant cannot be replaced in a run");
+  refused([](Hello& h) { h.incarnation = 2, h.component_hash = "edited"; },
+          "its configuration or scenario file differs from the one that the run began with: found hash edited, the run "
+          "has own");
+}
+
+TEST_F(ConductorTest, ReportsThatCannotBeTrueAreNamed) {
+  begin();
+  run_to(3);
+  const auto why = [&](const TickDone& done) { return conductor_.implausible(done).value_or(""); };
+  tick();  // 4
+  EXPECT_EQ(why(step(4, 5)), "");
+  EXPECT_EQ(why(step(3, 0)), "") << "a step that is known is ignored";
+  EXPECT_NE(why(step(5, 5)).find("index: found 5"), std::string::npos) << "a tick that was not sent";
+  EXPECT_NE(why(step(std::numeric_limits<std::int64_t>::max(), 5)).find("index"), std::string::npos);
+  EXPECT_NE(why(step(4, 3)).find("published: found 3 of topic"), std::string::npos) << "a count that falls";
+  EXPECT_NE(why(step(4, 4 + topics::kTaskEvent.max_per_tick + 1)).find("published: found"), std::string::npos);
+  EXPECT_NE(why(step(4, std::numeric_limits<std::uint64_t>::max())).find("published: found"), std::string::npos);
+  TickDone foreign_topic = step(4, 5);
+  foreign_topic.published = {{kJoints, 1}};
+  EXPECT_NE(why(foreign_topic).find("which the member does not write"), std::string::npos);
+  foreign_topic.published = {{200, 1}};
+  EXPECT_NE(why(foreign_topic).find("found topic 200"), std::string::npos);
+  TickDone foreign_output = step(4, 5);
+  foreign_output.written = {{kJoints, "x"}};
+  EXPECT_NE(why(foreign_output).find("checkpoint: found topic"), std::string::npos);
+}
+
+TEST_F(ConductorTest, MessagesOfAnotherRunOrOfAnUnknownIncarnationAreForeign) {
+  begin();
+  EXPECT_FALSE(conductor_.foreign("navigation", kEpoch, 1));
+  EXPECT_FALSE(conductor_.foreign("navigation", kEpoch, 0)) << "an older incarnation is only late";
+  EXPECT_NE(conductor_.foreign("navigation", kEpoch, 2).value_or("").find("has sent no Hello"), std::string::npos);
+  EXPECT_TRUE(conductor_.foreign("navigation", {kEpoch.run_id + 1, 1}, 1));
+  EXPECT_TRUE(conductor_.foreign("navigation", {kEpoch.run_id, 2}, 1));
+  EXPECT_NE(conductor_.foreign("", kEpoch, 1).value_or("").find("accepted one of the roster"), std::string::npos);
+}
+
+TEST_F(ConductorTest, ARestartedMemberGetsItsLastStateAndAsManyOutputsAsTheTopicKeeps) {
+  begin();
+  const auto last = static_cast<std::int64_t>(topics::kTaskEvent.depth) + 5;
+  run_to(last);
+  conductor_.on_hello(hello("navigation", 2));
+  ASSERT_EQ(record_.resumes.size(), 1u);
+  const Resume& resume = record_.resumes[0];
+  EXPECT_EQ(resume.index, last);
+  EXPECT_EQ(resume.incarnation, 2u);
+  EXPECT_EQ(resume.state, "state after " + std::to_string(last));
+  ASSERT_EQ(resume.outputs.size(), topics::kTaskEvent.depth);
+  EXPECT_EQ(resume.outputs.back().bytes, "event of " + std::to_string(last));
+  EXPECT_FALSE(conductor_.may_tick()) << "it must send Ready again";
+  conductor_.on_ready("navigation", kEpoch, 2);
+  ASSERT_TRUE(conductor_.may_tick());
+  tick();
+  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 1))) << "the dead incarnation";
+  EXPECT_TRUE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2)));
+  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2))) << "done already";
+}
+
+TEST_F(ConductorTest, AMemberWithoutCheckpointsCannotBeResumed) {
+  begin();
+  tick();
+  TickDone bare = step(0, 1);
+  bare.state.clear();
+  bare.written.clear();
+  conductor_.on_done(bare);
+  conductor_.on_hello(hello("navigation", 2));
+  EXPECT_EQ(last_refusal(), "it cannot be resumed: its TickDone carried no checkpoint");
+  EXPECT_EQ(conductor_.incarnation("navigation"), 1u);
+}
+
+TEST_F(ConductorTest, TheRunEndsWhenTheRequestBecomesVisibleOrAtTheLastTick) {
+  begin();
+  tick();
+  TickDone end = step(0, 0);
+  end.end_of_run = true;
+  conductor_.on_done(plant_step(0));
+  conductor_.on_done(end);
+  EXPECT_TRUE(conductor_.next_is_final());
+  tick();
+  EXPECT_TRUE(record_.ticks.back().final_tick);
+  EXPECT_TRUE(conductor_.ended());
+  EXPECT_FALSE(conductor_.may_tick());
+
+  ConductorOptions limited = options();
+  limited.last_index = 0;
+  ConductorRecord record;
+  Conductor other(limited, static_cast<ConductorSink&>(record));
+  EXPECT_TRUE(other.next_is_final());
+}
+
+TEST_F(ConductorTest, AResetBeginsAnEpochFromNothing) {
+  conductor_.reset(9);
+  EXPECT_TRUE(record_.epochs.empty()) << "the run has not begun";
+  begin();
+  run_to(2);
+  conductor_.reset(9);
+  ASSERT_EQ(record_.epochs.size(), 2u);
+  EXPECT_EQ(record_.epochs[1], (std::pair{EpochId{kEpoch.run_id, 2}, std::uint64_t{9}}));
+  EXPECT_EQ(conductor_.next_index(), 0);
+  EXPECT_FALSE(conductor_.may_tick());
+  EXPECT_FALSE(conductor_.on_done(step(3, 4))) << "of the epoch before";
+  conductor_.on_ready("physics", {kEpoch.run_id, 2}, 1);
+  conductor_.on_ready("navigation", {kEpoch.run_id, 2}, 1);
+  ASSERT_TRUE(conductor_.may_tick());
+  conductor_.tick({});
+  EXPECT_EQ(record_.ticks.back().visible[kEvents], 0u);
+}
+
+TEST_F(ConductorTest, AtRealTimePaceTicksWaitForThePlantAlone) {
+  ConductorOptions options = ConductorTest::options();
+  options.realtime = true;
+  ConductorRecord record;
+  Conductor conductor(options, static_cast<ConductorSink&>(record));
+  conductor.on_hello(hello("physics"));
+  conductor.on_hello(hello("navigation"));
+  conductor.on_ready("physics", kEpoch, 1);
+  EXPECT_FALSE(conductor.may_tick()) << "the first tick waits until all are ready";
+  conductor.on_ready("navigation", kEpoch, 1);
+  conductor.tick({});
+  EXPECT_FALSE(conductor.may_tick());
+  conductor.on_done(plant_step(0));
+  EXPECT_TRUE(conductor.may_tick());
+  EXPECT_TRUE(record.ticks.back().realtime);
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,60 @@
+#include "sim/scenario_loader/layout_check.hpp"
+
+#include <gtest/gtest.h>
+
+namespace constrictor {
+namespace {
+
+Scenario scene_with(std::vector<ScenarioObject> objects, std::vector<ScenarioObstacle> obstacles = {}) {
+  Scenario scenario;
+  scenario.objects = std::move(objects);
+  scenario.obstacles = std::move(obstacles);
+  return scenario;
+}
+
+ScenarioObject cylinder(double x, double y) {
+  ScenarioObject object;
+  object.size_m = {0.1, 0.1, 0.2};
+  object.position_m = {x, y};
+  return object;
+}
+
+std::string overlap_of(const Scenario& scenario) { return find_overlap(scenario, 2.2, 0.05); }
+
+TEST(LayoutCheck, AcceptsBodiesSideBySide) {
+  EXPECT_EQ(overlap_of(scene_with({cylinder(1, 0), cylinder(1.21, 0)})), "");
+}
+
+TEST(LayoutCheck, FindsOverlappingCylinders) {
+  EXPECT_EQ(overlap_of(scene_with({cylinder(1, 0), cylinder(1.15, 0.1)})), "objects[1] overlaps objects[0]");
+}
+
+TEST(LayoutCheck, FindsAnObjectOnTheBodyOfTheRobot) {
+  EXPECT_EQ(overlap_of(scene_with({cylinder(-1.5, 0.1)})), "objects[0] overlaps the robot's body at the start");
+  EXPECT_EQ(overlap_of(scene_with({cylinder(-1.5, 0.2)})), "");
+}
+
+TEST(LayoutCheck, TurnsWallsWithTheirYaw) {
+  ScenarioObstacle wall;
+  wall.size_m = {2.0, 0.1, 0.3};
+  wall.position_m = {2, 0};
+  EXPECT_EQ(overlap_of(scene_with({cylinder(2.8, 0.1)}, {wall})), "objects[0] overlaps obstacles[0]");
+  wall.yaw_rad = 1.5707963267948966;
+  EXPECT_EQ(overlap_of(scene_with({cylinder(2.8, 0.1)}, {wall})), "");
+  EXPECT_EQ(overlap_of(scene_with({cylinder(2.1, 0.8)}, {wall})), "objects[0] overlaps obstacles[0]");
+}
+
+TEST(LayoutCheck, FindsOverlappingTurnedBoxes) {
+  ScenarioObject box;
+  box.shape = BodyShape::kBox;
+  box.size_m = {0.2, 0.2, 0.2};
+  box.position_m = {1, 0};
+  ScenarioObject other = box;
+  other.position_m = {1.23, 0};
+  EXPECT_EQ(overlap_of(scene_with({box, other})), "");
+  other.yaw_rad = 0.7853981633974483;  // its corner now reaches 0.141 m
+  EXPECT_EQ(overlap_of(scene_with({box, other})), "objects[1] overlaps objects[0]");
+}
+
+}  // namespace
+}  // namespace constrictor

@@ -1,0 +1,98 @@
+// Joints of the world compared with formulas: elastic and stiff joints, torque limits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "unit/world/world_fixture.hpp"
+
+namespace constrictor {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(JointDrive, AnElasticJointSwingsAtItsNaturalFrequency) {
+  // Two equal links with a torsion spring between them fall freely. Both turn by opposite angles, so w^2 = 2 k / I with
+  // I about the centre of a link.
+  RobotModel robot = chain(2, JointAxis::kYaw);
+  const double inertia = capsule_inertia(robot.module_mass_kg, robot.module_radius_m, robot.module_length_m);
+  const double w = 15.0;
+  robot.joints[0].stiffness_nm_rad = w * w * inertia / 2;
+  robot.joints[0].max_torque_nm = 1.0;
+  World world(robot, in_the_air(8.0), [] {
+    SolverSettings fine;
+    fine.step_s = 0.0002;
+    return fine;
+  }());
+  // The motor jumps to 0.2 rad; the joint then swings about that angle.
+  const double motor = 0.2;
+  std::vector<double> crossings;
+  double before = 0.0;
+  world.set_servo(std::vector{motor}, std::vector{0.0}, std::vector{1.0});
+  double reached = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    world.advance(0.002);
+    const double now = world.joint_angle_rad(0) - motor;
+    if (i > 150 && before * now < 0.0) crossings.push_back(0.002 * (i + before / (before - now)));
+    before = now;
+    reached = std::max(reached, world.joint_angle_rad(0));
+  }
+  EXPECT_GT(reached, 0.2);
+  ASSERT_GE(crossings.size(), 2U);
+  const double half_period = (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
+  EXPECT_NEAR(std::numbers::pi / half_period, w, 0.03 * w);
+}
+
+/// Commands the first pitch joint to -0.6 rad, which lifts the head, and the other joints to 0, for some ticks.
+void lift_head(World& world, double torque_limit_nm, int ticks) {
+  const std::size_t n = world.joint_count();
+  std::vector<double> angles(n, 0.0);
+  angles[0] = -0.6;
+  world.set_servo(angles, std::vector<double>(n, 0.0), std::vector<double>(n, torque_limit_nm));
+  for (int i = 0; i < ticks; ++i) world.advance(kPeriod_s);
+}
+
+/// [Nm] the torque about +y (nose down) that the first joint must exert on a lifted head.
+double lifted_head_torque(const World& world) {
+  const Vector3d joint = world.module_pose(0) * Vector3d(-0.5 * world.robot().module_length_m, 0, 0);
+  const double lever = world.module_pose(0).translation().x() - joint.x();
+  return -world.robot().module_mass_kg * kG * lever;  // gravity turns the nose down, the joint holds it up
+}
+
+TEST(JointDrive, AStiffJointMeasuresTheWeightItLifts) {
+  RobotModel robot = chain(8, JointAxis::kPitch);
+  World world(robot, {});
+  lift_head(world, 6.0, 150);
+  EXPECT_NEAR(world.joint_angle_rad(0), -0.6, 0.02);
+  EXPECT_NEAR(world.joint_torque_nm(0), lifted_head_torque(world), 0.02);
+}
+
+TEST(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {
+  RobotModel robot = chain(8, JointAxis::kPitch);
+  for (JointModel& joint : robot.joints) joint.stiffness_nm_rad = 3.0;
+  for (JointModel& joint : robot.joints) joint.damping_nm_s_rad = 0.05;
+  World world(robot, {});
+  lift_head(world, 6.0, 200);
+  const double torque = lifted_head_torque(world);
+  EXPECT_LT(torque, -0.05);
+  EXPECT_NEAR(world.joint(0).motor_angle_rad() - world.joint_angle_rad(0), torque / 3.0, 0.003);
+  EXPECT_NEAR(world.joint(0).motor_angle_rad(), -0.6, 1e-3);
+}
+
+TEST(JointDrive, AJointNeverExceedsItsTorqueLimit) {
+  // The limit is below the torque that lifts the head, so the head stays down.
+  RobotModel robot = chain(8, JointAxis::kPitch);
+  World world(robot, {});
+  lift_head(world, 0.05, 100);
+  EXPECT_GT(world.joint_angle_rad(0), -0.1);
+  EXPECT_LE(std::abs(world.joint_torque_nm(0)), 0.0501);
+}
+
+TEST(JointDrive, ARelaxedJointExertsNoTorque) {
+  World world(mamba(), {});
+  hold(world, 0.0, 0.0, 1.0);
+  for (std::size_t i = 0; i < 23; ++i) EXPECT_NEAR(world.joint_torque_nm(i), 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace constrictor
