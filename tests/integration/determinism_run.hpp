@@ -1,4 +1,4 @@
-// Runs of the real components and their state hashes, for tests that compare them.
+// A fixture for tests that run the real components and compare the state hashes of the runs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,16 +16,16 @@
 
 namespace constrictor::testing {
 
-/// Every member of the case study but the plant.
+/// All members of the case study except the plant: the members that the launcher restarts when they die.
 inline const std::vector<std::string> kRestartable = {"camera",  "overview", "perception", "guidance", "navigation",
                                                       "control", "input",    "planner",    "report"};
 
 class DeterminismRun : public ::testing::Test {
  protected:
-  /// Runs of `scenario`, each with `arguments` and done within `bound`.
+  /// All runs of the test use `scenario`; each must end within `bound` of wall time.
   DeterminismRun(std::string scenario, std::chrono::seconds bound) : scenario_(std::move(scenario)), bound_(bound) {}
 
-  /// Cuts the runs to come short by the report's own limit.
+  /// Makes the report end each later run after `seconds` of simulated time.
   void limit_sim_time(double seconds) {
     std::ofstream(dir_ / "report.yaml") << "max_sim_time_s: " << seconds
                                         << "\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n";
@@ -38,17 +38,18 @@ class DeterminismRun : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments), environment);
   }
-  /// The state hash of a run that has ended; a run that was cut short by time is a mission without success.
+  /// Waits for the end of a run and returns its state hash. The run may end without success, because a run that the
+  /// time limit ends is a mission without success.
   [[nodiscard]] std::string hash_of(const std::string& name, Process& process) const {
     const auto status = process.wait(bound_);
     EXPECT_TRUE(status == exit_status::kOk || status == exit_status::kFailed)
         << name << " ended with " << status.value_or(-1) << ": " << process.output() << process.errors();
-    const nlohmann::json told = report(name);
-    if (!told.contains("state_hash") || !told["state_hash"].is_string()) {
+    const nlohmann::json json = report(name);
+    if (!json.contains("state_hash") || !json["state_hash"].is_string()) {
       ADD_FAILURE() << name << ": no state hash in the report";
       return "none of " + name;
     }
-    return told["state_hash"];
+    return json["state_hash"];
   }
   [[nodiscard]] nlohmann::json report(const std::string& name) const {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
@@ -58,7 +59,8 @@ class DeterminismRun : public ::testing::Test {
     Process process = start(name, more, environment);
     return hash_of(name, process);
   }
-  /// The case study's manifest with more lines, indented by four, for each process of one component.
+  /// Writes the case study's manifest into the test's folder. `lines` maps a component to lines that are added to the
+  /// entry of its process; each is indented by four blanks.
   void write_manifest(const std::string& name, const std::map<std::string, std::string>& lines) const {
     std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/case_study.yaml");
     std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -70,7 +72,8 @@ class DeterminismRun : public ::testing::Test {
     }
     std::ofstream(dir_ / name) << text;
   }
-  /// Pid of the process of this test's run whose program, or whose group of components, is `name`; -1 if there is none.
+  /// Pid of the process of this test's run whose program or whose list of hosted components is `name`; -1 if there is
+  /// none.
   [[nodiscard]] pid_t pid_of(const std::string& name) const {
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       const std::string pid = entry.path().filename();
@@ -83,14 +86,14 @@ class DeterminismRun : public ::testing::Test {
     }
     return -1;
   }
-  /// Waits until `name` runs, as another process than `dead`.
+  /// Waits until `name` runs in another process than `dead` and returns its pid; -1 after 20 s.
   [[nodiscard]] pid_t running(const std::string& name, pid_t dead = -1) const {
     pid_t pid = -1;
     const auto is_another = [&] { return (pid = pid_of(name)) > 0 && pid != dead; };
     return eventually(is_another, std::chrono::seconds(20), std::chrono::milliseconds(1)) ? pid : -1;
   }
-  /// Stops each process in turn, the launcher last, for 2 s and one of them for `longest`; the hash of what became of
-  /// the run.
+  /// Starts a run and stops (SIGSTOP) each of its processes in turn: `longest_stopped` for `longest`, each other one
+  /// for 2 s, and the launcher last. Returns the state hash of the run.
   [[nodiscard]] std::string run_with_stops(const std::string& longest_stopped, std::chrono::seconds longest) {
     Process launcher = start("stopped", {"--pace", "2x"});
     EXPECT_GT(running("report"), 0);

@@ -1,4 +1,4 @@
-// `constrictor run` and `end` on real processes: toy components, the real barrier, the real launcher.
+// `constrictor run` and `end` with real processes: the components are toys, the barrier and the launcher are real.
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "integration/run_command_fixture.hpp"
@@ -7,7 +7,7 @@
 namespace constrictor::testing {
 namespace {
 
-TEST_F(RunCommand, EndsWellAndReportsOnEveryProcess) {
+TEST_F(RunCommand, SucceedsAndReportsOnEveryProcess) {
   Process launcher = run(300, "r");
   ASSERT_EQ(launcher.wait(30s), exit_status::kOk) << launcher.output() << launcher.errors();
   expect_nobody_left();
@@ -21,7 +21,7 @@ TEST_F(RunCommand, EndsWellAndReportsOnEveryProcess) {
   EXPECT_GT(json["processes"][2]["cpu_s"], 0.0);
 }
 
-TEST_F(RunCommand, EveryGroupingGivesTheSameStateAndDiffFindsNone) {
+TEST_F(RunCommand, EveryGroupingGivesTheSameStateHashAndDiffFindsNoDifference) {
   ASSERT_EQ(run(300, "each").wait(30s), exit_status::kOk);
   ASSERT_EQ(run(300, "one", {"--in-process"}).wait(30s), exit_status::kOk);
   ASSERT_EQ(
@@ -47,7 +47,7 @@ TEST_F(RunCommand, DiffNamesTheFirstFieldInWhichSeedsDiffer) {
       << diff.output();
 }
 
-TEST_F(RunCommand, RestartsAMemberThatDiedWithoutATrace) {
+TEST_F(RunCommand, RestartsKilledMembersAndTheStateHashStays) {
   ASSERT_EQ(run(400, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run(400, "r", {"--pace", "2x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
@@ -66,8 +66,9 @@ TEST_F(RunCommand, RestartsAMemberThatDiedWithoutATrace) {
       << launcher.output();
 }
 
-// Each death soon after the start of its incarnation, and far more of them than a member may die in vain.
-TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
+// Each incarnation is killed soon after its first step. A member that dies five times while the run stands at one tick
+// ends the run. Here ticks advance between the deaths, so ten of them do not.
+TEST_F(RunCommand, AMemberKilledTenTimesDoesNotEndTheRunWhileTicksAdvance) {
   ASSERT_EQ(run(600, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run(600, "r", {"--pace", "2x"});
   ASSERT_TRUE(launcher.wait_for("run ", 15s));
@@ -90,7 +91,7 @@ TEST_F(RunCommand, AMemberKilledAgainAndAgainEndsNothingAsLongAsTheRunGoesOn) {
   EXPECT_EQ(report("r")["processes"][2]["restarts"], 10);
 }
 
-TEST_F(RunCommand, ThePlantsDeathEndsTheRunWithAnError) {
+TEST_F(RunCommand, TheDeathOfThePlantEndsTheRunWithAnError) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   kill_member("physics", SIGKILL);
@@ -108,7 +109,7 @@ TEST_F(RunCommand, TheFirstCtrlCEndsTheRunThroughTheConductor) {
   EXPECT_EQ(launcher.wait(30s), 128 + SIGINT) << launcher.output();
   EXPECT_TRUE(members().empty());
   EXPECT_EQ(launcher.output().find("kill"), launcher.output().rfind("kills its processes"))
-      << "nothing is killed: " << launcher.output();
+      << "no process may be killed: " << launcher.output();
   const auto json = report("r");
   EXPECT_EQ(json["success"], false);
   const std::string reason = json["reason"];
@@ -116,7 +117,7 @@ TEST_F(RunCommand, TheFirstCtrlCEndsTheRunThroughTheConductor) {
   EXPECT_FALSE(json.contains("error")) << json;
   EXPECT_NE(launcher.output().find("mission did not succeed (" + reason + ")"), std::string::npos)
       << "the last line has the same reason: " << launcher.output();
-  // All members have finished the same last tick: the log that `diff` reads is complete.
+  // All members have finished the same last tick. Therefore `diff` finds complete logs and can compare them.
   Process diff = command({"diff", (dir_ / "r").string(), (dir_ / "r").string()});
   EXPECT_EQ(diff.wait(20s), 0) << diff.output() << diff.errors();
 }
@@ -134,7 +135,7 @@ TEST_F(RunCommand, TheSecondCtrlCKillsARunThatDoesNotEnd) {
       << report("r");
 }
 
-TEST_F(RunCommand, ARunWhoseConductorDoesNotAnswerIsKilledAndTheReportSaysSo) {
+TEST_F(RunCommand, ProcessesAreKilledIfTheConductorDoesNotAnswerAndTheReportNamesTheReason) {
   Process launcher = run(100'000, "r", {"--pace", "2x"});
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output();
   kill_member("physics", SIGSTOP);
@@ -158,7 +159,7 @@ TEST_F(RunCommand, CtrlCBeforeTheRunBeginsKillsItsProcesses) {
   EXPECT_NE(report("r").value("reason", "").find("the run had not begun"), std::string::npos) << report("r");
 }
 
-TEST_F(RunCommand, AKilledLauncherLeavesNobody) {
+TEST_F(RunCommand, AKilledLauncherLeavesNoProcess) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   kill_member("control", SIGSTOP);
@@ -178,17 +179,17 @@ TEST_F(RunCommand, AStoppedLauncherDoesNotStopTheRun) {
   EXPECT_EQ(state_hash("r"), state_hash("undisturbed"));
 }
 
-TEST_F(RunCommand, WithoutASuccessfulMissionTheStatusIsOne) {
+TEST_F(RunCommand, TheExitStatusIsOneIfTheMissionDoesNotSucceed) {
   Process launcher = run(100'000, "r", {"--max-sim-time", "20", "--pace", "20x"});
   EXPECT_EQ(launcher.wait(30s), exit_status::kFailed) << launcher.output();
   EXPECT_EQ(report("r")["reason"], "time limit of 20 s");
   EXPECT_NE(launcher.output().find("mission did not succeed (time limit of 20 s)"), std::string::npos)
       << launcher.output();
-  EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // the final tick is sent but not stepped
+  EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // members take no step in the final tick
 }
 
 TEST_F(RunCommand, StatusShowsAndEndEndsTheOnlyRun) {
-  environment_ = {{"XDG_RUNTIME_DIR", dir_.string()}};  // a registry of its own: this is the only run there
+  environment_ = {{"XDG_RUNTIME_DIR", dir_.string()}};  // a registry of runs in which this run is the only one
   Process none = command({"status"});
   EXPECT_EQ(none.wait(10s), exit_status::kSoftware);
   EXPECT_NE(none.errors().find("no run on this host"), std::string::npos);
@@ -207,7 +208,7 @@ TEST_F(RunCommand, StatusShowsAndEndEndsTheOnlyRun) {
   expect_nobody_left();
 }
 
-TEST_F(RunCommand, RunsSideBySideTakeDifferentDomains) {
+TEST_F(RunCommand, RunsAtTheSameTimeUseDifferentDomains) {
   Process a = run(100'000, "a", {"--pace", "1x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   Process b = run(100, "b");
@@ -218,7 +219,7 @@ TEST_F(RunCommand, RunsSideBySideTakeDifferentDomains) {
   EXPECT_EQ(a.wait(10s), 128 + SIGTERM);
 }
 
-TEST_F(RunCommand, AMemberWithOtherNumbersIsRefusedByNameAndReason) {
+TEST_F(RunCommand, AMemberWithAnotherNumericProfileIsRefusedWithNameAndReason) {
   write("other.yaml", replaced(kManifest, "[planner], program: toy_host",
                                "[planner], program: toy_host, environment: ['GLIBC_TUNABLES=']"));
   Process launcher = run(300, "r", {}, "other.yaml");
@@ -238,7 +239,7 @@ TEST_F(RunCommand, AMemberThatNeverJoinsIsNamed) {
   expect_nobody_left();
 }
 
-TEST_F(RunCommand, AMemberThatDiesAgainAndAgainEndsTheRun) {
+TEST_F(RunCommand, AMemberThatDiesFiveTimesInARowEndsTheRun) {
   write("faulty", "#!/bin/sh\necho no luck today\nexit 3\n");
   fs::permissions(dir_ / "faulty", fs::perms::owner_all);
   write("faulty.yaml",

@@ -1,4 +1,4 @@
-// Pause, resume, step, pace and reset from the command line: a run's time is steered, its result is not.
+// The commands pause, resume, step, pace and reset change when the ticks of a run happen, but never its result.
 #include <csignal>
 
 #include <optional>
@@ -33,7 +33,7 @@ class RunControl : public CliFixture {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start(arguments);
   }
-  /// True once the run that was started has done this tick.
+  /// Waits until the launcher's run is past `tick`; false if it does not get there within the bounds.
   [[nodiscard]] bool reaches(const Process& launcher, std::int64_t tick) const {
     if (!eventually([&] { return launcher.output().find("report in") != std::string::npos; })) return false;
     const dds::Domain observer(domain());
@@ -46,7 +46,7 @@ class RunControl : public CliFixture {
         },
         30s);
   }
-  /// Tick that a paused run says comes next; -1 if it said none.
+  /// The next tick of the paused run, as the last command printed it; -1 if it printed none.
   [[nodiscard]] long next_tick() const {
     const auto at = output_.find("next tick ");
     return at == std::string::npos ? -1 : std::stol(output_.substr(at + 10));
@@ -67,14 +67,14 @@ TEST_F(RunControl, APausedAndSteppedRunHasTheSameHash) {
   EXPECT_EQ(next_tick(), paused + 26);
   std::this_thread::sleep_for(5s);  // longer than anybody's patience with a peer
   EXPECT_EQ(command({"step"}), exit_status::kOk) << output_;
-  EXPECT_EQ(next_tick(), paused + 27) << "time stood still meanwhile";
+  EXPECT_EQ(next_tick(), paused + 27) << "the paused run did no tick on its own";
   ASSERT_EQ(command({"pace", "lockstep"}), exit_status::kOk) << output_;
   ASSERT_EQ(command({"resume"}), exit_status::kOk) << output_;
   ASSERT_EQ(launcher.wait(30s), exit_status::kOk) << launcher.output() << launcher.errors();
   EXPECT_EQ(hash("paused"), hash("reference"));
 }
 
-TEST_F(RunControl, ARunThatWasResetEqualsAFreshOneOfThatSeed) {
+TEST_F(RunControl, AfterAResetTheRunHasTheSameHashAsANewRunWithThatSeed) {
   ASSERT_EQ(run(1000, "fresh", {"--in-process", "--seed", "5"}).wait(30s), exit_status::kOk);
   Process launcher = run(1000, "reset", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
@@ -87,7 +87,7 @@ TEST_F(RunControl, ARunThatWasResetEqualsAFreshOneOfThatSeed) {
   EXPECT_EQ(diff.wait(10s), 0) << diff.output();
 }
 
-TEST_F(RunControl, AfterAResetEverybodySeesTheNewSeedAndTick) {
+TEST_F(RunControl, AfterAResetCommandsAndReportShowTheNewSeedAndTick) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
   ASSERT_EQ(command({"pause"}), exit_status::kOk) << output_;
@@ -109,9 +109,10 @@ TEST_F(RunControl, AfterAResetEverybodySeesTheNewSeedAndTick) {
   EXPECT_EQ(report("r").value("seed", 0), 7);
 }
 
-// How long ticks are waited for is tested in control_answer_test; here, that the command waits so: beyond its bound of
-// 10 s, with a plant that is held up twice, each time for less than the bound and than anybody's patience.
-TEST_F(RunControl, StepsMayTakeLongerThanTheBoundOnAnAnswer) {
+// `step N` waits as long as ticks advance, beyond the 10 s within which other commands must be answered. Here the plant
+// is stopped twice, each time for less than these 10 s and less than the manifest's patience. tick_wait_test
+// (unit/client) tests how long the command waits while no tick comes.
+TEST_F(RunControl, StepWaitsLongerThanTheBoundOnAnAnswerWhileTicksAdvance) {
   std::string patient = kToys;
   write("toys.yaml", patient.replace(patient.find("patience_s: 4"), 13, "patience_s: 30"));
   Process launcher = run(1'000'000, "r", {"--pace", "1x"});
@@ -126,7 +127,8 @@ TEST_F(RunControl, StepsMayTakeLongerThanTheBoundOnAnAnswer) {
     std::this_thread::sleep_for(100ms);
     ::kill(plant, SIGSTOP);
     std::this_thread::sleep_for(5100ms);
-    EXPECT_TRUE(steps.running()) << "else this tests nothing: " << steps.output() << steps.errors();
+    EXPECT_TRUE(steps.running()) << "the steps ended before the plant was stopped: " << steps.output()
+                                 << steps.errors();
     ::kill(plant, SIGCONT);
   }
   EXPECT_EQ(steps.wait(100s), exit_status::kOk) << steps.errors();
@@ -137,16 +139,17 @@ TEST_F(RunControl, StepsMayTakeLongerThanTheBoundOnAnAnswer) {
   launcher.wait(20s);
 }
 
-// A command is a source of its own: neither what another one numbered higher nor how many there are at once keeps it
-// from its answer.
-TEST_F(RunControl, EachCommandIsAnsweredWhoeverElseCommands) {
+// Each command is a source of its own. It is answered although another source has used higher sequence numbers, and
+// although several commands run at the same time.
+TEST_F(RunControl, EachCommandIsAnsweredWhateverOtherSourcesSend) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
   const dds::Domain outside(domain());
   const auto answers =
       dds::Reader<msg::RunControlAnswer>::member(outside.participant(), dds::barrier_topics::kRunControlAnswer);
   const dds::Writer<msg::RunControl> control(outside.participant(), dds::barrier_topics::kRunControl, 1);
-  msg::RunControl ahead{};  // as of a clock that is an hour ahead, under a name that all might use
+  msg::RunControl
+      ahead{};  // its number is the time of a clock that is an hour ahead; several sources could use its name
   dds::set_text(ahead.source, "constrictor");
   ahead.command = msg::kRunResume;
   const auto hour_ahead = std::chrono::system_clock::now().time_since_epoch() + 1h;
@@ -168,7 +171,7 @@ TEST_F(RunControl, EachCommandIsAnsweredWhoeverElseCommands) {
   EXPECT_EQ(launcher.wait(20s), 128 + SIGTERM);
 }
 
-TEST_F(RunControl, WrongValuesAreWrongUsageWithOrWithoutARun) {
+TEST_F(RunControl, AWrongValueIsAUsageErrorEvenWithoutARun) {
   for (const std::vector<std::string>& wrong :
        std::vector<std::vector<std::string>>{{"pace", "fast"},
                                              {"reset", "-1"},
@@ -189,14 +192,14 @@ TEST_F(RunControl, WrongValuesAreWrongUsageWithOrWithoutARun) {
   }
 }
 
-TEST_F(RunControl, AWordThatIsNoSubcommandIsNamed) {
+TEST_F(RunControl, TheErrorNamesAnUnknownSubcommand) {
   EXPECT_EQ(command({"frobnicate"}), exit_status::kUsage);
   EXPECT_NE(output_.find("frobnicate"), std::string::npos) << output_;
   EXPECT_EQ(command({"task", "frobnicate"}), exit_status::kUsage);
   EXPECT_NE(output_.find("frobnicate"), std::string::npos) << output_;
 }
 
-TEST_F(RunControl, EveryHelpHasExamplesExitStatusesAndTheEnvironment) {
+TEST_F(RunControl, EveryHelpTextListsExamplesExitStatusesAndEnvironment) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"run"},          {"status"}, {"doctor"}, {"end"},           {"host"},         {"pause"},
            {"resume"},       {"step"},   {"pace"},   {"reset"},         {"stop"},         {"clear-stop"},
@@ -213,14 +216,14 @@ TEST_F(RunControl, EveryHelpHasExamplesExitStatusesAndTheEnvironment) {
   }
 }
 
-TEST_F(RunControl, PaceIsObeyedAndWhatMakesNoSenseIsRefused) {
+TEST_F(RunControl, PaceIsObeyedAndImpossibleCommandsAreRefused) {
   Process launcher = run(100'000, "r", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
   EXPECT_EQ(command({"pace", "3x"}), exit_status::kOk);
   EXPECT_NE(output_.find("at most 3x"), std::string::npos) << output_;
   EXPECT_EQ(command({"pace", "-1"}), exit_status::kUsage);
   EXPECT_EQ(command({"step", "0"}), exit_status::kUsage);
-  EXPECT_EQ(command({"reset", "-1"}), exit_status::kUsage) << "no 18446744073709551615";
+  EXPECT_EQ(command({"reset", "-1"}), exit_status::kUsage) << "-1 must not become 18446744073709551615";
   EXPECT_EQ(command({"stop"}), exit_status::kWaitedTooLong) << "the toys have no input member";
   EXPECT_EQ(command({"end"}), exit_status::kOk);
   EXPECT_EQ(launcher.wait(10s), 128 + SIGTERM);

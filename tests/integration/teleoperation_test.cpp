@@ -1,5 +1,5 @@
-// People and scripts command a running robot with the real components: who has authority, and what the joints do when
-// the process of an operator dies.
+// Operators and scripts command a running robot that consists of the real components. The tests check which source has
+// authority, and what the joints do when the process of an operator dies.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 class Teleoperation : public CliFixture {
  protected:
   Teleoperation() {
-    // Without camera and perception, so that it is fast: no test here needs them.
+    // The run has no camera and no perception: no test here needs them, and it is faster without them.
     write(
         "blind.yaml",
         "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
@@ -36,9 +36,10 @@ class Teleoperation : public CliFixture {
   }
 };
 
-// Teleop's lease is 0.5 s of wall time. `input` latches the death at a tick. In lock-step, control reads the new
-// authority in the next tick: the setpoints of tick latched + 1 are held. At real-time pace the run waits for nobody,
-// so the hold is one tick later for each tick by which `input` is late.
+// The liveliness lease of `teleop` is 0.5 s of wall time. When it ends, `input` latches the loss of the operator at a
+// tick boundary. In lock-step, control reads the new authority in the next tick, so the setpoints of tick latched + 1
+// are held. At real-time pace the conductor does not wait for late members, so the hold begins later by as many ticks
+// as `input` is late.
 TEST_F(Teleoperation, JointsHoldWithinALeaseAndATickAfterTeleopIsKilled) {
   constexpr double kLease_s = 0.5;
   constexpr std::int64_t kSettle_ticks = 25;
@@ -65,20 +66,19 @@ TEST_F(Teleoperation, JointsHoldWithinALeaseAndATickAfterTeleopIsKilled) {
     const std::int64_t rest = held + kSettle_ticks;
     const double resting_rad = widest_range(watcher, rest, rest + 50);
     std::printf(
-        "%s: last setpoint that changed %.3f s of wall time after the kill, at tick %+ld from the one that latched it; "
-        "fastest joint "
-        "%.2f rad/s; from 0.5 s after the hold on no joint moved more than %.4f rad in 1 s (before: %.2f), tremor %.2f "
-        "rad/s\n",
+        "pace %s: the last setpoint changed %.3f s of wall time after the kill, %+ld ticks after the latch; the "
+        "fastest joint moved at %.2f rad/s; in the second that begins 0.5 s after the hold, the joint that moved most "
+        "moved by %.4f rad (in the second before the latch: %.2f rad), and the fastest joint had %.2f rad/s\n",
         pace.c_str(), wall_s, static_cast<long>(held - latched), fastest_joint(watcher, latched), resting_rad,
         widest_range(watcher, latched - 50, latched), fastest_joint(watcher, rest));
     EXPECT_LE(wall_s, kLease_s + kTick_s + kBusy_s);
-    EXPECT_GT(wall_s, 0.0) << "it drove when it was killed";
+    EXPECT_GT(wall_s, 0.0) << "the setpoints no longer changed when teleop was killed";
     EXPECT_LE(held, latched + 1 + (pace == "realtime" ? std::lround(kBusy_s / kTick_s) : 0));
     if (pace != "realtime") expect_hold_begins_after(watcher, latched);
     EXPECT_LE(fastest_setpoint(watcher, {held}), kMaxSpeed_rad_s * 1.001);
     EXPECT_LE(fastest_joint(watcher, latched), kMaxSpeed_rad_s);
-    // Angles are measured with a noise of 0.001 rad. The solver's contacts make held joints tremble: up to 0.4 rad/s
-    // within a step, which moves them by less than that noise; so rest is told by the angles.
+    // Rest is judged by the angles, which have a noise of 0.001 rad. Velocities are no measure: contact forces make
+    // held joints tremble with up to 0.4 rad/s within a step, although they move by less than the noise.
     EXPECT_LT(resting_rad, 0.02) << "a joint has not come to rest";
     end(launcher);
   }
@@ -96,15 +96,15 @@ TEST_F(Teleoperation, LockStepIsLimitedToRealTimeWhileAnOperatorHasAuthority) {
     watcher.poll();
     return watcher.joints.back().header.tick - from;
   };
-  EXPECT_LE(ticks_in(1000ms), 62) << "fifty ticks are a second";
+  EXPECT_LE(ticks_in(1000ms), 62) << "50 ticks are 1 s at real-time speed";
   EXPECT_EQ(command({"resume"}), exit_status::kOk) << output_;
   EXPECT_NE(output_.find("at most 1x real time while an operator has authority"), std::string::npos) << output_;
   EXPECT_EQ(command({"pace", "lockstep"}), exit_status::kOk) << output_;
   EXPECT_NE(output_.find("lock-step, as fast as it goes"), std::string::npos)
-      << output_;  // the speed depends on the machine
+      << output_;  // the speed is not checked: it depends on the machine
   teleop.signal(SIGINT);
   EXPECT_EQ(teleop.wait(10s), 128 + SIGINT);
-  EXPECT_TRUE(watcher.wait_for_level(msg::kAuthorityNone)) << "it released authority";
+  EXPECT_TRUE(watcher.wait_for_level(msg::kAuthorityNone)) << "teleop must release authority when it ends";
   end(launcher);
 }
 
@@ -138,11 +138,11 @@ TEST_F(Teleoperation, ClearingAnEmergencyStopStartsNoMotion) {
   EXPECT_EQ(command({"task", "wait", "--event", "timeout", "--timeout", "30s"}), exit_status::kOk) << output_;
   EXPECT_EQ(command({"task", "wait", "--end", "--timeout", "30s"}), exit_status::kOk) << output_;
   EXPECT_EQ(command({"task", "wait", "--event", "line lost", "--timeout", "20s"}), exit_status::kFailed)
-      << "the goal ended without it";
+      << "the goal ended without this event";
   end(launcher);
 }
 
-TEST_F(Teleoperation, AScriptStartsATaskAndWaitsForItsOwnEvents) {
+TEST_F(Teleoperation, AScriptStartsATaskAndWaitsForEventsOfItsGoal) {
   EXPECT_EQ(command({"task", "start", "drop", "--drop-zone-colour", "pink"}), exit_status::kUsage)
       << "a wrong value is reported before a missing run";
   Process launcher = run_blind("4x");
@@ -152,14 +152,15 @@ TEST_F(Teleoperation, AScriptStartsATaskAndWaitsForItsOwnEvents) {
   const std::string first = std::to_string(std::stoull(output_.substr(at + 5)));
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left", "--timeout-s", "2"}), exit_status::kOk)
       << output_;
-  EXPECT_EQ(command({"task", "wait", "--end"}), exit_status::kOk) << "this is the end of the new goal: " << output_;
+  EXPECT_EQ(command({"task", "wait", "--end"}), exit_status::kOk)
+      << "the wait must end with the new goal, not with the first: " << output_;
   EXPECT_EQ(command({"task", "wait", "--end", "--goal", first}), exit_status::kFailed);
   EXPECT_NE(output_.find("preempted"), std::string::npos) << output_;
   EXPECT_EQ(command({"task", "wait", "--event", "timeout", "--goal", "any", "--timeout", "500ms"}),
             exit_status::kWaitedTooLong)
       << "the event came before the wait: " << output_;
 
-  EXPECT_LE(first.size(), 3u) << "a short number: " << first;
+  EXPECT_LE(first.size(), 3u) << "the number of a goal must be short enough to type: " << first;
   EXPECT_EQ(command({"task", "start", "explore"}), exit_status::kUsage);
   EXPECT_NE(output_.find("explore needs a direction"), std::string::npos) << output_;
   EXPECT_EQ(command({"task", "start", "drop", "--drop-zone-colour", "green"}), exit_status::kFailed);
@@ -192,35 +193,36 @@ TEST_F(Teleoperation, AnIncompleteOrRefusedTaskLeavesAuthorityAsItWas) {
   watcher.poll();
   for (const auto& [authority, at] : watcher.authorities)
     EXPECT_EQ(authority.level, msg::kAuthorityNone) << "tick " << authority.header.tick;
-  // Only navigation knows that nothing was pregrasped.
+  // `input` accepts this task; only navigation knows that no object was pregrasped, and refuses it.
   EXPECT_EQ(command({"task", "start", "grasp"}), exit_status::kFailed) << output_;
   EXPECT_NE(output_.find("authority was released"), std::string::npos) << output_;
   EXPECT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
   end(launcher);
 }
 
-TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndSaysSo) {
+TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
   Process launcher = run_blind("1x");
   Watcher watcher(domain());
-  // A drive stands and releases.
+  // Interrupted, `teleop --drive` stops the robot and releases authority.
   Process teleop = start({"teleop", "--drive", "0.3,0"});
   ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
   teleop.signal(SIGINT);
   EXPECT_EQ(teleop.wait(10s), 128 + SIGINT);
   EXPECT_NE(teleop.output().find("authority was released"), std::string::npos) << teleop.output();
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
-  // A wait changes nothing.
+  // Interrupted, `task wait` leaves authority as it is.
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), exit_status::kOk) << output_;
   Process waiting = start({"task", "wait", "--end"});
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
   EXPECT_TRUE(eventually([&] {
-    waiting.signal(SIGINT);  // until the process has begun to catch it
+    waiting.signal(SIGINT);  // sent again until the process has installed its signal handler
     return !waiting.running();
   }));
   ASSERT_EQ(waiting.wait(10s), 128 + SIGINT);
   watcher.poll();
   EXPECT_EQ(watcher.authorities.back().first.level, msg::kAuthorityOperator);
-  // A start that nobody answers yet is taken back: its task does not run when the run resumes.
+  // Interrupted before it is answered, `task start` withdraws its request: the task does not begin when the run
+  // resumes.
   ASSERT_EQ(command({"release"}), exit_status::kOk) << output_;
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
   ASSERT_EQ(command({"pause"}), exit_status::kOk) << output_;
@@ -237,7 +239,7 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndSaysSo) {
   end(launcher);
 }
 
-TEST_F(Teleoperation, ThePlannerGoesOnAfterAnOperatorDrove) {
+TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
   Process launcher = start({"run", "case_study", "--in-process", "--pace", "4x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Watcher watcher(domain());
@@ -260,7 +262,7 @@ TEST_F(Teleoperation, ThePlannerGoesOnAfterAnOperatorDrove) {
     watcher.poll();
     return watcher.task.goal_state == msg::kGoalRunning && watcher.task.goal_id >> 48 == msg::kAuthorityPlanner;
   }));
-  std::set<std::int64_t> begun;  // ticks in which control first reads that somebody else has authority
+  std::set<std::int64_t> begun;  // ticks in which control first reads a change of authority
   for (std::size_t i = 1; i < watcher.authorities.size(); ++i) {
     const msg::Authority& now = watcher.authorities[i].first;
     if (now.level != watcher.authorities[i - 1].first.level) begun.insert(now.header.tick + 1);
