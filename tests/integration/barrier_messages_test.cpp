@@ -1,4 +1,5 @@
-// Barrier messages sent by hand: by a conductor that sends fewer at a time than the real one, and by a stranger.
+// The tests send barrier messages themselves: as a conductor that resumes one member at a time, as a member without
+// checkpoints, and as a process that is no part of the run.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -28,7 +29,7 @@ Process toys(const std::string& group, const std::string& roster, std::uint32_t 
   return Process(std::move(arguments));
 }
 
-// Both members were in one process that died; any time may pass between their two Resumes.
+// Both members were in one process that died. The time between their two Resume messages is not bounded.
 TEST(BarrierMessages, EachMemberOfARestartedProcessSendsReadyOnceItIsResumed) {
   const DomainClaim claim;
   const dds::Domain domain(claim.domain());

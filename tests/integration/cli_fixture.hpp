@@ -1,4 +1,5 @@
-// Runs and the commands that meet them, in a registry of the test's own.
+// A fixture for tests that start runs and call commands on them. The registry of runs belongs to the test, so that the
+// commands find no other run of this host.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ class CliFixture : public ::testing::Test {
     arguments.insert(arguments.begin(), program("constrictor"));
     return Process(std::move(arguments), environment_);
   }
-  /// Runs a command to its end; its exit status, -1 if it hangs. `output_` has what it said.
+  /// Runs a command and returns its exit status, or -1 if it does not end within `bound`. `output_` then holds its
+  /// standard output and its standard error.
   int command(std::vector<std::string> arguments, std::chrono::seconds bound = std::chrono::seconds(30)) {
     Process process = start(std::move(arguments));
     const int status = process.wait(bound).value_or(-1);

@@ -1,4 +1,4 @@
-// The completion scripts, as each shell calls them.
+// The completion scripts of `constrictor completion`, called as each shell calls them.
 #include <sstream>
 
 #include "integration/introspection_fixture.hpp"
@@ -8,12 +8,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What each shell offers for command lines; the last word of each is what is being typed.
+/// Asks bash, zsh and fish which words they offer for a command line. The last word of the line is the one that the
+/// user is typing.
 class Completion : public Introspection {
  protected:
   using Words = std::vector<std::string>;
 
-  /// What a shell offers for each of the lines, blanks around each word.
+  /// The words that a shell offers for each of the lines: one string per line, with blanks around each word.
   [[nodiscard]] Words offers(const std::string& shell, const std::vector<Words>& lines) const {
     Process script({program("constrictor"), "completion", shell});
     EXPECT_EQ(script.wait(20s), 0) << script.errors();
@@ -21,7 +22,8 @@ class Completion : public Introspection {
     std::string text = shell == "zsh" ? "autoload -Uz compinit && compinit -u -D\n" : "";
     text += "source " + (dir_ / ("constrictor." + shell)).string() + "\n";
     if (shell != "fish") {
-      // As the shell calls it; zsh by its bash-compatible completion, which picks those that begin as typed later.
+      // The function `offer` calls the completion function as the shell does. zsh uses its bash-compatible completion;
+      // it removes the words that do not begin with the typed text only afterwards, which this test does not see.
       text += "offer() {\n" + std::string(shell == "zsh" ? "emulate -L sh\n" : "") +
               "COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _constrictor; echo \"\" ${COMPREPLY[@]} \"\"\n}\n";
     }
@@ -37,7 +39,7 @@ class Completion : public Introspection {
       }
     }
     write("offer." + shell, text);
-    // Some words are the output of `constrictor list`.
+    // The script calls `constrictor list` for some words, so the program must be in the PATH.
     auto environment = environment_;
     environment["PATH"] = std::filesystem::path(program("constrictor")).parent_path().string() + ":/usr/bin:/bin";
     Process process({"/usr/bin/" + shell, (dir_ / ("offer." + shell)).string()}, environment);
@@ -49,7 +51,7 @@ class Completion : public Introspection {
   }
 };
 
-TEST_F(Completion, EveryShellOffersTheWordsOfTheSubcommandAndNoOthers) {
+TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
   struct Case {
     Words typed;
     std::string offered;

@@ -1,5 +1,5 @@
-// The whole case study: the same state hash however it is spread, paced, loaded, stopped, killed or reset; another one
-// for another seed and for one ulp in one command.
+// The whole case study. The state hash does not depend on the grouping of components into processes, on the pace, the
+// load, stops, kills or a reset. It does depend on the seed, and on one ulp in one command.
 #include <cstdlib>
 #include <random>
 
@@ -15,7 +15,8 @@ class WholeCaseStudy : public DeterminismRun {
  protected:
   WholeCaseStudy() : DeterminismRun("case_study", 900s) {}
 
-  /// The hash of the run that all others are compared with: every component in a process of its own. Made once.
+  /// The hash with which all tests compare: of a run with each component in a process of its own. The first call makes
+  /// this run.
   const std::string& reference() {
     static const std::string hash = [this] {
       Process process = start("reference");
@@ -27,35 +28,35 @@ class WholeCaseStudy : public DeterminismRun {
     }();
     return hash;
   }
-  /// Total of the restarts that a run reports.
+  /// Sum of the restarts of all processes in the report of a run.
   [[nodiscard]] int restarts(const std::string& name) const {
     int sum = 0;
-    const nlohmann::json told = report(name);
-    for (const auto& process : told["processes"]) sum += process["restarts"].get<int>();
+    const nlohmann::json json = report(name);
+    for (const auto& process : json["processes"]) sum += process["restarts"].get<int>();
     return sum;
   }
 };
 
-TEST_F(WholeCaseStudy, Again) { EXPECT_EQ(run("again"), reference()); }
+TEST_F(WholeCaseStudy, SameHashInASecondRun) { EXPECT_EQ(run("again"), reference()); }
 
-TEST_F(WholeCaseStudy, AllInOneProcess) { EXPECT_EQ(run("one", {"--in-process"}), reference()); }
+TEST_F(WholeCaseStudy, SameHashInOneProcess) { EXPECT_EQ(run("one", {"--in-process"}), reference()); }
 
-TEST_F(WholeCaseStudy, TwoGroupings) {
+TEST_F(WholeCaseStudy, SameHashInTwoGroupings) {
   EXPECT_EQ(run("two", {"--group", "physics,control,navigation"}), reference());
   EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}),
             reference());
 }
 
-TEST_F(WholeCaseStudy, CappedAtTwiceRealTime) { EXPECT_EQ(run("capped", {"--pace", "2x"}), reference()); }
+TEST_F(WholeCaseStudy, SameHashAtTwiceRealTime) { EXPECT_EQ(run("capped", {"--pace", "2x"}), reference()); }
 
-TEST_F(WholeCaseStudy, BothCoresLoadedByOthers) {
+TEST_F(WholeCaseStudy, SameHashWhenOtherProcessesLoadBothCores) {
   const std::vector<std::string> spin = {"/bin/sh", "-c", "while :; do :; done"};
   Process first(spin), second(spin);
   EXPECT_EQ(run("loaded"), reference());
   EXPECT_TRUE(first.running() && second.running());
 }
 
-TEST_F(WholeCaseStudy, OtherFeaturesOfTheCpuMaskedForOneProcess) {
+TEST_F(WholeCaseStudy, SameHashWithCpuFeaturesMaskedForOneProcess) {
   write_manifest(
       "masked.yaml",
       {{"guidance",
@@ -63,12 +64,12 @@ TEST_F(WholeCaseStudy, OtherFeaturesOfTheCpuMaskedForOneProcess) {
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), reference());
 }
 
-TEST_F(WholeCaseStudy, EachProcessStoppedInTurnOneOfThemForFifteenSeconds) {
+TEST_F(WholeCaseStudy, SameHashWhenEachProcessIsStoppedInTurnOneOfThemForFifteenSeconds) {
   EXPECT_EQ(run_with_stops("perception", 15s), reference());
 }
 
-// Between their first output and their TickDone, at ticks drawn anew each time.
-TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
+// Each kill happens between the member's first output of a tick and its TickDone. The ticks are random.
+TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
   constexpr int kDeaths = 20;
   const std::string expected = reference();
   const auto seed = std::random_device{}();
@@ -89,9 +90,9 @@ TEST_F(WholeCaseStudy, EachMemberKilledAtTwentyTicks) {
   EXPECT_EQ(restarts("killed"), kDeaths * static_cast<int>(kRestartable.size()));
 }
 
-TEST_F(WholeCaseStudy, ResetOnTheWay) {
+TEST_F(WholeCaseStudy, SameHashAfterAResetFromAnotherSeed) {
   const std::map<std::string, std::string> registry = {
-      {"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+      {"XDG_RUNTIME_DIR", dir_.string()}};  // a registry in which this run is the only one
   Process launcher = start("reset", {"--seed", "2"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Process reset({program("constrictor"), "reset", "1"}, registry);
@@ -99,7 +100,7 @@ TEST_F(WholeCaseStudy, ResetOnTheWay) {
   EXPECT_EQ(hash_of("reset", launcher), reference());
 }
 
-TEST_F(WholeCaseStudy, AnotherSeedAndOneUlpAtTickThousandAreOtherRuns) {
+TEST_F(WholeCaseStudy, AnotherSeedAndOneUlpAtTickThousandGiveOtherHashes) {
   EXPECT_NE(run("other", {"--in-process", "--seed", "2"}), reference());
   write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
   const std::map<std::string, std::string> at = {{"CONSTRICTOR_NUDGE_TICK", "1000"}};

@@ -1,5 +1,5 @@
-// The real components in a real mission, cut short: the same state hash however they are spread, stopped, killed or
-// paced; another one for another seed and for one ulp in one command.
+// The first 12 s of a mission with the real components. The state hash does not depend on the grouping of components
+// into processes, on stops, kills or the pace. It does depend on the seed, and on one ulp in one command.
 #include <random>
 
 #include "integration/determinism_run.hpp"
@@ -19,7 +19,7 @@ class Determinism : public DeterminismRun {
 TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   const std::string expected = run("reference");
   {
-    std::vector<Process> others;  // on both cores
+    std::vector<Process> others;  // a load on both cores
     for (int i = 0; i < 2; ++i) others.emplace_back(std::vector<std::string>{"/bin/sh", "-c", "while :; do :; done"});
     EXPECT_EQ(run("again"), expected);
   }
@@ -28,7 +28,7 @@ TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}),
             expected);
   EXPECT_EQ(run("capped", {"--pace", "2x"}), expected);
-  // Guidance, which computes much, without what the others use of the CPU, as on an older host.
+  // Guidance has much floating-point work. It runs with fewer CPU features than the other members, as on an older host.
   write_manifest(
       "masked.yaml",
       {{"guidance",
@@ -36,7 +36,7 @@ TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), expected);
 }
 
-TEST_F(Determinism, AnotherSeedIsAnotherRunAndDiffNamesWhereTheyPart) {
+TEST_F(Determinism, AnotherSeedGivesAnotherHashAndDiffNamesTheFirstDifference) {
   EXPECT_NE(run("one", {"--in-process", "--seed", "1"}), run("two", {"--in-process", "--seed", "2"}));
   Process diff({program("constrictor"), "diff", (dir_ / "one").string(), (dir_ / "two").string()});
   EXPECT_EQ(diff.wait(20s), 1);
@@ -54,13 +54,13 @@ TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
   EXPECT_NE(diff.output().find("tick 200, component control"), std::string::npos) << diff.output();
 }
 
-TEST_F(Determinism, KilledMembersLeaveNoTrace) {
+TEST_F(Determinism, KilledMembersDoNotChangeTheHash) {
   const std::string expected = run("reference");
   std::mt19937 random;
   const auto seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   random.seed(seed);
-  Process process = start("killed", {"--pace", "2x"});  // time enough for one kill each
+  Process process = start("killed", {"--pace", "2x"});  // slow enough to kill each member once
   ASSERT_GT(running("report"), 0);
   int kills = 0;
   for (const auto& victim : kRestartable) {
@@ -75,7 +75,7 @@ TEST_F(Determinism, KilledMembersLeaveNoTrace) {
   EXPECT_GE(kills, 7);
 }
 
-TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesLeavesNoTrace) {
+TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesDoesNotChangeTheHash) {
   const std::string expected = run("reference");
   const std::string victim = "navigation,control,input,planner";
   Process process =
@@ -92,14 +92,14 @@ TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesLeavesNoTrace) {
   EXPECT_GE(kills, 8);
 }
 
-TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnLeavesNoTrace) {
+TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnDoesNotChangeTheHash) {
   const std::string expected = run("reference");
   EXPECT_EQ(run_with_stops("physics", 2s), expected);
 }
 
-TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsAFreshOneOfThatSeed) {
+TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsANewRunWithThatSeed) {
   const std::map<std::string, std::string> registry = {
-      {"XDG_RUNTIME_DIR", dir_.string()}};  // in which this run is the only one
+      {"XDG_RUNTIME_DIR", dir_.string()}};  // a registry in which this run is the only one
   const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
   Process launcher = start("reset", {"--pace", "2x", "--seed", "3"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
@@ -115,7 +115,7 @@ TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsAFreshOneOfThatSeed) {
     ASSERT_EQ(command.wait(30s), exit_status::kOk) << command.output() << command.errors();
   }
   EXPECT_EQ(hash_of("reset", launcher), expected);
-  // Members, journals and pictures began anew too.
+  // The reset also restarted what the report collects, and the hash logs that `diff` compares.
   const nlohmann::json fresh = report("fresh"), reset = report("reset");
   for (const char* key : {"seed", "ticks", "events", "states", "objects", "line", "pose_error"})
     EXPECT_EQ(reset[key], fresh[key]) << key;
@@ -123,8 +123,9 @@ TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsAFreshOneOfThatSeed) {
   EXPECT_EQ(diff.wait(20s), 0) << diff.output();
 }
 
-// The final tick is not stepped: one tick later than the report's own limit ends the run after the same step.
-TEST_F(Determinism, ARunEndedByTheLaunchersLimitIsToldLikeOneEndedByTheReportsOwn) {
+// Members take no step in the final tick. Therefore the launcher's limit must be one tick later than the report's
+// limit, so that both end the run after the same step.
+TEST_F(Determinism, TheLaunchersTimeLimitGivesTheSameReportAsTheReportsOwnLimit) {
   run("own", {"--in-process"});
   for (const std::vector<std::string>& spread : {std::vector<std::string>{"--in-process"}, {}}) {
     limit_sim_time(900.0);

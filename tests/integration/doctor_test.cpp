@@ -1,4 +1,4 @@
-// The doctor on real processes: a run of toys, and programs that are no part of the project.
+// `constrictor doctor` with real processes: a run of toy components, and programs of other projects.
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/endpoint.hpp"
@@ -9,7 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A running conductor refuses a second member at once; before the run has begun both are there and wait.
+// A conductor refuses a second member of the same name at once. Here no conductor runs yet, so both members wait for
+// it.
 TEST_F(Introspection, TheDoctorFindsASecondMember) {
   const DomainClaim claim;
   const std::vector<std::string> arguments = {program("toy_host"), "navigation",
@@ -25,7 +26,7 @@ TEST_F(Introspection, TheDoctorFindsASecondMember) {
   EXPECT_NE(output_.find(std::to_string(second.pid())), std::string::npos) << output_;
 }
 
-// Constrictor's own plants refuse each other; a driver of somebody's may not.
+// The project's own plants refuse to run beside each other, but a driver from elsewhere may not check this.
 TEST_F(Introspection, TheDoctorFindsASecondPlant) {
   Process run = toys();
   const Process second = foreign(domain(), "plant");
@@ -48,7 +49,7 @@ TEST_F(Introspection, TheDoctorFindsThatTheRunIsInAnotherDomain) {
   EXPECT_TRUE(run.wait(20s));
 }
 
-TEST_F(Introspection, TheDoctorFindsInterfacesThatCannotWorkAndBuffersThatAreSmall) {
+TEST_F(Introspection, TheDoctorFindsWrongInterfacesAndSmallSocketBuffers) {
   const DomainClaim claim;
   const auto with = [this](const std::string& general) {
     environment_["CYCLONEDDS_URI"] = "<CycloneDDS><Domain><General>" + general + "</General></Domain></CycloneDDS>";
@@ -60,7 +61,7 @@ TEST_F(Introspection, TheDoctorFindsInterfacesThatCannotWorkAndBuffersThatAreSma
   with("<Interfaces><NetworkInterface name=\"lo\"/></Interfaces><AllowMulticast>false</AllowMulticast>");
   found = faults(claim.domain());
   EXPECT_EQ(std::count(found.begin(), found.end(), "missing multicast"), 1) << output_;
-  // By this host's own limit, which is not for a test to change.
+  // The expectation depends on this host's limit, because a test must not change the limit.
   std::uint64_t limit_bytes = 0;
   std::ifstream("/proc/sys/net/core/rmem_max") >> limit_bytes;
   EXPECT_EQ(std::count(found.begin(), found.end(), "small socket buffers"), limit_bytes < 1024 * 1024 ? 1 : 0)
@@ -84,7 +85,7 @@ TEST_F(Introspection, TheDoctorFindsAConfigurationThatCannotBeReadOrIsWrong) {
   }
 }
 
-TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndOneTopicOfTwoTypes) {
+TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndATopicWithTwoTypes) {
   const DomainClaim claim;
   EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"}) << output_;
   const Process talker = foreign(claim.domain(), "final");
@@ -95,7 +96,7 @@ TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndOneTopicOfTwoTypes) {
   EXPECT_NE(output_.find("constrictor::msg::RunState"), std::string::npos) << output_;
 }
 
-TEST_F(Introspection, TheDoctorFindsQosThatDoNotMeetAndAnotherVersion) {
+TEST_F(Introspection, TheDoctorFindsIncompatibleQosAndAMemberOfAnotherVersion) {
   const DomainClaim claim;
   const Process deaf = foreign(claim.domain(), "silent_qos");
   const Process other = foreign(claim.domain(), "other_idl");

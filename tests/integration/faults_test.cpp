@@ -1,5 +1,6 @@
-// What must not be obeyed, between real processes: commands that are no numbers, of another robot's size, of another
-// run or of long ago, silence, and files that say nonsense.
+// Faults between real processes. The plant must not obey joint commands that are not finite, have the wrong number of
+// joints, belong to another epoch or are old; without commands it must hold the posture. Wrong configuration files must
+// be refused before the run starts.
 #include <cmath>
 
 #include "constrictor/topics.hpp"
@@ -17,7 +18,7 @@ using namespace std::chrono_literals;
 constexpr double kMaxSpeed_rad_s = 4.0;  // of Mamba's joints (components/lib/robot/mamba.yaml)
 constexpr std::int64_t kTicks = 400;
 
-/// Joints, truth and the members' health, as an observer that misses nothing.
+/// An observer that keeps every message about joints, ground truth and the status of the members.
 class Watcher {
  public:
   explicit Watcher(std::uint32_t domain)
@@ -54,8 +55,8 @@ class Watcher {
 
 class Faults : public CliFixture {
  protected:
-  /// A robot whose control moves one joint, and is faulty for a while; until its end, watched. `meanwhile` is called
-  /// again and again.
+  /// Runs a robot to the end of the run and observes it. Its control (swaying_control) moves one joint, and has `fault`
+  /// from tick kFaultFrom to kFaultTo. `meanwhile` is called again and again while the run goes on.
   void run(
       const std::string& fault, const std::function<void(Watcher&)>& meanwhile = [](Watcher&) {}) {
     write("sway.yaml",
@@ -78,12 +79,12 @@ class Faults : public CliFixture {
     watcher_->poll();
     EXPECT_EQ(launcher.wait(1s), exit_status::kFailed) << launcher.output() << launcher.errors();
     ASSERT_GE(watcher_->tick(), kTicks - 2) << launcher.output() << launcher.errors();
-    ASSERT_LT(watcher_->joints.begin()->first, kFaultFrom - 20) << "met the run too late";
+    ASSERT_LT(watcher_->joints.begin()->first, kFaultFrom - 20) << "the observer joined the run too late";
   }
   [[nodiscard]] double angle_rad(std::int64_t tick) const {
     return watcher_->joints.at(tick).position_rad[kSwayingJoint];
   }
-  /// [rad] by how much the joint moved within these ticks.
+  /// Range of the joint's angle [rad] from tick `from` to before tick `to`.
   [[nodiscard]] double range_rad(std::int64_t from, std::int64_t to) const {
     double least = 1e9, most = -1e9;
     for (std::int64_t k = from; k < to; ++k) {
@@ -92,22 +93,24 @@ class Faults : public CliFixture {
     }
     return most - least;
   }
-  /// Messages refused by a component, by the report of the whole run.
+  /// Number of messages that a component has refused in the whole run, from the run's report; -1 if the report does not
+  /// contain the component.
   [[nodiscard]] long refused(const std::string& name) const {
-    const nlohmann::json told = report("r");
-    for (const auto& process : told["processes"]) {
+    const nlohmann::json json = report("r");
+    for (const auto& process : json["processes"]) {
       if (process["name"] == name) return process["refused"];
     }
     return -1;
   }
-  /// Nothing obeyed in the time of the fault, and nothing jerked, then or when it was over.
+  /// Expects that the joint held its angle during the fault, followed the commands again after it, and that no joint
+  /// was ever faster than its maximum.
   void expect_held() const {
-    // A command older than five ticks is not obeyed (sim/physics/physics.yaml); a third of a second until the joint has
-    // come to rest.
+    // The plant obeys a command for at most five ticks (sim/physics/physics.yaml). After 20 ticks the joint is at rest.
     EXPECT_LT(range_rad(kFaultFrom + 20, kFaultTo), 0.02);
     const double asked_rad = std::abs(sway_rad(kFaultTo) - sway_rad(kFaultFrom + 20));
-    EXPECT_GT(asked_rad, 0.1) << "the joint would have moved";
-    EXPECT_GT(range_rad(kFaultTo + 40, kTicks - 2), 1.5 * kSwayHalf_rad) << "obeyed again";
+    EXPECT_GT(asked_rad, 0.1) << "the commanded angle must change during the fault, or this test proves nothing";
+    EXPECT_GT(range_rad(kFaultTo + 40, kTicks - 2), 1.5 * kSwayHalf_rad)
+        << "the joint did not move again after the fault";
     double fastest_rad_s = 0.0;
     for (const auto& [tick, state] : watcher_->joints) {
       for (int j = 0; j < state.joint_count; ++j) {
@@ -119,22 +122,22 @@ class Faults : public CliFixture {
   }
   [[nodiscard]] std::string last_refusal(const std::string& component) const {
     const auto found = watcher_->status.find(component);
-    return found == watcher_->status.end() ? "(not heard of)" : found->second.last_refusal;
+    return found == watcher_->status.end() ? "(no status received)" : found->second.last_refusal;
   }
 
   std::unique_ptr<Watcher> watcher_;
 };
 
-TEST_F(Faults, ACommandThatIsNoNumberIsRefusedWholeAndThePostureHeld) {
+TEST_F(Faults, ACommandWithNanIsRefusedAsAWholeAndThePostureIsHeld) {
   run("nan");
   ASSERT_FALSE(HasFatalFailure());
   expect_held();
-  EXPECT_EQ(refused("control"), kFaultTo - kFaultFrom) << "it does not even leave its writer";
+  EXPECT_EQ(refused("control"), kFaultTo - kFaultFrom) << "the runtime of control must refuse to publish it";
   EXPECT_EQ(refused("physics"), 0);
   EXPECT_NE(last_refusal("control").find("joint_command.position_rad"), std::string::npos) << last_refusal("control");
 }
 
-TEST_F(Faults, ACommandOfAnotherSizeIsRefusedWholeAndThePostureHeld) {
+TEST_F(Faults, ACommandWithAnotherJointCountIsRefusedAsAWholeAndThePostureIsHeld) {
   run("count");
   ASSERT_FALSE(HasFatalFailure());
   expect_held();
@@ -142,20 +145,20 @@ TEST_F(Faults, ACommandOfAnotherSizeIsRefusedWholeAndThePostureHeld) {
   EXPECT_NE(last_refusal("physics").find("joint_command: "), std::string::npos) << last_refusal("physics");
 }
 
-TEST_F(Faults, AStaleCommandIsNotObeyedAnyMoreAndThePostureHeld) {
+TEST_F(Faults, WithoutNewCommandsThePostureIsHeld) {
   run("silence");
   ASSERT_FALSE(HasFatalFailure());
   expect_held();
-  EXPECT_EQ(refused("control") + refused("physics"), 0) << "silence is no message";
+  EXPECT_EQ(refused("control") + refused("physics"), 0) << "there was no message to refuse";
 }
 
-// Somebody else writes on the same topic: commands of another epoch, and this run's own ones of long ago, again.
-TEST_F(Faults, CommandsOfAnotherEpochAndOldOnesAgainChangeNothing) {
+// Another writer on the same topic sends commands of another epoch, and repeats an old command of this run.
+TEST_F(Faults, CommandsOfAnotherEpochAndRepeatedOldCommandsChangeNothing) {
   run("");
   ASSERT_FALSE(HasFatalFailure());
   ASSERT_EQ(range_rad(kFaultFrom, kFaultTo) > 0.1, true) << "without a fault the joint moves";
   const std::vector<std::uint8_t> expected = watcher_->hashes.at(kTicks - 2);
-  watcher_.reset();  // one observer of a domain at a time
+  watcher_.reset();  // this process may have only one participant in a domain
   std::optional<dds::Writer<msg::JointCommand>> intruder;
   msg::JointCommand old{};
   std::int64_t written_at = 0;
@@ -183,11 +186,11 @@ TEST_F(Faults, CommandsOfAnotherEpochAndOldOnesAgainChangeNothing) {
   EXPECT_NE(last_refusal("physics").find("of another epoch"), std::string::npos) << last_refusal("physics");
 }
 
-TEST_F(Faults, AComponentsWrongConfigurationIsRefusedWithFileLineKeyFoundAndAcceptedBeforeTheRunStarts) {
+TEST_F(Faults, AWrongConfigurationIsRefusedBeforeTheRunStartsWithFileLineKeyFoundAndAccepted) {
   struct Case {
     const char *component, *line, *wrong;
-    std::vector<std::string> said;
-    long lines_on = 0;
+    std::vector<std::string> said;  ///< words that the error must contain
+    long lines_on = 0;              ///< how far the line of the error is below the replaced line
   };
   const std::vector<Case> cases = {
       {"navigation", "  seat_time_s: 1", "  seat_time_s: 1\n  seat_tme_s: 1", {"seat_tme_s", "seat_time_s"}, 1},
@@ -209,7 +212,7 @@ TEST_F(Faults, AComponentsWrongConfigurationIsRefusedWithFileLineKeyFoundAndAcce
                        "--report", (dir_ / "r").string()}),
               exit_status::kConfiguration);
     EXPECT_NE(output_.find(std::string(c.component) + ": "), std::string::npos) << output_;
-    EXPECT_FALSE(std::filesystem::exists(dir_ / "r")) << "nothing was started";
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "r")) << "nothing may be started";
     EXPECT_NE(output_.find("bad.yaml:" + std::to_string(number)), std::string::npos) << output_;
     for (const std::string& word : c.said)
       EXPECT_NE(output_.find(word), std::string::npos) << word << " in: " << output_;

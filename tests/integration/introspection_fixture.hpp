@@ -1,4 +1,4 @@
-// A run of toys, programs that are no part of the project, and what `constrictor` says of both.
+// A fixture for tests that examine, with `constrictor`, a run of toy components and programs of other projects.
 #pragma once
 
 #include <sstream>
@@ -20,8 +20,8 @@ class Introspection : public CliFixture {
     EXPECT_TRUE(process.wait_for("talking", std::chrono::seconds(20))) << process.errors();
     return process;
   }
-  /// A run of toys at real-time pace: 50 ticks a second, and it lasts. `members`: processes beside the plant, as lines
-  /// of the manifest.
+  /// Starts a run of toys that makes at most 50 ticks per second and does not end before the test does. `members` are
+  /// the lines of the manifest for the processes beside the plant.
   [[nodiscard]] Process toys(const std::string& members = kMembers) const {
     write("toys.yaml", kManifest + members);
     write("100000_ticks.yaml", "");
@@ -30,7 +30,8 @@ class Introspection : public CliFixture {
     EXPECT_TRUE(eventually([&] { return domain() != 0; }));
     return run;
   }
-  /// Output of a command as JSON; it must end with `status`. What it says to people stays in `output_`.
+  /// Runs a command with --json, expects the exit status `status`, and returns its standard output as JSON. `output_`
+  /// holds its standard output and its standard error.
   nlohmann::json json_of(std::vector<std::string> arguments, int status = 0) {
     arguments.push_back("--json");
     Process process = start(std::move(arguments));
@@ -39,7 +40,7 @@ class Introspection : public CliFixture {
     EXPECT_EQ(ended, status) << output_;
     return nlohmann::json::parse(process.output(), nullptr, false);
   }
-  /// Names of what the doctor finds in a domain.
+  /// Names of the faults that `constrictor doctor` finds in a domain.
   std::vector<std::string> faults(std::uint32_t domain) {
     const nlohmann::json found = json_of({"doctor", "--run", std::to_string(domain)}, 1);
     std::vector<std::string> names;
@@ -49,7 +50,7 @@ class Introspection : public CliFixture {
     }
     return names;
   }
-  /// The text with each run of blanks and line ends as one blank: lines are wrapped at 80 columns.
+  /// The text in one line, with single blanks between the words: the commands wrap their output at 80 columns.
   [[nodiscard]] static std::string flat(const std::string& text) {
     std::istringstream words(text);
     std::string line;

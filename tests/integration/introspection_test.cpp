@@ -1,4 +1,4 @@
-// topic, node and status on real processes: a run of toys, and programs that are no part of the project.
+// The commands topic, node and status with real processes: a run of toy components, and programs of other projects.
 #include <signal.h>
 
 #include <sstream>
@@ -37,7 +37,7 @@ TEST_F(Introspection, ShowsEveryFieldOfATypeThatThisProjectDoesNotDefine) {
   EXPECT_NE(output_.find("double temperature"), std::string::npos) << output_;
 }
 
-TEST_F(Introspection, ReadsAppendableTypesInTheirNewerEncoding) {
+TEST_F(Introspection, ReadsAppendableTypesInTheNewerEncodingXcdr2) {
   const DomainClaim claim;
   const Process talker = foreign(claim.domain(), "appendable");
   const json sample = json_of({"topic", "echo", "tide", "--count", "1", "--run", std::to_string(claim.domain())});
@@ -48,7 +48,7 @@ TEST_F(Introspection, ReadsAppendableTypesInTheirNewerEncoding) {
   EXPECT_GT(sample["count"], 0);
 }
 
-TEST_F(Introspection, ShowsTheBytesOfATypeThatNobodyDescribes) {
+TEST_F(Introspection, ShowsTheBytesIfNoWriterDescribesTheType) {
   const DomainClaim claim;
   const std::string number = std::to_string(claim.domain());
   const Process talker = foreign(claim.domain(), "untyped");
@@ -67,7 +67,7 @@ TEST_F(Introspection, MeasuresTheRateAndDelayOfAForeignTopic) {
   const std::string number = std::to_string(claim.domain());
   const Process talker = foreign(claim.domain(), "untyped");
   const json rate = json_of({"topic", "hz", "weather", "--for", "1", "--run", number});
-  EXPECT_GT(rate["rate_hz"], 20.0) << rate;  // one in 10 ms, on a busy machine fewer
+  EXPECT_GT(rate["rate_hz"], 20.0) << rate;  // the talker sends one message in 10 ms, or fewer on a busy machine
   EXPECT_LT(rate["rate_hz"], 105.0) << rate;
   EXPECT_GT(rate["greatest_interval_s"], 0.008);
   const json delay = json_of({"topic", "delay", "weather", "--for", "1", "--run", number});
@@ -83,7 +83,7 @@ TEST_F(Introspection, ATopicWithoutAWriterEndsWithStatusOne) {
   EXPECT_NE(output_.find("nobody writes 'joint_state'"), std::string::npos) << output_;
 }
 
-TEST_F(Introspection, ATopicThatDoesNotExistIsRefusedSoonWithTheClosestName) {
+TEST_F(Introspection, AnUnknownTopicIsAnErrorWithTheClosestNameAndNotATimeout) {
   const DomainClaim claim;
   const std::string number = std::to_string(claim.domain());
   const auto start = std::chrono::steady_clock::now();
@@ -97,10 +97,10 @@ TEST_F(Introspection, ATopicThatDoesNotExistIsRefusedSoonWithTheClosestName) {
 TEST_F(Introspection, ADomainWithoutProcessesIsAnErrorForCommandsThatListThem) {
   const DomainClaim claim;
   const std::string number = std::to_string(claim.domain());
-  for (const char* what : {"topic", "node"}) {
-    EXPECT_EQ(command({what, "list", "--run", number}), 70) << output_;
+  for (const char* subcommand : {"topic", "node"}) {
+    EXPECT_EQ(command({subcommand, "list", "--run", number}), 70) << output_;
     EXPECT_NE(output_.find("no process in DDS domain " + number), std::string::npos) << output_;
-    EXPECT_EQ(command({what, "list", "--json", "--run", number}), 70) << output_;
+    EXPECT_EQ(command({subcommand, "list", "--json", "--run", number}), 70) << output_;
   }
 }
 
@@ -121,7 +121,7 @@ TEST_F(Introspection, EchoShowsNamesOfConstantsAndTheUsedPartOfArrays) {
   EXPECT_EQ(output_, "explore\n");
   EXPECT_EQ(command({"topic", "echo", "joint_state", "--count", "1", "--field", "position_rad", "--run", number}), 0);
   EXPECT_EQ(output_, "[0.0,1.0,2.0]\n");
-  // For scripts the sample is shown as it is on the wire.
+  // JSON output is for scripts: it contains the sample as it was sent, with numbers and whole arrays.
   EXPECT_EQ(json_of({"topic", "echo", "task/status", "--count", "1", "--run", number})["task"], msg::kTaskExplore);
   const json whole = json_of({"topic", "echo", "joint_state", "--count", "1", "--run", number});
   EXPECT_EQ(whole["position_rad"].size(), 64u);
@@ -165,9 +165,9 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   }
   EXPECT_EQ(command({"topic", "echo", "joint_state", "--count", "1", "--field", "header.tock"}), 64) << output_;
   EXPECT_NE(output_.find("found 'tock'"), std::string::npos) << output_;
-  EXPECT_NE(output_.find("tick"), std::string::npos) << "the fields that there are: " << output_;
+  EXPECT_NE(output_.find("tick"), std::string::npos) << "the error must list the existing fields: " << output_;
   EXPECT_EQ(command({"topic", "hz", "request", "--for", "0.5", "--timeout", "1"}), 1);
-  EXPECT_NE(output_.find("request"), std::string::npos) << "the reason: " << output_;
+  EXPECT_NE(output_.find("request"), std::string::npos) << "the error must name the topic: " << output_;
   EXPECT_EQ(command({"doctor"}), 0) << output_;
   EXPECT_NE(output_.find("no fault found"), std::string::npos);
 
@@ -177,15 +177,15 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   command({"doctor"});
   std::size_t domains = 0;
   for (auto at = output_.find("domain "); at != std::string::npos; at = output_.find("\ndomain ", at + 1)) ++domains;
-  EXPECT_EQ(domains, 2u) << "each run is examined: " << output_;
+  EXPECT_EQ(domains, 2u) << "doctor must examine each run: " << output_;
   other.signal(SIGTERM);
   EXPECT_TRUE(other.wait(20s));
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
 }
 
-// What was said of a wait is kept for late observers.
-TEST_F(Introspection, StatusTellsNothingOfAWaitThatIsOver) {
+// DDS keeps the last Waiting message of a member for late readers, even when the wait is over.
+TEST_F(Introspection, StatusDoesNotShowAWaitThatIsOver) {
   Process run = toys();
   ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
   const json node = json_of({"node", "info", "control"});
@@ -195,10 +195,10 @@ TEST_F(Introspection, StatusTellsNothingOfAWaitThatIsOver) {
   EXPECT_TRUE(run.wait_for("physics waits for TickDone of ", 20s)) << run.output();
   EXPECT_EQ(command({"status"}), 0);
   const auto wait = output_.find("physics waits for TickDone of ");
-  ASSERT_NE(wait, std::string::npos) << "as long as it lasts: " << output_;
+  ASSERT_NE(wait, std::string::npos) << "status must show the wait while it lasts: " << output_;
   const long tick = std::stol(output_.substr(output_.find("at tick ", wait) + 8));
   ASSERT_EQ(::kill(pid, SIGCONT), 0);
-  // Each component's status comes every 50 ticks.
+  // Each component sends its status every 50 ticks; after 120 ticks every status is newer than the wait.
   EXPECT_TRUE(eventually([&] { return json_of({"status"})["tick"] > tick + 120; })) << output_;
   EXPECT_EQ(command({"status"}), 0);
   EXPECT_EQ(output_.find("waits for"), std::string::npos) << output_;
@@ -206,8 +206,8 @@ TEST_F(Introspection, StatusTellsNothingOfAWaitThatIsOver) {
   EXPECT_TRUE(run.wait(20s));
 }
 
-TEST_F(Introspection, StatusTellsWhoHasAuthorityAndWhatWasRefusedAndGoesOnTellingIt) {
-  // The real input, beside toys whose parameters it does not ask for.
+TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) {
+  // `input` is the real component, the other members are toys. It does not ask toys for their parameters.
   Process run = toys("  - {components: [overview], program: toy_host}\n  - {components: [input]}\n");
   ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
   Process watch = start({"status", "--watch"});
@@ -215,7 +215,7 @@ TEST_F(Introspection, StatusTellsWhoHasAuthorityAndWhatWasRefusedAndGoesOnTellin
   ASSERT_EQ(command({"stop"}), 0) << output_;
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), 1) << "refused: " << output_;
   {
-    // What is of no run is refused by every member that hears it.
+    // Every member that receives this tick refuses it, because it belongs to no run.
     const dds::Domain stranger(domain());
     const dds::Writer<msg::Tick> ticks(stranger.participant(), dds::barrier_topics::kTick, 1);
     ASSERT_TRUE(eventually([&] { return ticks.readers() >= 2; }));
@@ -228,20 +228,21 @@ TEST_F(Introspection, StatusTellsWhoHasAuthorityAndWhatWasRefusedAndGoesOnTellin
   const std::string text = flat(output_);
   EXPECT_NE(text.find("authority: emergency stop "), std::string::npos) << text;
   EXPECT_NE(text.find("; 1 requests refused, the last that of "), std::string::npos) << text;
-  EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason: " << text;
+  EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason of the refusal must be shown: " << text;
   const json status = json_of({"status"});
   EXPECT_EQ(status["authority"]["level"], "emergency stop") << output_;
   EXPECT_EQ(status["authority"]["refused"], 1);
   EXPECT_NE(status["authority"]["refusal"].get<std::string>().find(" is latched"), std::string::npos);
   for (const auto& component : status["components"]) {
-    const bool listens = component["component"] != "physics";  // who writes the ticks
+    const bool listens = component["component"] != "physics";  // the plant writes the ticks and does not read them
     EXPECT_EQ(component["refused"], listens ? 1 : 0) << component;
     EXPECT_EQ(component["last_refusal"], listens ? "tick: of another epoch" : "") << component;
   }
-  EXPECT_TRUE(watch.wait_for("authority: emergency stop ", 20s)) << "the same program, later: " << watch.output();
+  EXPECT_TRUE(watch.wait_for("authority: emergency stop ", 20s))
+      << "status --watch must show the new authority: " << watch.output();
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
-  EXPECT_EQ(watch.wait(20s), 0) << "it ends with the run: " << watch.output();
+  EXPECT_EQ(watch.wait(20s), 0) << "status --watch must end with the run: " << watch.output();
 }
 
 }  // namespace

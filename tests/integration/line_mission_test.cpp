@@ -1,4 +1,4 @@
-// Line following in ten processes over DDS: the robot knows the line from its camera alone.
+// Line following in ten processes over DDS. The robot perceives the line only with its camera.
 #include "mission_run.hpp"
 
 namespace constrictor::testing {
@@ -9,11 +9,11 @@ TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByCamera) {
   ASSERT_TRUE(report_.is_object()) << output_;
   EXPECT_EQ(report_["processes"].size(), 10U);
   EXPECT_LT(event_s("line_found"), 2.0);
-  EXPECT_LT(event_s("end_of_line"), 20.0);  // 5.6 m
-  EXPECT_GT(event_s("end_of_line"), 5.6 / 1.0);
+  EXPECT_LT(event_s("end_of_line"), 20.0);
+  EXPECT_GT(event_s("end_of_line"), 5.6 / 1.0);  // the line is 5.6 m long; the robot is slower than 1 m/s
   EXPECT_FALSE(std::isfinite(event_s("line_lost")));
   EXPECT_NEAR(state_s("done"), event_s("end_of_line"), 0.05);  // the mission has no objects
-  // Compared with the true line, including the sway of the head.
+  // The errors are distances of the head from the true line; they include the sway of the head.
   EXPECT_LT(report_["line"]["rms_cross_track_m"], 0.12);
   EXPECT_LT(report_["line"]["max_cross_track_m"], 0.35);
   EXPECT_LT(report_["pose_error"]["rms_m"], 0.25);
@@ -21,7 +21,7 @@ TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByCamera) {
 }
 
 // The bend is sharper than the snake can follow: 109 degrees with a radius of 0.2 m.
-TEST_F(MissionRun, FindsALineAgainThatWasLostBehindASharpBend) {
+TEST_F(MissionRun, FindsTheLineAgainAfterLosingItBehindASharpBend) {
   const std::string bend = scenario(
       "name: sharp_bend\nmission: {sequence: [], line_colour: blue}\nline:\n  colour: blue\n  width_m: 0.05\n  "
       "begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: "

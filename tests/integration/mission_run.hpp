@@ -1,4 +1,4 @@
-// Whole missions in processes of their own, in a world of the test's own, judged by the report of the run.
+// A fixture for tests that run a whole mission with each component in its own process, and check the run's report.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-// A whole retrieval in ten processes over DDS.
+// A whole retrieval in ten processes over DDS: the robot finds, grasps, carries and drops an object.
 #include "mission_run.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-TEST_F(MissionRun, FindsGraspsCarriesAndDropsAnObjectOnItsZone) {
+TEST_F(MissionRun, FindsGraspsAndCarriesAnObjectAndDropsItInItsZone) {
   EXPECT_EQ(run("short", 300.0), exit_status::kOk) << output_;
   ASSERT_TRUE(report_.is_object()) << output_;
   EXPECT_TRUE(report_["success"]);
@@ -19,7 +19,7 @@ TEST_F(MissionRun, FindsGraspsCarriesAndDropsAnObjectOnItsZone) {
 
 // When the robot has carried the object for a metre, a force pulls it out of the U. The object is a box, because a
 // cylinder that falls over rolls away.
-TEST_F(MissionRun, GraspsAnObjectAgainThatWasPulledOutOfTheBody) {
+TEST_F(MissionRun, GraspsAnObjectAgainAfterItWasPulledOutOfTheBody) {
   const std::string pulled = scenario(
       "name: pulled\nmission: {sequence: [green], line_colour: blue}\nline:\n  colour: blue\n  width_m: 0.05\n  "
       "begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: "

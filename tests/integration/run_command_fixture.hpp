@@ -1,4 +1,5 @@
-// A run of toy components under the real launcher, and what it leaves behind.
+// A fixture for tests that start a run of toy components with the real launcher, and check its processes and its
+// report.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ class RunCommand : public ::testing::Test {
     arguments.insert(arguments.begin(), program("constrictor"));
     return Process(std::move(arguments), environment_);
   }
-  /// A run of so many ticks of 20 ms that reports to `report`.
+  /// Starts a run of `ticks` ticks of 20 ms that writes its report into the folder `report`.
   [[nodiscard]] Process run(long ticks, const std::string& report, std::vector<std::string> more = {},
                             const std::string& manifest = "toys.yaml") const {
     const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
@@ -57,14 +58,14 @@ class RunCommand : public ::testing::Test {
     std::ifstream file(dir_ / report / "logs" / (process + ".log"));
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  /// Signals a member's process once it is there, and nobody else.
+  /// Waits until a member's process exists, and sends `signal` to it alone.
   void kill_member(const std::string& name, int signal) const {
     ASSERT_TRUE(eventually([&] { return members().contains(name); })) << name;
     const pid_t pid = members()[name];
     ASSERT_GT(pid, 0) << name;
     ::kill(pid, signal);
   }
-  /// Processes that report into this test's directory: name of what each hosts, and pid.
+  /// The processes of this test's runs: the pid for each list of hosted components.
   [[nodiscard]] std::map<std::string, pid_t> members() const {
     std::map<std::string, pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {

@@ -1,4 +1,5 @@
-// How runs and their processes end before they should: who is told to go, and what comes before the run has begun.
+// Early ends: a process that receives SIGTERM while it starts or while the run goes on, and a request to end the run
+// before the run has begun. Also: which requests to the conductor are refused.
 #include <csignal>
 #include <iterator>
 #include <optional>
@@ -17,7 +18,7 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 namespace wire = dds::barrier_topics;
 
-/// True once the process has threads: DDS begins.
+/// True if the process has several threads. It has them as soon as it begins to set up DDS.
 bool has_threads(pid_t pid) {
   std::error_code gone;
   const fs::directory_iterator tasks("/proc/" + std::to_string(pid) + "/task", gone);
@@ -26,7 +27,7 @@ bool has_threads(pid_t pid) {
 
 class RunEnd : public CliFixture {
  protected:
-  /// A toy process of a run in `domain_`.
+  /// Starts a process that hosts the toy components `names`, in the test's own domain.
   [[nodiscard]] Process toys(const std::string& names, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {program("toy_host"), names,
                                           "--domain",          std::to_string(claim_.domain()),
@@ -39,7 +40,7 @@ class RunEnd : public CliFixture {
   const DomainClaim claim_;
 };
 
-TEST_F(RunEnd, APlantThatIsToldToGoIsNamedAndEndsTheRunWithAnError) {
+TEST_F(RunEnd, SigtermToThePlantEndsTheRunWithAnErrorThatNamesIt) {
   write("toys.yaml",
         "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
         "60\nprocesses:\n"
@@ -63,15 +64,15 @@ TEST_F(RunEnd, APlantThatIsToldToGoIsNamedAndEndsTheRunWithAnError) {
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(::kill(plant, SIGTERM), 0);
   EXPECT_EQ(launcher.wait(40s), exit_status::kSoftware) << launcher.output();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s) << "nobody waits out a patience of 60 s";
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s) << "no process may wait for its patience of 60 s to end";
   EXPECT_NE(launcher.output().find("physics, the plant (pid " + std::to_string(plant) + "), ended before the run did"),
             std::string::npos)
       << launcher.output();
   EXPECT_EQ(report("r").value("success", true), false);
 }
 
-// When DDS begins, most of a process's entities are still to be made.
-TEST_F(RunEnd, WhoIsToldToGoWhileStartingEndsWell) {
+// The signal arrives while DDS starts, when the process has not yet created most of its DDS entities.
+TEST_F(RunEnd, SigtermWhileAProcessStartsEndsItWithSuccess) {
   for (int i = 0; i < 5; ++i) {
     Process member = toys("control");
     ASSERT_TRUE(eventually([&] { return has_threads(member.pid()); })) << member.errors();
@@ -105,10 +106,11 @@ TEST_F(RunEnd, AnEndBeforeTheRunHasBegunIsRefused) {
   EXPECT_NE(std::string(first->refusal).find("has not begun"), std::string::npos) << first->refusal;
   EXPECT_EQ(plant.wait(30s), exit_status::kOk) << plant.errors();
   EXPECT_EQ(others.wait(30s), exit_status::kOk) << others.errors();
-  EXPECT_NE(others.output().find("result"), std::string::npos) << "the run went to its own end";
+  EXPECT_NE(others.output().find("result"), std::string::npos)
+      << "the report must end the run, not the refused request";
 }
 
-TEST_F(RunEnd, ImpossiblePacesAndOutdatedNumbersAreRefusedAndRepetitionsAnsweredAgain) {
+TEST_F(RunEnd, ImpossiblePacesAndOldSequenceNumbersAreRefusedAndARepeatedRequestGetsTheSameAnswer) {
   const dds::Domain outside(claim_.domain());
   const auto answers = dds::Reader<msg::RunControlAnswer>::member(outside.participant(), wire::kRunControlAnswer);
   const dds::Writer<msg::RunControl> control(outside.participant(), wire::kRunControl, 8);
@@ -134,13 +136,13 @@ TEST_F(RunEnd, ImpossiblePacesAndOutdatedNumbersAreRefusedAndRepetitionsAnswered
   EXPECT_EQ(answer(msg::kRunPace, 1e-12, 5), "pace: found 1e-12, accepted 0 or 0.001 to 1000");
   EXPECT_EQ(answer(msg::kRunPace, 0.001, 6), "");
   EXPECT_NE(answer(msg::kRunPace, 1.0, 4).find("found 4, accepted more than 6"), std::string::npos);
-  EXPECT_EQ(answer(msg::kRunPace, 1e-12, 6), "") << "number 6 was answered already: the same answer again";
+  EXPECT_EQ(answer(msg::kRunPace, 1e-12, 6), "") << "number 6 was answered before and must get the same answer";
   EXPECT_EQ(answer(msg::kRunPace, 1.0, 7), "");
   EXPECT_EQ(answer(msg::kRunEnd, 0.0, 8), "");
   EXPECT_EQ(run.wait(20s), exit_status::kOk) << run.errors();
 }
 
-TEST_F(RunEnd, APaceThatNoClockCanKeepIsWrongUsage) {
+TEST_F(RunEnd, APaceOutsideOfTheAcceptedRangeIsAUsageError) {
   for (const char* pace : {"1e-12", "0.0009", "1001", "fast", "-1"}) {
     Process member = toys("physics", {"--pace", pace});
     EXPECT_EQ(member.wait(20s), exit_status::kUsage) << pace;

@@ -1,4 +1,4 @@
-// What `constrictor run` refuses before it starts anything, `check` and `list`.
+// Errors that `constrictor run` reports before it starts a process, and the commands `check` and `list`.
 #include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
@@ -37,8 +37,8 @@ TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
     Process refused = command(arguments);
     EXPECT_EQ(refused.wait(30s), status) << options.front() << refused.output() << refused.errors();
     EXPECT_NE(refused.errors().find(said), std::string::npos) << said << " in: " << refused.errors();
-    EXPECT_FALSE(fs::exists(dir_ / "r")) << "no run directory: " << options.front();
-    EXPECT_EQ(refused.output(), "") << "no run: " << options.front();
+    EXPECT_FALSE(fs::exists(dir_ / "r")) << "no run directory may be made: " << options.front();
+    EXPECT_EQ(refused.output(), "") << "no run may be started: " << options.front();
   }
 }
 
@@ -52,7 +52,7 @@ TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
   EXPECT_EQ(wrong.wait(30s), exit_status::kConfiguration) << wrong.output();
   for (const char* component : {"planner", "control"}) {
     EXPECT_NE(wrong.errors().find(component + (": " + bad + ":")), std::string::npos)
-        << "all errors, not only the first: " << wrong.errors();
+        << "check must report all errors, not only the first: " << wrong.errors();
   }
   Process foreign = command({"check", "--manifest", (dir_ / "toys.yaml").string()});
   EXPECT_EQ(foreign.wait(30s), exit_status::kOk) << foreign.errors();

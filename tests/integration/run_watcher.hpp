@@ -1,4 +1,5 @@
-// A run as an observer that misses nothing sees it, and what its joints did.
+// An observer that keeps every message of a run about authority, commands and joints, and functions that evaluate how
+// the joints moved.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ class Watcher {
   [[nodiscard]] static bool same_setpoints(const msg::JointCommand& a, const msg::JointCommand& b) {
     return std::equal(a.position_rad, a.position_rad + a.joint_count, b.position_rad);
   }
-  /// How fast the wave turns, by the last setpoints: greatest difference of two commands.
+  /// Waits until the setpoint of joint 8 changes; false if it does not within the bound of eventually().
   [[nodiscard]] bool moves() {
     const std::size_t from = commands.size();
     return eventually([&] {
@@ -68,8 +69,8 @@ class Watcher {
 
   std::vector<std::pair<msg::Authority, Clock::time_point>> authorities;
   std::vector<msg::JointCommand> commands;
-  Clock::time_point changed{};     ///< arrival of the last command whose setpoints differ from those before,
-  std::int64_t changed_tick = -1;  ///< and its tick
+  Clock::time_point changed{};     ///< when the last command arrived whose setpoints differ from those before
+  std::int64_t changed_tick = -1;  ///< the tick of this command
   std::vector<msg::JointState> joints;
   msg::MissionStatus mission{};
   msg::TaskStatus task{};
@@ -87,8 +88,9 @@ class Watcher {
   dds::Reader<msg::TaskStatus> task_;
 };
 
-/// [rad/s] the fastest setpoint of all. In the ticks of `begun` a hold or a take-over begins: there one may also jump
-/// to where its joint is (measured a tick earlier or later, if nobody waits for anybody), and on from there.
+/// The greatest speed of any setpoint [rad/s]. A hold or a takeover begins in the ticks of `begun`. In these ticks a
+/// setpoint may also jump to the measured angle of its joint and move on from there; at real-time pace the measurement
+/// may be one tick older or newer.
 inline double fastest_setpoint(const Watcher& watcher, const std::set<std::int64_t>& begun) {
   std::map<std::int64_t, const msg::JointState*> measured;
   for (const auto& state : watcher.joints) measured[state.header.tick] = &state;
@@ -109,7 +111,7 @@ inline double fastest_setpoint(const Watcher& watcher, const std::set<std::int64
   return fastest_rad_s;
 }
 
-/// [rad/s] the fastest measured joint from this tick on.
+/// The greatest measured speed of any joint [rad/s] from tick `from` on.
 inline double fastest_joint(const Watcher& watcher, std::int64_t from) {
   double fastest_rad_s = 0.0;
   for (const auto& state : watcher.joints) {
@@ -120,7 +122,8 @@ inline double fastest_joint(const Watcher& watcher, std::int64_t from) {
   return fastest_rad_s;
 }
 
-/// Setpoints of the tick after this one: each as it was, or where its joint is measured.
+/// Expects that in the tick after `latched` each setpoint is the one of the tick before, or the measured angle of its
+/// joint.
 inline void expect_hold_begins_after(const Watcher& watcher, std::int64_t latched) {
   const auto of_tick = [](const auto& messages, std::int64_t tick) {
     const auto found =
@@ -138,7 +141,7 @@ inline void expect_hold_begins_after(const Watcher& watcher, std::int64_t latche
   }
 }
 
-/// [rad] by how much the joint that moves most does, within these ticks.
+/// The range of the angle [rad] of the joint that moves most, from tick `from` to tick `to`.
 inline double widest_range(const Watcher& watcher, std::int64_t from, std::int64_t to) {
   double widest_rad = 0.0;
   for (int j = 0; j < watcher.joints.back().joint_count; ++j) {

@@ -22,7 +22,7 @@ TEST(RuntimeProcesses, EveryGroupingGivesTheSameResult) {
   }
 }
 
-TEST(RuntimeProcesses, EachMemberButThePlantMayBeKilledAtAnyTick) {
+TEST(RuntimeProcesses, EachMemberExceptThePlantMayBeKilledAtAnyTick) {
   const long ticks = 4000;
   const std::string expected = reference(ticks);
   std::mt19937 random(20261121);
@@ -91,8 +91,8 @@ TEST(RuntimeProcesses, CappedPaceGivesTheSameResult) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, 480ms);  // 100 ticks of 20 ms at four times real time
 }
 
-// A member whose steps are far apart, or that waits long for the next tick, is not stuck.
-TEST(RuntimeProcesses, ASlowPaceIsNoStall) {
+// A member must not give up because its steps are far apart or because it waits long for the next tick.
+TEST(RuntimeProcesses, NoMemberGivesUpAtASlowPace) {
   const auto run_at = [](long ticks, std::vector<std::string> options) {
     ToyRun run(ticks, std::move(options));
     const std::string roster = kRoster + ",overview";
@@ -116,7 +116,7 @@ TEST(RuntimeProcesses, AnEmergencyStopKeepsTheOperatorsPace) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, 2500ms);  // from tick 20 on, 20 ms each
 }
 
-TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
+TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
   ToyRun run(150, {"--realtime"});
   const dds::Domain domain(run.claim.domain());
   const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
@@ -131,7 +131,7 @@ TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
   const auto start = std::chrono::steady_clock::now();
   run.start_all(kEach);
   ASSERT_TRUE(run.wait_for_step_of(domain, "planner", 1));
-  run.processes.at("planner").signal(SIGSTOP);  // lock-step would stand still for as long
+  run.processes.at("planner").signal(SIGSTOP);  // in lock-step the run would wait for this member
   EXPECT_EQ(run.processes.at("report").wait(20s), exit_status::kOk);
   const auto elapsed = std::chrono::steady_clock::now() - start;
   run.processes.at("planner").signal(SIGCONT);
@@ -142,8 +142,8 @@ TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
     listen();
     return ended["planner"];
   }));
-  // It was stopped after its first few steps and then did only the last tick. The others may skip some ticks on a busy
-  // machine.
+  // The planner was stopped after its first few steps, and then did only the last tick. The others may skip some ticks
+  // on a busy machine.
   EXPECT_GT(skipped["planner"], 75u);
   EXPECT_LT(skipped["planner"], 150u);
   for (const std::string other : {"physics", "navigation", "control", "report"}) {
@@ -153,7 +153,7 @@ TEST(RuntimeProcesses, RealtimePaceWaitsForNobodyAndCountsWhatWasSkipped) {
   EXPECT_EQ(skipped["physics"], 0u) << "the plant skips no tick";
 }
 
-TEST(RuntimeProcesses, MaskingMoreOfTheCpuInsideTheProfileChangesNothing) {
+TEST(RuntimeProcesses, MaskedCpuFeaturesWithinTheSameNumericProfileDoNotChangeTheResult) {
   const std::string expected = reference(300);
   ToyRun run(300);
   run.start_all({"physics", "navigation", "control", "report"});

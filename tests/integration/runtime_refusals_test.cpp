@@ -1,4 +1,4 @@
-// Processes that cannot take part in a run are refused with a reason, and what a run waits for is named.
+// Processes that cannot take part in a run are refused with a reason. A run that waits names what it waits for.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -81,7 +81,7 @@ TEST(RuntimeRefusals, AnEndpointThatDoesNotMatchIsNamedWithItsQos) {
         20s))
         << physics.errors();
   }
-  const dds::Entity suits = write_as("control");
+  const dds::Entity matching = write_as("control");
   EXPECT_TRUE(physics.wait_for("waits for Ready of control", 20s)) << "all endpoints match: " << physics.errors();
 }
 
@@ -93,8 +93,9 @@ TEST(RuntimeRefusals, AnotherNumericProfileIsRefused) {
   EXPECT_NE(run.processes.at("planner").errors().find("numeric profile differs"), std::string::npos);
 }
 
-// What it reads at its start is part of the run: a change shows when it comes back, not in the result.
-TEST(RuntimeRefusals, AMemberThatComesBackWithAnotherConfigurationIsRefused) {
+// A restarted member reads its configuration file again. If the file has changed, the member is refused; otherwise the
+// change would silently alter the result of the run.
+TEST(RuntimeRefusals, ARestartedMemberWithAnotherConfigurationIsRefused) {
   const TemporaryFolder folder;
   const std::filesystem::path config = folder.path() / "planner.yaml";
   std::ofstream(config) << "first: 1\n";
@@ -104,7 +105,7 @@ TEST(RuntimeRefusals, AMemberThatComesBackWithAnotherConfigurationIsRefused) {
   run.processes.at("planner").signal(SIGKILL);
   run.processes.at("planner").wait(10s);
   run.start("planner", 2);
-  ASSERT_TRUE(run.wait_for_step_of("planner", 2)) << "the same file is welcome";
+  ASSERT_TRUE(run.wait_for_step_of("planner", 2)) << "an unchanged file must be accepted";
   std::ofstream(config) << "first: 2\n";
   run.processes.at("planner").signal(SIGKILL);
   run.processes.at("planner").wait(10s);

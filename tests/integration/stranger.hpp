@@ -1,4 +1,4 @@
-// A process that is no part of a run and sends barrier messages that make no sense.
+// A process that is no part of a run and sends impossible barrier messages.
 #pragma once
 
 #include <unistd.h>
@@ -12,7 +12,7 @@
 
 namespace constrictor::testing {
 
-/// Sends messages that obey their types and cannot be true.
+/// Sends messages whose types are correct and whose values are impossible, or belong to another run.
 class Stranger {
  public:
   explicit Stranger(dds_entity_t participant)
@@ -51,7 +51,7 @@ class Stranger {
     command();
   }
 
-  /// Refuses a process, as another run's conductor.
+  /// Sends the message with which the conductor of another run refuses a process.
   void refuse(const char* name, pid_t pid) {
     msg::Refused refused{};
     dds::set_text(refused.component, name);
@@ -113,7 +113,7 @@ class Stranger {
       done.published_count = done.consumed_count = 255;
       done_.write(done);
     }
-    // At the tick that is due: damaged checkpoints, huge lengths, and topics that the member does not write.
+    // For the current tick: damaged checkpoints, huge lengths, and topics that the member does not write.
     std::string endless(8, '\xff');
     for (std::string block :
          {std::string("x"), endless, endless + endless, std::string(8, '\0') + endless, std::string(16, '\0') + "x"}) {
@@ -147,9 +147,9 @@ class Stranger {
       hello.incarnation = 1000;
       hello.pid = -1;
       hello.reads = hello.writes = ~std::uint64_t{0};
-      hello_.write(hello);  // neither period nor latency
+      hello_.write(hello);  // without period and latency
       hello.period_ticks = hello.latency_ticks = 1;
-      hello_.write(hello);  // of another IDL and configuration
+      hello_.write(hello);  // with the hashes of another IDL and another configuration
     }
   }
   msg::RunState run_{};

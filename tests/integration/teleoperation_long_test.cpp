@@ -1,5 +1,5 @@
-// An operator takes over in mid-mission, drives and lets go: the planner takes up from the world as it is and completes
-// the mission.
+// An operator takes authority in the middle of a mission, drives and releases authority. The planner then continues
+// with the robot where it is, and completes the mission.
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 
 class MidMission : public CliFixture {
  protected:
-  /// Status of the run as scripts see it.
+  /// The output of `constrictor status --json`.
   [[nodiscard]] nlohmann::json status() {
     EXPECT_EQ(command({"status", "--json"}), exit_status::kOk) << output_;
     return nlohmann::json::parse(output_, nullptr, false);
@@ -24,7 +24,7 @@ class MidMission : public CliFixture {
   }
 };
 
-TEST_F(MidMission, AnOperatorDrivesWhileTheLineIsFollowedAndWhileTheObjectIsCarriedAndTheMissionSucceeds) {
+TEST_F(MidMission, TheMissionSucceedsAlthoughAnOperatorDrivesOnTheLineAndWithTheObject) {
   Process launcher = start({"run", "short", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", std::chrono::seconds(60))) << launcher.output() << launcher.errors();
   drive("0.3,0.4");
@@ -34,17 +34,17 @@ TEST_F(MidMission, AnOperatorDrivesWhileTheLineIsFollowedAndWhileTheObjectIsCarr
   const auto end = launcher.wait(std::chrono::seconds(300));
   EXPECT_EQ(end, exit_status::kOk) << launcher.output() << launcher.errors();
 
-  const nlohmann::json told = report("r");
-  ASSERT_TRUE(told.is_object());
-  EXPECT_TRUE(told["success"]) << told["objects"];
-  EXPECT_TRUE(told["objects"][0]["in_zone"]) << told["objects"];
-  // Each time it went on by looking where it was: empty, then with the object in its arms.
+  const nlohmann::json json = report("r");
+  ASSERT_TRUE(json.is_object());
+  EXPECT_TRUE(json["success"]) << json["objects"];
+  EXPECT_TRUE(json["objects"][0]["in_zone"]) << json["objects"];
+  // After each takeover the planner continues with a search: first without an object, then with the object in the body.
   std::vector<std::string> states;
-  for (const auto& state : told["states"]) states.push_back(state["state"]);
-  EXPECT_GE(std::count(states.begin(), states.end(), "search line or object"), 2) << told["states"];
-  EXPECT_GE(std::count(states.begin(), states.end(), "search line"), 1) << told["states"];
-  EXPECT_EQ(std::count(states.begin(), states.end(), "grasp"), 1) << told["states"];
-  // What scripts saw of it in between.
+  for (const auto& state : json["states"]) states.push_back(state["state"]);
+  EXPECT_GE(std::count(states.begin(), states.end(), "search line or object"), 2) << json["states"];
+  EXPECT_GE(std::count(states.begin(), states.end(), "search line"), 1) << json["states"];
+  EXPECT_EQ(std::count(states.begin(), states.end(), "grasp"), 1) << json["states"];
+  // `status --json` in the middle of the mission listed all components.
   ASSERT_TRUE(before.is_object()) << output_;
   EXPECT_EQ(before["components"].size(), 10U) << before;
 }

@@ -1,4 +1,4 @@
-// `constrictor teleop` in a terminal (tmux): keys in, screen out, and the terminal is restored.
+// `constrictor teleop` in a terminal (tmux): it obeys keys, draws its screen, and restores the terminal at its end.
 #include <signal.h>
 #include <unistd.h>
 
@@ -110,7 +110,7 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsRestored) {
   EXPECT_TRUE(shows("was here before")) << screen();
   EXPECT_EQ(settings("after"), before);
 
-  // Killed without a chance to restore the terminal itself.
+  // SIGKILL gives teleop no chance to restore the terminal itself.
   enter(program("constrictor") + " teleop & echo $! > " + (dir_ / "pid").string() + "; fg");
   ASSERT_TRUE(shows("SPACE emergency stop")) << screen();
   ::kill(std::stoi(file("pid")), SIGKILL);
@@ -160,7 +160,7 @@ TEST_F(TerminalClient, AResizedTerminalAlwaysShowsTheEmergencyStop) {
   ASSERT_TRUE(shows("a full bar is")) << screen();
   for (const auto& [columns, rows] : std::vector<std::pair<const char*, const char*>>{{"60", "18"}, {"40", "10"}}) {
     tmux({"resize-window", "-t", "robot", "-x", columns, "-y", rows});
-    // Redrawn from the first line on: the old picture is gone.
+    // The whole screen is drawn again: nothing of the old picture may be left.
     EXPECT_TRUE(eventually([&] {
       const std::string text = screen();
       return text.rfind("teleop  run", 0) == 0 && text.find("SPACE emergency stop") != std::string::npos &&
@@ -177,7 +177,7 @@ TEST_F(TerminalClient, AResizedTerminalAlwaysShowsTheEmergencyStop) {
   EXPECT_TRUE(shows("a full bar is")) << screen();
   type("q");
   EXPECT_TRUE(shows("was here before")) << screen();
-  EXPECT_TRUE(shows("teleop: authority")) << "what became of authority is on the terminal: " << screen();
+  EXPECT_TRUE(shows("teleop: authority")) << "teleop must print what happened to authority: " << screen();
   EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
   launcher_->wait(10s);
 }

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 constexpr unsigned kSeed = 20261121;
 constexpr std::uint64_t kEach = 5000;
-constexpr std::uint64_t kUnanswered = 9;  // of a source at a time; the latch keeps up to twelve
+constexpr std::uint64_t kUnanswered = 9;  // most unanswered requests of a source; `input` latches up to twelve
 constexpr double kMaxSpeed_rad_s = 4.0;   // of Mamba's joints (components/lib/robot/mamba.yaml)
 
 template <class T>

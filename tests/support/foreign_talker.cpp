@@ -1,4 +1,4 @@
-// A program that is no part of the run: publishes types of its own, or seeds one of the faults that `constrictor
+// A program that is no part of the run. It publishes types of its own, or causes one of the faults that `constrictor
 // doctor` finds.
 //   foreign_talker DOMAIN final|appendable|untyped|silent_qos|other_idl|plant
 #include <chrono>
@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-/// The same type without its description, as vendors and versions publish it that know none.
+/// The same type without its description (XTypes). Some DDS vendors and versions publish their types so.
 dds_topic_descriptor_t undescribed(const dds_topic_descriptor_t& type) {
   return {type.m_size,  type.m_align,    type.m_flagset & ~DDS_TOPIC_XTYPES_METADATA,
           type.m_nkeys, type.m_typename, type.m_keys,
@@ -72,7 +72,7 @@ void tide(dds_entity_t writer, int count) {
   dds_write(writer, &message);
 }
 
-/// A best-effort writer and a reliable reader of one topic: they never meet.
+/// Creates a best-effort writer and a reliable reader of one topic: they never match.
 void silent_qos(dds_entity_t participant) {
   const dds::Entity topic(dds_create_topic(participant, &foreign_Tide_desc, "tide", nullptr, nullptr),
                           "dds_create_topic");
@@ -87,7 +87,7 @@ void silent_qos(dds_entity_t participant) {
   while (!g_stop) std::this_thread::sleep_for(10ms);
 }
 
-/// A member of another version of this project.
+/// Publishes the Hello of a member of another version of this project.
 void other_idl(dds_entity_t participant) {
   const dds::Writer<msg::Hello> writer(participant, dds::barrier_topics::kHello, 8);
   msg::Hello hello{};
@@ -102,7 +102,7 @@ void other_idl(dds_entity_t participant) {
   while (!g_stop) std::this_thread::sleep_for(10ms);
 }
 
-/// A plant that asks nobody whether there is one already.
+/// Creates the writer of a plant without checking whether the domain already has a plant.
 void plant(dds_entity_t participant) {
   const dds::Writer<msg::Tick> writer(participant, dds::barrier_topics::kTick, dds::barrier_topics::kTick.depth);
   std::puts("talking");

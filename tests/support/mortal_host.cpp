@@ -1,7 +1,8 @@
-// mortal_host NAME [OPTION...]: the component NAME of constrictor_host, but it kills its process by SIGKILL between its
-// first output of a tick and its TickDone, once at each tick of $CONSTRICTOR_DEATHS (comma-separated). A death leaves
-// the file NAME-TICK in $CONSTRICTOR_DEATHS_DIR, by which the next incarnation knows that it need not die of this one
-// any more. A component that wrote nothing in the step dies at its end; one that is not due at the tick at its next.
+// mortal_host NAME [OPTION...] hosts the component NAME as constrictor_host does, and kills its own process (SIGKILL)
+// once at each tick of $CONSTRICTOR_DEATHS (comma-separated), between the component's first output and its TickDone. A
+// component that writes nothing in this step dies at the end of the step. A component without a step at this tick dies
+// in its next step. Before each death the process writes the file NAME-TICK into $CONSTRICTOR_DEATHS_DIR, so that the
+// next incarnation does not die at the same tick again.
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
@@ -36,6 +37,7 @@ class Fate {
     }
   }
   void at_tick(std::int64_t tick) { now_ = tick; }
+  /// Kills the process if the component has to die at this tick.
   void meet() {
     const auto due = ticks_.begin();
     if (due == ticks_.end() || *due > now_) return;
@@ -53,7 +55,7 @@ class Fate {
   std::int64_t now_ = -1;
 };
 
-/// Passes everything through; the first output of a step may be the last.
+/// Passes everything through to the real wiring. After each output the process may die.
 class MortalWiring : public Wiring {
  public:
   MortalWiring(Wiring& inner, Fate& fate) : inner_(inner), fate_(fate) {}
@@ -100,10 +102,10 @@ class Mortal : public Component {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // before the name is taken off: it starts the program anew
+  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
   const auto known = argc > 1 ? known_components().find(argv[1]) : known_components().end();
   if (known == known_components().end()) {
-    std::fprintf(stderr, "usage: mortal_host NAME [OPTION...], a component of constrictor_host\n");
+    std::fprintf(stderr, "usage: mortal_host NAME [OPTION...]; NAME is a component of constrictor_host\n");
     return exit_status::kUsage;
   }
   const ComponentFactory factory = known->second();

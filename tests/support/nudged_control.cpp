@@ -1,5 +1,5 @@
-// nudged_control [control] OPTIONS: the component `control`, but one ulp is added to one joint's setpoint at one tick
-// ($CONSTRICTOR_NUDGE_TICK, default 1000). A run whose hash does not notice would hash nothing worth hashing.
+// nudged_control [control] OPTIONS: the component `control`, but it adds one ulp to the setpoint of one joint at one
+// tick ($CONSTRICTOR_NUDGE_TICK, default 1000). Tests use it to prove that such a small change alters the state hash.
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -13,10 +13,11 @@ namespace {
 
 using namespace constrictor;
 
-// A yaw joint in the middle of the body, which moves: beside a setpoint of exactly 0 one ulp is nothing.
+// A yaw joint in the middle of the body. It moves while the robot drives. One ulp above a setpoint of exactly 0 would
+// be too small to have an effect.
 constexpr std::size_t kJoint = 10;
 
-/// Passes everything through, and nudges JointCommand once.
+/// Passes everything through to the real wiring, and changes JointCommand at one tick.
 class NudgingWiring : public Wiring {
  public:
   NudgingWiring(Wiring& inner, std::int64_t tick) : inner_(inner), tick_(tick) {}
@@ -48,7 +49,7 @@ class NudgingWiring : public Wiring {
   OutputSlot nudged_;
 };
 
-/// Control behind a NudgingWiring.
+/// The component `control` with a NudgingWiring in place of its wiring.
 class NudgedControl : public Component {
  public:
   NudgedControl(Wiring& wiring, const Setup& setup, std::int64_t tick)
@@ -66,9 +67,9 @@ class NudgedControl : public Component {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // before the name is taken off: it starts the program anew
+  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
   if (argc > 1 && std::string(argv[1]) == "control") {
-    --argc;  // as a manifest's `program` it is told which components to host
+    --argc;  // the launcher passes the names of the components as the first argument
     ++argv;
   }
   const char* text = std::getenv("CONSTRICTOR_NUDGE_TICK");

@@ -1,5 +1,6 @@
-// swaying_control [control] OPTIONS: moves one joint to and fro in the place of the component `control`, and for a
-// while commands what nobody may: $CONSTRICTOR_FAULT says what (nan, count, silence; nothing: no fault).
+// swaying_control [control] OPTIONS: replaces the component `control` and moves one joint to and fro. From tick
+// kFaultFrom to kFaultTo it has the fault $CONSTRICTOR_FAULT: `nan` commands an angle that is not a number, `count` a
+// wrong number of joints, `silence` sends no commands. Without this variable there is no fault.
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -42,9 +43,9 @@ class SwayingControl : public StatefulComponent<int> {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // before the name is taken off: it starts the program anew
+  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
   if (argc > 1 && std::string(argv[1]) == "control") {
-    --argc;  // as a manifest's `program` it is told which components to host
+    --argc;  // the launcher passes the names of the components as the first argument
     ++argv;
   }
   const char* fault = std::getenv("CONSTRICTOR_FAULT");

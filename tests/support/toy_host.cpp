@@ -1,4 +1,4 @@
-// toy_host NAME[,NAME...] OPTIONS: hosts toy components as a process of their own, for tests of the runtime over DDS.
+// toy_host NAME[,NAME...] OPTIONS: a process that hosts toy components, for tests of the runtime over DDS.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,8 +13,9 @@ namespace {
 
 using namespace constrictor;
 
-/// Ends the run after a number of ticks, as the report does, and says what the plant's joint last was: on its output
-/// and, if there is a directory for it, in mission.json. The scenario's name begins with the number of ticks.
+/// Ends the run after a number of ticks, as the component `report` does. The file name of the scenario begins with this
+/// number. The toy prints the last angle of the plant's joint and a hash of all angles; if it has an output directory,
+/// it also writes mission.json.
 class ToyReport : public StatefulComponent<toys::Mixer> {
  public:
   ToyReport(Wiring& wiring, const Setup& setup)
@@ -41,7 +42,7 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   std::filesystem::path output_dir_;
 };
 
-/// Steps once a second of the run, as what watches does, and writes nothing.
+/// Steps once per second of simulated time, as the real `overview` does, and writes nothing.
 class ToyOverview : public StatefulComponent<toys::Mixer> {
  public:
   ToyOverview(Wiring& wiring, const Setup&) : joints_(wiring.latest(topics::kJointState)) {}
@@ -52,7 +53,7 @@ class ToyOverview : public StatefulComponent<toys::Mixer> {
   Latest<msg::JointState> joints_;
 };
 
-/// An operator takes authority at tick 10, and stops the robot at tick 20.
+/// Publishes that an operator takes authority at tick 10 and latches an emergency stop at tick 20.
 class ToyInput : public StatefulComponent<toys::Mixer> {
  public:
   ToyInput(Wiring& wiring, const Setup&) : authority_(wiring.output(topics::kAuthority)) {}
@@ -85,7 +86,7 @@ ComponentFactory factory(const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // before the names are taken off: it starts the program anew
+  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
   std::vector<ComponentFactory> factories;
   std::istringstream names(argc > 1 ? argv[1] : "");
   for (std::string name; std::getline(names, name, ',');) factories.push_back(factory(name));

@@ -53,7 +53,7 @@ TEST_F(ChildProcessTest, ReportsAMissingProgram) {
 
 TEST_F(ChildProcessTest, CountsCpuTimeAndMemory) {
   ChildProcess child = shell("while :; do :; done");
-  // On a busy machine this takes long: wait until the kernel has counted 0.1 s for the child.
+  // Wait until the kernel has counted 0.1 s of CPU time for the child, which takes long on a busy machine.
   const auto computed_s = [&] {
     std::ifstream file("/proc/" + std::to_string(child.pid()) + "/stat");
     std::string skipped;
@@ -69,7 +69,7 @@ TEST_F(ChildProcessTest, CountsCpuTimeAndMemory) {
   EXPECT_GE(wait(child).cpu_s, least_s - 0.02);
 }
 
-TEST_F(ChildProcessTest, IsKilledWhenItsOwnerIsGone) {
+TEST_F(ChildProcessTest, IsKilledByTheDestructor) {
   pid_t pid = 0;
   {
     const ChildProcess child = shell("sleep 100");

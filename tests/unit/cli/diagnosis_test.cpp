@@ -1,5 +1,5 @@
-// Each fault that `constrictor doctor` names, seeded in the facts; processes that have them:
-// tests/integration/introspection_test.
+// The rules of `constrictor doctor`: each test puts one fault into the facts of a correct run. doctor_test
+// (tests/integration) produces the same faults with real processes.
 #include <gtest/gtest.h>
 
 #include "cli/introspection/diagnosis.hpp"
@@ -25,7 +25,7 @@ dds::Endpoint endpoint(std::uint8_t participant, bool writer, const std::string&
   return made;
 }
 
-/// A run in which everything is as it should be.
+/// The facts of a run without faults.
 Facts sound() {
   Facts facts;
   facts.domain = 7;
@@ -43,7 +43,7 @@ Facts sound() {
   return facts;
 }
 
-/// Names of the faults found.
+/// Names of the faults that diagnose() finds.
 std::vector<std::string> faults(const Facts& facts) {
   std::vector<std::string> names;
   for (const auto& finding : diagnose(facts)) {
@@ -60,9 +60,9 @@ std::string on_interface(const std::string& attributes, const std::string& more 
          "</General></Domain></CycloneDDS>";
 }
 
-TEST(Diagnosis, FindsNothingInASoundRun) { EXPECT_EQ(faults(sound()), Names{}); }
+TEST(Diagnosis, FindsNoFaultInACorrectRun) { EXPECT_EQ(faults(sound()), Names{}); }
 
-TEST(Diagnosis, NamesTheDomainInWhichTheRunIs) {
+TEST(Diagnosis, NamesTheDomainOfTheRunIfTheExaminedDomainIsEmpty) {
   Facts facts = sound();
   facts.domain = 8;
   facts.participants.clear();
@@ -73,7 +73,7 @@ TEST(Diagnosis, NamesTheDomainInWhichTheRunIs) {
   EXPECT_EQ(faults(facts), Names{"nobody there"});
 }
 
-TEST(Diagnosis, KnowsInterfacesThatAreMissingOrDown) {
+TEST(Diagnosis, FindsInterfacesThatDoNotExistOrAreDown) {
   Facts facts = sound();
   facts.dds_configuration = on_interface("name=\"eth0\"");
   EXPECT_EQ(faults(facts), Names{});
@@ -83,7 +83,7 @@ TEST(Diagnosis, KnowsInterfacesThatAreMissingOrDown) {
   EXPECT_EQ(faults(facts), Names{"wrong interface"});
 }
 
-TEST(Diagnosis, MissesMulticastOnlyWhereNoPeersAreNamed) {
+TEST(Diagnosis, FindsMissingMulticastOnlyIfNoPeersAreConfigured) {
   Facts facts = sound();
   facts.dds_configuration = on_interface("name=\"tun0\"");
   EXPECT_EQ(faults(facts), Names{"missing multicast"});
@@ -95,7 +95,7 @@ TEST(Diagnosis, MissesMulticastOnlyWhereNoPeersAreNamed) {
   EXPECT_EQ(faults(facts), Names{});
 }
 
-TEST(Diagnosis, FindsTwoPlantsAndTwoMembersOfOneName) {
+TEST(Diagnosis, FindsTwoPlantsAndTwoMembersWithTheSameName) {
   Facts facts = sound();
   facts.endpoints.push_back(endpoint(2, true, "barrier/tick", ""));
   EXPECT_EQ(faults(facts), Names{"two plants"});
@@ -104,13 +104,13 @@ TEST(Diagnosis, FindsTwoPlantsAndTwoMembersOfOneName) {
   EXPECT_EQ(faults(facts), Names{"two members of one name"});
 }
 
-TEST(Diagnosis, FindsAnotherVersionsMessages) {
+TEST(Diagnosis, FindsAMemberWithTheMessagesOfAnotherVersion) {
   Facts facts = sound();
   dds::set_text(facts.hellos[0].idl_hash, "bbb");
   EXPECT_EQ(faults(facts), Names{"differing IDL hash"});
 }
 
-TEST(Diagnosis, FindsReadersThatCannotHear) {
+TEST(Diagnosis, FindsReadersThatCannotMatchAWriter) {
   Facts facts = sound();
   facts.endpoints[0].qos.reliable = false;
   EXPECT_EQ(faults(facts), Names{"differing QoS"});
@@ -127,7 +127,7 @@ TEST(Diagnosis, FindsReadersThatCannotHear) {
   facts.endpoints[0].type = "Other";
   EXPECT_EQ(faults(facts), Names{"differing type"});
   facts = sound();
-  facts.endpoints[1].qos.reliable = facts.endpoints[1].qos.transient_local = false;  // asks for less: fine
+  facts.endpoints[1].qos.reliable = facts.endpoints[1].qos.transient_local = false;  // a reader may ask for less
   EXPECT_EQ(faults(facts), Names{});
 }
 

@@ -1,4 +1,5 @@
-// What is refused before a run starts, by the files of the project and by files of this test.
+// Errors that make_launch_plan() finds before a run starts, and the command lines that it makes for the processes. Some
+// files are those of the project, others are written by the tests.
 #include "cli/launch_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ class LaunchPlanTest : public ::testing::Test {
     std::ofstream(folder_.path() / name) << text;
     return (folder_.path() / name).string();
   }
-  /// Why the options are refused; empty: they are accepted.
+  /// The reason why the options are refused, or the empty string if they are accepted.
   static std::string error(const RunOptions& options) {
     try {
       static_cast<void>(make_launch_plan(options));
@@ -86,7 +87,7 @@ TEST_F(LaunchPlanTest, RefusesAProgramThatIsNoExecutableFile) {
   expect_refused(options_, {"process physics: found program " + program, "accepted an executable file"});
 }
 
-TEST_F(LaunchPlanTest, RefusesAPaceThatIsNone) {
+TEST_F(LaunchPlanTest, RefusesTextsThatAreNoPace) {
   for (const char* pace : {"fast", "", "0x", "-1x", "2", "nanx", "infx", "2xx", "0.0001x", "1001x"}) {
     options_.pace = pace;
     expect_refused(options_, {"usage: --pace", "accepted lockstep, realtime"});
@@ -97,7 +98,7 @@ TEST_F(LaunchPlanTest, RefusesAPaceThatIsNone) {
   }
 }
 
-TEST_F(LaunchPlanTest, TheRosterDoesNotDependOnTheDistribution) {
+TEST_F(LaunchPlanTest, TheRosterDoesNotDependOnTheGroupingIntoProcesses) {
   const LaunchPlan each = make_launch_plan(options_);
   options_.groups = {"report,physics"};
   const LaunchPlan grouped = make_launch_plan(options_);
@@ -128,8 +129,10 @@ TEST_F(LaunchPlanTest, CommandLinesNameTheConfigurationOfTheHostedComponentsOnly
   };
   EXPECT_NE(joined("planner", 3).find("/planner --domain 5 --roster physics,camera,"), std::string::npos);
   EXPECT_NE(joined("planner", 3).find("--incarnation 3 --config planner=" + file), std::string::npos);
-  EXPECT_NE(joined("planner", 3).find("--mission "), std::string::npos) << "the planner does not read the scenario";
-  EXPECT_NE(joined("report", 1).find("--max-sim-time 7.5"), std::string::npos) << "the report names this limit";
+  EXPECT_NE(joined("planner", 3).find("--mission "), std::string::npos)
+      << "the planner must receive the mission file instead of the scenario";
+  EXPECT_NE(joined("report", 1).find("--max-sim-time 7.5"), std::string::npos)
+      << "the report component needs the limit to name it as the reason";
   EXPECT_NE(joined("physics", 1).find("--max-sim-time 7.5"), std::string::npos);
   EXPECT_EQ(joined("physics", 1).find("--config"), std::string::npos);
 }

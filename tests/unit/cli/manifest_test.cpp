@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A manifest file that is gone after the test.
+/// A manifest file that is removed at the end of the test.
 class File {
  public:
   explicit File(const std::string& text)
@@ -24,7 +24,7 @@ class File {
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   [[nodiscard]] const fs::path& path() const { return path_; }
-  /// What is wrong with it, the folder left out.
+  /// The error of load_manifest() without the path of the file, or "accepted".
   [[nodiscard]] std::string error() const {
     try {
       load_manifest(path_);
@@ -40,7 +40,7 @@ class File {
 
 const char* const kHead = "plant: physics\nrobot: r.yaml\nscenario: s.yaml\nprocesses:\n";
 
-TEST(Manifest, OfTheCaseStudyHasEveryComponentInAProcessOfItsOwn) {
+TEST(Manifest, TheCaseStudyRunsEachComponentInAProcessOfItsOwn) {
   const LaunchManifest manifest = load_manifest(data_path("deploy/case_study.yaml"));
   EXPECT_EQ(manifest.plant, "physics");
   EXPECT_EQ(manifest.processes.size(), manifest.roster().size());
@@ -60,7 +60,7 @@ TEST(Manifest, ReadsProcesses) {
   EXPECT_EQ(manifest.config_files.at("b").filename(), "b.yaml");
 }
 
-TEST(Manifest, RefusesWhatMakesNoRun) {
+TEST(Manifest, RefusesManifestsThatDoNotDescribeARun) {
   EXPECT_EQ(File(std::string(kHead) + "  - components: [a]\n").error(),
             ":1: plant: found physics, accepted a component of processes");
   EXPECT_NE(
@@ -84,7 +84,7 @@ TEST(Manifest, RegroupingMovesComponentsAndKeepsAllOfThem) {
   EXPECT_EQ(manifest.processes[2].name(), "b");
   regroup(manifest, {{"physics", "a", "b", "c"}});
   ASSERT_EQ(manifest.processes.size(), 1u);
-  EXPECT_EQ(manifest.processes[0].restarts, 0) << "the plant is in it";
+  EXPECT_EQ(manifest.processes[0].restarts, 0) << "a process with the plant cannot be restarted";
   EXPECT_THROW(regroup(manifest, {{"nobody"}}), ConfigurationError);
   EXPECT_THROW(regroup(manifest, {{"a"}, {"b", "a"}}), ConfigurationError);
 }

@@ -11,7 +11,7 @@ namespace {
 
 using Log = std::vector<HashLog::Entry>;
 
-/// A run of `ticks` ticks: joint states of the plant, commands of control.
+/// The hash log of a run of `ticks` ticks in which physics writes joint_state and control writes joint_command.
 Log run_of(std::int64_t ticks) {
   Log log;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
@@ -24,9 +24,9 @@ Log run_of(std::int64_t ticks) {
 
 HashLog::Entry& command_at(Log& log, std::int64_t tick) { return log[static_cast<std::size_t>(2 * tick + 1)]; }
 
-TEST(RunDifference, EqualRunsHaveNone) { EXPECT_FALSE(first_run_difference(run_of(100), run_of(100))); }
+TEST(RunDifference, EqualRunsHaveNoDifference) { EXPECT_FALSE(first_run_difference(run_of(100), run_of(100))); }
 
-TEST(RunDifference, NamesTickComponentAndTopicOfTheFirst) {
+TEST(RunDifference, NamesTickComponentAndTopicOfTheFirstDifference) {
   Log changed = run_of(100);
   command_at(changed, 60).hash ^= 1;
   command_at(changed, 40).hash ^= 1;
@@ -54,7 +54,7 @@ TEST(RunDifference, NamesTheFieldIfMessagesWereRecorded) {
   EXPECT_EQ(difference->b, "0.25");
 }
 
-TEST(RunDifference, AMissingMessageCountsButNotAtTheVeryEnd) {
+TEST(RunDifference, AMissingMessageIsADifferenceExceptAtTheEndOfTheLog) {
   Log lacks = run_of(100);
   lacks.erase(lacks.begin() + 2 * 30 + 1);
   const auto difference = first_run_difference(run_of(100), lacks);
@@ -75,13 +75,13 @@ TEST(RunDifference, AShorterRunDiffersAtItsEnd) {
   EXPECT_EQ(difference->b, "ends at tick 89");
 }
 
-TEST(RunDifference, AStepDoneTwiceByARestartedMemberIsNone) {
+TEST(RunDifference, AStepThatARestartedMemberRepeatsIsNoDifference) {
   Log twice = run_of(100);
   twice.insert(twice.begin() + 2 * 50 + 1, command_at(twice, 50));
   EXPECT_FALSE(first_run_difference(run_of(100), twice));
 }
 
-/// A report directory with the log of a run of so many ticks.
+/// Writes report directories that contain a hash log.
 class RunDifferenceOfFiles : public ::testing::Test {
  protected:
   std::filesystem::path log_of(const std::string& name, int ticks) const {
@@ -98,7 +98,7 @@ class RunDifferenceOfFiles : public ::testing::Test {
   const testing::TemporaryFolder folder_;
 };
 
-TEST_F(RunDifferenceOfFiles, RunsThatNeverTickedAreNotEqual) {
+TEST_F(RunDifferenceOfFiles, ARunWithoutTicksCannotBeCompared) {
   EXPECT_FALSE(compare_runs(log_of("a", 3), log_of("b", 3)));
   const std::filesystem::path empty = log_of("empty", 0);
   for (const auto& [one, other] :

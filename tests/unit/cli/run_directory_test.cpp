@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(RunDirectory, IsNobodyElses) {
+TEST(RunDirectory, IsAlwaysANewOne) {
   const testing::TemporaryFolder folder;
   const fs::path wanted = folder.path() / "runs/20261121-120000_short_seed1";
   EXPECT_EQ(make_new_directory(wanted), wanted);
@@ -21,7 +21,7 @@ TEST(RunDirectory, IsNobodyElses) {
   EXPECT_TRUE(fs::is_directory(wanted.string() + "-3"));
 }
 
-TEST(RunDirectory, NorWhenManyAskAtOnce) {
+TEST(RunDirectory, IsANewOneForEachOfManySimultaneousCalls) {
   const testing::TemporaryFolder folder;
   std::vector<fs::path> made(16);
   std::vector<std::thread> threads;

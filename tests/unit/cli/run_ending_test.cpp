@@ -42,7 +42,7 @@ TEST(RunEnding, KillsAtOnceAfterTheSecondSignal) {
   EXPECT_EQ(ending.first_signal(), SIGTERM);
 }
 
-TEST(RunEnding, TakesSignalsWithinAMomentAsOneWish) {
+TEST(RunEnding, TreatsSignalsWithinAShortTimeAsOne) {
   RunEnding ending;
   ending.signal_received(SIGINT, true, kStart);
   ending.signal_received(SIGINT, true, kStart + RunEnding::kSameWish - 1ms);
@@ -58,7 +58,7 @@ TEST(RunEnding, KillsARunThatHasNotBegunWithoutAskingTheConductor) {
   EXPECT_EQ(ending.kill_reason(kStart), "the run had not begun");
 }
 
-TEST(RunEnding, KillsWhenTheConductorRefusesAndSaysWhy) {
+TEST(RunEnding, KillsWhenTheConductorRefusesAndGivesTheReason) {
   RunEnding ending;
   ending.signal_received(SIGINT, true, kStart);
   ending.failed("no answer within 5 s");

@@ -18,7 +18,7 @@ class RunReport : public ::testing::Test {
   }
   ~RunReport() override { fs::remove_all(dir_); }
   void write_mission(const std::string& text) const { std::ofstream(dir_ / "mission.json") << text; }
-  /// The reason in the verdict of a run without success, which must be that in report.json.
+  /// Expects that a run has no success, and that its verdict and report.json name the same reason. Returns this reason.
   [[nodiscard]] std::string reason_of(const RunOutcome& outcome) const {
     const RunVerdict verdict = write_report(dir_, outcome, {}, {});
     EXPECT_FALSE(verdict.success);
@@ -30,7 +30,7 @@ class RunReport : public ::testing::Test {
   fs::path dir_;
 };
 
-TEST_F(RunReport, JoinsMissionAndProcesses) {
+TEST_F(RunReport, CombinesTheMissionWithTheProcesses) {
   std::ofstream(dir_ / "mission.json")
       << R"({"success": true, "sim_time_s": 20.0, "ticks": 1001, "state_hash": "ab", "objects": []})";
   RunView view;
@@ -56,18 +56,18 @@ TEST_F(RunReport, JoinsMissionAndProcesses) {
   EXPECT_EQ(json["processes"][1]["refused"], 0);
 }
 
-TEST_F(RunReport, WithoutAMissionThereIsNoSuccess) {
+TEST_F(RunReport, WithoutAMissionFileTheRunHasNoSuccess) {
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "no report component judged the mission");
   EXPECT_TRUE(report()["state_hash"].is_null());
 }
 
-TEST_F(RunReport, AFailedRunIsNoSuccessWhateverTheMissionReports) {
+TEST_F(RunReport, AFailedRunHasNoSuccessEvenIfTheMissionSucceeded) {
   write_mission(R"({"success": true, "reason": ""})");
   EXPECT_EQ(reason_of({"s", 1, 1.0, "control ended", "ended by user at 1.0 s"}), "control ended");
   EXPECT_EQ(report()["error"], "control ended");
 }
 
-TEST_F(RunReport, ADamagedMissionIsNoSuccess) {
+TEST_F(RunReport, WithADamagedMissionFileTheRunHasNoSuccess) {
   write_mission("{\"success\": tr");
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "no report component judged the mission");
 }
@@ -77,13 +77,13 @@ TEST_F(RunReport, TakesTheReasonOfTheReportComponent) {
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "green lies 0.51 m from its zone");
 }
 
-TEST_F(RunReport, KnowsThatAUserEndedTheRun) {
+TEST_F(RunReport, GivesTheReasonThatAUserEndedTheRun) {
   write_mission(R"({"success": false, "reason": ""})");
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", "ended by user at 46.2 s"}), "ended by user at 46.2 s");
   EXPECT_FALSE(report().contains("error"));
 }
 
-TEST_F(RunReport, HasAReasonAlsoWhenTheReportComponentGivesNone) {
+TEST_F(RunReport, HasAReasonEvenIfTheReportComponentGivesNone) {
   write_mission(R"({"success": false})");
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "the report component gave no reason");
 }

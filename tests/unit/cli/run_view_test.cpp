@@ -1,4 +1,4 @@
-// What is known of a run from its messages, also while a reset leaves some of the epoch before.
+// RunView collects the state of a run from its messages. After a reset, messages of the epoch before may still arrive.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -39,16 +39,16 @@ msg::MissionStatus mission(std::uint32_t epoch, std::int64_t tick) {
   return m;
 }
 
-TEST(RunView, TheTickIsTheNewestOfAnybody) {
+TEST(RunView, TheTickIsTheNewestInAnyMessage) {
   RunView view;
   EXPECT_EQ(view.tick, -1);
-  EXPECT_EQ(view.seed(3), 3u) << "before its first word the seed that it was begun with";
+  EXPECT_EQ(view.seed(3), 3u) << "before the first RunState, the seed is the one given to the launcher";
   view.take(status("control", 1, 50));
   view.take(mission(1, 60));
   view.take(state(1, 58, 1));
   EXPECT_EQ(view.tick, 60);
   view.take(state(1, 71, 1));
-  EXPECT_EQ(view.tick, 70) << "a RunState tells the next one";
+  EXPECT_EQ(view.tick, 70) << "RunState contains the next tick, which is not done yet";
 }
 
 TEST(RunView, AfterAResetTickAndSeedAreTheNewOnes) {
@@ -60,7 +60,7 @@ TEST(RunView, AfterAResetTickAndSeedAreTheNewOnes) {
   EXPECT_EQ(view.seed(1), 7u);
   EXPECT_EQ(view.tick, -1);
   EXPECT_FALSE(view.mission) << "the mission of the epoch before is over";
-  view.take(mission(1, 501));  // still on its way
+  view.take(mission(1, 501));  // late messages of the epoch before
   view.take(status("control", 1, 500));
   view.take(state(1, 501, 1));
   EXPECT_EQ(view.tick, -1);
@@ -70,8 +70,8 @@ TEST(RunView, AfterAResetTickAndSeedAreTheNewOnes) {
   EXPECT_EQ(view.tick, 10);
 }
 
-// As a late observer gets them: what writers kept, in any order of topics.
-TEST(RunView, KeptMessagesOfTheEpochBeforeDoNotCountInAnyOrder) {
+// A late observer receives the messages that DDS writers have kept. Their order across topics is not defined.
+TEST(RunView, IgnoresKeptMessagesOfTheEpochBeforeInAnyOrder) {
   for (const bool state_first : {true, false}) {
     RunView view;
     if (state_first) view.take(state(2, 21, 7));
@@ -81,11 +81,11 @@ TEST(RunView, KeptMessagesOfTheEpochBeforeDoNotCountInAnyOrder) {
     if (!state_first) view.take(state(2, 21, 7));
     EXPECT_EQ(view.tick, 20);
     EXPECT_FALSE(view.mission);
-    EXPECT_EQ(view.components.size(), 2u) << "health is health";
+    EXPECT_EQ(view.components.size(), 2u) << "the status of a component counts in any epoch";
   }
 }
 
-TEST(RunView, AnotherRunInTheDomainDoesNotCount) {
+TEST(RunView, IgnoresAnotherRunInTheSameDomain) {
   RunView view;
   view.take(state(1, 100, 1));
   view.take(state(3, 900, 9, kRun + 1));
@@ -99,21 +99,21 @@ TEST(RunView, AWaitIsOverOnceItsTickIsDone) {
   waiting.run_id = kRun;
   waiting.tick = 100;
   RunView view;
-  EXPECT_FALSE(view.over(waiting)) << "nothing else is known";
+  EXPECT_FALSE(view.over(waiting)) << "no message shows that the tick is done";
   view.take(status("control", 1, 50));
   view.take(state(1, 101, 1));
-  EXPECT_FALSE(view.over(waiting)) << "others may be done with it";
+  EXPECT_FALSE(view.over(waiting)) << "only other members may have done the tick";
   view.take(status("control", 1, 100));
   EXPECT_TRUE(view.over(waiting));
   RunView later;
   later.take(state(1, 5000, 1));
-  EXPECT_TRUE(later.over(waiting)) << "its status is not known, yet nobody is so far ahead";
+  EXPECT_TRUE(later.over(waiting)) << "without its status the tick of the run decides: no member can be so far behind";
   waiting.run_id = kRun + 1;
   EXPECT_TRUE(view.over(waiting));
 }
 
-// Such a wait has no run yet: its end is the waiter's first word of one.
-TEST(RunView, AWaitForTheRunToBeginIsOverOnceTheWaiterIsInIt) {
+// A member that waits for the run to begin knows no run id. Its wait ends with its first status that has a run id.
+TEST(RunView, AWaitForTheRunToBeginIsOverOnceTheMemberHasJoined) {
   msg::Waiting waiting{};
   std::snprintf(waiting.component, sizeof waiting.component, "control");
   RunView view;
@@ -122,12 +122,12 @@ TEST(RunView, AWaitForTheRunToBeginIsOverOnceTheWaiterIsInIt) {
   outside.run_id = 0;
   view.take(outside);
   view.take(status("physics", 1, 40));
-  EXPECT_FALSE(view.over(waiting)) << "others are in it";
+  EXPECT_FALSE(view.over(waiting)) << "another member has joined, not this one";
   view.take(status("control", 1, 50));
   EXPECT_TRUE(view.over(waiting));
   outside.incarnation = 2;
   view.take(outside);
-  EXPECT_FALSE(view.over(waiting)) << "restarted, and not resumed yet";
+  EXPECT_FALSE(view.over(waiting)) << "the member was restarted and has not been resumed";
   EXPECT_EQ(view.components["control"].incarnation, 2u);
   view.take(status("control", 1, 60, 2));
   EXPECT_TRUE(view.over(waiting));
@@ -137,7 +137,7 @@ TEST(RunView, CountsOverrunsOfAllIncarnations) {
   RunView view;
   view.take(status("control", 1, 10, 1, 4));
   view.take(status("control", 1, 20, 2, 3));
-  view.take(status("control", 1, 15, 1, 5));  // of the dead one, late
+  view.take(status("control", 1, 15, 1, 5));  // a late status of the first incarnation
   EXPECT_EQ(view.overruns["control"], 7u);
 }
 

@@ -20,7 +20,8 @@ constexpr const char* kWaitForever = "exec sleep 1000";
 
 class SupervisorTest : public ::testing::Test {
  protected:
-  /// A run of a plant and two members that execute these scripts. $1 is the incarnation.
+  /// Starts a run of a plant and two members. The plant and the member `control` execute these scripts, in which $1 is
+  /// the incarnation. The member `input` waits forever.
   void start(const std::string& plant, const std::string& member, int restarts = 100) {
     LaunchManifest manifest;
     manifest.plant = "physics";
@@ -69,12 +70,13 @@ TEST_F(SupervisorTest, RestartsAMemberThatDiesAsTheNextIncarnation) {
   ASSERT_TRUE(poll_until([&] { return log("control").find("incarnation 2 lives hello") != std::string::npos; }))
       << printed_;
   EXPECT_EQ(record(0).restarts, 1u);
-  EXPECT_TRUE(printed("control: incarnation 1 fails\n")) << "the last lines of its log: " << printed_;
+  EXPECT_TRUE(printed("control: incarnation 1 fails\n"))
+      << "the last lines of the member's log must be printed: " << printed_;
   EXPECT_TRUE(printed("control ended with status 3; restarted as incarnation 2\n")) << printed_;
   EXPECT_EQ(supervisor_->poll(), State::kRunning);
 }
 
-TEST_F(SupervisorTest, FailsWhenTheManifestsRestartsAreUsedUp) {
+TEST_F(SupervisorTest, FailsAfterTheRestartsThatTheManifestAllows) {
   start(kWaitForever, "exit 3", 2);
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kFailed);
@@ -91,7 +93,7 @@ TEST_F(SupervisorTest, FailsWhenAMemberDiesFiveTimesAtOneTick) {
   EXPECT_EQ(record(0).restarts, 4u);
 }
 
-TEST_F(SupervisorTest, DeathsDoNotCountAsLongAsTheRunGoesOn) {
+TEST_F(SupervisorTest, DeathsDoNotCountWhileTicksAdvance) {
   start(kWaitForever, "[ $1 -lt 9 ] && exit 3; " + std::string(kWaitForever));
   std::int64_t tick = 0;
   EXPECT_TRUE(poll_until([&] {
@@ -144,7 +146,7 @@ TEST_F(SupervisorTest, FailsWhenThePlantEndsBeforeTheRun) {
   EXPECT_NE(supervisor_->failure().find("physics, the plant (pid "), std::string::npos) << supervisor_->failure();
 }
 
-TEST_F(SupervisorTest, EndsWithThePlantOnceTheEndIsExpected) {
+TEST_F(SupervisorTest, EndsWithoutFailureIfThePlantEndsAfterTheRun) {
   start("exit 0", kWaitForever);
   supervisor_->expect_end();
   ASSERT_TRUE(poll_until_over());
@@ -153,7 +155,7 @@ TEST_F(SupervisorTest, EndsWithThePlantOnceTheEndIsExpected) {
   EXPECT_EQ(supervisor_->failure(), "control did not end within 0 s of the run's end");
 }
 
-TEST_F(SupervisorTest, FinishReturnsEarlyWhenItIsToldToGiveUp) {
+TEST_F(SupervisorTest, FinishReturnsAtOnceIfGiveUpReturnsTrue) {
   start("exit 0", kWaitForever);
   supervisor_->expect_end();
   ASSERT_TRUE(poll_until_over());
@@ -161,12 +163,12 @@ TEST_F(SupervisorTest, FinishReturnsEarlyWhenItIsToldToGiveUp) {
   EXPECT_EQ(supervisor_->failure(), "");
 }
 
-TEST_F(SupervisorTest, StopsAlsoAProcessThatIgnoresSigtermOrIsStopped) {
+TEST_F(SupervisorTest, KillsProcessesThatIgnoreSigtermOrAreStopped) {
   start("trap '' TERM; echo ready; while :; do sleep 0.01; done", "kill -STOP $$");
   ASSERT_TRUE(poll_until([&] { return log("physics") == "ready\n"; }));
   const auto start = std::chrono::steady_clock::now();
   supervisor_->stop();
-  EXPECT_GE(std::chrono::steady_clock::now() - start, 3s) << "SIGKILL comes 3 s after SIGTERM";
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 3s) << "SIGKILL is sent 3 s after SIGTERM";
   EXPECT_GT(record(1).cpu_s, 0.0);
 }
 

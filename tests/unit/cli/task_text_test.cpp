@@ -1,4 +1,4 @@
-// Tasks, events and durations as people type and read them.
+// The texts that users type and read for tasks, events, goals and durations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(TaskNames, FindsEveryNameHoweverItsWordsAreJoined) {
+TEST(TaskNames, FindsEveryNameWithBlanksHyphensOrUnderscores) {
   for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) EXPECT_EQ(task_by_name(task_word(task)), task);
   for (std::uint8_t event = 1; event < msg::kEventCount; ++event) EXPECT_EQ(event_by_name(event_name(event)), event);
   EXPECT_EQ(task_by_name("Follow-Line"), msg::kTaskFollowLine);
@@ -56,7 +56,7 @@ TEST(TaskNames, AcceptsPathsOf2To64Points) {
   EXPECT_NE(set_path(path, std::vector<std::string>(65, "1,2")), "");
 }
 
-TEST(Durations, AcceptUnitsAndRejectTheRest) {
+TEST(Durations, AcceptNumbersWithUnitsAndRejectOtherTexts) {
   EXPECT_EQ(parse_duration("--for", "5s"), 5s);
   EXPECT_EQ(parse_duration("--for", "250ms"), 250ms);
   EXPECT_EQ(parse_duration("--for", "1.5m"), 90s);
@@ -80,7 +80,7 @@ TEST(TaskRequest, AnIncompleteTaskIsRefusedBeforeItIsSent) {
   }
 }
 
-TEST(TaskRequest, AGoalIsAShortNumberAndNamesItsLevelIfItIsNoOperators) {
+TEST(TaskRequest, AGoalIsShownAsAShortNumberAndWithItsLevelUnlessAnOperatorStartedIt) {
   EXPECT_EQ(goal_text((std::uint64_t{msg::kAuthorityOperator} << 48) + (std::uint64_t{5} << 32) + 3), "3");
   EXPECT_EQ(goal_text((std::uint64_t{msg::kAuthorityPlanner} << 48) + 12), "12 (planner)");
 }

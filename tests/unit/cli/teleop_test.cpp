@@ -1,4 +1,4 @@
-// The pure parts of the terminal client: keys, driving, and the screen at every size.
+// The parts of the terminal client that are pure functions: keys, driving, and the screen at every size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The actions of `typed` if it arrives in pieces of `piece` bytes.
+/// The actions for the bytes `typed` when they arrive in pieces of `piece` bytes.
 std::vector<TeleopAction> actions(const std::string& typed, std::size_t piece) {
   KeyReader keys;
   std::vector<TeleopAction> list;
@@ -47,19 +47,19 @@ TEST(TeleopKeys, ReadsEveryArrowOfABurst) {
   EXPECT_EQ(actions(burst, 64), std::vector<TeleopAction>(30, TeleopAction::kForward));
 }
 
-TEST(TeleopKeys, TheEscapeKeyDoesNothingAndHidesNoKeyAfterIt) {
+TEST(TeleopKeys, TheEscapeKeyDoesNothingAndTheNextKeyStillCounts) {
   KeyReader keys;
   keys.add("\033");
-  EXPECT_EQ(keys.next(), "") << "the rest of an arrow may follow";
+  EXPECT_EQ(keys.next(), "") << "the rest of an arrow key's sequence may follow";
   EXPECT_EQ(keys.next(/*quiet=*/true), "\033");
   EXPECT_EQ(action_of("\033"), TeleopAction::kNone);
   EXPECT_EQ(actions("\033 ", 2), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop}));
   EXPECT_EQ(actions("\033[ ", 1), (std::vector{TeleopAction::kNone, TeleopAction::kEmergencyStop}))
-      << "a broken sequence does not hide it";
+      << "the space after a broken sequence must still stop the robot";
   EXPECT_EQ(actions("\033[1;\003", 1), (std::vector{TeleopAction::kNone, TeleopAction::kQuit}));
 }
 
-TEST(TeleopKeys, ReadsAnyBytesToTheEnd) {
+TEST(TeleopKeys, ReadsArbitraryBytesToTheEnd) {
   std::string bytes;
   for (int i = 1; i < 256; ++i) bytes += static_cast<char>(i);
   bytes += std::string("\033[") + std::string(100, '1');
@@ -79,7 +79,7 @@ struct HelpedKey {
   TeleopAction action;
 };
 
-// The entries of the help, word by word: the keys, then what they do.
+// The entries of the help exactly as it shows them, and the actions of their keys.
 const std::map<std::string, std::vector<HelpedKey>> kHelped = {
     {"i/, forward/back", {{"i", TeleopAction::kForward}, {",", TeleopAction::kBack}}},
     {"j/l turn", {{"j", TeleopAction::kLeft}, {"l", TeleopAction::kRight}}},
@@ -111,7 +111,7 @@ std::vector<std::string> help_entries() {
   return entries;
 }
 
-/// The keys that an entry begins with: "f/g/h", or the word for the space bar.
+/// The keys that an entry begins with: "f/g/h" are three keys, "SPACE" is one.
 std::vector<std::string> keys_of(const std::string& entry) {
   const std::string word = entry.substr(0, entry.find(' '));
   if (word == "SPACE") return {" "};
@@ -120,23 +120,23 @@ std::vector<std::string> keys_of(const std::string& entry) {
   return keys;
 }
 
-TEST(TeleopKeys, EachKeyDoesWhatTheHelpSays) {
+TEST(TeleopKeys, EachKeyHasTheActionThatTheHelpNames) {
   std::set<std::string> named;
   for (const std::string& entry : help_entries()) {
     SCOPED_TRACE(entry);
     const auto helped = kHelped.find(entry);
-    ASSERT_NE(helped, kHelped.end()) << "this test has no such entry";
+    ASSERT_NE(helped, kHelped.end()) << "add this entry of the help to kHelped";
     const std::vector<std::string> keys = keys_of(entry);
     ASSERT_EQ(keys.size(), helped->second.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
       EXPECT_EQ(keys[i], helped->second[i].key);
       EXPECT_NE(action_of(keys[i]), TeleopAction::kNone) << keys[i] << " does nothing";
       EXPECT_EQ(action_of(keys[i]), helped->second[i].action) << keys[i];
-      EXPECT_EQ(actions(keys[i], 1), std::vector{helped->second[i].action}) << "when it is typed";
-      EXPECT_TRUE(named.insert(keys[i]).second) << keys[i] << " is there twice";
+      EXPECT_EQ(actions(keys[i], 1), std::vector{helped->second[i].action}) << "when the key is typed";
+      EXPECT_TRUE(named.insert(keys[i]).second) << keys[i] << " is in the help twice";
     }
   }
-  EXPECT_EQ(help_entries().size(), kHelped.size()) << "an entry is missing in the help";
+  EXPECT_EQ(help_entries().size(), kHelped.size()) << "the help lacks an entry of kHelped";
   // The reverse: each key with an action is in the help, or is an alternative to one that is.
   for (int c = 1; c < 256; ++c) {
     const std::string key(1, static_cast<char>(c));
@@ -145,7 +145,7 @@ TEST(TeleopKeys, EachKeyDoesWhatTheHelpSays) {
   }
 }
 
-TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {
+TEST(TeleopDrive, TurnKeysAlsoDriveButRotateKeysTurnOnTheSpot) {
   TeleopDrive drive;
   EXPECT_TRUE(drive.apply(TeleopAction::kLeft));
   EXPECT_GT(drive.drive_m_s(), 0.0);
@@ -161,7 +161,7 @@ TEST(TeleopDrive, TurnsOnlyWhileDrivingUnlessItRotates) {
   EXPECT_GE(drive.speed_m_s, 0.1 - 1e-9);
 }
 
-TEST(DriveGait, HasTheSignsOfSpeedAndTurnAndStaysInTheRangesOfTheMessage) {
+TEST(DriveGait, HasTheSignsOfSpeedAndTurnAndStaysWithinTheRangesOfTheMessage) {
   EXPECT_GT(drive_gait(0.3, 0.0).frequency_hz, 0.0);
   EXPECT_LT(drive_gait(-0.3, 0.0).frequency_hz, 0.0);
   EXPECT_GT(drive_gait(0.3, 0.2).curvature_1_m, 0.0);
@@ -202,7 +202,7 @@ TeleopScreen full_screen() {
   return s;
 }
 
-TEST(TeleopScreen, FitsATerminalOf80x24WhateverItShows) {
+TEST(TeleopScreen, FitsATerminalOf80x24WithAnyContent) {
   for (const TeleopScreen& s : {TeleopScreen{}, full_screen()}) {
     const auto lines = render(s);
     EXPECT_EQ(lines.size(), 24u);
@@ -215,8 +215,7 @@ TEST(TeleopScreen, FitsATerminalOf80x24WhateverItShows) {
   }
 }
 
-// The most important key is in view at every size, also while a task is typed and when there is no room for anything
-// else.
+// The key of the emergency stop must always be visible: at every size of the terminal, and while the user types a task.
 TEST(TeleopScreen, ShowsTheEmergencyStopAtEverySize) {
   for (TeleopScreen s : {TeleopScreen{}, full_screen()}) {
     for (const bool prompt : {false, true}) {
@@ -236,7 +235,7 @@ TEST(TeleopScreen, ShowsTheEmergencyStopAtEverySize) {
   }
 }
 
-TEST(TeleopScreen, TheSmallestOneShowsAuthorityDriveNoticeAndPrompt) {
+TEST(TeleopScreen, TheSmallestSizeShowsAuthorityDriveNoticeAndPrompt) {
   TeleopScreen s = full_screen();
   s.notice = "granted: drive";
   const auto text = [&](ScreenSize size) {
@@ -248,12 +247,12 @@ TEST(TeleopScreen, TheSmallestOneShowsAuthorityDriveNoticeAndPrompt) {
     for (const char* part : {"teleop  run", "authority  operator", "drive  ", "granted: drive"})
       EXPECT_NE(text(size).find(part), std::string::npos) << part << " at " << size.columns << "x" << size.rows;
   }
-  EXPECT_NE(text({60, 18}).find("q quit"), std::string::npos) << "the keys fit";
+  EXPECT_NE(text({60, 18}).find("q quit"), std::string::npos) << "this size has room for the help";
   s.prompt = "rotate";
   EXPECT_NE(text(kSmallestScreen).find("task> rotate_"), std::string::npos);
 }
 
-TEST(TeleopScreen, BelowTheSmallestSizeItSaysHowLargeTheTerminalMustBe) {
+TEST(TeleopScreen, BelowTheSmallestSizeItNamesTheRequiredSize) {
   for (const ScreenSize size : {ScreenSize{39, 10}, ScreenSize{40, 9}}) {
     const auto lines = render(full_screen(), size);
     ASSERT_EQ(lines.size(), 4u);
@@ -263,7 +262,7 @@ TEST(TeleopScreen, BelowTheSmallestSizeItSaysHowLargeTheTerminalMustBe) {
   }
 }
 
-TEST(TeleopScreen, ShowsWhoHasAuthorityAndThePrompt) {
+TEST(TeleopScreen, ShowsAuthorityPromptSeedPauseAndSilence) {
   TeleopScreen s = full_screen();
   EXPECT_NE(render(s)[1].find("operator teleop.host.1 (you)"), std::string::npos);
   EXPECT_NE(render(s)[0].find("0.99x"), std::string::npos);
@@ -276,7 +275,7 @@ TEST(TeleopScreen, ShowsWhoHasAuthorityAndThePrompt) {
   EXPECT_NE(render(s)[0].find("SILENT for 12 s"), std::string::npos) << render(s)[0];
 }
 
-TEST(TeleopScreen, TheLengthOfABarIsTheTorque) {
+TEST(TeleopScreen, TheLengthOfABarIsProportionalToTheTorque) {
   TeleopScreen s;
   s.view.joints = msg::JointState{};
   s.view.joints->joint_count = 23;

@@ -7,7 +7,7 @@
 namespace constrictor::cli {
 namespace {
 
-/// A command line as main.cpp has it.
+/// A command line with the same kinds of options as that of main.cpp.
 class CommandLineTest : public ::testing::Test {
  protected:
   CommandLineTest() {
@@ -20,7 +20,7 @@ class CommandLineTest : public ::testing::Test {
     topic->require_subcommand(1);
     topic->add_subcommand("echo")->add_flag("--json");
   }
-  /// What is wrong with a command line; empty: nothing.
+  /// The error text for a command line, or the empty string if it is correct.
   std::string error(std::vector<std::string> words) {
     std::reverse(words.begin(), words.end());
     try {
