@@ -172,7 +172,7 @@ void Retrieval::follow_senses() {
     default:
       break;
   }
-  // Navigation measures whether the body holds an object: it is right where the stage differs.
+  // Navigation measures whether the body holds an object. If the stage of this planner disagrees, navigation is right.
   const bool may_differ = stage_ == kHold || stage_ == kPutDown;
   if (may_differ || status_.goal != goal_ || status_.carrying == loaded()) differs_since_s_ = now_s_;
   if (now_s_ - differs_since_s_ > 2.0) set_back(status_.carrying ? kFindLine : kSearch);
@@ -205,7 +205,7 @@ void Retrieval::follow_time() {
       return;
     case kSearch:
       if (in_stage_s > 60.0) set_back(kLook);
-      return;  // the look round begins at its last place
+      return;  // the look round begins where the object was last seen
     default:
       if (in_stage_s > 240.0) set_back(loaded() ? kFindLine : kSearch);
       return;
@@ -257,8 +257,8 @@ Order Retrieval::order_of_stage() {
   return order;
 }
 
-// Looks to remembered places, at times along waypoints back to the line; without a memory forwards, left, right and
-// back in turn.
+// The robot turns to the remembered place of the object or zone; two of eight orders instead follow waypoints back to
+// the line. If no place is remembered, it looks forwards, left, right and backwards in turn.
 void Retrieval::look_round(Order& order) {
   order.line_colour = line_colour_;
   const unsigned look = looks_++ % 8;

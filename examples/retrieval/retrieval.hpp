@@ -83,8 +83,8 @@ class Retrieval {
   Retrieval(std::vector<std::uint8_t> sequence, std::uint8_t line_colour)
       : remaining_(std::move(sequence)), line_colour_(line_colour) {}
 
-  // Take what the robot perceives and does, also before this planner has authority: the logic remembers where the line
-  // goes while another source drives.
+  // To be called with every message, also before this planner has authority: the logic then knows the line that the
+  // robot followed while another source had authority.
   void take(const Line& line);
   void take(const std::vector<Percept>& percepts);
   void take(const Pose& pose) { pose_ = pose; }

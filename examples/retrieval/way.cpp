@@ -1,4 +1,4 @@
-// What the retrieval logic remembers of the line, and where it turns because of it.
+// The retrieval logic's memory of the line, and the directions to which the robot turns because of this memory.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace retrieval {
 namespace {
 
-// Between head and body: beyond it a body without an object is too curled up to follow a line.
+// Largest angle [rad] between head and body at which a body without an object is straight enough to follow a line.
 constexpr double kStraight_rad = 0.6;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// waypoints: sends the robot along a path and prints how well it follows it. The smallest external planner: it joins a
-// run, starts one goal and waits for its end.
+// waypoints: sends the robot along a path and prints the cross-track error. This is the smallest external planner: it
+// joins a run, starts one goal and waits for its end.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>

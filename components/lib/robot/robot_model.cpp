@@ -7,9 +7,9 @@
 namespace constrictor {
 namespace {
 
-// Message arrays (kMaxModules of common.idl) bound the count; lengths bound what the contact model is meant for.
+// The arrays in messages have room for this many modules (kMaxModules in common.idl).
 constexpr std::int64_t kMostModules = 64;
-// The grip of navigation bends the sixth to the eighth yaw joint: components/navigation/navigation.yaml.
+// To grip an object, navigation bends the sixth to the eighth yaw joint (components/navigation/navigation.yaml).
 constexpr std::size_t kFewestYawJoints = 8;
 
 JointModel read_joint(Configuration& joints) {

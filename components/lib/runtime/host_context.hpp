@@ -1,4 +1,4 @@
-// What the member side and the conductor side of a process have in common.
+// The state that the member side and the conductor side of a process share.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ class HostContext {
   const std::string config_hash;  ///< run_config_hash()
   const std::string host_name;
   const Log log;
-  std::optional<int> exit_status;  ///< set as soon as the process shall end
+  std::optional<int> exit_status;  ///< set as soon as the process has to end
 
   /// The run goes on: patience begins anew.
   void note_progress() { last_progress_ = Clock::now(); }
