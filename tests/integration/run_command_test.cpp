@@ -128,7 +128,11 @@ TEST_F(RunCommand, TheSecondCtrlCKillsARunThatDoesNotEnd) {
   kill_member("physics", SIGSTOP);
   launcher.signal(SIGINT);
   ASSERT_TRUE(launcher.wait_for("a second signal kills", 10s)) << launcher.output();
-  launcher.signal(SIGINT);
+  // A signal that follows within RunEnding::kSameWish counts as the same wish, so the user presses again.
+  EXPECT_TRUE(eventually([&] {
+    launcher.signal(SIGINT);
+    return !launcher.running();
+  })) << launcher.output();
   EXPECT_EQ(launcher.wait(10s), 128 + SIGINT) << launcher.output();
   EXPECT_TRUE(members().empty());
   EXPECT_NE(report("r").value("reason", "").find("processes killed because a second signal arrived"), std::string::npos)

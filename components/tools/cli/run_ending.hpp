@@ -16,7 +16,7 @@ class RunEnding {
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kEndBound{60};  ///< the report component draws its figure in this time
 
-  static constexpr std::chrono::milliseconds kSameWish{500};
+  static constexpr std::chrono::milliseconds kSameWish{200};
 
   /// A signal arrived that asks to end the run. `begun`: the first tick was published. A signal within kSameWish of the
   /// first one is the same wish: `timeout`, for example, signals the process and then its process group.
