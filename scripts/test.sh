@@ -17,8 +17,9 @@ fi
 ./scripts/setup.sh core tests
 ./scripts/build.sh --tests
 
-# ctest runs the tests that are marked RUN_SERIAL alone; the others share the cores.
-options=(--output-on-failure -j "$(nproc)")
+# Tests of several processes often wait for simulated time, so twice as many tests as cores run side by side. ctest runs
+# the tests that are marked RUN_SERIAL alone.
+options=(--output-on-failure -j "$((2 * $(nproc)))")
 if [ "$all" = false ]; then
   exec ctest --test-dir build/release "${options[@]}" -LE long "$@"
 fi
