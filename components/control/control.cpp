@@ -11,25 +11,12 @@
 namespace constrictor {
 
 Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
-    : robot_(load_robot(setup.robot_file)),
-      config_(load_parameters<ControlConfig>(setup.config_file)),
-      parameters_(wiring, topics::kControlParameters, config_),
+    : TunableComponent(wiring, setup, topics::kControlParameters),
+      robot_(load_robot(setup.robot_file)),
       chain_(robot_),
       limiter_(robot_, config_.speed_share),
       gate_(robot_, {0, config_.relax_after_ticks}),
-      wiring_(wiring),
-      registry_(std::move(methods)),
-      trajectory_in_(wiring.latest(topics::kDesiredTrajectory)),
-      joints_in_(wiring.latest(topics::kJointState)),
-      authority_in_(wiring.latest(topics::kAuthority)),
-      contacts_in_(wiring.latest(topics::kContactState)),
-      imu_in_(wiring.latest(topics::kImuState)),
-      line_in_(wiring.latest(topics::kLinePercept)),
-      objects_in_(wiring.latest(topics::kObjectPercepts)),
-      pose_in_(wiring.latest(topics::kRobotPose)),
-      map_in_(wiring.latest(topics::kFieldMap)),
-      command_out_(wiring.output(topics::kJointCommand)),
-      status_out_(wiring.output(topics::kMotionStatus)) {}
+      registry_(std::move(methods)) {}
 
 msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
   msg::DesiredTrajectory desired{};
@@ -49,17 +36,16 @@ msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known
 }
 
 Perceived Control::perceived() const {
-  const auto newest = [](const auto& input) { return input ? &*input : nullptr; };
-  return {newest(contacts_in_), newest(imu_in_),  newest(line_in_),
-          newest(objects_in_),  newest(pose_in_), newest(map_in_)};
+  return {body_.contacts.get(), imu_in_.get(),     field_.line.get(),
+          field_.objects.get(), field_.pose.get(), field_.map.get()};
 }
 
 void Control::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
-  if (!joints_in_) return;
-  if (joints_in_->joint_count != robot_.joints.size()) {
-    if (joints_in_.fresh()) {
-      wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) +
+  if (!body_.joints) return;
+  if (body_.joints->joint_count != robot_.joints.size()) {
+    if (body_.joints.fresh()) {
+      wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(body_.joints->joint_count) +
                             ", accepted " + std::to_string(robot_.joints.size()));
     }
     return;
@@ -67,8 +53,8 @@ void Control::step(const Tick& tick) {
   JointArray measured_rad{};
   JointArray torque_nm{};
   const std::size_t count = robot_.joints.size();
-  std::copy_n(joints_in_->position_rad, count, measured_rad.begin());
-  std::copy_n(joints_in_->torque_nm, count, torque_nm.begin());
+  std::copy_n(body_.joints->position_rad, count, measured_rad.begin());
+  std::copy_n(body_.joints->torque_nm, count, torque_nm.begin());
   if (!state_.limiter.started) state_.limiter.position_rad = measured_rad;
 
   const ControlMethod* method = nullptr;
@@ -112,8 +98,7 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
   const GateRefusal refusal = gate_.offer(gate_command(wanted, header), now, state_.gate);
   if (refusal != GateRefusal::kNone)
     wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal, state_.gate));
-  const GateOrder order =
-      gate_order(authority_in_ ? &*authority_in_ : nullptr, authority_in_ ? authority_in_.age_ticks() : 0, state_.gate);
+  const GateOrder order = gate_order(authority_in_.get(), authority_in_ ? authority_in_.age_ticks() : 0, state_.gate);
   const auto& setpoints = gate_.setpoints(std::span(measured_rad).first(count), order, tick.dt_s(), state_.gate);
   msg::JointCommand command = wanted;
   command.mode = state_.gate.mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;

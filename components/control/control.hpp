@@ -8,6 +8,7 @@
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
+#include "component/robot_views.hpp"
 #include "control/control_method.hpp"
 #include "robot/safety_gate.hpp"
 
@@ -31,7 +32,7 @@ struct ControlState {
 /// first trajectory, with a trajectory that no method accepts, and with one older than `hold_after_ticks`. It relaxes
 /// the joints when the trajectory is older than `relax_after_ticks`. Every command passes the safety gate: during an
 /// emergency stop, and while no source has authority after one has had it, the gate holds the posture.
-class Control : public StatefulComponent<ControlState> {
+class Control : public TunableComponent<ControlState, ControlConfig> {
  public:
   Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
   void step(const Tick& tick) override;
@@ -45,24 +46,17 @@ class Control : public StatefulComponent<ControlState> {
                                         const Tick& tick);
 
   RobotModel robot_;
-  ControlConfig config_;
-  Parameters parameters_;  ///< rows of config_
   YawChain chain_;
   JointLimiter limiter_;
   SafetyGate gate_;
-  Wiring& wiring_;
   MethodRegistry registry_;
-  Latest<msg::DesiredTrajectory> trajectory_in_;
-  Latest<msg::JointState> joints_in_;
-  Latest<msg::Authority> authority_in_;
-  Latest<msg::ContactState> contacts_in_;
-  Latest<msg::ImuState> imu_in_;
-  Latest<msg::LinePercept> line_in_;
-  Latest<msg::ObjectPercepts> objects_in_;
-  Latest<msg::RobotPose> pose_in_;
-  Latest<msg::FieldMap> map_in_;
-  Output<msg::JointCommand> command_out_;
-  Output<msg::MotionStatus> status_out_;
+  Latest<msg::DesiredTrajectory> trajectory_in_ = wiring_.latest(topics::kDesiredTrajectory);
+  BodyView body_{wiring_};
+  Latest<msg::Authority> authority_in_ = wiring_.latest(topics::kAuthority);
+  Latest<msg::ImuState> imu_in_ = wiring_.latest(topics::kImuState);
+  FieldView field_{wiring_};
+  Output<msg::JointCommand> command_out_ = wiring_.output(topics::kJointCommand);
+  Output<msg::MotionStatus> status_out_ = wiring_.output(topics::kMotionStatus);
 };
 
 ComponentFactory make_control_factory();

@@ -14,34 +14,33 @@ struct ControlConfig : ParameterSet {
   WaveWeights weights{
       add(weights.head, "wave.head_weights", {0.0, 0.5, 0.8}, "", {0.0, 1.0}, {0, 16},
           "Share of the wave's amplitude in the first links (1 in all others); 0 keeps the head on the mean heading"),
-      add(weights.rigid_bend_rad, "wave.rigid_bend_rad", 1.047, "rad", {0.1, 3.2}, Changes::kAtStart,
+      add(weights.rigid_bend_rad, "wave.rigid_bend_rad", 1.047, "rad", {0.1, 3.2}, kAtStart,
           "A link between two joints of the posture that are bent by this angle does not undulate")};
   double amplitude_rate_rad_s = add(amplitude_rate_rad_s, "wave.amplitude_rate_rad_s", 0.5, "rad/s", {0.01, 10.0},
-                                    Changes::kWhileRunning, "Maximum rate of change of the wave's amplitude");
+                                    kWhileRunning, "Maximum rate of change of the wave's amplitude");
   double frequency_rate_hz_s = add(frequency_rate_hz_s, "wave.frequency_rate_hz_s", 1.0, "Hz/s", {0.01, 10.0},
-                                   Changes::kWhileRunning, "Maximum rate of change of the wave's frequency");
+                                   kWhileRunning, "Maximum rate of change of the wave's frequency");
   double wavelength_rate_m_s = add(wavelength_rate_m_s, "wave.wavelength_rate_m_s", 0.5, "m/s", {0.01, 10.0},
-                                   Changes::kWhileRunning, "Maximum rate of change of the wavelength");
+                                   kWhileRunning, "Maximum rate of change of the wavelength");
   double curvature_rate_1_ms = add(curvature_rate_1_ms, "wave.curvature_rate_1_ms", 1.5, "1/(m s)", {0.01, 20.0},
-                                   Changes::kWhileRunning, "Maximum rate of change of the path's curvature");
-  double shape_rate_rad_s =
-      add(shape_rate_rad_s, "posture.shape_rate_rad_s", 0.5, "rad/s", {0.01, 4.0}, Changes::kWhileRunning,
-          "Speed of each joint towards a new posture, unless the trajectory names a speed");
-  double blend_rate_rad_s = add(blend_rate_rad_s, "posture.blend_rate_rad_s", 0.5, "rad/s", {0.01, 4.0},
-                                Changes::kWhileRunning, "Speed at which each joint leaves an earlier posture");
-  double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, Changes::kAtStart,
+                                   kWhileRunning, "Maximum rate of change of the path's curvature");
+  double shape_rate_rad_s = add(shape_rate_rad_s, "posture.shape_rate_rad_s", 0.5, "rad/s", {0.01, 4.0}, kWhileRunning,
+                                "Speed of each joint towards a new posture, unless the trajectory names a speed");
+  double blend_rate_rad_s = add(blend_rate_rad_s, "posture.blend_rate_rad_s", 0.5, "rad/s", {0.01, 4.0}, kWhileRunning,
+                                "Speed at which each joint leaves an earlier posture");
+  double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
-  double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.1, "rad/s", {0.001, 2.0},
-                                  Changes::kWhileRunning, "Speed of the squeeze, summed over the joints of the base");
-  double opening_share = add(opening_share, "squeeze.opening_share", 0.5, "", {0.0, 1.0}, Changes::kWhileRunning,
+  double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.1, "rad/s", {0.001, 2.0}, kWhileRunning,
+                                  "Speed of the squeeze, summed over the joints of the base");
+  double opening_share = add(opening_share, "squeeze.opening_share", 0.5, "", {0.0, 1.0}, kWhileRunning,
                              "Share of the squeeze by which the two joints beside the base open, in total");
-  double speed_share = add(speed_share, "safety.speed_share", 1.0, "", {0.01, 1.0}, Changes::kAtStart,
+  double speed_share = add(speed_share, "safety.speed_share", 1.0, "", {0.01, 1.0}, kAtStart,
                            "Share of the servos' maximum speed that control uses");
   std::int64_t hold_after_ticks =
-      add(hold_after_ticks, "safety.hold_after_ticks", 10, "ticks", {2, 1000}, Changes::kAtStart,
+      add(hold_after_ticks, "safety.hold_after_ticks", 10, "ticks", {2, 1000}, kAtStart,
           "Control holds the posture when the newest desired trajectory is older than this");
   std::int64_t relax_after_ticks = add(
-      relax_after_ticks, "safety.relax_after_ticks", 250, "ticks", {2, 100000}, Changes::kAtStart,
+      relax_after_ticks, "safety.relax_after_ticks", 250, "ticks", {2, 100000}, kAtStart,
       "Control relaxes the joints when the newest desired trajectory is older than this; at least hold_after_ticks");
 
   /// Checks what spans several rows. Throws ConfigurationError.

@@ -81,4 +81,12 @@ void keep_residual(const MethodInput& input, BodyState& body) {
   for (std::size_t k = 0; k < input.chain.joint_count(); ++k) body.residual_rad[input.chain.joint_index(k)] -= angle[k];
 }
 
+MethodProgress PostureMethod::step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const {
+  const LinkArray shape_rad = desired_shape(input.desired, input.chain);
+  advance_wave(input, 1.0, body);
+  const double left_rad = advance_shape(input, shape_rad, desired_shape_rate(input), body);
+  ride(input, shape_rad, body, setpoints);
+  return progress(left_rad, body);
+}
+
 }  // namespace constrictor

@@ -31,4 +31,16 @@ inline bool is_base(const MethodInput& input, double shape_rad) {
 /// that the setpoints do not jump when the method changes.
 void keep_residual(const MethodInput& input, BodyState& body);
 
+/// A method that takes the posture of the trajectory at a limited speed and rides the wave on it. The derived classes
+/// differ in when the motion is done.
+class PostureMethod : public ControlMethod {
+ public:
+  void start(const MethodInput& input, BodyState& body) const final { keep_residual(input, body); }
+  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const final;
+
+ protected:
+  /// `left_rad`: the largest angle between a joint and the desired posture.
+  [[nodiscard]] virtual MethodProgress progress(double left_rad, BodyState& body) const = 0;
+};
+
 }  // namespace constrictor

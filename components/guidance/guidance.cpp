@@ -18,36 +18,26 @@ double yaw_of(const msg::Quaternion& q) {
 }  // namespace
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
-    : wiring_(wiring),
-      model_(load_robot(setup.robot_file)),
-      config_(load_parameters<guidance::GuidanceConfig>(setup.config_file)),
-      parameters_(wiring, topics::kGuidanceParameters, config_),
-      joints_(wiring.latest(topics::kJointState)),
-      imu_(wiring.latest(topics::kImuState)),
-      contacts_(wiring.latest(topics::kContactState)),
-      line_(wiring.latest(topics::kLinePercept)),
-      objects_(wiring.latest(topics::kObjectPercepts)),
-      task_(wiring.latest(topics::kTaskStatus)),
-      pose_(wiring.output(topics::kRobotPose)),
-      map_(wiring.output(topics::kFieldMap)) {}
+    : TunableComponent(wiring, setup, topics::kGuidanceParameters), model_(load_robot(setup.robot_file)) {}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   guidance::OdometryInput input;
-  input.joint_rad = joints_->position_rad;
-  input.joint_rad_s = joints_->velocity_rad_s;
+  input.joint_rad = body_.joints->position_rad;
+  input.joint_rad_s = body_.joints->velocity_rad_s;
   input.yaw_rad = yaw_of(imu_->orientation);
   if (!std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
   // A robot that has rolled over cannot tell the ground from a wall. Then only the motion of the body counts.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
-  if (upright && contacts_ && !guidance::implausible(*contacts_) && contacts_->module_count >= model_.module_count) {
+  if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&
+      body_.contacts->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
-    for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = contacts_->force_n[i].z;
+    for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = body_.contacts->force_n[i].z;
     // Pushes from the side. Touches between the robot's own modules cancel in the sum.
-    const int count = std::min<int>(contacts_->contact_count, msg::kMaxContacts);
+    const int count = std::min<int>(body_.contacts->contact_count, msg::kMaxContacts);
     for (int i = 0; i < count; ++i) {
-      const msg::Contact& contact = contacts_->contacts[i];
+      const msg::Contact& contact = body_.contacts->contacts[i];
       if (contact.module_index >= chain.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
       input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
@@ -117,22 +107,22 @@ void Guidance::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
   guidance::PoseFilter filter(state_.filter);
   const std::size_t joint_count = model_.joints.size();
-  const bool joints = believed(joints_, "joint_state", joint_count);
+  const bool joints = believed(body_.joints, "joint_state", joint_count);
   const bool imu = believed(imu_, "imu_state");
-  const bool line = believed(line_, "perception/line");
-  const bool objects = believed(objects_, "perception/objects");
-  const bool contacts = believed(contacts_, "contact_state");
+  const bool line = believed(percepts_.line, "perception/line");
+  const bool objects = believed(percepts_.objects, "perception/objects");
+  const bool contacts = believed(body_.contacts, "contact_state");
   if (joints && imu) {
-    const guidance::BodyChain chain = planar_module_poses(model_, {joints_->position_rad, joint_count});
+    const guidance::BodyChain chain = planar_module_poses(model_, {body_.joints->position_rad, joint_count});
     dead_reckon(tick, chain);
     double sum_rad = 0.0;
     for (const auto& module : chain) sum_rad += module.yaw_rad;
     state_.body_turn_rad = sum_rad / static_cast<double>(chain.size());
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
-    if (line) mapper.line(*line_, past(line_->exposure_tick), tick.index, tick.period_s());
-    if (objects) mapper.objects(*objects_, past(objects_->exposure_tick), tick.index);
-    if (contacts) mapper.touch(*contacts_, chain, tick.index, tick.period_s());
+    if (line) mapper.line(*percepts_.line, past(percepts_.line->exposure_tick), tick.index, tick.period_s());
+    if (objects) mapper.objects(*percepts_.objects, past(percepts_.objects->exposure_tick), tick.index);
+    if (contacts) mapper.touch(*body_.contacts, chain, tick.index, tick.period_s());
   }
 
   const PlanarPose estimate = filter.pose();
@@ -156,8 +146,7 @@ void Guidance::step(const Tick& tick) {
 }
 
 ComponentFactory make_guidance_factory() {
-  return {"guidance", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Guidance>(wiring, setup); },
-          "components/guidance/guidance.yaml", describe_parameters<guidance::GuidanceConfig>};
+  return make_factory<Guidance, guidance::GuidanceConfig>("guidance", "components/guidance/guidance.yaml");
 }
 
 }  // namespace constrictor

@@ -6,6 +6,7 @@
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
+#include "component/robot_views.hpp"
 #include "guidance/field_mapper.hpp"
 
 namespace constrictor {
@@ -32,7 +33,7 @@ struct GuidanceState {
 /// yaw of the IMU, and recognised landmarks; keeps the map. Publishes the pose in every tick. Before the first joint
 /// and IMU samples it is the start pose with zero covariance. Without new plausible joint and IMU samples the pose
 /// stays; the next samples then count for the whole time that has passed.
-class Guidance : public StatefulComponent<GuidanceState> {
+class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
@@ -50,18 +51,13 @@ class Guidance : public StatefulComponent<GuidanceState> {
   [[nodiscard]] PlanarPose past(std::int64_t tick) const;
   [[nodiscard]] double speed_m_s(double period_s) const;
 
-  Wiring& wiring_;
   RobotModel model_;
-  guidance::GuidanceConfig config_;
-  Parameters parameters_;  ///< of config_
-  Latest<msg::JointState> joints_;
-  Latest<msg::ImuState> imu_;
-  Latest<msg::ContactState> contacts_;
-  Latest<msg::LinePercept> line_;
-  Latest<msg::ObjectPercepts> objects_;
-  Latest<msg::TaskStatus> task_;
-  Output<msg::RobotPose> pose_;
-  Output<msg::FieldMap> map_;
+  BodyView body_{wiring_};
+  Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
+  PerceptView percepts_{wiring_};
+  Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
+  Output<msg::RobotPose> pose_ = wiring_.output(topics::kRobotPose);
+  Output<msg::FieldMap> map_ = wiring_.output(topics::kFieldMap);
 };
 
 /// Declares the component to the runtime.

@@ -8,60 +8,59 @@ namespace constrictor::guidance {
 
 struct GuidanceConfig : ParameterSet {
   OdometryConfig odometry{
-      add(odometry.friction_along_share, "odometry.friction_along_share", 0.85, "", {0.0, 2.0}, Changes::kWhileRunning,
+      add(odometry.friction_along_share, "odometry.friction_along_share", 0.85, "", {0.0, 2.0}, kWhileRunning,
           "Factor on the robot file's friction along the modules; fitted to the simulator"),
-      add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.01, "m/s", {1e-4, 1.0}, Changes::kWhileRunning,
+      add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.01, "m/s", {1e-4, 1.0}, kWhileRunning,
           "Sliding speed from which the skin's friction is fully developed"),
-      add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, Changes::kWhileRunning,
+      add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, kWhileRunning,
           "Share of a joint's measured angle; the rest is its integrated rate")};
-  double speed_sd = add(speed_sd, "odometry.speed_sd", 0.08, "", {0.0, 1.0}, Changes::kWhileRunning,
+  double speed_sd = add(speed_sd, "odometry.speed_sd", 0.08, "", {0.0, 1.0}, kWhileRunning,
                         "Standard deviation of the estimated velocity, as a share of the speed");
-  double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, Changes::kAtStart,
+  double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, kAtStart,
                             "Standard deviation of the estimated velocity, added at any speed");
-  double correlation_s = add(correlation_s, "odometry.correlation_s", 0.7, "s", {0.01, 10.0}, Changes::kAtStart,
+  double correlation_s = add(correlation_s, "odometry.correlation_s", 0.7, "s", {0.01, 10.0}, kAtStart,
                              "Time over which the error of the estimated velocity stays the same");
   double yaw_sd_rad_sqrt_s = add(yaw_sd_rad_sqrt_s, "odometry.yaw_sd_rad_sqrt_s", 0.003, "rad/sqrt(s)", {0.0, 1.0},
-                                 Changes::kWhileRunning, "Growth of the yaw's standard deviation");
-  double speed_window_s = add(speed_window_s, "odometry.speed_window_s", 1.5, "s", {0.1, 2.0}, Changes::kWhileRunning,
+                                 kWhileRunning, "Growth of the yaw's standard deviation");
+  double speed_window_s = add(speed_window_s, "odometry.speed_window_s", 1.5, "s", {0.1, 2.0}, kWhileRunning,
                               "Time over which the published speed is averaged; about a gait period");
 
-  double bearing_sd_rad = add(bearing_sd_rad, "landmarks.bearing_sd_rad", 0.02, "rad", {1e-3, 1.0},
-                              Changes::kWhileRunning, "Standard deviation of a percept's bearing");
-  double range_sd_m = add(range_sd_m, "landmarks.range_sd_m", 0.015, "m", {1e-3, 1.0}, Changes::kWhileRunning,
+  double bearing_sd_rad = add(bearing_sd_rad, "landmarks.bearing_sd_rad", 0.02, "rad", {1e-3, 1.0}, kWhileRunning,
+                              "Standard deviation of a percept's bearing");
+  double range_sd_m = add(range_sd_m, "landmarks.range_sd_m", 0.015, "m", {1e-3, 1.0}, kWhileRunning,
                           "Standard deviation of a percept's range close to the head");
-  double range_sd_1_m = add(range_sd_1_m, "landmarks.range_sd_1_m", 0.04, "1/m", {0.0, 1.0}, Changes::kAtStart,
+  double range_sd_1_m = add(range_sd_1_m, "landmarks.range_sd_1_m", 0.04, "1/m", {0.0, 1.0}, kAtStart,
                             "Factor of the squared range in that standard deviation: distant pixels cover more ground");
-  double inflation = add(inflation, "landmarks.inflation", 4.0, "", {1.0, 1000.0}, Changes::kAtStart,
+  double inflation = add(inflation, "landmarks.inflation", 4.0, "", {1.0, 1000.0}, kAtStart,
                          "Factor on the variance of percepts, because successive percepts have common errors");
-  double max_range_m = add(max_range_m, "landmarks.max_range_m", 2.5, "m", {0.1, 20.0}, Changes::kWhileRunning,
+  double max_range_m = add(max_range_m, "landmarks.max_range_m", 2.5, "m", {0.1, 20.0}, kWhileRunning,
                            "More distant percepts are ignored");
-  double gate = add(gate, "landmarks.gate", 11.8, "", {1.0, 100.0}, Changes::kWhileRunning,
+  double gate = add(gate, "landmarks.gate", 11.8, "", {1.0, 100.0}, kWhileRunning,
                     "Squared Mahalanobis distance up to which a percept belongs to a landmark");
-  double merge_m = add(merge_m, "landmarks.merge_m", 0.5, "m", {0.0, 5.0}, Changes::kWhileRunning,
+  double merge_m = add(merge_m, "landmarks.merge_m", 0.5, "m", {0.0, 5.0}, kWhileRunning,
                        "A percept outside of the gate but nearer than this shows a landmark that has moved");
-  int confirm = add(confirm, "landmarks.confirm", 3, "", {1, 100}, Changes::kWhileRunning,
+  int confirm = add(confirm, "landmarks.confirm", 3, "", {1, 100}, kWhileRunning,
                     "Number of percepts until a new landmark, or its new place, is believed");
 
-  double line_spacing_m = add(line_spacing_m, "line.spacing_m", 0.05, "m", {0.01, 1.0}, Changes::kAtStart,
+  double line_spacing_m = add(line_spacing_m, "line.spacing_m", 0.05, "m", {0.01, 1.0}, kAtStart,
                               "Distance between the line's points in the map");
-  double line_map_range_m = add(line_map_range_m, "line.map_range_m", 0.9, "m", {0.1, 5.0}, Changes::kWhileRunning,
+  double line_map_range_m = add(line_map_range_m, "line.map_range_m", 0.9, "m", {0.1, 5.0}, kWhileRunning,
                                 "More distant points of the line are not mapped");
   double line_correct_after_s =
-      add(line_correct_after_s, "line.correct_after_s", 10.0, "s", {0.0, 1000.0}, Changes::kWhileRunning,
+      add(line_correct_after_s, "line.correct_after_s", 10.0, "s", {0.0, 1000.0}, kWhileRunning,
           "Points of the line that have been in the map for longer than this correct the pose");
-  double line_correct_sd_m = add(line_correct_sd_m, "line.correct_sd_m", 0.03, "m", {1e-3, 1.0}, Changes::kAtStart,
+  double line_correct_sd_m = add(line_correct_sd_m, "line.correct_sd_m", 0.03, "m", {1e-3, 1.0}, kAtStart,
                                  "Standard deviation of such a correction at the head");
-  double line_correct_gate_m = add(line_correct_gate_m, "line.correct_gate_m", 0.2, "m", {0.01, 1.0}, Changes::kAtStart,
+  double line_correct_gate_m = add(line_correct_gate_m, "line.correct_gate_m", 0.2, "m", {0.01, 1.0}, kAtStart,
                                    "Greatest distance between the line in view and in the map");
 
-  double touch_min_force_n = add(touch_min_force_n, "touch.min_force_n", 0.4, "N", {0.0, 100.0}, Changes::kWhileRunning,
-                                 "Weaker touches are ignored");
-  double touch_max_normal_z = add(touch_max_normal_z, "touch.max_normal_z", 0.5, "", {0.0, 1.0}, Changes::kAtStart,
+  double touch_min_force_n =
+      add(touch_min_force_n, "touch.min_force_n", 0.4, "N", {0.0, 100.0}, kWhileRunning, "Weaker touches are ignored");
+  double touch_max_normal_z = add(touch_max_normal_z, "touch.max_normal_z", 0.5, "", {0.0, 1.0}, kAtStart,
                                   "Contacts whose unit normal has a greater vertical part belong to the ground");
-  double touch_self_margin_m =
-      add(touch_self_margin_m, "touch.self_margin_m", 0.012, "m", {0.0, 0.1}, Changes::kAtStart,
-          "Contacts this near to the skin of another module are the robot's own");
-  double touch_keep_s = add(touch_keep_s, "touch.keep_s", 4.0, "s", {0.1, 100.0}, Changes::kWhileRunning,
+  double touch_self_margin_m = add(touch_self_margin_m, "touch.self_margin_m", 0.012, "m", {0.0, 0.1}, kAtStart,
+                                   "Contacts this near to the skin of another module are the robot's own");
+  double touch_keep_s = add(touch_keep_s, "touch.keep_s", 4.0, "s", {0.1, 100.0}, kWhileRunning,
                             "Time for which a touch stays in the map");
 };
 

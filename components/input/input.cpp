@@ -150,7 +150,7 @@ void Input::set_parameter(const msg::Request& request) {
     return;
   }
   std::vector<const msg::ParameterList*> lists;
-  for (const auto& list : parameters_in_) lists.push_back(list ? &*list : nullptr);
+  for (const auto& list : parameters_in_) lists.push_back(list.get());
   const auto decision = ParameterArbiter(state_.parameters).decide(request, lists, now_);
   if (const auto* refusal = std::get_if<std::string>(&decision)) {
     Arbiter(state_.arbiter).refuse(request, *refusal);

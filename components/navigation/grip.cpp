@@ -60,7 +60,7 @@ int GripSense::touching_modules(const std::vector<Touch>& touches) const {
   return static_cast<int>(std::count(touching.begin(), touching.end(), true));
 }
 
-Eigen::Vector2d GripSense::held_object_H(const std::vector<Pose2>& body, double radius_m) const {
+Eigen::Vector2d GripSense::held_object_H(const std::vector<PlanarPose>& body, double radius_m) const {
   // The apex A is the middle joint of the base. The mouth of the U lies in the mean direction of its arms.
   const std::size_t apex = base_joints_[base_joints_.size() / 2];
   const Eigen::Vector2d p_HA = body[apex].p - 0.5 * robot_.module_length_m * body[apex].forward();

@@ -54,7 +54,7 @@ class GripSense {
   /// Number of modules with a touch.
   [[nodiscard]] int touching_modules(const std::vector<Touch>& touches) const;
   /// Centre of an object of this radius that touches the base, in the head's frame.
-  [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<Pose2>& body, double radius_m) const;
+  [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<PlanarPose>& body, double radius_m) const;
   /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left.
   [[nodiscard]] double held_aside_m(const Grip& grip) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with the base closed by the hold margin more.

@@ -24,11 +24,11 @@ struct LineTrackerState {
 };
 
 struct LineTrackerConfig : ParameterSet {
-  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, Changes::kWhileRunning,
+  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, kWhileRunning,
                         "The line is visible after this number of consecutive images with it");
-  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, Changes::kWhileRunning,
+  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, kWhileRunning,
                        "The line is not visible after this number of consecutive images without it");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", {0.1, 2.0}, Changes::kWhileRunning,
+  double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", {0.1, 2.0}, kWhileRunning,
                            "Distance ahead of the head at which the offset of the line is taken");
 };
 

@@ -91,8 +91,8 @@ const Gait& present_gait(const NavigationConfig& config, const Grip& grip) {
   return grip.carrying ? config.carry : config.travel;
 }
 
-double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
-  const Pose2 X_MP{p_M, yaw_rad};
+double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
+  const PlanarPose X_MP{p_M, yaw_rad};
   const double along_m = X_MP.to_local(X_MH.p).x();
   return X_MH.to_local(X_MP.to_parent({along_m + lookahead_m, 0.0})).y();
 }
@@ -101,14 +101,14 @@ double gait_period_s(const Gait& gait) { return 1.0 / std::max(0.1, std::abs(gai
 
 double body_course_rad(const TaskInput& input) {
   double turn_rad = 0.0;
-  for (const Pose2& module : input.body) turn_rad += module.yaw_rad / static_cast<double>(input.body.size());
+  for (const PlanarPose& module : input.body) turn_rad += module.yaw_rad / static_cast<double>(input.body.size());
   return input.X_MH.yaw_rad + turn_rad;
 }
 
 double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M) {
   const Eigen::Vector2d p_H = input.X_MH.to_local(p_M);
   double nearest_m = p_H.norm();
-  for (const Pose2& module : input.body) nearest_m = std::min(nearest_m, (module.p - p_H).norm());
+  for (const PlanarPose& module : input.body) nearest_m = std::min(nearest_m, (module.p - p_H).norm());
   return nearest_m;
 }
 

@@ -28,7 +28,7 @@ const Gait& present_gait(const NavigationConfig& config, const Grip& grip);
 
 /// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
 /// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.
-double path_error_m(const Pose2& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m);
+double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m);
 
 /// [s] one period of the gait, in which the head sways once.
 double gait_period_s(const Gait& gait);

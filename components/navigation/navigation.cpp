@@ -29,37 +29,23 @@ void GoalState::set_parameters(const msg::TaskParameters& p) {
 }
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
-    : wiring_(wiring),
+    : TunableComponent(wiring, setup, topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
-      config_(load_parameters<NavigationConfig>(setup.config_file)),
-      parameters_(wiring, topics::kNavigationParameters, config_),
-      grip_sense_(robot_, config_.grip),
-      commands_in_(wiring.events(topics::kTaskCommand)),
-      line_in_(wiring.latest(topics::kLinePercept)),
-      objects_in_(wiring.latest(topics::kObjectPercepts)),
-      pose_in_(wiring.latest(topics::kRobotPose)),
-      map_in_(wiring.latest(topics::kFieldMap)),
-      joints_in_(wiring.latest(topics::kJointState)),
-      contacts_in_(wiring.latest(topics::kContactState)),
-      motion_in_(wiring.latest(topics::kMotionStatus)),
-      direct_in_(wiring.events(topics::kMotionCommand)),
-      trajectory_out_(wiring.output(topics::kDesiredTrajectory)),
-      status_out_(wiring.output(topics::kTaskStatus)),
-      event_out_(wiring.output(topics::kTaskEvent)) {}
+      grip_sense_(robot_, config_.grip) {}
 
 bool Navigation::senses_ready() const {
-  return joints_in_ && pose_in_ && contacts_in_ && joints_in_.age_ticks() <= config_.stale_after_ticks &&
-         pose_in_.age_ticks() <= config_.stale_after_ticks && contacts_in_.age_ticks() <= config_.stale_after_ticks &&
-         joints_in_->joint_count == robot_.joints.size();
+  return body_.joints && field_.pose && body_.contacts && body_.joints.age_ticks() <= config_.stale_after_ticks &&
+         field_.pose.age_ticks() <= config_.stale_after_ticks &&
+         body_.contacts.age_ticks() <= config_.stale_after_ticks && body_.joints->joint_count == robot_.joints.size();
 }
 
 void Navigation::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
   TaskOutput output;
   stand(state_.grip, output);
-  if (joints_in_ && joints_in_.fresh() && joints_in_->joint_count != robot_.joints.size()) {
-    wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(joints_in_->joint_count) + ", accepted " +
-                          std::to_string(robot_.joints.size()));
+  if (body_.joints && body_.joints.fresh() && body_.joints->joint_count != robot_.joints.size()) {
+    wiring_.count_refusal("joint_state.joint_count: found " + std::to_string(body_.joints->joint_count) +
+                          ", accepted " + std::to_string(robot_.joints.size()));
   }
   if (!senses_ready()) {
     take_commands_without_senses();
@@ -67,14 +53,15 @@ void Navigation::step(const Tick& tick) {
     write_status(output);
     return;
   }
-  const Pose2 X_MH{{pose_in_->x_m, pose_in_->y_m}, pose_in_->yaw_rad};
+  const PlanarPose X_MH{{field_.pose->x_m, field_.pose->y_m}, field_.pose->yaw_rad};
   // The pose is one tick old, and the tasks use it as the present one. It is therefore stored under the present tick,
   // so that the positions of objects are late by the same tick and are right relative to X_MH.
   remember_pose(tick.index, X_MH, state_.sightings);
-  if (objects_in_ && objects_in_.fresh()) update_object_tracker(config_.object, *objects_in_, state_.sightings);
+  if (field_.objects && field_.objects.fresh())
+    update_object_tracker(config_.object, *field_.objects, state_.sightings);
 
-  const std::vector<Pose2> body = planar_body(robot_, *joints_in_);
-  const std::vector<Touch> touches = lateral_touches(robot_, body, *contacts_in_, config_.grip.touch_force_n);
+  const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);
+  const std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);
   const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->accepted && motion_in_->done;
   TaskInput input{tick,
                   robot_,
@@ -82,11 +69,11 @@ void Navigation::step(const Tick& tick) {
                   grip_sense_,
                   msg::TaskParameters{},
                   X_MH,
-                  line_in_ && line_in_.fresh() ? &*line_in_ : nullptr,
-                  objects_in_ && objects_in_.fresh(),
+                  field_.line.fresh() ? field_.line.get() : nullptr,
+                  field_.objects && field_.objects.fresh(),
                   state_.sightings,
-                  map_in_ ? &*map_in_ : nullptr,
-                  *joints_in_,
+                  field_.map.get(),
+                  *body_.joints,
                   body,
                   touches,
                   done};
@@ -237,8 +224,7 @@ void Navigation::write_status(const TaskOutput& output) {
 }
 
 ComponentFactory make_navigation_factory() {
-  return {"navigation", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Navigation>(wiring, setup); },
-          "components/navigation/navigation.yaml", describe_parameters<NavigationConfig>};
+  return make_factory<Navigation, NavigationConfig>("navigation", "components/navigation/navigation.yaml");
 }
 
 }  // namespace constrictor

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "component/parameters.hpp"
+#include "component/robot_views.hpp"
 #include "navigation/direct_motion.hpp"
 #include "navigation/task.hpp"
 
@@ -64,7 +65,7 @@ struct NavigationState {
 /// and TaskStatus every tick and TaskEvent on occurrence. Each goal is answered once, accepted or refused with a
 /// reason, and each accepted goal ends once. Without a goal, and while pose, joints or contacts are missing or stale,
 /// the robot stands still in its posture and keeps hold of an object.
-class Navigation : public StatefulComponent<NavigationState> {
+class Navigation : public TunableComponent<NavigationState, NavigationConfig> {
  public:
   Navigation(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
@@ -88,23 +89,16 @@ class Navigation : public StatefulComponent<NavigationState> {
   void write_trajectory(const TaskOutput& output);
   void write_status(const TaskOutput& output);
 
-  Wiring& wiring_;
   RobotModel robot_;
-  NavigationConfig config_;
-  Parameters parameters_;  ///< of config_
   GripSense grip_sense_;
-  Events<msg::TaskCommand> commands_in_;
-  Latest<msg::LinePercept> line_in_;
-  Latest<msg::ObjectPercepts> objects_in_;
-  Latest<msg::RobotPose> pose_in_;
-  Latest<msg::FieldMap> map_in_;
-  Latest<msg::JointState> joints_in_;
-  Latest<msg::ContactState> contacts_in_;
-  Latest<msg::MotionStatus> motion_in_;
-  Events<msg::MotionCommand> direct_in_;
-  Output<msg::DesiredTrajectory> trajectory_out_;
-  Output<msg::TaskStatus> status_out_;
-  Output<msg::TaskEvent> event_out_;
+  Events<msg::TaskCommand> commands_in_ = wiring_.events(topics::kTaskCommand);
+  Events<msg::MotionCommand> direct_in_ = wiring_.events(topics::kMotionCommand);
+  Latest<msg::MotionStatus> motion_in_ = wiring_.latest(topics::kMotionStatus);
+  FieldView field_{wiring_};
+  BodyView body_{wiring_};
+  Output<msg::DesiredTrajectory> trajectory_out_ = wiring_.output(topics::kDesiredTrajectory);
+  Output<msg::TaskStatus> status_out_ = wiring_.output(topics::kTaskStatus);
+  Output<msg::TaskEvent> event_out_ = wiring_.output(topics::kTaskEvent);
 };
 
 ComponentFactory make_navigation_factory();

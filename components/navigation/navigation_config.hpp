@@ -51,217 +51,211 @@ struct NavigationSection : ParameterSet {
             add(gains.kd, key + ".kd", fallback.kd, "s", {0.0, 100.0}, changes, meaning + "derivative gain"),
             add(gains.limit, key + ".limit_1_m", fallback.limit, "1/m", bounds::kCurvature, changes, meaning + "bound"),
             add(gains.derivative_filter_s, key + ".derivative_filter_s", fallback.derivative_filter_s, "s",
-                bounds::kTime, Changes::kAtStart, meaning + "time constant of the derivative's low-pass; 0: none")};
+                bounds::kTime, kAtStart, meaning + "time constant of the derivative's low-pass; 0: none")};
   }
 };
 
 /// The U that holds an object, and the monitor of its loss.
 struct GripConfig : ParameterSet {
-  int base_first_joint = add(base_first_joint, "base_first_joint", 5, "", {0, 60}, Changes::kAtStart,
+  int base_first_joint = add(base_first_joint, "base_first_joint", 5, "", {0, 60}, kAtStart,
                              "First yaw joint of the base of the U, counted from the head");
   int base_joints =
-      add(base_joints, "base_joints", 3, "", {1, 8}, Changes::kAtStart, "Number of yaw joints in the base of the U");
-  double base_angle_rad = add(base_angle_rad, "base_angle_rad", 1.047, "rad", bounds::kAngle, Changes::kAtStart,
+      add(base_joints, "base_joints", 3, "", {1, 8}, kAtStart, "Number of yaw joints in the base of the U");
+  double base_angle_rad = add(base_angle_rad, "base_angle_rad", 1.047, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint in the open U");
   double opening_share =
-      add(opening_share, "opening_share", 0.5, "", bounds::kShare, Changes::kAtStart,
+      add(opening_share, "opening_share", 0.5, "", bounds::kShare, kAtStart,
           "Share of the closing by which the joints beside the base open; equal to control's squeeze.opening_share");
-  double hold_margin_rad = add(hold_margin_rad, "hold_margin_rad", 0.03, "rad", bounds::kAngle, Changes::kWhileRunning,
+  double hold_margin_rad = add(hold_margin_rad, "hold_margin_rad", 0.03, "rad", bounds::kAngle, kWhileRunning,
                                "Angle by which the held base joints are commanded to close further");
-  double hold_torque_nm = add(hold_torque_nm, "hold_torque_nm", 1.5, "Nm", bounds::kTorque, Changes::kAtStart,
+  double hold_torque_nm = add(hold_torque_nm, "hold_torque_nm", 1.5, "Nm", bounds::kTorque, kAtStart,
                               "Maximum torque of the base joints while the robot carries an object");
-  double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, Changes::kWhileRunning,
+  double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
                               "Mean closing torque of the base below which a held object may be lost");
-  double lost_contact_share =
-      add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, Changes::kWhileRunning,
-          "Share of time with a touch of the base below which a held object may be lost");
-  double lost_filter_s = add(lost_filter_s, "lost_filter_s", 1.0, "s", bounds::kTime, Changes::kAtStart,
-                             "Time constant of the low-pass on both");
-  double lost_after_s = add(lost_after_s, "lost_after_s", 2.0, "s", bounds::kTime, Changes::kWhileRunning,
+  double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,
+                                  "Share of time with a touch of the base below which a held object may be lost");
+  double lost_filter_s =
+      add(lost_filter_s, "lost_filter_s", 1.0, "s", bounds::kTime, kAtStart, "Time constant of the low-pass on both");
+  double lost_after_s = add(lost_after_s, "lost_after_s", 2.0, "s", bounds::kTime, kWhileRunning,
                             "An object is lost after both have been too low for this time");
-  double touch_force_n = add(touch_force_n, "touch_force_n", 0.4, "N", bounds::kForce, Changes::kWhileRunning,
+  double touch_force_n = add(touch_force_n, "touch_force_n", 0.4, "N", bounds::kForce, kWhileRunning,
                              "Weakest force that counts as a touch");
 };
 
 struct FollowLineConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {4.5, 0.4, 1.0, 1.2, 0.2}, Changes::kWhileRunning, "line's offset [m]");
-  double carry_limit_1_m = add(carry_limit_1_m, "carry_limit_1_m", 1.0, "1/m", bounds::kCurvature,
-                               Changes::kWhileRunning, "Bound of the curvature while the robot carries an object");
-  double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, Changes::kWhileRunning,
+  PidGains steering = add(steering, "steering", {4.5, 0.4, 1.0, 1.2, 0.2}, kWhileRunning, "line's offset [m]");
+  double carry_limit_1_m = add(carry_limit_1_m, "carry_limit_1_m", 1.0, "1/m", bounds::kCurvature, kWhileRunning,
+                               "Bound of the curvature while the robot carries an object");
+  double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, kWhileRunning,
                              "Distance of the head from the end of the line at which the end is reached");
-  int end_images = add(end_images, "end_images", 3, "images", {1, 100}, Changes::kAtStart,
+  int end_images = add(end_images, "end_images", 3, "images", {1, 100}, kAtStart,
                        "Consecutive images that must show the end of the line");
 };
 
 struct FollowPathConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {8.0, 2.0, 0.0, 1.2, 0.2}, Changes::kWhileRunning, "path's offset [m]");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", bounds::kLength, Changes::kWhileRunning,
+  PidGains steering = add(steering, "steering", {8.0, 2.0, 0.0, 1.2, 0.2}, kWhileRunning, "path's offset [m]");
+  double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", bounds::kLength, kWhileRunning,
                            "The robot steers towards the point of the path this far ahead of the head");
-  double reached_m = add(reached_m, "reached_m", 0.1, "m", bounds::kLength, Changes::kWhileRunning,
+  double reached_m = add(reached_m, "reached_m", 0.1, "m", bounds::kLength, kWhileRunning,
                          "The path ends this far before its last point");
-  double lost_m = add(lost_m, "lost_m", 1.0, "m", bounds::kLength, Changes::kAtStart,
+  double lost_m = add(lost_m, "lost_m", 1.0, "m", bounds::kLength, kAtStart,
                       "A goal is refused or aborted farther than this from its path");
 };
 
 struct SearchConfig : ParameterSet {
-  double head_turn_rad = add(head_turn_rad, "head_turn_rad", 0.9, "rad", bounds::kAngle, Changes::kAtStart,
+  double head_turn_rad = add(head_turn_rad, "head_turn_rad", 0.9, "rad", bounds::kAngle, kAtStart,
                              "Angle by which the head looks to each side, in total over its three joints");
-  double head_rate_rad_s = add(head_rate_rad_s, "head_rate_rad_s", 0.25, "rad/s", bounds::kSpeed,
-                               Changes::kWhileRunning, "Speed of each joint that turns the head");
-  double near_m = add(near_m, "near_m", 0.7, "m", bounds::kLength, Changes::kAtStart,
+  double head_rate_rad_s = add(head_rate_rad_s, "head_rate_rad_s", 0.25, "rad/s", bounds::kSpeed, kWhileRunning,
+                               "Speed of each joint that turns the head");
+  double near_m = add(near_m, "near_m", 0.7, "m", bounds::kLength, kAtStart,
                       "The body leaves a remembered object that is nearer than this before it turns");
-  double remembered_m = add(remembered_m, "remembered_m", 3.0, "m", bounds::kLength, Changes::kAtStart,
+  double remembered_m = add(remembered_m, "remembered_m", 3.0, "m", bounds::kLength, kAtStart,
                             "The robot does not return to a remembered object that is farther away than this");
   double advance_m =
-      add(advance_m, "advance_m", 0.5, "m", bounds::kLength, Changes::kAtStart, "Distance driven between two looks");
-  double turn_rad = add(turn_rad, "turn_rad", 1.6, "rad", bounds::kAngle, Changes::kAtStart,
+      add(advance_m, "advance_m", 0.5, "m", bounds::kLength, kAtStart, "Distance driven between two looks");
+  double turn_rad = add(turn_rad, "turn_rad", 1.6, "rad", bounds::kAngle, kAtStart,
                         "Angle of the turn on the spot after every second look");
-  double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature,
-                                  Changes::kAtStart, "Curvature of turns on the spot");
-  double confirm_s = add(confirm_s, "confirm_s", 1.0, "s", bounds::kTime, Changes::kAtStart,
-                         "The object must stay in view for this time");
+  double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature, kAtStart,
+                                  "Curvature of turns on the spot");
+  double confirm_s =
+      add(confirm_s, "confirm_s", 1.0, "s", bounds::kTime, kAtStart, "The object must stay in view for this time");
 };
 
 struct TrackConfig : NavigationSection {
-  PidGains steering =
-      add(steering, "steering", {2.5, 0.2, 0.0, 1.3, 0.2}, Changes::kWhileRunning, "object's bearing [rad]");
-  double reach_m = add(reach_m, "reach_m", 0.9, "m", bounds::kLength, Changes::kWhileRunning,
+  PidGains steering = add(steering, "steering", {2.5, 0.2, 0.0, 1.3, 0.2}, kWhileRunning, "object's bearing [rad]");
+  double reach_m = add(reach_m, "reach_m", 0.9, "m", bounds::kLength, kWhileRunning,
                        "Distance from the head to the object's surface at which the object is reached");
-  double reach_bearing_rad = add(reach_bearing_rad, "reach_bearing_rad", 0.3, "rad", bounds::kAngle, Changes::kAtStart,
+  double reach_bearing_rad = add(reach_bearing_rad, "reach_bearing_rad", 0.3, "rad", bounds::kAngle, kAtStart,
                                  "Largest bearing of a reached object");
-  double straight_rad = add(straight_rad, "straight_rad", 0.5, "rad", bounds::kAngle, Changes::kAtStart,
+  double straight_rad = add(straight_rad, "straight_rad", 0.5, "rad", bounds::kAngle, kAtStart,
                             "The body, too, must point to a reached object within this angle");
-  double too_near_m = add(too_near_m, "too_near_m", 0.45, "m", bounds::kLength, Changes::kAtStart,
+  double too_near_m = add(too_near_m, "too_near_m", 0.45, "m", bounds::kLength, kAtStart,
                           "The body moves away from an object that is nearer than this");
-  double away_m = add(away_m, "away_m", 1.3, "m", bounds::kLength, Changes::kAtStart,
+  double away_m = add(away_m, "away_m", 1.3, "m", bounds::kLength, kAtStart,
                       "It moves away until the object is this far from the head");
-  double turn_rad = add(turn_rad, "turn_rad", 1.0, "rad", bounds::kAngle, Changes::kAtStart,
+  double turn_rad = add(turn_rad, "turn_rad", 1.0, "rad", bounds::kAngle, kAtStart,
                         "The body turns on the spot towards an object with a larger bearing");
-  double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature,
-                                  Changes::kAtStart, "Curvature of turns on the spot");
-  double memory_s = add(memory_s, "memory_s", 20.0, "s", bounds::kTime, Changes::kAtStart,
+  double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature, kAtStart,
+                                  "Curvature of turns on the spot");
+  double memory_s = add(memory_s, "memory_s", 20.0, "s", bounds::kTime, kAtStart,
                         "The body drives towards an object out of view for at most this time");
-  double half_view_rad = add(half_view_rad, "half_view_rad", 0.7, "rad", bounds::kAngle, Changes::kAtStart,
+  double half_view_rad = add(half_view_rad, "half_view_rad", 0.7, "rad", bounds::kAngle, kAtStart,
                              "An object within this bearing should be in view");
 };
 
 struct RotateConfig : ParameterSet {
-  double curvature_1_m = add(curvature_1_m, "curvature_1_m", 2.3, "1/m", bounds::kCurvature, Changes::kWhileRunning,
+  double curvature_1_m = add(curvature_1_m, "curvature_1_m", 2.3, "1/m", bounds::kCurvature, kWhileRunning,
                              "Curvature of turns on the spot");
-  double carry_curvature_1_m = add(carry_curvature_1_m, "carry_curvature_1_m", 1.0, "1/m", bounds::kCurvature,
-                                   Changes::kAtStart, "Curvature of turns with an object in the U");
+  double carry_curvature_1_m = add(carry_curvature_1_m, "carry_curvature_1_m", 1.0, "1/m", bounds::kCurvature, kAtStart,
+                                   "Curvature of turns with an object in the U");
 };
 
 struct ExploreConfig : ParameterSet {
-  double head_turn_rad = add(head_turn_rad, "head_turn_rad", 0.9, "rad", bounds::kAngle, Changes::kAtStart,
+  double head_turn_rad = add(head_turn_rad, "head_turn_rad", 0.9, "rad", bounds::kAngle, kAtStart,
                              "Angle by which the head looks to each side, in total over its three joints");
-  double head_rate_rad_s = add(head_rate_rad_s, "head_rate_rad_s", 0.25, "rad/s", bounds::kSpeed, Changes::kAtStart,
+  double head_rate_rad_s = add(head_rate_rad_s, "head_rate_rad_s", 0.25, "rad/s", bounds::kSpeed, kAtStart,
                                "Speed of each joint that turns the head");
-  double step_m = add(step_m, "step_m", 0.5, "m", bounds::kLength, Changes::kAtStart, "Length of a step of the body");
-  double carry_turn_rad = add(carry_turn_rad, "carry_turn_rad", 0.3, "rad", bounds::kAngle, Changes::kAtStart,
+  double step_m = add(step_m, "step_m", 0.5, "m", bounds::kLength, kAtStart, "Length of a step of the body");
+  double carry_turn_rad = add(carry_turn_rad, "carry_turn_rad", 0.3, "rad", bounds::kAngle, kAtStart,
                               "The same as head_turn_rad with an object in the U");
 };
 
 struct PregraspConfig : NavigationSection {
-  double seen_within_s = add(seen_within_s, "seen_within_s", 3.0, "s", bounds::kTime, Changes::kAtStart,
+  double seen_within_s = add(seen_within_s, "seen_within_s", 3.0, "s", bounds::kTime, kAtStart,
                              "The object must have been in view within this time before the start");
-  double clearance_m = add(clearance_m, "clearance_m", 0.05, "m", bounds::kLength, Changes::kWhileRunning,
+  double clearance_m = add(clearance_m, "clearance_m", 0.05, "m", bounds::kLength, kWhileRunning,
                            "Distance between body and object while the body passes the object");
   PidGains steering =
-      add(steering, "steering", {5.0, 0.0, 0.0, 1.3, 0.2}, Changes::kAtStart, "distance from the passing line [m]");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.3, "m", bounds::kLength, Changes::kAtStart,
+      add(steering, "steering", {5.0, 0.0, 0.0, 1.3, 0.2}, kAtStart, "distance from the passing line [m]");
+  double lookahead_m = add(lookahead_m, "lookahead_m", 0.3, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the passing line this far ahead");
-  double past_m = add(past_m, "past_m", 0.2, "m", bounds::kLength, Changes::kAtStart,
+  double past_m = add(past_m, "past_m", 0.2, "m", bounds::kLength, kAtStart,
                       "Distance by which the head passes the object's centre before the touch movement");
-  double brake_m = add(brake_m, "brake_m", 0.12, "m", bounds::kLength, Changes::kAtStart,
+  double brake_m = add(brake_m, "brake_m", 0.12, "m", bounds::kLength, kAtStart,
                        "Distance that the body slides after the wave stops");
-  double settle_s = add(settle_s, "settle_s", 1.5, "s", bounds::kTime, Changes::kAtStart,
+  double settle_s = add(settle_s, "settle_s", 1.5, "s", bounds::kTime, kAtStart,
                         "The body stands for this time before the touch movement");
-  double touch_rate_rad_s = add(touch_rate_rad_s, "touch_rate_rad_s", 0.12, "rad/s", bounds::kSpeed, Changes::kAtStart,
+  double touch_rate_rad_s = add(touch_rate_rad_s, "touch_rate_rad_s", 0.12, "rad/s", bounds::kSpeed, kAtStart,
                                 "Speed of each of the three joints next to the head in the touch movement");
-  double touch_limit_rad = add(touch_limit_rad, "touch_limit_rad", 0.3, "rad", bounds::kAngle, Changes::kAtStart,
+  double touch_limit_rad = add(touch_limit_rad, "touch_limit_rad", 0.3, "rad", bounds::kAngle, kAtStart,
                                "Largest angle of each of these joints");
-  double touch_further_rad = add(touch_further_rad, "touch_further_rad", 0.1, "rad", bounds::kAngle, Changes::kAtStart,
+  double touch_further_rad = add(touch_further_rad, "touch_further_rad", 0.1, "rad", bounds::kAngle, kAtStart,
                                  "Increase of touch_limit_rad after each attempt without a touch");
-  double touch_force_n = add(touch_force_n, "touch_force_n", 0.4, "N", bounds::kForce, Changes::kWhileRunning,
+  double touch_force_n = add(touch_force_n, "touch_force_n", 0.4, "N", bounds::kForce, kWhileRunning,
                              "Force that ends the touch movement");
   double deep_min_m =
-      add(deep_min_m, "deep_min_m", -0.4, "m", {-2.0, 1.0}, Changes::kAtStart,
+      add(deep_min_m, "deep_min_m", -0.4, "m", {-2.0, 1.0}, kAtStart,
           "Rearmost accepted place of the object's centre along the body, from the head (behind it is negative)");
-  double deep_max_m = add(deep_max_m, "deep_max_m", -0.12, "m", {-1.0, 1.0}, Changes::kAtStart,
+  double deep_max_m = add(deep_max_m, "deep_max_m", -0.12, "m", {-1.0, 1.0}, kAtStart,
                           "Foremost accepted place; the bending head would push an object farther ahead away");
-  int attempts =
-      add(attempts, "attempts", 4, "", bounds::kCount, Changes::kAtStart, "Maximum number of touch movements");
-  double other_clearance_m = add(other_clearance_m, "other_clearance_m", 0.3, "m", bounds::kLength, Changes::kAtStart,
+  int attempts = add(attempts, "attempts", 4, "", bounds::kCount, kAtStart, "Maximum number of touch movements");
+  double other_clearance_m = add(other_clearance_m, "other_clearance_m", 0.3, "m", bounds::kLength, kAtStart,
                                  "Wanted distance between the manoeuvre and other objects");
 };
 
 struct GraspConfig : NavigationSection {
-  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.15, "m/s", bounds::kSpeed, Changes::kAtStart,
+  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.15, "m/s", bounds::kSpeed, kAtStart,
                               "Speed of the arc along the body at the beginning; later it is the speed of the body");
-  double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, Changes::kAtStart,
+  double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, kAtStart,
                             "The body begins to move after the arc has slid this far");
-  double wrap_speed_min_m_s = add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.08, "m/s", bounds::kSpeed,
-                                  Changes::kAtStart, "Smallest speed of the arc");
-  double wrap_speed_max_m_s = add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed,
-                                  Changes::kAtStart, "Largest speed of the arc");
-  double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0},
-                                   Changes::kAtStart, "Time constant of the low-pass on the body's speed");
-  Gait wrap = add(wrap, "wrap", {0.4, 0.35, 1.07}, Changes::kAtStart, "Gait of the wrap");
-  Gait seat = add(seat, "seat", {0.7, 0.4, 1.07}, Changes::kAtStart, "Gait that drives the base to the object");
-  Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, Changes::kAtStart, "Gait of the squeeze");
-  double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, Changes::kAtStart,
+  double wrap_speed_min_m_s =
+      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.08, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
+  double wrap_speed_max_m_s =
+      add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
+  double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
+                                   "Time constant of the low-pass on the body's speed");
+  Gait wrap = add(wrap, "wrap", {0.4, 0.35, 1.07}, kAtStart, "Gait of the wrap");
+  Gait seat = add(seat, "seat", {0.7, 0.4, 1.07}, kAtStart, "Gait that drives the base to the object");
+  Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, kAtStart, "Gait of the squeeze");
+  double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, kAtStart,
                               "A touch counts for this time, because the gait interrupts touches");
-  double seat_force_n = add(seat_force_n, "seat_force_n", 1.0, "N", bounds::kForce, Changes::kWhileRunning,
+  double seat_force_n = add(seat_force_n, "seat_force_n", 1.0, "N", bounds::kForce, kWhileRunning,
                             "Force in the middle of the base that shows that the object touches it");
-  double seat_time_s = add(seat_time_s, "seat_time_s", 1.0, "s", bounds::kTime, Changes::kAtStart,
+  double seat_time_s = add(seat_time_s, "seat_time_s", 1.0, "s", bounds::kTime, kAtStart,
                            "Duration of this force after which the squeeze begins");
-  double seat_timeout_s = add(seat_timeout_s, "seat_timeout_s", 20.0, "s", bounds::kTime, Changes::kAtStart,
+  double seat_timeout_s = add(seat_timeout_s, "seat_timeout_s", 20.0, "s", bounds::kTime, kAtStart,
                               "The grasp is given up if the base does not touch the object within this time");
-  double squeeze_max_rad = add(squeeze_max_rad, "squeeze_max_rad", 0.9, "rad", bounds::kAngle, Changes::kAtStart,
+  double squeeze_max_rad = add(squeeze_max_rad, "squeeze_max_rad", 0.9, "rad", bounds::kAngle, kAtStart,
                                "Largest closing angle, summed over the base joints");
-  double squeeze_torque_nm = add(squeeze_torque_nm, "squeeze_torque_nm", 3.0, "Nm", bounds::kTorque,
-                                 Changes::kWhileRunning, "Closing torque of a base joint at which the object is held");
-  double squeeze_cap_nm = add(squeeze_cap_nm, "squeeze_cap_nm", 6.0, "Nm", bounds::kTorque, Changes::kWhileRunning,
+  double squeeze_torque_nm = add(squeeze_torque_nm, "squeeze_torque_nm", 3.0, "Nm", bounds::kTorque, kWhileRunning,
+                                 "Closing torque of a base joint at which the object is held");
+  double squeeze_cap_nm = add(squeeze_cap_nm, "squeeze_cap_nm", 6.0, "Nm", bounds::kTorque, kWhileRunning,
                               "Maximum torque of the base joints during the squeeze");
-  int squeeze_attempts = add(squeeze_attempts, "squeeze_attempts", 3, "", bounds::kCount, Changes::kAtStart,
+  int squeeze_attempts = add(squeeze_attempts, "squeeze_attempts", 3, "", bounds::kCount, kAtStart,
                              "Maximum number of squeezes; the body drives on between two of them");
-  int touching_modules = add(touching_modules, "touching_modules", 2, "", {0, 20}, Changes::kAtStart,
+  int touching_modules = add(touching_modules, "touching_modules", 2, "", {0, 20}, kAtStart,
                              "Number of modules that must touch a held object");
-  double check_s =
-      add(check_s, "check_s", 3.0, "s", bounds::kTime, Changes::kAtStart, "Duration of the check of the hold");
+  double check_s = add(check_s, "check_s", 3.0, "s", bounds::kTime, kAtStart, "Duration of the check of the hold");
 };
 
 struct DropConfig : NavigationSection {
-  PidGains steering =
-      add(steering, "steering", {5.0, 0.0, 0.0, 1.0, 0.2}, Changes::kWhileRunning, "distance to the course [m]");
-  double fix_course_m = add(fix_course_m, "fix_course_m", 0.35, "m", bounds::kLength, Changes::kWhileRunning,
+  PidGains steering = add(steering, "steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance to the course [m]");
+  double fix_course_m = add(fix_course_m, "fix_course_m", 0.35, "m", bounds::kLength, kWhileRunning,
                             "The course over the zone stays fixed when the object is nearer to its centre");
-  double brake_m = add(brake_m, "brake_m", 0.08, "m", bounds::kLength, Changes::kAtStart,
+  double brake_m = add(brake_m, "brake_m", 0.08, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, Changes::kAtStart,
+  double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the course this far ahead");
-  double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, Changes::kAtStart,
+  double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
-  double open_s = add(open_s, "open_s", 4.0, "s", {0.1, 60.0}, Changes::kAtStart, "Duration of the opening");
-  double back_m = add(back_m, "back_m", 1.3, "m", bounds::kLength, Changes::kAtStart,
-                      "Distance by which the robot backs off afterwards");
+  double open_s = add(open_s, "open_s", 4.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  double back_m =
+      add(back_m, "back_m", 1.3, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =
-      add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, Changes::kAtStart, "Longest time of backing off");
+      add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of backing off");
   double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.3, "rad/s", bounds::kSpeed,
-                                     Changes::kAtStart, "Speed of each joint when the body straightens");
+                                     kAtStart, "Speed of each joint when the body straightens");
   double approach_timeout_s =
-      add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, Changes::kAtStart,
+      add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, kAtStart,
           "The task is aborted, with the object in the U, if the zone's centre is not reached within this time");
 };
 
 struct NavigationConfig : NavigationSection {
-  Gait travel = add(travel, "travel", {0.7, 0.5, 1.07}, Changes::kWhileRunning, "Gait without an object");
-  Gait carry = add(carry, "carry", {1.1, 0.6, 1.07}, Changes::kWhileRunning, "Gait with an object in the U");
-  Gait creep = add(creep, "creep", {0.4, 0.35, 1.07}, Changes::kWhileRunning, "Small steps beside an object");
-  std::int64_t stale_after_ticks =
-      add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, Changes::kAtStart,
-          "The robot stands still when joints, contacts or pose are older than this");
+  Gait travel = add(travel, "travel", {0.7, 0.5, 1.07}, kWhileRunning, "Gait without an object");
+  Gait carry = add(carry, "carry", {1.1, 0.6, 1.07}, kWhileRunning, "Gait with an object in the U");
+  Gait creep = add(creep, "creep", {0.4, 0.35, 1.07}, kWhileRunning, "Small steps beside an object");
+  std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,
+                                       "The robot stands still when joints, contacts or pose are older than this");
   LineTrackerConfig line = add_section(line, "line_tracker");
   ObjectTrackerConfig object = add_section(object, "object_tracker");
   GripConfig grip = add_section(grip, "grip");

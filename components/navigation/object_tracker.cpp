@@ -23,7 +23,7 @@ double measured_radius_m(const ObjectTrackerConfig& config, const msg::Blob& blo
   return before_m + 0.2 * (now_m - before_m);
 }
 
-void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, const Pose2& X_MH, std::int64_t tick,
+void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, const PlanarPose& X_MH, std::int64_t tick,
          Sighting& s) {
   ++s.seen;
   s.missed = 0;
@@ -53,13 +53,13 @@ void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, co
 
 }  // namespace
 
-void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectTrackerState& state) {
+void remember_pose(std::int64_t tick, const PlanarPose& X_MH, ObjectTrackerState& state) {
   state.poses.push_back({static_cast<double>(tick), X_MH.p.x(), X_MH.p.y(), X_MH.yaw_rad});
   while (state.poses.size() > kPosesKept) state.poses.pop_front();
 }
 
-Pose2 remembered_pose(std::int64_t tick, const ObjectTrackerState& state) {
-  Pose2 pose;
+PlanarPose remembered_pose(std::int64_t tick, const ObjectTrackerState& state) {
+  PlanarPose pose;
   double nearest = 1e18;
   for (const auto& [at, x_m, y_m, yaw_rad] : state.poses) {
     const double distance = std::abs(at - static_cast<double>(tick));
@@ -73,7 +73,7 @@ Pose2 remembered_pose(std::int64_t tick, const ObjectTrackerState& state) {
 
 void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
                            ObjectTrackerState& state) {
-  const Pose2 X_MH = remembered_pose(percepts.exposure_tick, state);
+  const PlanarPose X_MH = remembered_pose(percepts.exposure_tick, state);
   std::array<const msg::Blob*, msg::kColourCount> object{};
   std::array<const msg::Blob*, msg::kColourCount> zone{};
   for (std::size_t i = 0; i < percepts.blob_count; ++i) {

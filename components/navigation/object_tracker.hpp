@@ -10,7 +10,7 @@
 
 #include "configuration/parameter_set.hpp"
 #include "constrictor/messages.hpp"
-#include "navigation/pose2.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 
@@ -35,21 +35,21 @@ struct Sighting {
 };
 
 struct ObjectTrackerConfig : ParameterSet {
-  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, Changes::kWhileRunning,
+  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, kWhileRunning,
                         "An object is visible after this number of consecutive images with it");
-  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, Changes::kWhileRunning,
+  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, kWhileRunning,
                        "An object is not visible after this number of consecutive images without it");
-  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, Changes::kAtStart,
+  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, kAtStart,
                                "Radius of an object until an image shows its whole width");
   double min_radius_m =
-      add(min_radius_m, "min_radius_m", 0.06, "m", {0.0, 10.0}, Changes::kAtStart, "Smallest radius of an object");
+      add(min_radius_m, "min_radius_m", 0.06, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");
   double max_radius_m =
-      add(max_radius_m, "max_radius_m", 0.12, "m", {0.0, 10.0}, Changes::kAtStart, "Largest radius of an object");
-  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.0, 10.0}, Changes::kAtStart,
+      add(max_radius_m, "max_radius_m", 0.12, "m", {0.0, 10.0}, kAtStart, "Largest radius of an object");
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.0, 10.0}, kAtStart,
                              "Radius of a zone until an image shows its whole width");
-  double jump_m = add(jump_m, "jump_m", 0.5, "m", {0.0, 10.0}, Changes::kWhileRunning,
+  double jump_m = add(jump_m, "jump_m", 0.5, "m", {0.0, 10.0}, kWhileRunning,
                       "An object seen farther than this from its averaged position has been moved");
-  double memory_images = add(memory_images, "memory_images", 8.0, "images", {1.0, 1000.0}, Changes::kAtStart,
+  double memory_images = add(memory_images, "memory_images", 8.0, "images", {1.0, 1000.0}, kAtStart,
                              "Number of images over which a position is averaged");
 };
 
@@ -64,7 +64,7 @@ struct ObjectTrackerState {
 };
 
 /// Stores the pose of this tick, so that a later percept can be placed from where its image was taken.
-void remember_pose(std::int64_t tick, const Pose2& X_MH, ObjectTrackerState& state);
+void remember_pose(std::int64_t tick, const PlanarPose& X_MH, ObjectTrackerState& state);
 
 /// Takes a new set of percepts. Of several blobs of one colour and kind the largest counts. An undecided blob counts
 /// for the object, and for the zone, of its colour that is visible already.
@@ -72,6 +72,6 @@ void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectP
                            ObjectTrackerState& state);
 
 /// Pose of the head in M at a tick: the stored pose of the nearest tick.
-Pose2 remembered_pose(std::int64_t tick, const ObjectTrackerState& state);
+PlanarPose remembered_pose(std::int64_t tick, const ObjectTrackerState& state);
 
 }  // namespace constrictor

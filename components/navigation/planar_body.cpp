@@ -7,8 +7,8 @@
 
 namespace constrictor {
 
-std::vector<Pose2> planar_body(const RobotModel& robot, const msg::JointState& joints) {
-  std::vector<Pose2> body;
+std::vector<PlanarPose> planar_body(const RobotModel& robot, const msg::JointState& joints) {
+  std::vector<PlanarPose> body;
   body.reserve(robot.module_count);
   for (const PlanarPose& pose : planar_module_poses(robot, {joints.position_rad, robot.joints.size()})) {
     body.push_back({pose.p, pose.yaw_rad});
@@ -16,7 +16,7 @@ std::vector<Pose2> planar_body(const RobotModel& robot, const msg::JointState& j
   return body;
 }
 
-std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Pose2>& body,
+std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<PlanarPose>& body,
                                    const msg::ContactState& contacts, double min_force_n) {
   constexpr double kSteepest = 0.7;  // vertical component of the steepest lateral normal
   constexpr double kSelfTolerance_m = 0.015;
@@ -27,7 +27,7 @@ std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Po
     if (contact.module_index >= body.size() || std::abs(contact.normal.z) > kSteepest) continue;
     const double force_n = std::hypot(contact.force_n.x, contact.force_n.y);
     if (force_n < min_force_n) continue;
-    const Pose2& module = body[contact.module_index];
+    const PlanarPose& module = body[contact.module_index];
     Touch touch;
     touch.module = contact.module_index;
     touch.p_H = module.to_parent({contact.position_m.x, contact.position_m.y});

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
-#include "navigation/pose2.hpp"
+#include "robot/planar.hpp"
 #include "robot/robot_model.hpp"
 
 namespace constrictor {
 
 /// Module centres in the head's frame, head to tail. Pitch joints are taken as 0.
-std::vector<Pose2> planar_body(const RobotModel& robot, const msg::JointState& joints);
+std::vector<PlanarPose> planar_body(const RobotModel& robot, const msg::JointState& joints);
 
 /// A contact from the side, with neither the ground nor the robot itself.
 struct Touch {
@@ -23,7 +23,7 @@ struct Touch {
 
 /// The touches of at least `min_force_n`. A contact whose normal is steeper than 45 degrees is with the ground. A
 /// contact that lies on another module, by the poses in `body`, is with the robot itself.
-std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Pose2>& body,
+std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<PlanarPose>& body,
                                    const msg::ContactState& contacts, double min_force_n);
 
 }  // namespace constrictor

@@ -1,15 +1,14 @@
 // The interface of the paper's tasks (Section III-A, Tables I to XV).
 #pragma once
 
-#include <cereal/archives/portable_binary.hpp>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "component/component.hpp"
+#include "component/stateful.hpp"
 #include "navigation/grip.hpp"
 #include "navigation/line_tracker.hpp"
 #include "navigation/navigation_config.hpp"
@@ -25,16 +24,16 @@ struct TaskInput {
   const NavigationConfig& config;
   const GripSense& grip_sense;
   msg::TaskParameters parameters;       ///< of the goal
-  Pose2 X_MH;                           ///< the head in the map
+  PlanarPose X_MH;                      ///< the head in the map
   const msg::LinePercept* line;         ///< null if no line percept arrived since the previous step
   bool new_percepts;                    ///< object percepts arrived since the previous step
   const ObjectTrackerState& sightings;  ///< the objects and zones seen so far, by colour
   const msg::FieldMap* map;             ///< null until guidance has written the first map
   const msg::JointState& joints;
-  const std::vector<Pose2>& body;     ///< modules in the head's frame, head first
-  const std::vector<Touch>& touches;  ///< contacts from the side, without the ground's and the robot's own
-  bool motion_done;                   ///< control has finished the newest motion
-  const msg::Path* path = nullptr;    ///< of the command; only in refusal() and start()
+  const std::vector<PlanarPose>& body;  ///< modules in the head's frame, head first
+  const std::vector<Touch>& touches;    ///< contacts from the side, without the ground's and the robot's own
+  bool motion_done;                     ///< control has finished the newest motion
+  const msg::Path* path = nullptr;      ///< of the command; only in refusal() and start()
 };
 
 /// An event of the tables, with the object, zone or line that it is about.
@@ -87,23 +86,7 @@ class Task {
 
 /// A task whose whole state is one serialisable struct.
 template <class State>
-class StatefulTask : public Task {
- public:
-  [[nodiscard]] std::string save() const final {
-    std::ostringstream stream;
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(state_);
-    return std::move(stream).str();
-  }
-  void load(const std::string& bytes) final {
-    std::istringstream stream(bytes);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(state_);
-  }
-
- protected:
-  State state_{};
-};
+using StatefulTask = Stateful<Task, State>;
 
 /// A new task of the kind kTask…; null for kTaskNone and unknown numbers. The kinds are registered in
 /// task_registry.cpp.

@@ -13,17 +13,7 @@ constexpr std::size_t kAttitudes = 32;  // [ticks] longer than the delay of any 
 }  // namespace
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
-    : config_(load_parameters<perception::PerceptionConfig>(setup.config_file)),
-      wiring_(wiring),
-      parameters_(wiring, topics::kPerceptionParameters, config_),
-      detector_(config_),
-      image_(wiring.latest(topics::kCameraImage)),
-      info_(wiring.latest(topics::kCameraInfo)),
-      imu_(wiring.latest(topics::kImuState)),
-      task_(wiring.latest(topics::kTaskStatus)),
-      line_(wiring.output(topics::kLinePercept)),
-      objects_(wiring.output(topics::kObjectPercepts)),
-      processed_(wiring.output(topics::kProcessedImage)) {
+    : TunableComponent(wiring, setup, topics::kPerceptionParameters), detector_(config_) {
   const RobotModel robot = load_robot(setup.robot_file);
   // The robot lies on its modules: the centre of the head is one radius above the ground.
   head_height_m_ = robot.module_radius_m;
@@ -77,8 +67,7 @@ void Perception::step(const Tick& tick) {
 }
 
 ComponentFactory make_perception_factory() {
-  return {"perception", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Perception>(wiring, setup); },
-          "components/perception/perception.yaml", describe_parameters<perception::PerceptionConfig>};
+  return make_factory<Perception, perception::PerceptionConfig>("perception", "components/perception/perception.yaml");
 }
 
 }  // namespace constrictor

@@ -35,7 +35,7 @@ struct PerceptionState {
 /// Processes each new image with the attitude that the head had when the image was exposed. Publishes nothing before
 /// the first image and the first camera model. The line has the colour that a task named last; before that, the colour
 /// of the configuration.
-class Perception : public StatefulComponent<PerceptionState> {
+class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig> {
  public:
   Perception(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
@@ -45,19 +45,16 @@ class Perception : public StatefulComponent<PerceptionState> {
  private:
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
-  perception::PerceptionConfig config_;
-  Wiring& wiring_;
-  Parameters parameters_;  ///< of config_
   perception::LineAndBlobDetector detector_;
   double head_height_m_ = 0.0;
   perception::HeadShape head_;
-  Latest<msg::CameraImage> image_;
-  Latest<msg::CameraInfo> info_;
-  Latest<msg::ImuState> imu_;
-  Latest<msg::TaskStatus> task_;
-  Output<msg::LinePercept> line_;
-  Output<msg::ObjectPercepts> objects_;
-  Output<msg::CameraImage> processed_;
+  Latest<msg::CameraImage> image_ = wiring_.latest(topics::kCameraImage);
+  Latest<msg::CameraInfo> info_ = wiring_.latest(topics::kCameraInfo);
+  Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
+  Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
+  Output<msg::LinePercept> line_ = wiring_.output(topics::kLinePercept);
+  Output<msg::ObjectPercepts> objects_ = wiring_.output(topics::kObjectPercepts);
+  Output<msg::CameraImage> processed_ = wiring_.output(topics::kProcessedImage);
 };
 
 /// Declares the component to the runtime.

@@ -21,24 +21,24 @@ struct HueRange {
 struct PerceptionConfig : ParameterSet {
   std::uint8_t line_colour = add(line_colour, "line.colour", msg::kColourBlue, colour_names(),
                                  "Colour of the line until a task names another");
-  double line_width_m = add(line_width_m, "line.width_m", 0.05, "m", {0.01, 0.3}, Changes::kWhileRunning,
+  double line_width_m = add(line_width_m, "line.width_m", 0.05, "m", {0.01, 0.3}, kWhileRunning,
                             "Expected width of the line; half to twice of it is accepted");
   double lookahead_m =
-      add(lookahead_m, "line.lookahead_m", 0.35, "m", {0.1, 2.0}, Changes::kWhileRunning,
+      add(lookahead_m, "line.lookahead_m", 0.35, "m", {0.1, 2.0}, kWhileRunning,
           "Distance at which offset, heading and curvature of the line are given, if it is seen there");
-  double line_max_range_m = add(line_max_range_m, "line.max_range_m", 2.0, "m", {0.2, 10.0}, Changes::kWhileRunning,
+  double line_max_range_m = add(line_max_range_m, "line.max_range_m", 2.0, "m", {0.2, 10.0}, kWhileRunning,
                                 "The line is not traced beyond this distance");
-  double line_max_gap_m = add(line_max_gap_m, "line.max_gap_m", 0.35, "m", {0.0, 2.0}, Changes::kWhileRunning,
+  double line_max_gap_m = add(line_max_gap_m, "line.max_gap_m", 0.35, "m", {0.0, 2.0}, kWhileRunning,
                               "Longest hidden stretch of the line that is bridged");
-  double object_height_m = add(object_height_m, "object.height_m", 0.15, "m", {0.02, 2.0}, Changes::kWhileRunning,
+  double object_height_m = add(object_height_m, "object.height_m", 0.15, "m", {0.02, 2.0}, kWhileRunning,
                                "Height of objects; gives their range when their lower edge is hidden");
-  int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, Changes::kWhileRunning,
+  int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, kWhileRunning,
                             "Smaller blobs are ignored");
-  double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, Changes::kWhileRunning,
+  double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, kWhileRunning,
                                 "More distant objects and zones are not reported");
-  double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, Changes::kWhileRunning,
+  double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, kWhileRunning,
                           "Least difference between the channels of a coloured pixel (full scale: 1)");
-  double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, Changes::kWhileRunning,
+  double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, kWhileRunning,
                               "Least ratio of that difference to the largest channel of a coloured pixel");
   std::array<HueRange, msg::kColourCount> hues{
       HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
@@ -54,9 +54,9 @@ struct PerceptionConfig : ParameterSet {
   HueRange add_hues(std::uint8_t colour, double from_deg, double to_deg) {
     const std::string name = name_of(constants::kColour, colour);
     const std::string key = "colour." + name;
-    return {add(hues[colour].from_deg, key + ".from_deg", from_deg, "deg", {0.0, 360.0}, Changes::kWhileRunning,
+    return {add(hues[colour].from_deg, key + ".from_deg", from_deg, "deg", {0.0, 360.0}, kWhileRunning,
                 "First hue of " + name + " (0 red, 120 green, 240 blue)"),
-            add(hues[colour].to_deg, key + ".to_deg", to_deg, "deg", {0.0, 360.0}, Changes::kWhileRunning,
+            add(hues[colour].to_deg, key + ".to_deg", to_deg, "deg", {0.0, 360.0}, kWhileRunning,
                 "Last hue of " + name + "; the range passes through 0 if it is less than the first")};
   }
 };

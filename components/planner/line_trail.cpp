@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "robot/planar.hpp"
+
 namespace constrictor {
 namespace {
 constexpr double kSpacing_m = 0.3;       // between recorded points
@@ -28,8 +30,6 @@ LinePoint farthest(const msg::LinePercept& line, const msg::RobotPose& pose) {
 
 }  // namespace
 
-double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
-
 const TrailPoint* LineTrail::nearest(double x_m, double y_m) const {
   const TrailPoint* best = nullptr;
   double best_m = 0.0;
@@ -50,7 +50,7 @@ void LineTrail::record(const msg::LinePercept& line, const msg::RobotPose& pose,
   const TrailPoint* known = nearest(x_m, y_m);
   if (known && std::hypot(known->x_m - x_m, known->y_m - y_m) < kSpacing_m) return;
   if (points_.size() >= kMaxPoints) points_.erase(points_.begin());
-  points_.push_back({x_m, y_m, wrapped(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
+  points_.push_back({x_m, y_m, wrap_angle(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
   if (outbound) frontier_ = {x_m, y_m, true};
 }
 
@@ -73,7 +73,7 @@ bool LineTrail::leads_to_new_ground(const msg::LinePercept& line, const msg::Rob
 std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool outbound) const {
   const TrailPoint* point = nearest(pose.x_m, pose.y_m);
   if (!point) return std::nullopt;
-  return wrapped(point->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
+  return wrap_angle(point->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
 }
 
 std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound) const {
@@ -94,7 +94,7 @@ std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool ou
 }
 
 void LineTrail::reverse() {
-  for (TrailPoint& point : points_) point.outbound_rad = wrapped(point.outbound_rad + std::numbers::pi);
+  for (TrailPoint& point : points_) point.outbound_rad = wrap_angle(point.outbound_rad + std::numbers::pi);
   frontier_.known = beyond_.known = false;
 }
 

@@ -67,7 +67,4 @@ class LineTrail {
   LinePoint beyond_;    ///< the newest visible point of the line near the frontier or beyond
 };
 
-/// An angle wrapped into [-pi, pi].
-double wrapped(double angle_rad);
-
 }  // namespace constrictor

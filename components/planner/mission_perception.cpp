@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "planner/mission_planner.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
@@ -91,19 +92,19 @@ std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& input
       const double dy_m = landmark->y_m - pose.y_m;
       const double distance_m = std::hypot(dx_m, dy_m);
       if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
-        return wrapped(std::atan2(dy_m, dx_m) - course_rad(pose));
+        return wrap_angle(std::atan2(dy_m, dx_m) - course_rad(pose));
     }
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
   if (!heading_rad) return std::nullopt;
-  return wrapped(*heading_rad - course_rad(pose));
+  return wrap_angle(*heading_rad - course_rad(pose));
 }
 
 bool MissionPlanner::leads_wanted_way(const PlannerInputs& inputs) const {
   if (!inputs.pose) return true;
   if (leads_to_new_ground(inputs)) return true;
   const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
-  return !direction_rad || std::abs(wrapped(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
+  return !direction_rad || std::abs(wrap_angle(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
 }
 
 bool MissionPlanner::leads_to_new_ground(const PlannerInputs& inputs) const {
@@ -122,7 +123,7 @@ bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   if (!leads_wanted_way(inputs)) return false;
   if (leads_to_new_ground(inputs)) return true;
   const bool curled = !holding() && inputs.pose &&
-                      std::abs(wrapped(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
+                      std::abs(wrap_angle(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
   return !curled;
 }
 

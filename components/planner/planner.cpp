@@ -7,28 +7,18 @@
 namespace constrictor {
 
 Planner::Planner(Wiring& wiring, const Setup& setup)
-    : config_(load_planner_config(setup.config_file, setup.mission)),
-      planner_(config_, state_.mission),
-      line_(wiring.latest(topics::kLinePercept)),
-      objects_(wiring.latest(topics::kObjectPercepts)),
-      pose_(wiring.latest(topics::kRobotPose)),
-      map_(wiring.latest(topics::kFieldMap)),
-      status_(wiring.latest(topics::kTaskStatus)),
-      authority_(wiring.latest(topics::kAuthority)),
-      events_(wiring.events(topics::kTaskEvent)),
-      request_(wiring.output(topics::kPlannerRequest)),
-      mission_(wiring.output(topics::kMissionStatus)) {}
+    : ConfiguredComponent(wiring, load_planner_config(setup.config_file, setup.mission)), planner_(config_, state_) {}
 
 void Planner::step(const Tick& tick) {
   PlannerInputs inputs;
   inputs.time_s = tick.time_s();
-  if (line_) inputs.line = &*line_;
-  if (objects_) inputs.objects = &*objects_;
-  inputs.new_percepts = objects_.has_value() && objects_.fresh();
-  if (pose_) inputs.pose = &*pose_;
-  if (map_) inputs.map = &*map_;
-  if (status_) inputs.status = &*status_;
-  if (authority_) inputs.authority = &*authority_;
+  inputs.line = field_.line.get();
+  inputs.objects = field_.objects.get();
+  inputs.new_percepts = field_.objects.has_value() && field_.objects.fresh();
+  inputs.pose = field_.pose.get();
+  inputs.map = field_.map.get();
+  inputs.status = status_.get();
+  inputs.authority = authority_.get();
   for (const auto& event : events_) inputs.events.push_back(&event);
   if (const auto wanted = planner_.step(inputs)) {
     msg::Request request{};
@@ -41,7 +31,7 @@ void Planner::step(const Tick& tick) {
     request.parameters = wanted->parameters;
     request_.write(request);
   }
-  const auto& memory = state_.mission;
+  const MissionMemory& memory = state_;
   msg::MissionStatus mission{};
   mission.outcome = memory.state == MissionState::kDone     ? msg::kMissionSucceeded
                     : memory.state == MissionState::kFailed ? msg::kMissionFailed
@@ -56,8 +46,7 @@ void Planner::step(const Tick& tick) {
 }
 
 ComponentFactory make_planner_factory() {
-  return {"planner", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Planner>(wiring, setup); },
-          "components/planner/planner.yaml", describe_parameters<PlannerConfig>};
+  return make_factory<Planner, PlannerConfig>("planner", "components/planner/planner.yaml");
 }
 
 }  // namespace constrictor

@@ -2,37 +2,26 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "component/robot_views.hpp"
 #include "planner/mission_planner.hpp"
 
 namespace constrictor {
 
-struct PlannerState {
-  MissionMemory mission;
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(mission);
-  }
-};
-
 /// Reads percepts, pose, map, events, status and authority; writes a Request for each task and MissionStatus every
 /// tick.
-class Planner : public StatefulComponent<PlannerState> {
+class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig> {
  public:
   Planner(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
 
  private:
-  PlannerConfig config_;
   MissionPlanner planner_;
-  Latest<msg::LinePercept> line_;
-  Latest<msg::ObjectPercepts> objects_;
-  Latest<msg::RobotPose> pose_;
-  Latest<msg::FieldMap> map_;
-  Latest<msg::TaskStatus> status_;
-  Latest<msg::Authority> authority_;
-  Events<msg::TaskEvent> events_;
-  Output<msg::Request> request_;
-  Output<msg::MissionStatus> mission_;
+  Latest<msg::TaskStatus> status_ = wiring_.latest(topics::kTaskStatus);
+  Latest<msg::Authority> authority_ = wiring_.latest(topics::kAuthority);
+  Events<msg::TaskEvent> events_ = wiring_.events(topics::kTaskEvent);
+  FieldView field_{wiring_};
+  Output<msg::Request> request_ = wiring_.output(topics::kPlannerRequest);
+  Output<msg::MissionStatus> mission_ = wiring_.output(topics::kMissionStatus);
 };
 
 ComponentFactory make_planner_factory();

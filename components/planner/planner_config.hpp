@@ -24,40 +24,40 @@ struct PlannerConfig : ParameterSet {
           "each object on the zone of its colour; without colours it follows the line to its end");
   std::uint8_t line_colour = add(line_colour, "line_colour", msg::kColourBlue, colour_names(),
                                  "Colour of the line that the robot follows, unless the scenario states a mission");
-  int confirm_images = add(confirm_images, "confirm_images", 3, "images", {1, 100}, Changes::kAtStart,
+  int confirm_images = add(confirm_images, "confirm_images", 3, "images", {1, 100}, kAtStart,
                            "Consecutive images that must show the line, an object or a zone");
-  double object_range_m = add(object_range_m, "object_range_m", 1.6, "m", {0.2, 20}, Changes::kAtStart,
+  double object_range_m = add(object_range_m, "object_range_m", 1.6, "m", {0.2, 20}, kAtStart,
                               "The robot approaches an object that is nearer than this");
-  double zone_range_m = add(zone_range_m, "zone_range_m", 1.7, "m", {0.2, 20}, Changes::kAtStart,
+  double zone_range_m = add(zone_range_m, "zone_range_m", 1.7, "m", {0.2, 20}, kAtStart,
                             "The robot drops an object on a zone that is nearer than this");
   double on_zone_m =
-      add(on_zone_m, "on_zone_m", 0.6, "m", {0, 5}, Changes::kAtStart,
+      add(on_zone_m, "on_zone_m", 0.6, "m", {0, 5}, kAtStart,
           "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
-  double remembered_range_m = add(remembered_range_m, "remembered_range_m", 2.5, "m", {0.3, 100}, Changes::kAtStart,
+  double remembered_range_m = add(remembered_range_m, "remembered_range_m", 2.5, "m", {0.3, 100}, kAtStart,
                                   "A search returns to an object or zone of the map that is nearer than this");
-  double aligned_rad = add(aligned_rad, "aligned_rad", 1.0, "rad", {0.05, 1.5}, Changes::kAtStart,
+  double aligned_rad = add(aligned_rad, "aligned_rad", 1.0, "rad", {0.05, 1.5}, kAtStart,
                            "The robot faces the wanted direction along the line within this angle");
-  double straight_rad = add(straight_rad, "straight_rad", 0.6, "rad", {0.05, 1.5}, Changes::kAtStart,
+  double straight_rad = add(straight_rad, "straight_rad", 0.6, "rad", {0.05, 1.5}, kAtStart,
                             "A body whose head points away from it by more than this is too curled to follow a line");
-  double explore_s = add(explore_s, "explore_s", 8.0, "s", {1, 600}, Changes::kAtStart,
+  double explore_s = add(explore_s, "explore_s", 8.0, "s", {1, 600}, kAtStart,
                          "A search tries something else after exploring for this time");
-  double rotate_s = add(rotate_s, "rotate_s", 10.0, "s", {1, 600}, Changes::kAtStart,
+  double rotate_s = add(rotate_s, "rotate_s", 10.0, "s", {1, 600}, kAtStart,
                         "A search tries something else after turning for this time");
-  double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, Changes::kAtStart,
+  double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, kAtStart,
                            "The planner ignores the line for this time after its end");
-  double turn_round_s = add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, Changes::kAtStart,
-                            "Longest time of turning back after a drop");
-  double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, Changes::kAtStart,
+  double turn_round_s =
+      add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, kAtStart, "Longest time of turning back after a drop");
+  double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, kAtStart,
                                 "A search for the line counts as a recovery after this time");
-  double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, Changes::kAtStart,
+  double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, kAtStart,
                               "Time limit of search object, track, pregrasp, grasp and drop, each");
-  double follow_timeout_s = add(follow_timeout_s, "follow_timeout_s", 120.0, "s", {1, 3600}, Changes::kAtStart,
+  double follow_timeout_s = add(follow_timeout_s, "follow_timeout_s", 120.0, "s", {1, 3600}, kAtStart,
                                 "Time limit of following the line in one direction");
-  double mission_timeout_s = add(mission_timeout_s, "mission_timeout_s", 3600.0, "s", {1, 86400}, Changes::kAtStart,
-                                 "Time limit of the mission");
-  double holding_factor = add(holding_factor, "holding_factor", 4.0, "", {1, 20}, Changes::kAtStart,
+  double mission_timeout_s =
+      add(mission_timeout_s, "mission_timeout_s", 3600.0, "s", {1, 86400}, kAtStart, "Time limit of the mission");
+  double holding_factor = add(holding_factor, "holding_factor", 4.0, "", {1, 20}, kAtStart,
                               "Factor on the time limits of searching, turning and following with an object");
-  int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, Changes::kAtStart,
+  int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, kAtStart,
                            "The mission fails after more recoveries than this");
 
   /// Checks what spans several rows. Throws ConfigurationError.

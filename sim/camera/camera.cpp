@@ -23,15 +23,11 @@ PinholeCamera camera_intrinsics(const CameraModel& camera) {
 }
 
 Camera::Camera(Wiring& wiring, const Setup& setup)
-    : model_(load_robot(setup.robot_file).camera),
+    : ConfiguredComponent(wiring, setup),
+      model_(load_robot(setup.robot_file).camera),
       timing_{static_cast<std::uint16_t>(model_.period_ticks), static_cast<std::uint16_t>(model_.latency_ticks)},
       X_HC_(camera_mount(model_)),
-      config_(load_parameters<CameraConfig>(setup.config_file)),
-      seed_(setup.component_seed()),
-      world_(wiring.latest(topics::kWorldState)),
-      description_(wiring.latest(topics::kSceneDescription)),
-      info_(wiring.output(topics::kCameraInfo)),
-      image_(wiring.output(topics::kCameraImage)) {}
+      seed_(setup.component_seed()) {}
 
 void Camera::build(const msg::SceneDescription& description) {
   RenderOptions options;
@@ -74,8 +70,7 @@ void Camera::step(const Tick& tick) {
 }
 
 ComponentFactory make_camera_factory() {
-  return {"camera", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Camera>(wiring, setup); },
-          "sim/camera/camera.yaml", describe_parameters<CameraConfig>};
+  return make_factory<Camera, CameraConfig>("camera", "sim/camera/camera.yaml");
 }
 
 }  // namespace constrictor

@@ -7,6 +7,7 @@
 #include "component/component.hpp"
 #include "robot/robot_model.hpp"
 #include "sim/camera/camera_config.hpp"
+#include "sim/render/frame_count.hpp"
 #include "sim/render/pixel_noise.hpp"
 #include "sim/render/renderer.hpp"
 
@@ -18,19 +19,11 @@ namespace constrictor {
 /// The intrinsics of the robot's camera, with the identity as its pose.
 [[nodiscard]] PinholeCamera camera_intrinsics(const CameraModel& camera);
 
-struct CameraState {
-  std::uint64_t frames = 0;  ///< number of written frames
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(frames);
-  }
-};
-
 /// The component `camera`. It writes an image of the world every period, and CameraInfo with the first image. An image
 /// is a function of the world of its tick, the scene and the seed, so a restarted camera repeats its images. The
 /// component writes nothing before scene and world are known. Intrinsics, mount, period and latency come from the robot
 /// file, light and noise from the scene, the quality of the drawing from camera.yaml.
-class Camera : public StatefulComponent<CameraState> {
+class Camera : public ConfiguredComponent<FrameCount, CameraConfig> {
  public:
   Camera(Wiring& wiring, const Setup& setup);
   [[nodiscard]] Timing timing() const override { return timing_; }
@@ -43,12 +36,11 @@ class Camera : public StatefulComponent<CameraState> {
   CameraModel model_;
   Timing timing_;
   Eigen::Isometry3d X_HC_;
-  CameraConfig config_;
   std::uint64_t seed_;
-  Latest<msg::WorldState> world_;
-  Latest<msg::SceneDescription> description_;
-  Output<msg::CameraInfo> info_;
-  Output<msg::CameraImage> image_;
+  Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
+  Latest<msg::SceneDescription> description_ = wiring_.latest(topics::kSceneDescription);
+  Output<msg::CameraInfo> info_ = wiring_.output(topics::kCameraInfo);
+  Output<msg::CameraImage> image_ = wiring_.output(topics::kCameraImage);
   std::unique_ptr<Renderer> renderer_;  // built from the scene, no state
   std::unique_ptr<PixelNoise> noise_;
   std::vector<std::uint8_t> rgb_;

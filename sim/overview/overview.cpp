@@ -7,11 +7,8 @@
 namespace constrictor {
 
 Overview::Overview(Wiring& wiring, const Setup& setup)
-    : config_(load_parameters<OverviewConfig>(setup.config_file)),
-      timing_{static_cast<std::uint16_t>(config_.period_ticks), static_cast<std::uint16_t>(config_.latency_ticks)},
-      world_(wiring.latest(topics::kWorldState)),
-      description_(wiring.latest(topics::kSceneDescription)),
-      image_(wiring.output(topics::kOverviewImage)) {
+    : ConfiguredComponent(wiring, setup),
+      timing_{static_cast<std::uint16_t>(config_.period_ticks), static_cast<std::uint16_t>(config_.latency_ticks)} {
   config_.render.head_camera_m = load_robot(setup.robot_file).camera.p_HC;
 }
 
@@ -68,8 +65,7 @@ void Overview::step(const Tick&) {
 }
 
 ComponentFactory make_overview_factory() {
-  return {"overview", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Overview>(wiring, setup); },
-          "sim/overview/overview.yaml", describe_parameters<OverviewConfig>};
+  return make_factory<Overview, OverviewConfig>("overview", "sim/overview/overview.yaml");
 }
 
 }  // namespace constrictor

@@ -7,23 +7,16 @@
 
 #include "component/component.hpp"
 #include "sim/overview/overview_config.hpp"
+#include "sim/render/frame_count.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/render/viewpoint.hpp"
 
 namespace constrictor {
 
-struct OverviewState {
-  std::uint64_t frames = 0;  ///< number of written frames
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(frames);
-  }
-};
-
 /// The component `overview`. It writes a picture of the whole scene every period. The scene determines the viewpoint.
 /// The lower left corner, where the scene is always empty, has a close-up of the robot. A picture is a function of the
 /// world of its tick and of the scene. The component writes nothing before both are known.
-class Overview : public StatefulComponent<OverviewState> {
+class Overview : public ConfiguredComponent<FrameCount, OverviewConfig> {
  public:
   Overview(Wiring& wiring, const Setup& setup);
   [[nodiscard]] Timing timing() const override { return timing_; }
@@ -33,11 +26,10 @@ class Overview : public StatefulComponent<OverviewState> {
   void build(const msg::SceneDescription& description);
   void draw_inset(const ScenePoses& poses);
 
-  OverviewConfig config_;
   Timing timing_;
-  Latest<msg::WorldState> world_;
-  Latest<msg::SceneDescription> description_;
-  Output<msg::CameraImage> image_;
+  Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
+  Latest<msg::SceneDescription> description_ = wiring_.latest(topics::kSceneDescription);
+  Output<msg::CameraImage> image_ = wiring_.output(topics::kOverviewImage);
   std::unique_ptr<Renderer> renderer_;  // these members follow from the scene and are no state
   std::unique_ptr<Renderer> inset_renderer_;
   PinholeCamera camera_;

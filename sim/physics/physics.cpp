@@ -25,24 +25,16 @@ Physics::Physics(Wiring& wiring, const Setup& setup)
 
 Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot,
                  const Scenario& scenario)
-    : config_(config),
+    : wiring_(wiring),
+      config_(config),
       world_(robot, scenario, config.solver),
       sensors_(robot, setup.component_seed(), scenario.sensor_noise),
       perturbations_(scenario),
       gate_(robot, config.command),
-      wiring_(wiring),
       angles_rad_(robot.joints.size()),
       positions_rad_(robot.joints.size()),
       rates_rad_s_(robot.joints.size()),
-      torques_nm_(robot.joints.size()),
-      command_(wiring.latest(topics::kJointCommand)),
-      authority_(wiring.latest(topics::kAuthority)),
-      joint_state_(wiring.output(topics::kJointState)),
-      contact_state_(wiring.output(topics::kContactState)),
-      imu_state_(wiring.output(topics::kImuState)),
-      world_state_(wiring.output(topics::kWorldState)),
-      touched_state_(wiring.output(topics::kTouchedState)),
-      scene_(wiring.output(topics::kSceneDescription)) {}
+      torques_nm_(robot.joints.size()) {}
 
 void Physics::sample(const Tick&) {
   if (!scene_written_) {
@@ -67,8 +59,7 @@ void Physics::obey(const Tick& tick) {
     if (refused_count(gate_state_) != refused_before)
       wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
   }
-  const GateOrder order =
-      gate_order(authority_ ? &*authority_ : nullptr, authority_ ? authority_.age_ticks() : 0, gate_state_);
+  const GateOrder order = gate_order(authority_.get(), authority_ ? authority_.age_ticks() : 0, gate_state_);
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
   const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
@@ -86,8 +77,7 @@ void Physics::step(const Tick& tick) {
 }
 
 ComponentFactory make_physics_factory() {
-  return {"physics", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Physics>(wiring, setup); },
-          "sim/physics/physics.yaml", describe_parameters<PhysicsConfig>};
+  return make_factory<Physics, PhysicsConfig>("physics", "sim/physics/physics.yaml");
 }
 
 }  // namespace constrictor

@@ -28,23 +28,23 @@ class Physics final : public Plant {
   Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
   void obey(const Tick& tick);
 
+  Wiring& wiring_;
   PhysicsConfig config_;
   World world_;
   Sensors sensors_;
   PerturbationScript perturbations_;
   SafetyGate gate_;
   GateState gate_state_;
-  Wiring& wiring_;
   std::vector<double> angles_rad_, positions_rad_, rates_rad_s_, torques_nm_;  ///< one entry for each joint
 
-  Latest<msg::JointCommand> command_;
-  Latest<msg::Authority> authority_;
-  Output<msg::JointState> joint_state_;
-  Output<msg::ContactState> contact_state_;
-  Output<msg::ImuState> imu_state_;
-  Output<msg::WorldState> world_state_;
-  Output<msg::TouchedState> touched_state_;
-  Output<msg::SceneDescription> scene_;
+  Latest<msg::JointCommand> command_ = wiring_.latest(topics::kJointCommand);
+  Latest<msg::Authority> authority_ = wiring_.latest(topics::kAuthority);
+  Output<msg::JointState> joint_state_ = wiring_.output(topics::kJointState);
+  Output<msg::ContactState> contact_state_ = wiring_.output(topics::kContactState);
+  Output<msg::ImuState> imu_state_ = wiring_.output(topics::kImuState);
+  Output<msg::WorldState> world_state_ = wiring_.output(topics::kWorldState);
+  Output<msg::TouchedState> touched_state_ = wiring_.output(topics::kTouchedState);
+  Output<msg::SceneDescription> scene_ = wiring_.output(topics::kSceneDescription);
   bool scene_written_ = false;
 };
 

@@ -11,36 +11,35 @@
 namespace constrictor {
 
 struct PhysicsConfig : ParameterSet {
-  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, Changes::kAtStart,
-                                "Control tick; a multiple of solver.step_s");
+  double control_period_s =
+      add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, kAtStart, "Control tick; a multiple of solver.step_s");
   SolverSettings solver{
-      add(solver.step_s, "solver.step_s", SolverSettings{}.step_s, "s", {0.0001, 0.02}, Changes::kAtStart,
+      add(solver.step_s, "solver.step_s", SolverSettings{}.step_s, "s", {0.0001, 0.02}, kAtStart,
           "Step of the solver. A coarser step is faster, but the robot grasps less reliably"),
-      add(solver.iterations, "solver.iterations", SolverSettings{}.iterations, "", {1, 10000}, Changes::kAtStart,
+      add(solver.iterations, "solver.iterations", SolverSettings{}.iterations, "", {1, 10000}, kAtStart,
           "Iterations of QuickStep in a step. Fewer are faster, but the robot grasps less reliably"),
-      add(solver.over_relaxation, "solver.over_relaxation", SolverSettings{}.over_relaxation, "", {0.1, 1.9},
-          Changes::kAtStart, "W of QuickStep"),
-      add(solver.erp, "solver.erp", SolverSettings{}.erp, "", {0.0, 1.0}, Changes::kAtStart,
+      add(solver.over_relaxation, "solver.over_relaxation", SolverSettings{}.over_relaxation, "", {0.1, 1.9}, kAtStart,
+          "W of QuickStep"),
+      add(solver.erp, "solver.erp", SolverSettings{}.erp, "", {0.0, 1.0}, kAtStart,
           "Fraction of the position error of a joint that a step corrects"),
-      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, Changes::kAtStart,
-          "Softness of joints"),
-      add(solver.contact_erp, "solver.contact_erp", SolverSettings{}.contact_erp, "", {0.0, 1.0}, Changes::kAtStart,
+      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, kAtStart, "Softness of joints"),
+      add(solver.contact_erp, "solver.contact_erp", SolverSettings{}.contact_erp, "", {0.0, 1.0}, kAtStart,
           "Fraction of the depth of a contact that a step corrects"),
-      add(solver.contact_cfm, "solver.contact_cfm", SolverSettings{}.contact_cfm, "m/(N s)", {0.0, 0.1},
-          Changes::kAtStart, "Softness of contacts"),
+      add(solver.contact_cfm, "solver.contact_cfm", SolverSettings{}.contact_cfm, "m/(N s)", {0.0, 0.1}, kAtStart,
+          "Softness of contacts"),
       add(solver.surface_layer_m, "solver.surface_layer_m", SolverSettings{}.surface_layer_m, "m", {0.0, 0.01},
-          Changes::kAtStart, "Depth at which contacts may rest without correction"),
+          kAtStart, "Depth at which contacts may rest without correction"),
       add(solver.max_correcting_velocity_m_s, "solver.max_correcting_velocity_m_s",
-          SolverSettings{}.max_correcting_velocity_m_s, "m/s", {0.001, 1000.0}, Changes::kAtStart,
+          SolverSettings{}.max_correcting_velocity_m_s, "m/s", {0.001, 1000.0}, kAtStart,
           "Greatest velocity with which a contact is corrected"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
           "At a joint only the front module touches the ground: a third faster, 1.4 % other gait speed")};
   GateLimits command{
       add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
-          Changes::kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
+          kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
       add(command.relax_after_ticks, "command.relax_after_ticks", GateLimits{}.relax_after_ticks, "ticks", {1, 1000000},
-          Changes::kAtStart, "After this time without an acceptable command the joints relax")};
+          kAtStart, "After this time without an acceptable command the joints relax")};
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   /// [s] the period as the run counts it, in whole nanoseconds.

@@ -21,9 +21,9 @@ namespace {
 
 double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
 
-report::PlanarPose planar(const msg::Pose3& pose, std::int64_t tick) {
+PlanarPose planar(const msg::Pose3& pose) {
   const auto& q = pose.orientation;
-  return {tick, pose.position_m.x, pose.position_m.y,
+  return {{pose.position_m.x, pose.position_m.y},
           std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
 }
 
@@ -34,27 +34,14 @@ std::filesystem::path in_folder(const std::filesystem::path& folder, const char*
 }  // namespace
 
 Report::Report(Wiring& wiring, const Setup& setup)
-    : wiring_(wiring),
-      config_(load_parameters<ReportConfig>(setup.config_file)),
+    : ConfiguredComponent(wiring, setup),
       plant_limit_s_(setup.max_sim_time_s),
       folder_(setup.output_dir),
       yaw_joints_(load_robot(setup.robot_file).yaw_joints()),
       torques_(in_folder(folder_, "joint_torques.csv")),
       events_(in_folder(folder_, "events.jsonl")),
       states_(in_folder(folder_, "states.jsonl")),
-      parameters_(in_folder(folder_, "parameters.jsonl")),
-      world_(wiring.latest(topics::kWorldState)),
-      scene_(wiring.latest(topics::kSceneDescription)),
-      pose_(wiring.latest(topics::kRobotPose)),
-      task_(wiring.latest(topics::kTaskStatus)),
-      task_events_(wiring.events(topics::kTaskEvent)),
-      parameter_changes_(wiring.events(topics::kParameterChange)),
-      mission_(wiring.latest(topics::kMissionStatus)),
-      joints_(wiring.latest(topics::kJointState)),
-      line_(wiring.latest(topics::kLinePercept)),
-      camera_(wiring.latest(topics::kCameraImage)),
-      processed_(wiring.latest(topics::kProcessedImage)),
-      overview_(wiring.latest(topics::kOverviewImage)) {}
+      parameters_(in_folder(folder_, "parameters.jsonl")) {}
 
 void Report::step(const Tick& tick) {
   if (state_.finished || !world_ || !scene_) return;
@@ -95,7 +82,7 @@ void Report::read_line() {
 
 void Report::follow_truth() {
   constexpr std::size_t kHeadsKept = 16;  // an estimate is at most a few ticks old
-  const report::PlanarPose head = planar(world_->module_poses[0], world_->header.tick);
+  const report::PoseAtTick head{world_->header.tick, planar(world_->module_poses[0])};
   if (state_.start.tick < 0) {
     state_.start = head;
     state_.ledger.start(*scene_);
@@ -105,18 +92,18 @@ void Report::follow_truth() {
 
   const bool following = task_ && task_->task == msg::kTaskFollowLine && task_->goal_state == msg::kGoalRunning;
   if (following) {
-    if (const auto distance = report::cross_track_m({head.x_m, head.y_m}, line_m_)) state_.cross_track.add(*distance);
+    if (const auto distance = report::cross_track_m(head.X.p, line_m_)) state_.cross_track.add(*distance);
     if (line_ && line_.fresh()) {
       ++state_.percepts_following;
       state_.percepts_visible += line_->visible ? 1 : 0;
     }
   }
   if (pose_ && pose_.fresh()) {
-    for (const report::PlanarPose& then : state_.heads) {
+    for (const report::PoseAtTick& then : state_.heads) {
       if (then.tick != pose_->header.tick) continue;
-      const report::PlanarPose truth = report::relative_pose(state_.start, then);
-      state_.pose_error_m.add(std::hypot(pose_->x_m - truth.x_m, pose_->y_m - truth.y_m));
-      state_.pose_error_rad.add(report::wrapped(pose_->yaw_rad - truth.yaw_rad));
+      const PlanarPose truth = report::relative_pose(state_.start.X, then.X);
+      state_.pose_error_m.add(std::hypot(pose_->x_m - truth.p.x(), pose_->y_m - truth.p.y()));
+      state_.pose_error_rad.add(wrap_angle(pose_->yaw_rad - truth.yaw_rad));
     }
   }
 }
@@ -241,8 +228,7 @@ std::string Report::failure() const {
 bool Report::success() const { return state_.mission == msg::kMissionSucceeded && failure().empty(); }
 
 ComponentFactory make_report_factory() {
-  return {"report", [](Wiring& wiring, const Setup& setup) { return std::make_unique<Report>(wiring, setup); },
-          "sim/report/report.yaml", describe_parameters<ReportConfig>};
+  return make_factory<Report, ReportConfig>("report", "sim/report/report.yaml");
 }
 
 }  // namespace constrictor

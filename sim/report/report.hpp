@@ -25,8 +25,8 @@ struct ReportState {
   report::RootMeanSquare pose_error_rad;
   std::uint64_t percepts_following = 0;  ///< number of line percepts while follow_line runs
   std::uint64_t percepts_visible = 0;    ///< number of those in which the line was visible
-  report::PlanarPose start;              ///< X_WM: pose of the head at the start of the run
-  std::deque<report::PlanarPose> heads;  ///< true poses of the last ticks: an estimate may belong to an earlier tick
+  report::PoseAtTick start;              ///< X_WM: pose of the head at the start of the run
+  std::deque<report::PoseAtTick> heads;  ///< true poses of the last ticks: an estimate may belong to an earlier tick
   report::ObjectLedger ledger;
   report::MomentAlbum album;
   std::uint64_t torques_length = 0;  ///< [byte] length of each journal
@@ -54,7 +54,7 @@ struct ReportState {
 /// output directory it judges the mission and ends the run, but writes nothing. It ends the run `settle_s` after the
 /// end of the mission, or at `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same
 /// files and names that as the reason.
-class Report : public StatefulComponent<ReportState>, public Concluding {
+class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
@@ -82,25 +82,23 @@ class Report : public StatefulComponent<ReportState>, public Concluding {
   [[nodiscard]] std::string mission_json(const Tick& tick) const;
   void draw(const Tick& tick) const;
 
-  Wiring& wiring_;
-  ReportConfig config_;
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never
   std::filesystem::path folder_;
   std::vector<std::size_t> yaw_joints_;
   report::Journal torques_, events_, states_, parameters_;
   std::vector<Eigen::Vector2d> line_m_;  // points of the line in W, from the scene
-  Latest<msg::WorldState> world_;
-  Latest<msg::SceneDescription> scene_;
-  Latest<msg::RobotPose> pose_;
-  Latest<msg::TaskStatus> task_;
-  Events<msg::TaskEvent> task_events_;
-  Events<msg::ParameterChange> parameter_changes_;
-  Latest<msg::MissionStatus> mission_;
-  Latest<msg::JointState> joints_;
-  Latest<msg::LinePercept> line_;
-  Latest<msg::CameraImage> camera_;
-  Latest<msg::CameraImage> processed_;
-  Latest<msg::CameraImage> overview_;
+  Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
+  Latest<msg::SceneDescription> scene_ = wiring_.latest(topics::kSceneDescription);
+  Latest<msg::RobotPose> pose_ = wiring_.latest(topics::kRobotPose);
+  Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
+  Events<msg::TaskEvent> task_events_ = wiring_.events(topics::kTaskEvent);
+  Events<msg::ParameterChange> parameter_changes_ = wiring_.events(topics::kParameterChange);
+  Latest<msg::MissionStatus> mission_ = wiring_.latest(topics::kMissionStatus);
+  Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
+  Latest<msg::LinePercept> line_ = wiring_.latest(topics::kLinePercept);
+  Latest<msg::CameraImage> camera_ = wiring_.latest(topics::kCameraImage);
+  Latest<msg::CameraImage> processed_ = wiring_.latest(topics::kProcessedImage);
+  Latest<msg::CameraImage> overview_ = wiring_.latest(topics::kOverviewImage);
 };
 
 ComponentFactory make_report_factory();

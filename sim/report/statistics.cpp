@@ -1,7 +1,5 @@
 #include "sim/report/statistics.hpp"
 
-#include <numbers>
-
 namespace constrictor::report {
 
 std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& line_m) {
@@ -23,13 +21,7 @@ std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<
 }
 
 PlanarPose relative_pose(const PlanarPose& X_WA, const PlanarPose& X_WB) {
-  const double c = std::cos(X_WA.yaw_rad);
-  const double s = std::sin(X_WA.yaw_rad);
-  const double dx = X_WB.x_m - X_WA.x_m;
-  const double dy = X_WB.y_m - X_WA.y_m;
-  return {X_WB.tick, c * dx + s * dy, -s * dx + c * dy, wrapped(X_WB.yaw_rad - X_WA.yaw_rad)};
+  return {X_WA.to_local(X_WB.p), wrap_angle(X_WB.yaw_rad - X_WA.yaw_rad)};
 }
-
-double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
 }  // namespace constrictor::report

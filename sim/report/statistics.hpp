@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "robot/planar.hpp"
+
 namespace constrictor::report {
 
 /// Root mean square and greatest magnitude of the added values; NaN before the first value.
@@ -38,23 +40,18 @@ struct RootMeanSquare {
 /// lies beyond it, or if the line has fewer than two points.
 [[nodiscard]] std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& line_m);
 
-/// A pose on the ground plane.
-struct PlanarPose {
+/// A pose and the tick to which it belongs.
+struct PoseAtTick {
   std::int64_t tick = -1;
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double yaw_rad = 0.0;
+  PlanarPose X;
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(tick, x_m, y_m, yaw_rad);
+    archive(tick, X);
   }
 };
 
-/// X_AB from X_WA and X_WB, with the tick of B.
+/// X_AB from X_WA and X_WB.
 [[nodiscard]] PlanarPose relative_pose(const PlanarPose& X_WA, const PlanarPose& X_WB);
-
-/// [rad] the same angle in (-pi, pi].
-[[nodiscard]] double wrapped(double angle_rad);
 
 }  // namespace constrictor::report

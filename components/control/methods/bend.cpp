@@ -7,15 +7,12 @@
 namespace constrictor {
 namespace {
 
-class Bend : public ControlMethod {
+class Bend : public PostureMethod {
  public:
   std::string_view name() const override { return "bend"; }
-  void start(const MethodInput& input, BodyState& body) const override { keep_residual(input, body); }
-  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
-    const LinkArray shape_rad = desired_shape(input.desired, input.chain);
-    advance_wave(input, 1.0, body);
-    const double left_rad = advance_shape(input, shape_rad, desired_shape_rate(input), body);
-    ride(input, shape_rad, body, setpoints);
+
+ protected:
+  MethodProgress progress(double left_rad, BodyState& body) const override {
     double& longest_rad = body.scratch[0];
     longest_rad = std::max(longest_rad, left_rad);
     return {left_rad <= 0.0, longest_rad > 0.0 ? 1.0 - left_rad / longest_rad : 1.0};

@@ -5,17 +5,12 @@
 namespace constrictor {
 namespace {
 
-class Undulation : public ControlMethod {
+class Undulation : public PostureMethod {
  public:
   std::string_view name() const override { return "undulation"; }
-  void start(const MethodInput& input, BodyState& body) const override { keep_residual(input, body); }
-  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
-    const LinkArray shape_rad = desired_shape(input.desired, input.chain);
-    advance_wave(input, 1.0, body);
-    const double left_rad = advance_shape(input, shape_rad, desired_shape_rate(input), body);
-    ride(input, shape_rad, body, setpoints);
-    return {false, left_rad > 0.0 ? 0.0 : 1.0};
-  }
+
+ protected:
+  MethodProgress progress(double left_rad, BodyState&) const override { return {false, left_rad > 0.0 ? 0.0 : 1.0}; }
 };
 
 }  // namespace

@@ -1,15 +1,15 @@
 // What a component is: a step function with declared ports and one serialisable state. Nothing here knows DDS.
 #pragma once
 
-#include <cereal/archives/portable_binary.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <sstream>
 #include <string>
+#include <utility>
 
 #include "component/ports.hpp"
+#include "component/stateful.hpp"
 #include "configuration/parameter_set.hpp"
 
 namespace constrictor {
@@ -73,22 +73,22 @@ class Component {
 
 /// A component whose state is one cereal-serialisable struct.
 template <class State>
-class StatefulComponent : public Component {
- public:
-  [[nodiscard]] std::string save() const final {
-    std::ostringstream stream;
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(state_);
-    return std::move(stream).str();
-  }
-  void load(const std::string& bytes) final {
-    std::istringstream stream(bytes);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(state_);
-  }
+using StatefulComponent = Stateful<Component, State>;
 
+/// A stateful component with a configuration file. Configuration and wiring are there before the members of the derived
+/// class, which can therefore be initialised where they are declared:
+///
+///     Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
+template <class State, class Config>
+class ConfiguredComponent : public StatefulComponent<State> {
  protected:
-  State state_{};
+  ConfiguredComponent(Wiring& wiring, Config config) : wiring_(wiring), config_(std::move(config)) {}
+  /// Reads the configuration from the component's own file. Throws ConfigurationError.
+  ConfiguredComponent(Wiring& wiring, const Setup& setup)
+      : ConfiguredComponent(wiring, load_parameters<Config>(setup.config_file)) {}
+
+  Wiring& wiring_;
+  Config config_;
 };
 
 /// The plant: it owns the joints and therefore the time. At tick k, `sample` writes what is measured at t_k (visible in
@@ -112,5 +112,14 @@ struct ComponentFactory {
   /// component has none. `describe_parameters<Config>` for a Config that is a ParameterSet.
   DescribeParameters parameters = nullptr;
 };
+
+/// The factory of a component that is constructed from its wiring and set-up, and whose parameters are a `Config`.
+/// `default_config`: a path for data_path().
+template <class ConstructedComponent, class Config>
+[[nodiscard]] ComponentFactory make_factory(std::string name, std::filesystem::path default_config) {
+  return {std::move(name),
+          [](Wiring& wiring, const Setup& setup) { return std::make_unique<ConstructedComponent>(wiring, setup); },
+          std::move(default_config), describe_parameters<Config>};
+}
 
 }  // namespace constrictor

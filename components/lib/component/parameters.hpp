@@ -97,4 +97,16 @@ class Parameters {
   bool fields_set_ = false;  ///< the fields hold the values of the state
 };
 
+/// A component whose configuration has rows that may change during a run. `State` has a member `parameters`, a
+/// ParameterState. The component's step begins with `parameters_.step(tick, state_.parameters)`.
+template <class State, class Config>
+class TunableComponent : public ConfiguredComponent<State, Config> {
+ protected:
+  /// Reads the configuration; `topic`: where the list of parameters is published. Throws ConfigurationError.
+  TunableComponent(Wiring& wiring, const Setup& setup, const Topic<msg::ParameterList>& topic)
+      : ConfiguredComponent<State, Config>(wiring, setup), parameters_(wiring, topic, this->config_) {}
+
+  Parameters parameters_;  ///< the rows of config_
+};
+
 }  // namespace constrictor

@@ -45,6 +45,8 @@ class Latest {
   explicit operator bool() const { return has_value(); }
   [[nodiscard]] const T& operator*() const { return *static_cast<const T*>(slot_->latest.message.get()); }
   [[nodiscard]] const T* operator->() const { return &**this; }
+  /// The sample; null before the first.
+  [[nodiscard]] const T* get() const { return static_cast<const T*>(slot_->latest.message.get()); }
   /// Ticks since the step that wrote the sample (plant samples have age 0 in their own tick).
   [[nodiscard]] std::int64_t age_ticks() const { return slot_->now_tick - slot_->latest.header->tick; }
   /// True if the sample became visible since the previous step.

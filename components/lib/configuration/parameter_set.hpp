@@ -41,7 +41,7 @@ struct ListSize {
 ///
 ///     struct ControlConfig : ParameterSet {
 ///       double shape_rate_rad_s = add(shape_rate_rad_s, "posture.shape_rate_rad_s", 0.5, "rad/s", {0.01, 4.0},
-///                                     Changes::kWhileRunning, "Speed of each joint towards a new posture");
+///                                     kWhileRunning, "Speed of each joint towards a new posture");
 ///     };
 ///
 /// The row is the only place of the default, the bounds, the unit and the meaning. From it follow: `load_parameters`
@@ -53,6 +53,8 @@ struct ListSize {
 /// contradicts itself (a default outside of its bounds, a key that exists already) is a bug: std::logic_error.
 class ParameterSet {
  public:
+  using enum Changes;  // the rows of derived structs say kAtStart and kWhileRunning
+
   /// A row as the set keeps it.
   struct Row {
     ParameterRow text;

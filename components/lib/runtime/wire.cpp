@@ -18,15 +18,29 @@ std::string bytes_of(const dds_sequence_octet& sequence) {
   return {reinterpret_cast<const char*>(sequence._buffer), sequence._length};
 }
 
+// What both messages about a checkpoint begin with: which component, in which life of it, and after which tick.
+template <class Value, class Message>
+void identity_to_wire(const Value& value, Message& message) {
+  set_text(message.component, value.component);
+  message.run_id = value.epoch.run_id;
+  message.epoch = value.epoch.epoch;
+  message.incarnation = value.incarnation;
+  message.index = value.index;
+}
+
+template <class Message, class Value>
+void identity_from_wire(const Message& message, Value& value) {
+  value.component = message.component;
+  value.epoch = {message.run_id, message.epoch};
+  value.incarnation = message.incarnation;
+  value.index = message.index;
+}
+
 }  // namespace
 
 msg::TickDone to_wire(const TickDone& done, std::string& block) {
   msg::TickDone message{};
-  set_text(message.component, done.component);
-  message.run_id = done.epoch.run_id;
-  message.epoch = done.epoch.epoch;
-  message.incarnation = done.incarnation;
-  message.index = done.index;
+  identity_to_wire(done, message);
   if (done.published.size() > std::size(message.published))
     throw std::logic_error(done.component + " writes too many topics");
   message.published_count = static_cast<std::uint8_t>(done.published.size());
@@ -47,10 +61,7 @@ msg::TickDone to_wire(const TickDone& done, std::string& block) {
 
 std::optional<TickDone> from_wire(const msg::TickDone& message) {
   TickDone done;
-  done.component = message.component;
-  done.epoch = {message.run_id, message.epoch};
-  done.incarnation = message.incarnation;
-  done.index = message.index;
+  identity_from_wire(message, done);
   for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
     done.published.push_back({message.published[i].topic, message.published[i].count});
   }
@@ -101,11 +112,7 @@ Hello from_wire(const msg::Hello& message) {
 
 msg::Resume to_wire(const Resume& resume, std::string& block) {
   msg::Resume message{};
-  set_text(message.component, resume.component);
-  message.run_id = resume.epoch.run_id;
-  message.epoch = resume.epoch.epoch;
-  message.incarnation = resume.incarnation;
-  message.index = resume.index;
+  identity_to_wire(resume, message);
   message.seed = resume.seed;
   block = pack_checkpoint(resume.state, resume.outputs);
   message.checkpoint = borrow(block);
@@ -114,10 +121,7 @@ msg::Resume to_wire(const Resume& resume, std::string& block) {
 
 std::optional<Resume> from_wire(const msg::Resume& message) {
   Resume resume;
-  resume.component = message.component;
-  resume.epoch = {message.run_id, message.epoch};
-  resume.incarnation = message.incarnation;
-  resume.index = message.index;
+  identity_from_wire(message, resume);
   resume.seed = message.seed;
   if (!unpack_checkpoint(bytes_of(message.checkpoint), resume.state, resume.outputs)) return {};
   return resume;

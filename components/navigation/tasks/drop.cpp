@@ -20,7 +20,7 @@ struct DropState {
   SteeringState steering;
   SteeringState object_x;  ///< place of the held object in the head's frame, averaged over a gait period
   SteeringState object_y;
-  Pose2 from;  ///< the head when the phase began
+  PlanarPose from;  ///< the head when the phase began
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object_x, object_y, from);
@@ -98,7 +98,7 @@ class Drop : public StatefulTask<DropState> {
       state_.course_rad = std::atan2(d.y(), d.x());
       state_.course_fixed = true;
     }
-    const Pose2 X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
+    const PlanarPose X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
     const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -input.grip_sense.held_aside_m(grip)});
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);

@@ -10,7 +10,7 @@ enum Phase : int { kLookLeft, kLookRight, kStep };
 struct ExploreState {
   int phase = kStep;
   double phase_s = 0.0;
-  Pose2 from;  ///< the head when the phase began
+  PlanarPose from;  ///< the head when the phase began
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, phase_s, from);

@@ -14,7 +14,7 @@ struct FollowLineState {
   SteeringState steering;
   bool found = false;        ///< the event "line found" was sent
   double travelled_m = 0.0;  ///< largest distance from the start, for the progress
-  Pose2 start;               ///< the head at the start
+  PlanarPose start;          ///< the head at the start
   double curvature_1_m = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {

@@ -39,7 +39,7 @@ class FollowPath : public StatefulTask<FollowPathState> {
     PidGains gains = config.steering;
     if (grip.carrying) gains.limit = input.config.follow_line.carry_limit_1_m;
     advance(input.X_MH.p, state_);
-    const Pose2 X_MP{at(state_, state_.segment, state_.along_m), heading(state_, state_.segment)};
+    const PlanarPose X_MP{at(state_, state_.segment, state_.along_m), heading(state_, state_.segment)};
     output.cross_track_m = X_MP.to_local(input.X_MH.p).y();
 
     // The error is not averaged over a gait period, as it is for a painted line: the delay would make the robot swing.
@@ -78,12 +78,12 @@ class FollowPath : public StatefulTask<FollowPathState> {
   /// Moves `segment` and `along_m` on to the place of the path beside the head.
   static void advance(const Eigen::Vector2d& p_MH, FollowPathState& path) {
     for (;;) {
-      const Pose2 X_MS{point(path, path.segment), heading(path, path.segment)};
+      const PlanarPose X_MS{point(path, path.segment), heading(path, path.segment)};
       const double length_m = length(path, path.segment);
       path.along_m = std::max(path.along_m, std::clamp(X_MS.to_local(p_MH).x(), 0.0, length_m));
       if (path.segment + 2 >= path.x_m.size()) return;
       // At a sharp corner the head leaves a segment before it has been beside the segment's end.
-      const Pose2 X_MN{point(path, path.segment + 1), heading(path, path.segment + 1)};
+      const PlanarPose X_MN{point(path, path.segment + 1), heading(path, path.segment + 1)};
       const double next_m = X_MN.to_local(p_MH).x();
       const bool nearer = next_m > 0.0 && next_m < length(path, path.segment + 1) &&
                           std::abs(X_MN.to_local(p_MH).y()) < (p_MH - at(path, path.segment, path.along_m)).norm();

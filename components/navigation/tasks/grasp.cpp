@@ -17,7 +17,7 @@ struct GraspState {
   double seated_s = 0.0;
   int touching = 0;                                  ///< modules near the base that touched within touch_memory_s
   std::array<double, msg::kMaxModules> touched_s{};  ///< time since the last touch of each module
-  Pose2 before;                                      ///< the head at the previous step
+  PlanarPose before;                                 ///< the head at the previous step
   double slid_m = 0.0;                               ///< distance by which the arc has moved along the body
   int squeezes = 0;
   double speed_m_s = 0.0;  ///< smoothed speed of the head along its own axis

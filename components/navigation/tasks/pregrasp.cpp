@@ -25,7 +25,7 @@ struct PregraspState {
   int misses = 0;       ///< attempts without a touch
   bool felt = false;    ///< the present attempt touched the object
   bool deep = false;    ///< the object lies between deep_min_m and deep_max_m along the body
-  Pose2 rest;           ///< the head before the touch movement
+  PlanarPose rest;      ///< the head before the touch movement
   SteeringState steering;
   double unseen_s = 0.0;
   template <class Archive>
@@ -114,7 +114,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     double room_m[2] = {1e9, 1e9};
     for (const int option : {0, 1}) {
       const double side = option == 0 ? 1.0 : -1.0;
-      const Pose2 X_MP{state_.p_MO, tangent_course(input, side)};
+      const PlanarPose X_MP{state_.p_MO, tangent_course(input, side)};
       for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
         const Sighting& other = input.sightings.objects[colour];
         if (!other.known || colour == input.parameters.object_colour) continue;
@@ -135,7 +135,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
   /// Steers along the passing line.
   void pass(const TaskInput& input, const Gait& gait, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
-    const Pose2 X_MP{state_.p_MO, state_.course_rad};
+    const PlanarPose X_MP{state_.p_MO, state_.course_rad};
     const Eigen::Vector2d p_line = X_MP.to_parent({0.0, -state_.side * passing_m(input)});
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
@@ -145,7 +145,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
 
   /// [m] distance of the head beyond the object's centre along the passing line; negative before it.
   [[nodiscard]] double past_m(const TaskInput& input) const {
-    return Pose2{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x();
+    return PlanarPose{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x();
   }
 
   void bend_away(const TaskInput& input, Grip& grip, const Sighting& object, TaskOutput& output) {
@@ -177,7 +177,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     bend_head(state_.side * limit_rad, config.touch_rate_rad_s, grip, output);
     const Touch* best = nullptr;
     for (const Touch& t : input.touches) {
-      const Pose2& module = input.body[t.module];
+      const PlanarPose& module = input.body[t.module];
       const bool inner_side = state_.side * t.normal_H.dot(module.left()) < 0.3;
       if (t.module < 9 && inner_side && t.force_n >= config.touch_force_n && (!best || t.force_n > best->force_n))
         best = &t;

@@ -19,7 +19,7 @@ struct SearchState {
   double phase_s = 0.0;
   double turned_rad = 0.0;
   double last_course_rad = 0.0;
-  Pose2 from;         ///< the head when the phase began
+  PlanarPose from;    ///< the head when the phase began
   int returns = 0;    ///< how often the robot went to the remembered place
   double side = 1.0;  ///< of the turn towards that place: +1 left, -1 right
   template <class Archive>

@@ -80,7 +80,7 @@ TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
     EXPECT_LT(side * p_HO.y(), 0.2);
     EXPECT_LT(p_HO.x(), -0.7);
     // Its distance from every module is about its radius or more.
-    for (const Pose2& module : body) EXPECT_GT((module.p - p_HO).norm(), 0.085 + 0.035 - 0.02);
+    for (const PlanarPose& module : body) EXPECT_GT((module.p - p_HO).norm(), 0.085 + 0.035 - 0.02);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
 }
 
 TEST_F(TouchTest, ThePathErrorIsTheLateralPositionOfThePathAhead) {
-  const Pose2 X_MH{{0.0, -0.2}, 0.0};
+  const PlanarPose X_MH{{0.0, -0.2}, 0.0};
   EXPECT_NEAR(path_error_m(X_MH, {5.0, 0.0}, 0.0, 0.3), 0.2, 1e-12);       // path to the left
   EXPECT_LT(path_error_m({{0.0, 0.0}, 0.5}, {0.0, 0.0}, 0.0, 0.3), -0.1);  // head turned left of the path
 }

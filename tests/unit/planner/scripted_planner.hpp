@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "planner/mission_planner.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 
@@ -99,8 +100,8 @@ class PlannerTest : public ::testing::Test {
   /// Turns head and body to this heading, or each to its own: a body that points elsewhere is curled up.
   void face(double yaw_rad) { face(yaw_rad, yaw_rad); }
   void face(double yaw_rad, double body_yaw_rad) {
-    pose_.yaw_rad = wrapped(yaw_rad);
-    pose_.body_yaw_rad = wrapped(body_yaw_rad);
+    pose_.yaw_rad = wrap_angle(yaw_rad);
+    pose_.body_yaw_rad = wrap_angle(body_yaw_rad);
   }
   /// Drives `metres` along the head's heading, with the line, which runs along x, in view.
   void drive(double metres) {

@@ -10,6 +10,7 @@
 #include "configuration/configuration.hpp"
 #include "planner/line_trail.hpp"
 #include "planner/planner_config.hpp"
+#include "robot/planar.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
@@ -37,7 +38,7 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
     pose.x_m = 2.0 * std::sin(angle);
     pose.y_m = 2.0 - 2.0 * std::cos(angle);
     EXPECT_NEAR(*trail.direction_rad(pose, true), angle, 0.1);
-    EXPECT_NEAR(std::abs(wrapped(*trail.direction_rad(pose, false) - angle)), std::numbers::pi, 0.1);
+    EXPECT_NEAR(std::abs(wrap_angle(*trail.direction_rad(pose, false) - angle)), std::numbers::pi, 0.1);
     EXPECT_EQ(trail.heading_rad(pose, true), trail.direction_rad(pose, true));
     // One metre beside the line, the heading leads to a point 0.6 m further along the tangent.
     for (const double beside_m : {1.0, -1.0}) {
@@ -70,7 +71,7 @@ TEST(LineTrail, LeadsToTheLastVisiblePointOfABendAndOverNewGroundOnly) {
   pose.x_m = 2.3;  // the robot has lost the line and passed the corner
   pose.yaw_rad = 0.3;
   EXPECT_NEAR(*trail.heading_rad(pose, true), std::atan2(0.3, -0.3), 1e-9);
-  EXPECT_NEAR(std::abs(wrapped(*trail.heading_rad(pose, false))), std::numbers::pi,
+  EXPECT_NEAR(std::abs(wrap_angle(*trail.heading_rad(pose, false))), std::numbers::pi,
               0.3);  // the way back does not use that point
   const double corner_rad = 110.0 / 180.0 * std::numbers::pi;
   see(2.0 + 0.9 * std::cos(corner_rad), 0.9 * std::sin(corner_rad));

@@ -50,15 +50,17 @@ TEST(CrossTrack, BeyondTheEndsThereIsNone) {
 }
 
 TEST(PlanarPose, RelativePoseUndoesTheFirst) {
-  const PlanarPose a{0, 1.0, 2.0, 0.5};
-  const PlanarPose b{7, 1.0 + 3.0 * std::cos(0.5), 2.0 + 3.0 * std::sin(0.5), 0.5 + 3.0};
+  const PlanarPose a{{1.0, 2.0}, 0.5};
+  const PlanarPose b{{1.0 + 3.0 * std::cos(0.5), 2.0 + 3.0 * std::sin(0.5)}, 0.5 + 3.0};
   const PlanarPose relative = relative_pose(a, b);
-  EXPECT_NEAR(relative.x_m, 3.0, 1e-12);
-  EXPECT_NEAR(relative.y_m, 0.0, 1e-12);
+  EXPECT_NEAR(relative.p.x(), 3.0, 1e-12);
+  EXPECT_NEAR(relative.p.y(), 0.0, 1e-12);
   EXPECT_NEAR(relative.yaw_rad, 3.0, 1e-12);
-  EXPECT_EQ(relative.tick, 7);
-  EXPECT_NEAR(relative_pose(b, a).yaw_rad, -3.0, 1e-12);
-  EXPECT_NEAR(wrapped(4.0), 4.0 - 2 * std::numbers::pi, 1e-12);
+  const PlanarPose back = relative_pose(b, a);
+  EXPECT_NEAR(back.p.x(), -3.0 * std::cos(3.0), 1e-12);
+  EXPECT_NEAR(back.p.y(), 3.0 * std::sin(3.0), 1e-12);
+  EXPECT_NEAR(back.yaw_rad, -3.0, 1e-12);
+  EXPECT_NEAR(wrap_angle(4.0), 4.0 - 2 * std::numbers::pi, 1e-12);
 }
 
 TEST(RootMeanSquare, IsNotANumberBeforeTheFirst) {

@@ -1,0 +1,32 @@
+// Groups of inputs that several components read together.
+#pragma once
+
+#include "component/ports.hpp"
+
+namespace constrictor {
+
+/// What the robot's body measures.
+struct BodyView {
+  explicit BodyView(Wiring& wiring)
+      : joints(wiring.latest(topics::kJointState)), contacts(wiring.latest(topics::kContactState)) {}
+  Latest<msg::JointState> joints;
+  Latest<msg::ContactState> contacts;
+};
+
+/// What perception found in the newest image.
+struct PerceptView {
+  explicit PerceptView(Wiring& wiring)
+      : line(wiring.latest(topics::kLinePercept)), objects(wiring.latest(topics::kObjectPercepts)) {}
+  Latest<msg::LinePercept> line;
+  Latest<msg::ObjectPercepts> objects;
+};
+
+/// What the robot knows of the field around it: the percepts, its own pose, and the map.
+struct FieldView : PerceptView {
+  explicit FieldView(Wiring& wiring)
+      : PerceptView(wiring), pose(wiring.latest(topics::kRobotPose)), map(wiring.latest(topics::kFieldMap)) {}
+  Latest<msg::RobotPose> pose;
+  Latest<msg::FieldMap> map;
+};
+
+}  // namespace constrictor
