@@ -1,4 +1,4 @@
-// The interface of control methods. They compute joint setpoints from the desired trajectory and what the body feels.
+// The interface of control methods. They compute joint setpoints from the desired trajectory and from the sensors.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct BodyState {
 };
 
 /// The newest message of each sense, for methods that adapt to obstacles, grip or terrain. Null before the first
-/// message. `header.tick` tells the age of a message.
+/// message. `header.tick` shows the age of a message.
 struct Perceived {
   const msg::ContactState* contacts = nullptr;
   const msg::ImuState* imu = nullptr;

@@ -27,7 +27,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   input.yaw_rad = yaw_of(imu_->orientation);
   if (!std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
-  // A robot that has rolled over cannot tell the ground from a wall. Then only the motion of the body counts.
+  // A robot that has rolled over cannot distinguish ground and wall. Then only the motion of the body counts.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&

@@ -80,9 +80,9 @@ class Arbiter {
   Decision decide_planner(const msg::Request& request) { return decide(request, true); }
   /// Decides on a request of a client, which has neither the level nor the name of the built-in planner.
   Decision decide_client(const msg::Request& request, const WriterId& writer = {});
-  /// The process of a source is gone. If the source had authority, nobody has it now. The source is forgotten: a later
-  /// one of the same name is another source. A detached holder keeps authority and the count of its goals until it
-  /// loses authority.
+  /// The process of a source is gone. If the source had authority, no source has it now. The source is forgotten: a
+  /// later one of the same name is another source. A detached holder keeps authority and the count of its goals until
+  /// it loses authority.
   Decision on_death(const std::string& source);
   /// Whether the known source of this name has another writer than this one.
   [[nodiscard]] bool has_another_writer(const std::string& source, const WriterId& writer) const;

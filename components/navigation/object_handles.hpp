@@ -1,4 +1,4 @@
-// The paper's object handle tells which object of a colour a goal means. It is the handle of guidance's map.
+// The paper's object handle identifies the object of a colour that a goal means. It is the handle of guidance's map.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,7 @@ msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, doubl
 
 std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& info) {
   if (image.width != info.width || image.height != info.height) {
-    return cv::format("size: found %d x %d, accepted %d x %d, as camera/info says", image.width, image.height,
+    return cv::format("size: found %d x %d, accepted %d x %d, the size in camera/info", image.width, image.height,
                       info.width, info.height);
   }
   if (image.width < 32 || image.height < 24)

@@ -25,7 +25,7 @@ bool LineView::is_standing(int u, int v) const {
   if (id == 0) return false;
   const Region& region = regions_.regions[id - 1u];
   if (!region.standing() || region.area == 0) return false;
-  // The width tells an object of the line's own colour from the line in front of it.
+  // The width distinguishes an object of the line's own colour from the line in front of it.
   return region.colour != colour_ ||
          (u >= region.standing_first - 1 && u <= region.standing_last + 1 &&
           v <= region.standing_bottom + 1 + (region.standing_last - region.standing_first) / 6);

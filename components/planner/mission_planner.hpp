@@ -48,7 +48,7 @@ struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
   bool requested = false;        ///< the task of the state was requested
   bool direction_known = false;  ///< an object was found, so the directions of the trail are right
-  bool suspended = false;        ///< somebody else has authority, or an emergency stop is latched
+  bool suspended = false;        ///< another source has authority, or an emergency stop is latched
   bool stopped = false;          ///< from an emergency stop until an operator or external planner releases authority
   double last_s = 0.0;           ///< time of the previous step
   double active_s = 0.0;         ///< mission time, without suspensions
@@ -59,7 +59,7 @@ struct MissionMemory {
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
   std::uint16_t object_index = 0;  ///< the first object of the sequence that is not delivered
-  std::uint32_t delivered = 0;     ///< bit i: object i of the sequence was dropped, by the planner or by anybody else
+  std::uint32_t delivered = 0;     ///< bit i: object i of the sequence was dropped, by the planner or another source
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object

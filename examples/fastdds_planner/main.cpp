@@ -117,7 +117,8 @@ class Planner {
     participant_.read<msg::TaskStatusPubSubType>("task/status", false, 1, [this](const msg::TaskStatus& status) {
       logic_.take(retrieval::GoalStatus{own(status.goal_id()), status.task(), status.goal_state(), status.carrying()});
     });
-    // Reliable and from the beginning of the epoch: the events tell what was delivered before this planner started.
+    // Reliable and from the beginning of the epoch: the events show which objects were delivered before this planner
+    // started.
     participant_.read<msg::TaskEventPubSubType>("task/event", true, 512, [this](const msg::TaskEvent& event) {
       if (event.event() != msg::kEventNone)
         std::printf("event %d of task %d, colour %d\n", event.event(), event.task(), event.colour());

@@ -16,8 +16,8 @@ class Physics final : public Plant {
   Physics(Wiring& wiring, const Setup& setup);
 
   void sample(const Tick& tick) override;
-  /// Holds the posture (SafetyGate) before the first command, when commands are stale or refused, and when nobody has
-  /// authority.
+  /// Holds the posture (SafetyGate) before the first command, when commands are stale or refused, and when no source
+  /// has authority.
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
 

@@ -34,7 +34,7 @@ struct PhysicsConfig : ParameterSet {
           "Greatest velocity with which a contact is corrected"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "At a joint only the front module touches the ground: a third faster, 1.4 % other gait speed")};
+          "At a joint only the front module touches the ground. The solver is a third faster, the gait 1.4 %")};
   GateLimits command{
       add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
           kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),

@@ -16,7 +16,7 @@ struct SolverSettings {
   double surface_layer_m = 0.001;  ///< [m] depth at which contacts may rest without correction
   double max_correcting_velocity_m_s = 1.0;
   /// The caps of two neighbouring modules coincide at their joint. If true, only the cap of the front module touches
-  /// the ground there; that is a third faster.
+  /// the ground there; the solver is then a third faster.
   bool one_ground_contact_a_joint = false;
   std::uint32_t reorder_seed = 1;  ///< seed of QuickStep's random order of constraints
 };

@@ -87,7 +87,7 @@ TEST_F(Introspection, TheDoctorFindsAConfigurationThatCannotBeReadOrIsWrong) {
 
 TEST_F(Introspection, TheDoctorFindsAnEmptyDomainAndATopicWithTwoTypes) {
   const DomainClaim claim;
-  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"nobody there"}) << output_;
+  EXPECT_EQ(faults(claim.domain()), std::vector<std::string>{"empty domain"}) << output_;
   const Process talker = foreign(claim.domain(), "final");
   const dds::Domain domain(claim.domain());
   const auto other = dds::Reader<msg::RunState>::observer(domain.participant(), "weather");

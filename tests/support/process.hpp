@@ -1,4 +1,4 @@
-// Real processes for tests: started with arguments, watched with bounds, and never left running.
+// Child processes of tests. Waits for them have bounds, and none of them survives its test.
 #pragma once
 
 #include <sys/types.h>
@@ -15,12 +15,13 @@ namespace constrictor::testing {
 
 class Process {
  public:
-  /// Starts `arguments[0]`; output and errors are collected in files. `environment` is added to this process's own.
+  /// Starts the program `arguments[0]` and collects its output and its errors in files. `environment` is added to the
+  /// environment of this process.
   explicit Process(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {});
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
   Process(const Process&) = delete;
-  /// Kills what still runs.
+  /// Kills the process if it still runs.
   ~Process();
 
   [[nodiscard]] pid_t pid() const { return pid_; }
@@ -30,7 +31,8 @@ class Process {
   [[nodiscard]] bool running();
   [[nodiscard]] std::string output() const;
   [[nodiscard]] std::string errors() const;
-  /// True once `text` stands in the output or the errors; false if not within `bound` or when it ended without.
+  /// Waits until the output or the errors contain `text`. Returns false if that does not happen within `bound`, or if
+  /// the process ends before.
   bool wait_for(const std::string& text, std::chrono::seconds bound);
 
  private:

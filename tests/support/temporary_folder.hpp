@@ -1,4 +1,4 @@
-// A folder that is gone with its test.
+// A folder that is removed at the end of its test.
 #pragma once
 
 #include <unistd.h>
@@ -28,7 +28,7 @@ class TemporaryFolder {
   }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Every file's bytes by its path inside the folder.
+  /// The content of every file in a folder, by its path inside the folder.
   [[nodiscard]] std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {

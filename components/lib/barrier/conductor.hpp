@@ -32,7 +32,7 @@ struct ConductorOptions {
   std::string numeric_profile;
   std::uint64_t seed = 1;
   std::int64_t period_ns = 20'000'000;
-  bool realtime = false;         ///< once all members are ready, ticks wait for nobody
+  bool realtime = false;         ///< once all members are ready, ticks do not wait for members
   std::int64_t last_index = -1;  ///< the run ends with this tick at the latest; negative: no such limit
 };
 
@@ -47,8 +47,8 @@ class Conductor {
   /// an older incarnation does: it is only late.
   [[nodiscard]] std::optional<std::string> foreign(const std::string& component, const EpochId& epoch,
                                                    std::uint32_t incarnation) const;
-  /// What cannot be true in a TickDone of another process; empty if it is plausible. Such a message must not be passed
-  /// to on_done(). Its component must be in the roster.
+  /// The reason why a TickDone of another process cannot be true; empty if it is plausible. An implausible message must
+  /// not be passed to on_done(). The component of the message must be in the roster.
   [[nodiscard]] std::optional<std::string> implausible(const TickDone& done) const;
   /// Returns whether the step counts: false for an older incarnation, another epoch, or a step that was done before.
   bool on_done(const TickDone& done);
@@ -84,7 +84,7 @@ class Conductor {
   /// Output hash of each member over what is visible at the last tick.
   [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const;
   [[nodiscard]] std::uint32_t incarnation(const std::string& component) const;
-  /// What it knows about a member, as text that tests compare: incarnation, ready or not, last finished step.
+  /// The conductor's knowledge of a member, as text that tests compare: incarnation, ready or not, last finished step.
   [[nodiscard]] std::string known_of(const std::string& component) const;
 
  private:

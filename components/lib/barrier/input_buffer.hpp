@@ -16,7 +16,7 @@ class InputBuffer {
   /// What becomes of an arriving sample.
   enum class Arrival {
     kNew,          ///< keep() it
-    kReplacement,  ///< keep() it: a newer incarnation of the writer repeated a step that nobody has seen yet
+    kReplacement,  ///< keep() it: a newer incarnation of the writer repeated a step that this reader has not seen
     kDuplicate,    ///< drop it: it is known already, which is normal after a restart
     kTooFarAhead,  ///< reject it: no writer can be so many samples ahead
   };

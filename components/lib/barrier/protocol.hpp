@@ -77,7 +77,7 @@ struct Resume {
 /// Packs a checkpoint for the wire, little-endian: length of the state (u64), the state, number of outputs (u64), and
 /// of each output its topic id (u8), length (u64) and bytes. Empty if there is neither state nor output.
 std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs);
-/// The inverse. The bytes may come from anybody: returns false, and leaves `state` and `outputs` empty, unless they are
+/// The inverse. Any process may send the bytes: returns false, and leaves `state` and `outputs` empty, unless they are
 /// exactly one checkpoint whose outputs belong to known topics.
 bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<TickDone::Written>& outputs);
 

@@ -1,4 +1,4 @@
-// Who has authority, from the messages of `input`.
+// The source that has authority, from the messages of `input`.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ class CommandError : public std::runtime_error {
   enum class Cause {
     kNoRun,        ///< no run was found, or several and none was chosen
     kRefused,      ///< the run refused the command
-    kNoAnswer,     ///< nobody answered within the bound
+    kNoAnswer,     ///< no answer came within the bound
     kInterrupted,  ///< the caller's `interrupted` function returned true while the command waited
     kFailed,       ///< anything else
   };

@@ -1,4 +1,4 @@
-// How goals fare, from the messages of `input` and `navigation`.
+// The states and ends of goals, from the messages of `input` and `navigation`.
 #pragma once
 
 #include <cstdint>

@@ -199,7 +199,7 @@ void RequestClient::poll() {
   take_authority();
   if (const std::uint64_t stop = unanswered_.stop(); stop != 0 && authority_.stop_latched()) {
     msg::RequestAnswer answer{};
-    answer.granted = true;  // whoever requested the stop
+    answer.granted = true;  // even if another source requested the stop
     answers_.try_emplace(stop, answer);
     unanswered_.answered(stop);
   }

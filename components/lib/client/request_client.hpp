@@ -29,7 +29,7 @@ struct RequestClientOptions {
   /// True: the program must call poll(), wait_for_answer() or assert_alive() within each lease, so that a program that
   /// hangs counts as dead. False: DDS asserts that the process is alive.
   bool lease_by_hand = false;
-  /// Authority and goals outlive the process until somebody releases authority: for scripts of several short commands.
+  /// Authority and goals outlive the process until a source releases authority: for scripts of several short commands.
   bool detached = false;
   /// Called while a function waits; if it returns true the wait ends with Answer::kInterrupted. Empty: never.
   std::function<bool()> interrupted;
@@ -84,7 +84,8 @@ class RequestClient {
 
   enum class Answer { kGranted, kRefused, kNone, kInterrupted };
   /// Waits for the answer to a request; kNone if there is none within `bound`. An emergency stop also counts as granted
-  /// when an Authority message of a later tick than the request reports a latched stop, whoever requested that.
+  /// when an Authority message of a later tick than the request reports a latched stop, even if another source
+  /// requested it.
   Answer wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound);
   /// Why the last request was refused for which wait_for_answer() returned kRefused.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }

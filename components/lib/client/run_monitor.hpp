@@ -25,7 +25,7 @@ class RunMonitor {
   /// The newest state of the run; empty before the first.
   [[nodiscard]] const std::optional<msg::RunState>& state() const { return state_; }
   /// True if a message belongs to the run and to its present epoch. False before the first RunState: messages of this
-  /// run cannot be told from those that another one left.
+  /// run cannot be distinguished from those that an earlier run left.
   [[nodiscard]] bool is_present(const msg::Header& header) const {
     return state_ && header.run_id == state_->run_id && header.epoch >= state_->epoch;
   }

@@ -66,7 +66,7 @@ std::vector<RunNote> live_runs() {
     std::uint32_t domain = 0;
     if (std::sscanf(entry.path().filename().c_str(), "run-%u.json", &domain) != 1 || entry.path() != note_file(domain))
       continue;
-    // If nobody holds the claim, the launcher was killed and could not remove its note.
+    // If no process holds the claim, the launcher was killed and could not remove its note.
     if (!domain_claimed(domain)) continue;
     if (auto note = read_note(domain)) runs.push_back(std::move(*note));
   }

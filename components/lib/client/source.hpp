@@ -1,4 +1,4 @@
-// Names and numbers by which `input` and the conductor tell clients and their messages apart.
+// Names and numbers by which `input` and the conductor distinguish clients and their messages.
 #pragma once
 
 #include <cstdint>

@@ -55,9 +55,9 @@ void ClientRequests::add(const msg::Request& request, const WriterId& writer) {
   if (of_source >= kRooms[pool].of_source) {
     ClientEvent gone = std::move(*own);
     items_.erase(own);
-    if (pool != kStops) drop(std::move(gone));  // a second stop of a source asks for nothing new
+    if (pool != kStops) drop(std::move(gone));  // a stop is not refused: the newer one replaces it
   } else if (of_all >= kRooms[pool].of_all) {
-    if (pool == kStops) return;  // other sources have asked for it already
+    if (pool == kStops) return;  // the stops in the pool already stop the robot
     if (lowest->request.level > request.level) return drop(std::move(item));
     ClientEvent gone = std::move(*lowest);
     items_.erase(lowest);

@@ -81,7 +81,7 @@ Endpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, bool writer) {
   endpoint.guid = guid_of(sample.key);
   endpoint.participant = guid_of(sample.participant_key);
   endpoint.writer = writer;
-  // RTPS: the last byte of the entity id says what an endpoint is; x2 and x7 are the keyed kinds.
+  // RTPS: the last byte of the entity id is the kind of the endpoint; x2 and x7 are the kinds with a key.
   const int kind = endpoint.guid[15] & 0x0f;
   endpoint.keyed = kind == 2 || kind == 7;
   endpoint.topic = sample.topic_name;
@@ -91,7 +91,7 @@ Endpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, bool writer) {
   std::size_t size = 0;
   if (dds_qget_userdata(sample.qos, &data, &size)) endpoint.user_data = take_text(data, size);
   const dds_typeinfo_t* info = nullptr;
-  auto* readable = const_cast<dds_builtintopic_endpoint_t*>(&sample);  // the C API forgot a const
+  auto* readable = const_cast<dds_builtintopic_endpoint_t*>(&sample);  // the C API lacks a const here
   if (dds_builtintopic_get_endpoint_type_info(readable, &info) == DDS_RETCODE_OK && info &&
       ddsi_typeinfo_present(info)) {
     endpoint.type_info = std::shared_ptr<const void>(ddsi_typeinfo_dup(info), [](const void* own) {

@@ -94,7 +94,7 @@ DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
 DomainClaim::~DomainClaim() {
   if (lock_ < 0) return;
   ::close(name_);
-  ::close(lock_);  // last: others wait for it and then take the domain
+  ::close(lock_);  // last, because a waiting process takes the domain as soon as the lock is free
 }
 
 }  // namespace constrictor

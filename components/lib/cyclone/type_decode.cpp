@@ -145,7 +145,7 @@ class Decoder {
     for (std::uint32_t i = 0; i < type.bounds[dimension]; ++i) list.push_back(array(type, dimension + 1));
     return list;
   }
-  /// Position after the value: its delimiter header says it; without one, the end of the sample.
+  /// Position after the value, from its delimiter header; without such a header, the end of the sample.
   std::size_t delimited(const TypeNode& type) {
     if (!xcdr2_ || type.extensibility == TypeNode::Extensibility::kFinal) return bytes_.size();
     const std::uint32_t size = number<std::uint32_t>();

@@ -23,7 +23,7 @@ using Kind = TypeNode::Kind;
 using Identifier = DDS_XTypes_TypeIdentifier;
 using NodePtr = std::shared_ptr<const TypeNode>;
 
-/// A description that nobody sends, or that this project does not decode.
+/// A description that no process sends, or that this project does not decode.
 class Unknown : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -104,7 +104,7 @@ class Resolver {
     if (dds_get_typeobj(participant_, &type_id, std::max<dds_duration_t>(left, DDS_MSECS(1)), &object) !=
             DDS_RETCODE_OK ||
         !object) {
-      throw Unknown("nobody describes the type");
+      throw Unknown("no process describes the type");
     }
     const std::unique_ptr<dds_typeobj_t, void (*)(dds_typeobj_t*)> owned(
         object, [](dds_typeobj_t* own) { dds_free_typeobj(own); });

@@ -21,7 +21,7 @@ struct TypeNode;
 class TypeTree {
  public:
   /// Requests the descriptions of the endpoint's type and of all types that it contains. Null if the endpoint announces
-  /// no type information, or if nobody answers within `bound`.
+  /// no type information, or if no answer comes within `bound`.
   static std::unique_ptr<TypeTree> find(dds_entity_t participant, const Endpoint& endpoint,
                                         std::chrono::milliseconds bound);
   /// The type of a topic in the table of topics, by its DDS name (`constrictor::msg::JointState`): for writers that

@@ -23,7 +23,7 @@ struct JointModel {
   double damping_nm_s_rad = 0.0;  ///< damping of the series elastic element
 };
 
-/// A pinhole camera in the head module.
+/// A pin-hole camera in the head module.
 struct CameraModel {
   int width = 320;
   int height = 240;

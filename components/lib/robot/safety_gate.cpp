@@ -133,7 +133,7 @@ void SafetyGate::follow(std::span<const double> measured_rad, double dt_s, GateS
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const double step_rad = joints_[i].max_speed_rad_s * dt_s + kRounding_rad;
     double before_rad = state.setpoints[i].position_rad;
-    // A loaded joint is not at its setpoint. A take-over therefore begins at the measured angle.
+    // A loaded joint is not at its setpoint. A takeover therefore begins at the measured angle.
     if (take_over) before_rad = clamp_position(joints_[i], finite_or(measured_rad[i], before_rad));
     state.setpoints[i] = state.offered[i];
     state.setpoints[i].position_rad =

@@ -32,7 +32,7 @@ enum class GateRefusal : std::uint8_t {
 /// The behaviour of the joints.
 enum class GateMode : std::uint8_t {
   kObeying,
-  kHolding,  ///< the posture is held: nobody commands, or the command is stale or refused
+  kHolding,  ///< the posture is held: no source commands, or the command is stale or refused
   kRelaxed,  ///< no torque: on command, or after a long time without an acceptable command
   kStopped,  ///< emergency stop: the posture is held until the stop is cleared
 };
@@ -120,12 +120,12 @@ class SafetyGate {
   /// What the topic `authority` demands. `level`: kAuthority... of mission.idl. `source`: the name of the source, which
   /// ends at the first zero. Level 0 (no source) demands a hold only after a source has had authority: at the start of
   /// a run control holds the posture by itself. A level or source that differs from the one that was obeyed last, also
-  /// before a hold or a stop, is a take-over. The first source of a run takes nothing over.
+  /// before a hold or a stop, is a takeover. The first source of a run takes nothing over.
   static GateOrder order_of(bool emergency_stop, std::uint8_t level, std::span<const char> source, GateState& state);
 
   /// The setpoints for the next `dt_s`. There may be at most one offer() between two calls. The first setpoints are the
   /// measured posture; afterwards no setpoint moves faster than its joint can. The first obeyed command after a
-  /// take-over starts at the measured posture (a joint without a finite measurement: at its setpoint). A hold keeps the
+  /// takeover starts at the measured posture (a joint without a finite measurement: at its setpoint). A hold keeps the
   /// last setpoint of each joint where it agrees with the measured angle, and the measured angle elsewhere. It keeps
   /// the torque limits, so that a grasped object stays grasped.
   const std::vector<JointSetpoint>& setpoints(std::span<const double> measured_rad, GateOrder order, double dt_s,

@@ -9,7 +9,7 @@ namespace constrictor::dds {
 namespace {
 
 void on_liveliness(dds_entity_t, const dds_liveliness_changed_status_t status, void* tracker) {
-  if (status.alive_count_change == 0) return;  // only a dead writer left
+  if (status.alive_count_change == 0) return;  // a writer that was dead already has been deleted
   static_cast<WriterTracker*>(tracker)->note(status.last_publication_handle, status.alive_count_change > 0);
 }
 
@@ -35,7 +35,7 @@ WriterId WriterTracker::id_of(dds_entity_t reader, dds_instance_handle_t writer)
   if (const auto known = ids_.find(writer); known != ids_.end()) return known->second;
   WriterId id{};
   dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
-  if (!data) return id;  // it has gone; its end is reported with its instance
+  if (!data) return id;  // the writer has gone; DDS reports its end with its instance
   std::copy_n(data->key.v, id.size(), id.begin());
   dds_builtintopic_free_endpoint(data);
   ids_[writer] = id;
@@ -69,7 +69,7 @@ ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::ch
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
-  // The instance of a dead source is deleted after its end was taken, because sources come and go.
+  // The instance of a dead source is deleted after its end was taken, because a long run has many sources.
   dds_qset_reader_data_lifecycle(qos.get(), DDS_SECS(1), DDS_SECS(1));
   const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr),
                      "dds_create_topic");

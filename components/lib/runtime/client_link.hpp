@@ -29,7 +29,7 @@ class WriterTracker {
   explicit WriterTracker(std::chrono::milliseconds grace) : grace_(grace) {}
   /// From any thread: a writer has become alive or has ceased to be.
   void note(dds_instance_handle_t writer, bool alive);
-  /// Processes what was noted.
+  /// Takes the changes that the other threads have noted into account.
   void catch_up(dds_entity_t reader);
   /// GUID of the writer; zeros if it has gone.
   [[nodiscard]] WriterId id_of(dds_entity_t reader, dds_instance_handle_t writer);

@@ -35,7 +35,7 @@ int component_main(int argc, char** argv, ComponentFactory factory) {
 
 int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   ensure_numeric_environment(argv);
-  Host::heed_signals();  // after the line above, which may start the program anew
+  Host::heed_signals();  // after the line above, which may start the program again
   std::string names;
   for (const auto& factory : factories) names += (names.empty() ? "" : ",") + factory.name;
   HostOptions options;

@@ -29,7 +29,7 @@ class HostContext {
   const Log log;
   std::optional<int> exit_status;  ///< set as soon as the process has to end
 
-  /// The run goes on: patience begins anew.
+  /// To be called when the run makes progress: the patience of this process starts again.
   void note_progress() { last_progress_ = Clock::now(); }
   /// [s] since the last progress.
   [[nodiscard]] double waited_s() const { return std::chrono::duration<double>(Clock::now() - last_progress_).count(); }

@@ -101,11 +101,11 @@ void MemberSide::reject(const std::string& topic, const std::string& reason) {
 void MemberSide::take_hello(const msg::Hello& message) {
   const Hello hello = dds::from_wire(message);
   if (hello.run_id != 0 && !accept_run(wire::kHello, hello.run_id)) return;
-  // A process of another run replaces no member and is waited for by none; the conductor sends it the reason.
+  // A process of another run does not replace a member, and no member waits for it. The conductor sends it the reason.
   const bool same_run = !difference(hello, hello_of(members_.front()));
   const auto& roster = context_.options.roster;
   if (hosts(hello.component)) {
-    if (hello.pid == ::getpid() && hello.host == context_.host_name) return;  // of this process itself
+    if (hello.pid == ::getpid() && hello.host == context_.host_name) return;  // sent by this process itself
     if (!conductor_ && same_run && hello.incarnation > context_.options.incarnation) {
       context_.log.warning("replaced by incarnation {} of {} (pid {} on {}); this process ends", hello.incarnation,
                            hello.component, hello.pid, hello.host);
@@ -119,7 +119,7 @@ void MemberSide::take_hello(const msg::Hello& message) {
 }
 
 void MemberSide::take_epoch_start(const msg::EpochStart& start) {
-  // A process without --run-id joins the first run that it receives an EpochStart of.
+  // A process without --run-id joins the run of the first EpochStart that it receives.
   if (!accept_run(wire::kEpochStart, start.run_id)) return;
   if (start.config_hash != context_.config_hash) {
     return reject(wire::kEpochStart,

@@ -90,7 +90,7 @@ void MemberSide::on_tick(const msg::Tick& tick) {
 }
 
 void MemberSide::send_ready() {
-  // Each member for itself: after a restart the members of a process are resumed one by one.
+  // Each member sends its own Ready, because after a restart the members of a process are resumed one by one.
   const auto owes = [](const LocalMember& local) { return local.member->in_epoch() && !local.ready_sent; };
   if (std::none_of(members_.begin(), members_.end(), owes)) return;
   const auto now = HostContext::Clock::now();
@@ -100,7 +100,7 @@ void MemberSide::send_ready() {
   for (const auto& name : context_.options.roster) {
     if (hosts(name)) continue;
     const auto hello = hellos_.find(name);
-    if (hello == hellos_.end()) return;  // what it reads is not known yet
+    if (hello == hellos_.end()) return;  // without its Hello, the topics that it reads are not known
     for (const auto& topic : topics::kInfos) {
       if (hello->second.reads.contains(topic.id)) readers_of[topic.id].push_back(name);
     }
@@ -217,7 +217,7 @@ void MemberSide::report_waiting(const Member& waiter, const std::string& topic, 
 }
 
 void MemberSide::finish() {
-  // Only the final tick ends a run. A process that is stopped before it sends its last counts as a running one.
+  // Only the final tick ends a run. A process that a signal ends earlier reports that its members are running.
   for (auto& local : members_)
     publish_status(local, local.member->ended() ? msg::kComponentEnded : msg::kComponentRunning);
   // By the plant's last status the launcher knows that the run has ended.

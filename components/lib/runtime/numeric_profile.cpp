@@ -97,10 +97,10 @@ std::string numeric_profile() {
   std::uint64_t environment = 0xcbf29ce484222325ULL;
   std::string differing;
   for (const auto& [name, value] : numeric_environment()) {
-    // The fingerprint shows the effect of glibc's masks. To mask more than the profile changes no result.
+    // The fingerprint shows the effect of glibc's masks. Masks beyond those of the profile change no result.
     if (name == "GLIBC_TUNABLES") continue;
     const char* found = std::getenv(name.c_str());
-    // Processors differ in the features that must be disabled. Disabling those that there are equals disabling all.
+    // OPENCV_CPU_DISABLE lists only the features that the processor has. It has the same effect as the complete list.
     const std::string all = opencv_list(false);
     if (name == "OPENCV_CPU_DISABLE" && found && value == found) found = all.c_str();
     else if (!found || value != found) differing += " " + name + "=" + (found ? found : "(unset)");

@@ -11,7 +11,7 @@ namespace constrictor {
 /// Environment variables with the values that every process of a run must have.
 const std::vector<std::pair<std::string, std::string>>& numeric_environment();
 
-/// Sets the variables that are missing. If there were any, starts this program anew, because libraries read them when
+/// Sets the variables that are missing. If there were any, starts this program again, because libraries read them when
 /// they are loaded. A variable with another value is left alone: the profile then differs, and the conductor refuses
 /// the process.
 void ensure_numeric_environment(char** argv);

@@ -20,7 +20,7 @@ std::optional<TickDone> from_wire(const msg::TickDone& message);
 msg::Hello to_wire(const Hello& hello, const std::string& version);
 Hello from_wire(const msg::Hello& message);
 msg::Resume to_wire(const Resume& resume, std::string& block);
-/// The same.
+/// The same for a Resume.
 std::optional<Resume> from_wire(const msg::Resume& message);
 
 }  // namespace constrictor::dds

@@ -143,7 +143,7 @@ class Grasp : public StatefulTask<GraspState> {
   void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
-    // The robot drives as it will with the object: the base pushes an object inside and touches it.
+    // The robot drives with the gait for carrying: the base pushes an object that is inside the U, and so touches it.
     undulate_on(input.config.carry, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input);

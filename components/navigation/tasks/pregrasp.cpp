@@ -154,7 +154,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const bool beside =
         std::abs(input.X_MH.to_local(state_.p_MO).y()) > 0.6 * std::abs(input.X_MH.to_local(state_.p_MO).x());
     if (!object.visible || beside || past_m(input) > -0.25) enter(kAdvance);
-    // The object should be in view and is not: somebody has taken it.
+    // The object should be in view and is not: it has been taken away.
     const double bearing_rad =
         std::abs(std::atan2(input.X_MH.to_local(state_.p_MO).y(), input.X_MH.to_local(state_.p_MO).x()));
     if (!object.visible && bearing_rad < 0.5 && past_m(input) < -0.35)

@@ -1,4 +1,4 @@
-// What the launcher asks constrictor_host: which components it hosts, and whether their files are correct.
+// The launcher's questions to constrictor_host: which components it hosts, and whether their files are correct.
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>

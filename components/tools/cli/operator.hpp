@@ -1,4 +1,4 @@
-// What the commands that act as an operator have in common.
+// The common part of the commands that act as an operator.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@ namespace constrictor::cli {
 
 /// Options of a client with the level of an operator, whose waits end at Ctrl-C (it calls catch_interrupts()).
 /// `lease` 0: authority ends with the process; above 0: also when the process hangs for so long. `detached`: authority
-/// stays until somebody releases it (for scripts).
+/// stays until a source releases it (for scripts).
 RequestClientOptions operator_options(std::string source, std::chrono::milliseconds lease = {}, bool detached = false);
 
 /// Connects and returns 0. If `input` does not answer, or at Ctrl-C, prints what to do and returns an exit status.
@@ -19,7 +19,7 @@ int connect(RequestClient& client, const char* command);
 /// Prints why a request was not granted and what to do; `command` begins the message. Returns the exit status.
 int report_not_granted(RequestClient& client, RequestClient::Answer answer, const char* command);
 
-/// Who has authority, for people: "authority: operator task", "authority: nobody".
+/// The holder of authority, for people: "authority: operator task", "authority: none".
 std::string authority_text(const RequestClient& client);
 
 }  // namespace constrictor::cli

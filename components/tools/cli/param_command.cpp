@@ -52,7 +52,7 @@ int list(const Options& options) {
   bool begins = false;  // any of them with the prefix
   std::size_t shown = 0;
   if (!options.view.json && !options.names)
-    fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "what");
+    fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "meaning");
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (name.rfind(options.name, 0) != 0) continue;

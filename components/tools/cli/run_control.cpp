@@ -44,7 +44,7 @@ double parse_pace(const std::string& text) {
 std::string pace_text(const msg::RunState& state) {
   if (state.realtime) return "real-time pace";
   std::string text =
-      state.pace > 0.0 ? fmt::format("at most {}x real time", state.pace) : "lock-step, as fast as it goes";
+      state.pace > 0.0 ? fmt::format("at most {}x real time", state.pace) : "lock-step, as fast as possible";
   if (state.operator_pace) text += " while an operator has authority";
   return text;
 }
@@ -63,7 +63,7 @@ int control(const Options& options, std::uint8_t command) {
     if (command == msg::kRunReset)
       fmt::print("run {}: reset to seed {}, epoch {}\n", run.domain, state.seed, state.epoch);
     else if (state.paused) fmt::print("run {}: paused, next tick {}\n", run.domain, state.tick);
-    else fmt::print("run {}: runs, {}\n", run.domain, pace_text(state));
+    else fmt::print("run {}: running, {}\n", run.domain, pace_text(state));
     return exit_status::kOk;
   } catch (const CommandError& error) {
     if (error.cause() != CommandError::Cause::kInterrupted) throw;
@@ -89,7 +89,8 @@ int clear_stop(RequestClient& client) {
              "emergency stop cleared; the robot stands until `constrictor release` or another request");
 }
 
-/// Takes authority from a script or from nobody, and releases it.
+/// Releases the authority of a script. Also lets a planner take authority if no source has it: takes it and releases
+/// it.
 int release(RequestClient& client) {
   // `input` refuses this while a person at a terminal has authority: they keep it.
   const auto taken = client.wait_for_answer(client.ask(msg::kRequestTake), 5s);
@@ -159,18 +160,19 @@ void add_run_control(CLI::App& app, std::function<int()>& action) {
       ->required()
       ->check(whole_number());
   add("stop", "latch an emergency stop: the robot holds its posture", operates("stop", stop),
-      help_footer("Anybody may request it at any time. It stays latched until `constrictor clear-stop`.",
+      help_footer("Every source may request it at any time. It stays latched until `constrictor clear-stop`.",
                   {"constrictor stop"},
                   fmt::format("0 the stop is latched; {}; 75 no answer within 5 s;\n  130 interrupted by Ctrl-C: the "
                               "request was sent, but is not confirmed",
                               kRunStatuses)));
   add("clear-stop", "clear an emergency stop; the robot does not move", operates("clear-stop", clear_stop),
-      help_footer("Nobody has authority afterwards; `constrictor release` lets the planner take it.",
+      help_footer("No source has authority afterwards; `constrictor release` lets the planner take it.",
                   {"constrictor clear-stop && constrictor release"}, safety_status));
   add("release", "give authority back to the planner, also after an emergency stop", operates("release", release),
-      help_footer("Releases the authority of a script (`constrictor task`), or of nobody. A person at `constrictor "
-                  "teleop` keeps theirs.",
-                  {"constrictor task wait --end && constrictor release"}, safety_status));
+      help_footer(
+          "Releases the authority of a script (`constrictor task`). If no source has authority, the planner may "
+          "take it. A person at `constrictor\nteleop` keeps authority.",
+          {"constrictor task wait --end && constrictor release"}, safety_status));
 }
 
 }  // namespace constrictor::cli

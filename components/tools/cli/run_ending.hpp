@@ -19,7 +19,7 @@ class RunEnding {
   static constexpr std::chrono::milliseconds kSameWish{200};
 
   /// A signal arrived that asks to end the run. `begun`: the first tick was published. A signal within kSameWish of the
-  /// first one is the same wish: `timeout`, for example, signals the process and then its process group.
+  /// first one counts as the same: `timeout`, for example, signals the process and then its process group.
   void signal_received(int number, bool begun, Time now);
   /// The conductor accepted the request, or the run is over already.
   void accepted(Time now);

@@ -1,5 +1,5 @@
-// The state of a run as its DDS topics show it: progress, health of the components, who waits for whom. Observing a run
-// never delays it.
+// The state of a run as its DDS topics show it: progress, health of the components, which member waits for which.
+// Observing a run never delays it.
 #pragma once
 
 #include <chrono>

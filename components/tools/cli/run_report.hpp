@@ -27,7 +27,7 @@ struct RunVerdict {
 };
 
 /// Merges `report_dir`/mission.json, if the report component wrote it, with `outcome`, `view` and `processes` into
-/// `report_dir`/report.json. The run is a success if mission.json says so and there is no error. The reason is the
+/// `report_dir`/report.json. The run is a success if mission.json reports one and there is no error. The reason is the
 /// first of these that is not empty: the error, the reason in mission.json (which the figure shows, too), the end
 /// reason, and a remark that there is none. Throws std::runtime_error if the file cannot be written.
 RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcome& outcome, const RunView& view,

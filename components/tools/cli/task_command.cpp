@@ -63,7 +63,7 @@ msg::Request request_of(const Options& options) {
   return request;
 }
 
-/// Ends an interrupted `task start`: gives authority back, so that no task runs that nobody has seen begin.
+/// Ends an interrupted `task start`: releases authority, so that no task begins after this command has ended.
 int give_back(RequestClient& client) {
   if (client.release(2s)) {
     std::fprintf(stderr, "task: interrupted; the task was cancelled and authority released\n");

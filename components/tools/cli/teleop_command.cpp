@@ -50,7 +50,7 @@ class Teleop {
 
   /// Why the program had to leave the run; empty: the user left it.
   [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
-  /// What became of authority, for the user.
+  /// The text for the user that describes the authority at the end.
   [[nodiscard]] const std::string& farewell() const { return farewell_; }
 
   int loop() {
@@ -154,7 +154,7 @@ class Teleop {
 
   /// Takes keys for the task line.
   void type(const std::string& typed) {
-    if (typed.size() != 1) return;  // arrows and the like
+    if (typed.size() != 1) return;  // arrows and other special keys
     const char key = typed.front();
     if (key == '\033' || key == '\003') {
       screen_.prompt.reset();

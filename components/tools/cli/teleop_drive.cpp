@@ -40,7 +40,7 @@ void stand_and_release(RequestClient& client) {
   if (client.release(2s)) {
     fmt::print("the robot stands, authority was released\n");
   } else {
-    // The lease does the rest: the source is dead half a second after the end of this process.
+    // `input` takes authority away when the lease ends, half a second after the end of this process.
     fmt::print(
         "no answer within 2 s: the robot holds and loses this program's authority 0.5 s after its end, or when "
         "the run resumes\n");

@@ -17,7 +17,7 @@ struct ScreenSize {
   bool operator==(const ScreenSize&) const = default;
 };
 
-/// The smallest screen that shows who has authority, what is driven, the notice and the emergency-stop key.
+/// The smallest screen that shows the authority, the commanded motion, the notice and the emergency-stop key.
 inline constexpr ScreenSize kSmallestScreen{40, 10};
 
 struct TeleopScreen {
@@ -31,7 +31,7 @@ struct TeleopScreen {
 };
 
 /// At most `size.rows` lines of at most `size.columns` printable characters. What matters least is left out first; the
-/// key of the emergency stop is always shown. Below kSmallestScreen a message says how large the terminal must be.
+/// key of the emergency stop is always shown. Below kSmallestScreen a message names the required size of the terminal.
 std::vector<std::string> render(const TeleopScreen& screen, ScreenSize size = {});
 
 }  // namespace constrictor::cli

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     std::printf("\n");
     return first == "--help" ? exit_status::kOk : exit_status::kUsage;
   }
-  ensure_numeric_environment(argv);  // with all arguments, because it may start the program anew
+  ensure_numeric_environment(argv);  // with all arguments, because it may start the program again
   std::vector<ComponentFactory> factories;
   std::istringstream names(first);
   for (std::string name; std::getline(names, name, ',');) {

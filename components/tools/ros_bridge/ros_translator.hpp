@@ -75,7 +75,7 @@ class Translator {
   std::vector<TransformStamped> transforms_;
 };
 
-/// How a velocity becomes an undulation.
+/// The constants that convert a velocity into an undulation.
 struct DriveConfig {
   double advance_per_cycle_m = 0.9;  ///< travel of one wave; Source: the gait's measured speed, sim/world/README.md
   double max_frequency_hz = 1.0;

@@ -24,7 +24,7 @@ class Takeover : public ExampleRun {
         << planner.output();
     EXPECT_TRUE(planner.wait_for("event 1 of task 1", 10s)) << planner.output();
     EXPECT_EQ(witness.authority.refused_count, 0u) << witness.authority.refusal;
-    // After its death nobody has authority.
+    // After the death of the example no source has authority.
     planner.signal(SIGKILL);
     EXPECT_TRUE(witness.until([&] { return !witness.holds(name); }, 15s));
     launcher.signal(SIGTERM);

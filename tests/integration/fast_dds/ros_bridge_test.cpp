@@ -47,7 +47,7 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
                  {{"ROS_LOCALHOST_ONLY", "1"}});
   Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "8"});
 
-  // What the robot itself says, for comparison.
+  // The robot's own messages, for comparison.
   std::map<std::int64_t, std::vector<double>> said;
   {
     const dds::Domain here(domain);
@@ -149,7 +149,7 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
     return true;
   };
   ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s));
-  // Somebody sits at the controls: the velocity, which does not change, is refused, and obeyed when they leave.
+  // An operator has authority: the constant velocity is refused. It is obeyed when the operator releases authority.
   const dds::RequestWriter hand(here.participant(), 0);
   msg::Request wish{};
   wish.robot_id = 1;

@@ -70,7 +70,7 @@ TEST(Diagnosis, NamesTheDomainOfTheRunIfTheExaminedDomainIsEmpty) {
   ASSERT_EQ(faults(facts), Names{"wrong domain"});
   EXPECT_NE(diagnose(facts).front().cure.find("--run 7"), std::string::npos);
   facts.runs.clear();
-  EXPECT_EQ(faults(facts), Names{"nobody there"});
+  EXPECT_EQ(faults(facts), Names{"empty domain"});
 }
 
 TEST(Diagnosis, FindsInterfacesThatDoNotExistOrAreDown) {

@@ -59,7 +59,7 @@ TEST_F(Attachment, SendsNothingWhileInputIsMissing) {
   signs_.input = false;
   look();
   EXPECT_FALSE(attachment_.may_send());
-  EXPECT_TRUE(attachment_.may_stop()) << "a late stop is better than none";
+  EXPECT_TRUE(attachment_.may_stop()) << "a stop must be possible at any time, because it moves nothing";
   look(4s);
   EXPECT_EQ(attachment_.over(), "");
   signs_.input = true;

@@ -76,7 +76,7 @@ TEST_F(RunControlClientTest, ThrowsTheReasonOfARefusal) {
   const FakeConductor conductor(domain.participant(), 1, "the run has not begun");
   try {
     client(20s).end();
-    FAIL() << "it was refused";
+    FAIL() << "a refused command must throw";
   } catch (const CommandError& error) {
     EXPECT_EQ(error.cause(), CommandError::Cause::kRefused);
     EXPECT_STREQ(error.what(), "the run has not begun");
@@ -86,7 +86,7 @@ TEST_F(RunControlClientTest, ThrowsTheReasonOfARefusal) {
 TEST_F(RunControlClientTest, WithoutAConductorItThrowsAfterTheBoundAndNamesTheRun) {
   try {
     client(1s).resume();
-    FAIL() << "nobody answers";
+    FAIL() << "a command without an answer must throw";
   } catch (const CommandError& error) {
     EXPECT_EQ(error.cause(), CommandError::Cause::kNoAnswer);
     EXPECT_NE(std::string(error.what()).find("run " + std::to_string(claim.domain())), std::string::npos);
@@ -97,7 +97,7 @@ TEST_F(RunControlClientTest, AnInterruptEndsTheWait) {
   const auto begin = std::chrono::steady_clock::now();
   try {
     client(60s, [&] { return std::chrono::steady_clock::now() - begin > 50ms; }).pause();
-    FAIL() << "nobody answers";
+    FAIL() << "a command without an answer must throw";
   } catch (const CommandError& error) {
     EXPECT_EQ(error.cause(), CommandError::Cause::kInterrupted);
   }

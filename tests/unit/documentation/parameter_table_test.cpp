@@ -1,4 +1,4 @@
-// Every component's parameters are what their rows say: in the shipped YAML file, in the README, and when a file is
+// The parameters of every component follow from their rows: in the shipped YAML file, in the README, and when a file is
 // read.
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -78,7 +78,8 @@ TEST_P(ParameterTable, KeyOfTheFileSetsItsOwnFieldAndNoOther) {
   const auto before = rows_of({});
   for (const auto& row : before) {
     if (!row.is_number) continue;
-    // The bound that is not the default; the other one if the configuration as a whole rejects that.
+    // The value is a bound that differs from the default. If the configuration rejects the lower bound because of
+    // another parameter, it is the upper one.
     double value = number(row, row.bounds.min) == row.default_value ? row.bounds.max : row.bounds.min;
     if (!error_of(row.key, number(row, value)).empty()) value = row.bounds.max;
     const auto after = rows_of(file_with(row.key, number(row, value)));
@@ -116,7 +117,7 @@ TEST_P(ParameterTable, RejectsUnknownKeys) {
   }
 }
 
-TEST_P(ParameterTable, SaysUnitAndMeaning) {
+TEST_P(ParameterTable, EachRowHasUnitAndMeaning) {
   const std::vector<std::pair<std::string, std::string>> units{
       {"_hz", "Hz"},   {"_rad", "rad"}, {"_nm", "Nm"}, {"_rad_s", "rad/s"}, {"_hz_s", "Hz/s"},    {"_m_s", "m/s"},
       {"_1_m", "1/m"}, {"_deg", "deg"}, {"_n", "N"},   {"_ticks", "ticks"}, {"_pixels", "pixels"}};

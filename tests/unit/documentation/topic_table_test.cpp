@@ -30,7 +30,7 @@ std::map<std::string, std::string> docs_of(TypeList<Messages...>) {
 }
 const std::map<std::string, std::string> kDocs = docs_of(AllMessages{});
 
-/// What a comment says after "Writer:", "Readers:" or "Rate:", up to the full stop.
+/// The part of a comment after "Writer:", "Readers:" or "Rate:", up to the full stop.
 std::string said(const std::string& doc, const std::string& what) {
   std::smatch match;
   return std::regex_search(doc, match, std::regex(what + ": ([^.]*)\\.")) ? match[1].str() : "";
@@ -40,7 +40,7 @@ TEST(TopicTable, EqualsTheTablesInIdlReadme) {
   std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/idl/README.md");
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(documentation::with_topic_tables(readme), readme)
-      << "To make the tables anew: cmake --build BUILD --target topic_tables";
+      << "to update the tables: cmake --build build/release --target topic_tables";
 }
 
 // The comment of a type that several topics carry cannot name one writer, one list of readers and one rate; the table

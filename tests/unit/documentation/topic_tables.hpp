@@ -16,7 +16,7 @@ const std::map<std::string, std::unique_ptr<const Member>>& members();
 /// Names of the components that read a member topic.
 std::set<std::string> readers_of(const TopicInfo& topic);
 
-/// `readme` with the tables between their markers made anew. Throws std::runtime_error if it has no such markers.
+/// `readme` with new tables between their markers. Throws std::runtime_error if it has no such markers.
 std::string with_topic_tables(const std::string& readme);
 
 }  // namespace constrictor::documentation

@@ -1,4 +1,4 @@
-// write_topic_tables README.md: makes the tables of topics in idl/README.md anew.
+// write_topic_tables README.md: writes the tables of topics in idl/README.md again.
 #include <fmt/format.h>
 
 #include <fstream>

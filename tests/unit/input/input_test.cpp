@@ -29,7 +29,7 @@ TEST_F(InputMemberTest, AnswersEachRequestOfATick) {
   EXPECT_EQ(authority_.back().answered_source, std::string("planner"));  // `authority` has only the last request
 }
 
-TEST_F(InputMemberTest, AnswersATaskWithItsGoalAndItsOwnRefusalsToo) {
+TEST_F(InputMemberTest, AnswersATaskWithItsGoalAndAnswersTheRequestsThatItRefuses) {
   run({}, 20, {{5, [&] {
                   for (std::uint64_t i = 1; i <= 4; ++i)
                     clients_->add(request("a", kExternal, msg::kRequestTask, i, i));
@@ -185,7 +185,7 @@ TEST_F(InputMemberTest, ADirectMotionEndsWithItsSourceOrWithATask) {
 
 // Two writers of different levels send requests at the same time. tests/integration/two_writers_test.cpp repeats this
 // with real processes.
-TEST_F(InputMemberTest, TwoWritersOfDifferentStrengthAreNeverBothObeyed) {
+TEST_F(InputMemberTest, TwoWritersOfDifferentLevelsAreNeverBothObeyed) {
   constexpr unsigned kSeed = 20261121;
   SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   std::mt19937 random(kSeed);

@@ -26,8 +26,9 @@ class TwoWriters {
   void add(const msg::MotionCommand& m) { at_[m.header.tick].motions.push_back(m.level); }
   void add(const msg::Authority& m) { at_[m.header.tick].authority.push_back(m.level); }
 
-  /// Expects that both are never obeyed: while the operator has authority, every request of the planner is refused. In
-  /// a tick with a release, all granted requests of the operator come before it, and all of the planner after it.
+  /// Expects that the two sources are never both obeyed: while the operator has authority, every request of the planner
+  /// is refused. In a tick with a release, all granted requests of the operator come before it, and all of the planner
+  /// after it.
   void check() {
     for (const auto& [tick, now] : at_) {
       SCOPED_TRACE(::testing::Message() << "tick " << tick);

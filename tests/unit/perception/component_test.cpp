@@ -39,7 +39,7 @@ ComponentFactory imu() {
   });
 }
 
-/// Images of a blue and a yellow line; the image of tick 15 is broken.
+/// The camera: images of a blue line and a yellow cylinder. The image of tick 15 lacks most of its bytes.
 class Eye : public StatefulComponent<std::int64_t> {
  public:
   Eye(Wiring& wiring, const Setup&)
@@ -66,7 +66,7 @@ class Eye : public StatefulComponent<std::int64_t> {
   Output<msg::CameraImage> image_;
 };
 
-/// Stands for navigation: names the yellow line from tick 30 on.
+/// Stands for navigation: a task names a yellow line at tick 30.
 ComponentFactory tasks() {
   return testing::scripted_writer<msg::TaskStatus>("navigation", topics::kTaskStatus,
                                                    [](const Tick& tick, const auto& out) {
@@ -77,11 +77,11 @@ ComponentFactory tasks() {
                                                    });
 }
 
-/// Changes the hues that count as yellow, of which none is in the picture, and changes them back: each a few ticks
-/// before its time.
+/// Stands for the component `input`: changes the hues that count as yellow, so that the cylinder is no longer yellow,
+/// and later changes them back. Each change is requested some ticks before it comes into force.
 class Desk : public StatefulComponent<int> {
  public:
-  static constexpr std::int64_t kGone = 22, kBack = 43;  // 22: when the image of tick 20 comes; 43: after that of 40
+  static constexpr std::int64_t kGone = 22, kBack = 43;  // kGone: the image of tick 20 arrives; kBack: that of 40 has
   Desk(Wiring& wiring, const Setup&) : change_(wiring.output(topics::kParameterChange)) {}
   void step(const Tick& tick) override {
     if (tick.index == 10) change("perception.colour.yellow.from_deg", 71.0, kGone);
@@ -136,7 +136,7 @@ TEST(PerceptionComponent, SearchesForTheColourThatATaskNamedLast) {
   EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourBlue);
   run->advance(20);
   EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourYellow);
-  EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // the yellow thing stands
+  EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // the yellow cylinder is no line
 }
 
 TEST(PerceptionComponent, RestartChangesNothing) {
@@ -149,7 +149,7 @@ TEST(PerceptionComponent, RestartChangesNothing) {
   EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
 }
 
-/// Exposures in which the yellow thing was reported, and in which it was not.
+/// The exposures in which the yellow cylinder was reported, and those in which it was not.
 std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& run, std::int64_t ticks,
                                                                       const std::set<std::int64_t>& restarts) {
   std::pair<std::set<std::int64_t>, std::set<std::int64_t>> seen;

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 const Vector3d kPaint[msg::kColourCount] = {
     {0.5, 0.5, 0.5}, {0.10, 0.65, 0.15}, {0.80, 0.10, 0.08}, {0.08, 0.20, 0.80}, {0.85, 0.75, 0.08}};
 
-/// Signed lateral distance is of no interest: distance of p to the arc's middle line, and whether it lies along it.
+/// Whether a point lies on the painted line: within half of its width from the arc, and between the ends of the arc.
 bool on_arc(const Arc& arc, const Vector2d& p) {
   const Vector2d t(std::cos(arc.heading_rad), std::sin(arc.heading_rad)), n(-t.y(), t.x());
   const Vector2d d = p - arc.start;
@@ -27,7 +27,7 @@ bool on_arc(const Arc& arc, const Vector2d& p) {
   const Vector2d centre = arc.start + radius * n;
   const Vector2d r = p - centre;
   if (std::abs(r.norm() - std::abs(radius)) > 0.5 * arc.width_m) return false;
-  // angle swept from the start, in the arc's sense
+  // The angle from the start of the arc, positive in the direction in which the arc turns.
   const Vector2d from = -radius * n;
   double angle = std::atan2(from.x() * r.y() - from.y() * r.x(), from.dot(r));
   if (radius < 0.0) angle = -angle;
@@ -35,7 +35,7 @@ bool on_arc(const Arc& arc, const Vector2d& p) {
   return s >= 0.0 && s <= arc.length_m;
 }
 
-/// Distance along a ray to an upright cylinder (its side or top); negative: missed.
+/// Distance along a ray to the side or the top of an upright cylinder; negative if the ray misses it.
 double hit(const Round& c, const Vector3d& o, const Vector3d& d, Vector3d& normal) {
   if (c.height_m <= 0.0) return -1.0;
   const Vector2d oc = o.head<2>() - c.centre;
@@ -100,7 +100,7 @@ Eigen::Matrix3d axes(const Head& head, bool with_yaw) {
 }
 
 Eigen::Matrix3d mount(double tilt_rad) {
-  Eigen::Matrix3d R;  // columns: camera's right, down, ahead in the head's frame
+  Eigen::Matrix3d R;  // columns: the directions right, down and ahead of the camera, in the head's frame
   R.col(0) = Vector3d(0, -1, 0);
   R.col(1) = Vector3d(-std::sin(tilt_rad), 0, -std::cos(tilt_rad));
   R.col(2) = Vector3d(std::cos(tilt_rad), 0, -std::sin(tilt_rad));

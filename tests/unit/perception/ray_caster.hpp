@@ -1,5 +1,5 @@
-// A small ray-caster for tests: the ground with a line along a circular arc and round zones, upright cylinders, one
-// light with shadows. Shares no code with perception.
+// A small ray-caster for tests. It draws the ground with a line along a circular arc, round zones and upright
+// cylinders, with one light and its shadows. It shares no code with perception.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace constrictor::test {
 
-struct Arc {  // in G: starts at `start`, turns left with `curvature_1_m`
+struct Arc {  // in G: begins at `start` with `heading_rad`; a positive curvature turns left
   Eigen::Vector2d start{0.0, 0.0};
   double heading_rad = 0.0;
   double curvature_1_m = 0.0;
@@ -37,7 +37,7 @@ struct Round {  // a cylinder or a zone, in G
 struct Scene {
   std::optional<Arc> line;
   std::vector<Round> rounds;
-  Eigen::Vector3d light{0.4, 0.3, 0.85};  // towards it
+  Eigen::Vector3d light{0.4, 0.3, 0.85};  // direction towards the light
   double light_intensity = 1.0;
   double ambient = 0.35;
   double noise_sd = 0.0;
@@ -48,12 +48,12 @@ struct Scene {
 struct Head {
   double roll_rad = 0.0;
   double pitch_rad = 0.0;
-  double yaw_rad = 0.0;  // of the head in its unit's frame; the scene is drawn in G and does not turn with it
+  double yaw_rad = 0.0;  // yaw that the inertial unit reports; the scene is drawn in G, which turns with the head
   double height_m = 0.035;
 };
 
-/// 320 x 240, 90 degrees, 0.03 m ahead of and 0.05 m above the head's centre, tilted down by 0.3 rad, unless told
-/// otherwise.
+/// The model of a camera that is 0.03 m ahead of and 0.05 m above the centre of the head. By default it has 320 x 240
+/// pixels and a field of view of 90 degrees, and is tilted down by 0.3 rad.
 msg::CameraInfo camera_info(int width = 320, int height = 240, double horizontal_fov_rad = 1.5708,
                             double tilt_rad = 0.3);
 msg::Quaternion orientation(const Head& head);

@@ -1,4 +1,4 @@
-// Suspensions of the mission while somebody else has authority, and objects that others drop.
+// Suspensions of the mission while another source has authority, and objects that another source drops.
 #include <gtest/gtest.h>
 
 #include "scripted_planner.hpp"
@@ -49,7 +49,7 @@ TEST_F(PlannerTest, ObjectsDroppedByOthersCountAsDelivered) {
 }
 
 // The last event of the drop crosses the change of authority.
-TEST_F(PlannerTest, ItsOwnDropCountsAsDeliveredAlsoIfAuthorityChangesAtThatMoment) {
+TEST_F(PlannerTest, ADropByThePlannerCountsAsDeliveredEvenIfAuthorityChangesAtThatMoment) {
   find_line();
   fetch(msg::kColourGreen);
   carry();
@@ -68,7 +68,7 @@ TEST_F(PlannerTest, ItsOwnDropCountsAsDeliveredAlsoIfAuthorityChangesAtThatMomen
   EXPECT_EQ(memory_.object_index, 1) << "red is next";
 }
 
-TEST_F(PlannerTest, SkipsAnObjectThatSomebodyElseDropped) {
+TEST_F(PlannerTest, SkipsAnObjectThatAnotherSourceDropped) {
   find_line();
   authority_.level = msg::kAuthorityExternal;
   msg::TaskEvent event{};
@@ -85,7 +85,7 @@ TEST_F(PlannerTest, SkipsAnObjectThatSomebodyElseDropped) {
   EXPECT_EQ(memory_.state, MissionState::kDone);
 }
 
-TEST_F(PlannerTest, AfterAnEmergencyStopWaitsUntilSomebodyReleasesAuthority) {
+TEST_F(PlannerTest, AfterAnEmergencyStopWaitsUntilASourceReleasesAuthority) {
   find_line();
   authority_.level = msg::kAuthorityEmergencyStop;
   authority_.emergency_stop = true;

@@ -23,8 +23,8 @@ inline std::string saved(const MissionMemory& memory) {
   return std::move(stream).str();
 }
 
-/// A world of scripted percepts and events around a planner. A second planner, restored from the saved state of the
-/// previous step, makes every step too: both must request the same and reach the same state.
+/// A world of scripted percepts and events around a planner. A second planner makes every step, too, restored from the
+/// saved state of the previous step: both must make the same requests and reach the same state.
 class PlannerTest : public ::testing::Test {
  protected:
   PlannerTest() {

@@ -1,4 +1,4 @@
-// The mission always ends, and every state too: limits of time and of recoveries, and random events.
+// The mission and each of its states always end: because of limits of time and of recoveries, even with random events.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which source the safety gate obeys, the posture at which the joints start after a take-over, and its saved state.
+// Which source the safety gate obeys, the posture at which the joints start after a takeover, and its saved state.
 #include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <span>
@@ -32,7 +32,7 @@ TEST_F(SafetyGateTest, StopBeforeTheFirstCommandHoldsUntilItIsCleared) {
   EXPECT_EQ(authority(0), GateOrder::kObey) << "control holds the posture by itself";
 }
 
-// A joint under load is not at its setpoint. Every take-over starts at the measured angle, whatever happened before.
+// A joint under load is not at its setpoint. Every takeover starts at the measured angle, whatever happened before.
 TEST_F(SafetyGateTest, TakeOverStartsAtTheMeasuredPosture) {
   struct Holder {
     std::uint8_t level;
@@ -63,7 +63,8 @@ TEST_F(SafetyGateTest, TakeOverStartsAtTheMeasuredPosture) {
     EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 1.5);
     authority(changes[i].back().level, changes[i].back().source);
     offer({0.5, -0.5});
-    EXPECT_NEAR(tick()[0].position_rad, measured_[0] + 2 * kFastest_rad, 1e-8) << "once, and on from there";
+    EXPECT_NEAR(tick()[0].position_rad, measured_[0] + 2 * kFastest_rad, 1e-8)
+        << "one step from the measured angle in each tick";
   }
 }
 
@@ -81,7 +82,7 @@ TEST_F(SafetyGateTest, TakeOverWaitsForAnObeyedCommandAndKeepsUnmeasuredJoints) 
   drive_to(0.5, 0.5);
   authority(3, "pilot");
   offer({kNan, 0.5});
-  EXPECT_EQ(tick()[0].position_rad, 0.5) << "refused: held";
+  EXPECT_EQ(tick()[0].position_rad, 0.5) << "a refused command must not move the joint";
   measured_ = {0.1, kNan};
   offer({0.5, 0.4});
   EXPECT_NEAR(tick()[0].position_rad, 0.1 + kFastest_rad, 1e-8);
@@ -93,7 +94,7 @@ TEST_F(SafetyGateTest, TakeOverWaitsForAnObeyedCommandAndKeepsUnmeasuredJoints) 
 }
 
 // The gate of control in front of the gate of the plant, which gets commands and measured angles one tick later. A
-// take-over interrupts a squeeze on a stiff object for a few ticks at most and never without torque. Neither gate lets
+// takeover interrupts a squeeze on a stiff object for a few ticks at most and never without torque. Neither gate lets
 // a setpoint jump.
 TEST_F(SafetyGateTest, TakeOverThroughBothGatesKeepsASqueeze) {
   const SafetyGate at_control(two_joints(), {0, 250});
@@ -127,7 +128,7 @@ TEST_F(SafetyGateTest, TakeOverThroughBothGatesKeepsASqueeze) {
     if (now == 30) {
       EXPECT_LE(there, 0.6 + kFastest_rad + 1e-8);
     }
-    EXPECT_GT(there, 0.6) << "it never stops to squeeze";
+    EXPECT_GT(there, 0.6) << "the squeeze must not be interrupted";
     EXPECT_EQ(plant.setpoints[0].torque_limit_nm, 1.5);
     interrupted += there < 0.9 - 1e-6;
   }

@@ -192,7 +192,7 @@ TEST_F(SafetyGateTest, RelaxesOnCommand) {
   EXPECT_EQ(tick()[1].torque_limit_nm, 0.0);
   EXPECT_EQ(state_.mode, GateMode::kRelaxed);
   measured_ = {0.1, 0.1};
-  EXPECT_EQ(tick()[0].position_rad, 0.1) << "silence after it: held where the joint is now";
+  EXPECT_EQ(tick()[0].position_rad, 0.1) << "without further commands the present posture must be held";
   EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 6.0);
 }
 
@@ -263,7 +263,7 @@ TEST_F(SafetyGateTest, RandomInputsNeverExceedLimitsNorMakeSetpointsJump) {
       ASSERT_LE(std::abs(s.velocity_rad_s), 4.0);
       ASSERT_GE(s.torque_limit_nm, 0.0);
       ASSERT_LE(s.torque_limit_nm, 6.0);
-      // A setpoint may jump only to the measured angle, or at a take-over one step from there.
+      // A setpoint may jump only to the measured angle, or at a takeover one step from there.
       const double jump = std::abs(s.position_rad - before[j]);
       const double from_joint = std::abs(s.position_rad - measured_[j]);
       ASSERT_TRUE((jump <= kFastest_rad + 1e-8 && !from_measured) ||

@@ -68,8 +68,9 @@ TEST(RosTranslator, FramesOfModulesAreWhereKinematicsPutsThem) {
   std::map<std::string, Eigen::Isometry3d> frames{{"odom", Eigen::Isometry3d::Identity()}};
   for (std::size_t i = 0; i < tf.transforms._length; ++i) {
     const auto& t = tf.transforms._buffer[i];
-    ASSERT_TRUE(frames.contains(t.header.frame_id)) << t.child_frame_id << " hangs on " << t.header.frame_id;
-    ASSERT_FALSE(frames.contains(t.child_frame_id)) << "two parents of " << t.child_frame_id;
+    ASSERT_TRUE(frames.contains(t.header.frame_id))
+        << t.child_frame_id << " has the unknown parent " << t.header.frame_id;
+    ASSERT_FALSE(frames.contains(t.child_frame_id)) << "more than one parent of " << t.child_frame_id;
     frames[t.child_frame_id] = frames.at(t.header.frame_id) * isometry(t.transform);
   }
   Eigen::Isometry3d head = Eigen::Isometry3d::Identity();

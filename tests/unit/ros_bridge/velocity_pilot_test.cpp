@@ -11,7 +11,8 @@ constexpr double kTurn_s = 0.02;
 
 class VelocityPilotTest : public ::testing::Test {
  protected:
-  /// Lets time pass with a constant velocity from ROS (none: nobody says anything); how many requests were made.
+  /// Lets `duration_s` pass while ROS sends the constant velocity `stream`, or no velocity if it is empty. Returns the
+  /// number of requests that the pilot made.
   int asks(double duration_s, std::optional<Drive> stream, bool connected = true, bool steered = true) {
     int count = 0;
     for (const double end_s = now_s_ + duration_s; now_s_ < end_s; now_s_ += kTurn_s) {
@@ -26,7 +27,7 @@ class VelocityPilotTest : public ::testing::Test {
     return count;
   }
   VelocityPilot pilot_{0.5};
-  std::optional<bool> answer_ = true;  ///< what `input` says; none: it is not there
+  std::optional<bool> answer_ = true;  ///< the answer of `input`; empty: `input` does not answer
   VelocityPilot::Ask last_;
   double now_s_ = 1000.0;
 };
@@ -40,7 +41,7 @@ TEST_F(VelocityPilotTest, RepeatsARefusedVelocityUntilItIsGranted) {
   answer_ = false;
   const int refused = asks(5.0, kAhead);
   EXPECT_GE(refused, 4);
-  EXPECT_LE(refused, 6) << "at a modest rate";
+  EXPECT_LE(refused, 6) << "a refused request must be repeated about once a second";
   answer_ = true;
   EXPECT_EQ(asks(5.0, kAhead), 1);
 }
@@ -81,7 +82,7 @@ TEST_F(VelocityPilotTest, StandsWithoutVelocitiesAndReleasesWhenTheirWriterIsGon
   EXPECT_EQ(last_.drive, Drive{});
   EXPECT_EQ(asks(2.0, std::nullopt, true, /*steered=*/false), 1);
   EXPECT_EQ(last_.kind, msg::kRequestRelease);
-  EXPECT_EQ(asks(0.1, kAhead), 1) << "the next writer of velocities need not wait";
+  EXPECT_EQ(asks(0.1, kAhead), 1) << "the first velocity of the next writer must be requested at once";
 }
 
 TEST_F(VelocityPilotTest, RequestsAChangedVelocityAtOnce) {

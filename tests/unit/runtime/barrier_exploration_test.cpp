@@ -1,5 +1,6 @@
-// Explores every interleaving of deliveries, steps and ticks of a small run, with a crash of a member at every point
-// and any number of its last messages lost, and with a reset: all must end with what the in-process run computes.
+// Explores every interleaving of deliveries, steps and ticks of a small run. In some cases a member crashes at any
+// point, and any number of its last messages are lost; in others the run is reset. Every interleaving must end with the
+// result that the in-process run computes.
 #include <gtest/gtest.h>
 
 #include <span>
@@ -13,7 +14,7 @@
 namespace constrictor::toys {
 namespace {
 
-// Two and three ticks with a crash take minutes: the label `long` runs them, one tick runs always.
+// Runs of two and three ticks with a crash take minutes: they have the label `long`. The quick tests run one tick.
 #ifdef CONSTRICTOR_EXPLORE_LONG
 constexpr std::int64_t kTicksWithCrash = 2;
 constexpr std::int64_t kTicksWithCrashOfControl = 3;
@@ -36,7 +37,8 @@ struct Outcome {
   std::size_t ends = 0;
 };
 
-/// Depth-first over action sequences; a state is re-made by replaying its actions, since members cannot be copied.
+/// A depth-first search over sequences of actions. Each state is reached by performing all of its actions again,
+/// because members cannot be copied.
 class Explorer {
  public:
   explicit Explorer(const Case& c) : case_(c) {
@@ -77,7 +79,7 @@ class Explorer {
     }
     if (!seen_.insert(key(world.fingerprint() + "#" + std::to_string(crashes) + std::to_string(resets))).second) return;
     ++outcome_.states;
-    // Only a reset leaves messages of the epoch before under way.
+    // Without a reset there are no messages of an earlier epoch, so no message may be refused.
     if (resets == 0) {
       ASSERT_EQ(world.refused(), 0u);
     }
@@ -93,7 +95,7 @@ class Explorer {
     }
   }
 
-  /// Half of a SHA-256 in the place of a fingerprint, which is some hundred times as long.
+  /// Half of a SHA-256 of a fingerprint. It saves memory, because a fingerprint is some hundred times as long.
   static std::string key(const std::string& fingerprint) {
     Sha256 hash;
     hash.update(std::as_bytes(std::span(fingerprint)));
@@ -158,9 +160,9 @@ TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
   explore({{plant(), control()}, 1, {"control"}, 1, 0});
 }
 
-TEST(BarrierExploration, AResetAnywhereGivesAFreshRun) { explore({{plant(), control()}, 2, {}, 0, 1}); }
+TEST(BarrierExploration, AResetAnywhereGivesTheResultOfANewRun) { explore({{plant(), control()}, 2, {}, 0, 1}); }
 
-TEST(BarrierExploration, AResetWhileAMemberComesBackGivesAFreshRun) {
+TEST(BarrierExploration, AResetWhileAMemberRestartsGivesTheResultOfANewRun) {
   explore({{plant(), control()}, 1, {"control"}, 1, 1, false});
 }
 

@@ -1,4 +1,5 @@
-// Who of those that ask from outside is alive, as DDS says it: also to a reader that has never had a word of them.
+// ClientLink detects which clients are alive with the help of DDS, even for clients of which its reader has never
+// received a request.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,12 +20,12 @@ using testing::eventually;
 
 class ClientLinkTest : public ::testing::Test {
  protected:
-  /// One program outside: a participant with a writer.
+  /// A client: a participant with a writer of requests.
   struct Program {
     Program(std::uint32_t domain, std::int64_t lease_ns)
         : participant(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant"),
           writer(participant.get(), lease_ns) {}
-    void say(const std::string& source, std::uint64_t number, std::uint8_t level = msg::kAuthorityExternal) const {
+    void send(const std::string& source, std::uint64_t number, std::uint8_t level = msg::kAuthorityExternal) const {
       msg::Request request{};
       request.robot_id = 1;
       dds::set_text(request.source, source);
@@ -42,7 +43,7 @@ class ClientLinkTest : public ::testing::Test {
     EXPECT_TRUE(eventually([&] { return made->writer.heard(); }));
     return made;
   }
-  /// The next items of the latch, with what arrived until then.
+  /// Waits until the latch has returned at least `count` items, and returns them.
   std::vector<ClientEvent> latched(const dds::ClientLink& link, std::size_t count,
                                    const std::vector<LivingSource>& living = {}) {
     std::vector<ClientEvent> items;
@@ -60,14 +61,14 @@ class ClientLinkTest : public ::testing::Test {
   std::string refusal_;
 };
 
-TEST_F(ClientLinkTest, ProgramsOfOneNameAreToldApartByTheirWriters) {
+TEST_F(ClientLinkTest, ClientsWithTheSameNameAreDistinguishedByTheirWriters) {
   const dds::ClientLink link(robot_.participant(), 1);
   const auto first = program();
-  first->say("p", 57);
+  first->send("p", 57);
   const auto of_first = latched(link, 1);
   ASSERT_EQ(of_first.size(), 1u);
   const auto second = program();
-  second->say("p", 1);
+  second->send("p", 1);
   const auto of_second = latched(link, 1);
   ASSERT_EQ(of_second.size(), 1u);
   EXPECT_NE(of_first[0].writer, WriterId{});
@@ -75,20 +76,20 @@ TEST_F(ClientLinkTest, ProgramsOfOneNameAreToldApartByTheirWriters) {
   EXPECT_NE(of_first[0].writer, of_second[0].writer);
 }
 
-TEST_F(ClientLinkTest, AReaderThatNeverHadAWordOfASourceSeesItsEnd) {
+TEST_F(ClientLinkTest, AReaderThatHasReceivedNothingFromASourceDetectsItsDeath) {
   auto before = std::make_unique<dds::ClientLink>(robot_.participant(), 1);
   auto operates = program();
   const auto hangs = program(500'000'000);
-  operates->say("operates", 1);
-  hangs->say("hangs", 1);
+  operates->send("operates", 1);
+  hangs->send("hangs", 1);
   std::vector<LivingSource> living;
   for (const auto& item : latched(*before, 2)) living.push_back({item.source, item.writer});
   before.reset();
   ASSERT_EQ(living.size(), 2u);
-  const dds::ClientLink after(robot_.participant(), 1, 60s);  // as in the process that was started anew
+  const dds::ClientLink after(robot_.participant(), 1, 60s);  // as in a restarted process of `input`
   after.track_writers_for(requests_);
   hangs->writer.assert_alive();
-  const auto first_death = latched(after, 1, living);  // it does not say any more that it lives
+  const auto first_death = latched(after, 1, living);  // it no longer asserts that it is alive
   ASSERT_EQ(first_death.size(), 1u);
   EXPECT_TRUE(first_death[0].died);
   EXPECT_EQ(first_death[0].source, "hangs");
@@ -105,25 +106,25 @@ TEST_F(ClientLinkTest, ASourceThatIsNotFoundWithinTheGraceIsDead) {
   const dds::ClientLink link(robot_.participant(), 1, 300ms);
   link.track_writers_for(requests_);
   const auto alive = program();
-  alive->say("alive", 1);
+  alive->send("alive", 1);
   const WriterId writer = latched(link, 1).at(0).writer;
-  const std::vector<LivingSource> living = {{"alive", writer}, {"died while nobody listened", WriterId{1, 2, 3}}};
+  const std::vector<LivingSource> living = {{"alive", writer}, {"died during the restart", WriterId{1, 2, 3}}};
   const auto deaths = latched(link, 1, living);
   ASSERT_EQ(deaths.size(), 1u);
   EXPECT_TRUE(deaths[0].died);
   EXPECT_EQ(deaths[0].writer, living[1].writer);
 }
 
-TEST_F(ClientLinkTest, WhatIsOutOfRangeIsRefusedByNameButAStopIsAStop) {
+TEST_F(ClientLinkTest, ARequestOutOfRangeIsRefusedWithItsFieldExceptAnEmergencyStop) {
   const dds::ClientLink link(robot_.participant(), 1);
   const auto wild = program();
-  wild->say("wild", 1, 77);
+  wild->send("wild", 1, 77);
   const auto refused = latched(link, 1);
   ASSERT_EQ(refused.size(), 1u);
   EXPECT_NE(refused[0].refusal.find("level"), std::string::npos) << refused[0].refusal;
   EXPECT_NE(refusal_.find("request.level"), std::string::npos) << refusal_;
   wild->kind = msg::kRequestEmergencyStop;
-  wild->say("wild", 2, 77);
+  wild->send("wild", 2, 77);
   const auto stop = latched(link, 1);
   ASSERT_EQ(stop.size(), 1u);
   EXPECT_EQ(stop[0].request.kind, msg::kRequestEmergencyStop);

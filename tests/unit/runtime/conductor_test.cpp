@@ -1,5 +1,5 @@
-// The conductor, spoken to directly: whom it accepts, when a tick comes, what the tick makes visible, and which reports
-// of members cannot be true.
+// The conductor, called directly: which members it accepts, when it sends a tick, which samples the tick makes visible,
+// and which reports of members it recognises as impossible.
 #include "barrier/conductor.hpp"
 
 #include <gtest/gtest.h>
@@ -118,7 +118,7 @@ TEST_F(ConductorTest, ATickWaitsForTheStepsThatItMakesVisible) {
   EXPECT_EQ(record_.ticks.back().incarnations[kEvents], 1u);
 }
 
-TEST_F(ConductorTest, OthersThanTheRunsMembersAreRefusedWithTheReason) {
+TEST_F(ConductorTest, ProcessesThatAreNoMembersOfTheRunAreRefusedWithTheReason) {
   conductor_.on_hello(hello("nobody"));
   EXPECT_EQ(last_refusal(), "no component of this name is in the roster");
   const auto refused = [&](const auto& change, const std::string& reason) {
@@ -131,11 +131,11 @@ TEST_F(ConductorTest, OthersThanTheRunsMembersAreRefusedWithTheReason) {
   refused([](Hello& h) { h.config_hash = "x"; }, "configuration hash differs: found x, the run has config");
   refused([](Hello& h) { h.numeric_profile = "x"; }, "numeric profile differs: found x, the run has profile");
   conductor_.on_hello(hello("physics"));
-  EXPECT_TRUE(record_.epochs.empty()) << "navigation has not joined";
+  EXPECT_TRUE(record_.epochs.empty()) << "the epoch must not begin before navigation has joined";
   begin();
   const std::size_t refusals = record_.refusals.size();
   conductor_.on_hello(hello("navigation"));
-  EXPECT_EQ(record_.refusals.size(), refusals) << "a repeated Hello";
+  EXPECT_EQ(record_.refusals.size(), refusals) << "a repeated Hello must not be refused";
   refused([](Hello& h) { h.pid = 4711; },
           "two members of one name: incarnation 1 runs as pid 101 on here; a replacement "
           "needs a higher --incarnation");
@@ -146,7 +146,7 @@ TEST_F(ConductorTest, OthersThanTheRunsMembersAreRefusedWithTheReason) {
           "has own");
 }
 
-TEST_F(ConductorTest, ReportsThatCannotBeTrueAreNamed) {
+TEST_F(ConductorTest, ImpossibleReportsAreRecognisedWithTheReason) {
   begin();
   run_to(3);
   const auto why = [&](const TickDone& done) { return conductor_.implausible(done).value_or(""); };
@@ -190,13 +190,15 @@ TEST_F(ConductorTest, ARestartedMemberGetsItsLastStateAndAsManyOutputsAsTheTopic
   EXPECT_EQ(resume.state, "state after " + std::to_string(last));
   ASSERT_EQ(resume.outputs.size(), topics::kTaskEvent.depth);
   EXPECT_EQ(resume.outputs.back().bytes, "event of " + std::to_string(last));
-  EXPECT_FALSE(conductor_.may_tick()) << "it must send Ready again";
+  EXPECT_FALSE(conductor_.may_tick()) << "the restarted member must send Ready again";
   conductor_.on_ready("navigation", kEpoch, 2);
   ASSERT_TRUE(conductor_.may_tick());
   tick();
-  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 1))) << "the dead incarnation";
+  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 1)))
+      << "the message is from the dead incarnation";
   EXPECT_TRUE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2)));
-  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2))) << "done already";
+  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2)))
+      << "the step was done before";
 }
 
 TEST_F(ConductorTest, AMemberWithoutCheckpointsCannotBeResumed) {
@@ -231,7 +233,7 @@ TEST_F(ConductorTest, TheRunEndsWhenTheRequestBecomesVisibleOrAtTheLastTick) {
   EXPECT_TRUE(other.next_is_final());
 }
 
-TEST_F(ConductorTest, AResetBeginsAnEpochFromNothing) {
+TEST_F(ConductorTest, AResetBeginsAnEpochWithoutTheStateOfTheOneBefore) {
   conductor_.reset(9);
   EXPECT_TRUE(record_.epochs.empty()) << "the run has not begun";
   begin();
@@ -241,7 +243,7 @@ TEST_F(ConductorTest, AResetBeginsAnEpochFromNothing) {
   EXPECT_EQ(record_.epochs[1], (std::pair{EpochId{kEpoch.run_id, 2}, std::uint64_t{9}}));
   EXPECT_EQ(conductor_.next_index(), 0);
   EXPECT_FALSE(conductor_.may_tick());
-  EXPECT_FALSE(conductor_.on_done(step(3, 4))) << "of the epoch before";
+  EXPECT_FALSE(conductor_.on_done(step(3, 4))) << "the step belongs to the epoch before";
   conductor_.on_ready("physics", {kEpoch.run_id, 2}, 1);
   conductor_.on_ready("navigation", {kEpoch.run_id, 2}, 1);
   ASSERT_TRUE(conductor_.may_tick());

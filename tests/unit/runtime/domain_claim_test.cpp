@@ -1,4 +1,4 @@
-// Two runs never share a domain, wherever they keep their notes.
+// Two runs on one host never claim the same DDS domain, even if their run directories differ.
 #include "cyclone/domain_claim.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class DomainClaims : public ::testing::Test {
   const std::filesystem::path dir_ = folder_.path();
 };
 
-TEST_F(DomainClaims, DifferAlsoBetweenDirectoriesOfNotes) {
+TEST_F(DomainClaims, DifferEvenIfTheRunDirectoriesDiffer) {
   const DomainClaim first;
   const DomainClaim second;
   EXPECT_NE(first.domain(), second.domain());
@@ -29,13 +29,14 @@ TEST_F(DomainClaims, DifferAlsoBetweenDirectoriesOfNotes) {
   const DomainClaim third;
   EXPECT_NE(third.domain(), first.domain());
   EXPECT_NE(third.domain(), second.domain());
-  EXPECT_FALSE(domain_claimed(first.domain()));  // no run of this directory
+  EXPECT_FALSE(domain_claimed(first.domain()));  // the first claim belongs to the other run directory
   EXPECT_TRUE(domain_claimed(third.domain()));
   EXPECT_THROW(DomainClaim(first.domain()), std::runtime_error);
 }
 
 TEST_F(DomainClaims, EndWithTheirHolder) {
-  // Beyond those that runs choose, so that none takes it meanwhile; nor does another test run on this host.
+  // Runs choose only domains up to 100, so no run takes this one. It depends on the pid, so that two runs of this test
+  // on one host do not collide.
   const std::uint32_t domain = 101 + static_cast<std::uint32_t>(::getpid()) % 129;
   std::optional<DomainClaim> claim(domain);
   EXPECT_THROW(DomainClaim{domain}, std::runtime_error);

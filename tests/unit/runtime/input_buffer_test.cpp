@@ -1,4 +1,4 @@
-// What a step sees of a topic, whatever arrived early, late, twice or damaged; and sets of topics.
+// The samples of a topic that a step sees when samples arrive early, late, twice or damaged. Also: sets of topics.
 #include "barrier/input_buffer.hpp"
 
 #include <gtest/gtest.h>

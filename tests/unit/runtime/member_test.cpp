@@ -1,4 +1,4 @@
-// One member of the barrier, spoken to directly: when it steps, what it rejects, and how it resumes.
+// One member of the barrier, called directly: when it steps, which messages it rejects, and how it resumes.
 #include "barrier/member.hpp"
 
 #include <gtest/gtest.h>
@@ -65,14 +65,14 @@ TEST_F(MemberTest, StepsOnceItsTickAndAllOfItsInputsAreThere) {
   EXPECT_EQ(member->missing().want, 2u);
   give_event(*member, 1);
   EXPECT_TRUE(member->try_step());
-  EXPECT_FALSE(member->try_step()) << "once for each tick";
+  EXPECT_FALSE(member->try_step()) << "the member must step once for each tick";
   ASSERT_EQ(record_.steps.size(), 1u);
   EXPECT_EQ(record_.steps[0].index, 0);
   EXPECT_EQ(record_.steps[0].published.at(0).count, 1u);
   EXPECT_EQ(record_.published.size(), 1u);
 }
 
-TEST_F(MemberTest, WhatComesBeforeTheEpochIsKnownIsKept) {
+TEST_F(MemberTest, MessagesThatArriveBeforeTheEpochIsKnownAreKept) {
   const auto member = make();
   member->on_tick(tick_at(0, visible(1, 1)));
   give_event(*member, 1);
@@ -83,7 +83,7 @@ TEST_F(MemberTest, WhatComesBeforeTheEpochIsKnownIsKept) {
   EXPECT_EQ(record_.steps.back().output_hash, undisturbed_hash(1));
 }
 
-TEST_F(MemberTest, MessagesOfAnotherEpochOrWithoutSenseAreRejectedAndCounted) {
+TEST_F(MemberTest, ImpossibleMessagesAndMessagesOfAnotherEpochAreRejectedAndCounted) {
   const auto member = make();
   member->on_epoch(kEpoch, 1);
   auto rejected = [&, before = std::uint64_t{0}](const std::string& reason) mutable {
@@ -111,7 +111,7 @@ TEST_F(MemberTest, MessagesOfAnotherEpochOrWithoutSenseAreRejectedAndCounted) {
   EXPECT_FALSE(member->try_step());
 }
 
-TEST_F(MemberTest, DuplicatesAreDroppedAndCountedApart) {
+TEST_F(MemberTest, DuplicatesAreDroppedAndCountedSeparately) {
   const auto member = make();
   member->on_epoch(kEpoch, 1);
   for (int i = 0; i < 3; ++i) give_joints(*member, 1);
@@ -119,7 +119,7 @@ TEST_F(MemberTest, DuplicatesAreDroppedAndCountedApart) {
   EXPECT_EQ(member->counters().refused, 0u);
 }
 
-TEST_F(MemberTest, ARestartedMemberContinuesAsIfNothingHadHappened) {
+TEST_F(MemberTest, ARestartedMemberContinuesWithTheSameOutputs) {
   auto first = make();
   first->on_epoch(kEpoch, 1);
   for (std::int64_t k = 0; k < 4; ++k) {
@@ -136,7 +136,7 @@ TEST_F(MemberTest, ARestartedMemberContinuesAsIfNothingHadHappened) {
   MemberRecord after;
   const auto second = make(2, &after);
   second->on_epoch(kEpoch, 1);
-  EXPECT_FALSE(second->in_epoch()) << "it waits for its Resume";
+  EXPECT_FALSE(second->in_epoch()) << "the restarted member must wait for its Resume";
   for (std::uint64_t number = 1; number <= 4; ++number) {
     give_event(*second, number);
     give_joints(*second, number);
@@ -144,10 +144,10 @@ TEST_F(MemberTest, ARestartedMemberContinuesAsIfNothingHadHappened) {
   for (std::int64_t k = 0; k < 4; ++k)
     second->on_tick(tick_at(k, visible(static_cast<std::uint64_t>(k + 1), static_cast<std::uint64_t>(k + 1))));
   second->on_resume(resume);
-  ASSERT_EQ(after.published.size(), 1u) << "the last output again";
+  ASSERT_EQ(after.published.size(), 1u) << "the member must publish its last output again";
   EXPECT_EQ(after.published[0].second.header->sequence_number, 3u);
   while (second->try_step()) {}
-  ASSERT_EQ(after.steps.size(), 1u) << "only the step that was lost";
+  ASSERT_EQ(after.steps.size(), 1u) << "the member must repeat only the lost step";
   EXPECT_EQ(after.steps[0].index, 3);
   EXPECT_EQ(after.steps[0].output_hash, undisturbed_hash(4));
   EXPECT_EQ(after.published.back().second.header->incarnation, 2u);
@@ -176,7 +176,7 @@ TEST_F(MemberTest, ADamagedCheckpointIsRejectedOrNamed) {
   }
 }
 
-TEST_F(MemberTest, AResumeThatIsNotItsOwnChangesNothing) {
+TEST_F(MemberTest, AResumeForAnotherIncarnationChangesNothing) {
   const auto first = make();
   first->on_resume({"control", kEpoch, 1, 5, 1, "x", {}});
   EXPECT_FALSE(first->in_epoch());
@@ -222,7 +222,7 @@ TEST_F(MemberTest, TheFinalTickEndsItWithoutAStep) {
   EXPECT_TRUE(record_.steps.empty());
 }
 
-/// Writes more than the topic allows, and what violates its IDL.
+/// Writes more samples than the topic allows, and samples that violate their IDL.
 class Careless : public Component {
  public:
   explicit Careless(Wiring& wiring) : command_(wiring.output(topics::kJointCommand)) {}

@@ -25,7 +25,7 @@ struct Asked {
   std::int64_t effective_tick;
 };
 
-/// Stands for the component `input`: writes changes as told.
+/// Stands for the component `input`: writes the changes of a list, each at its tick.
 ComponentFactory scripted_input(const std::vector<Asked>& script) {
   return testing::scripted_writer<msg::ParameterChange>(
       "input", topics::kParameterChange, [&script](const Tick& tick, const auto& out) {
@@ -204,7 +204,7 @@ TEST_F(ParametersTest, ListHasDefaultsValuesInForceAndWaitingChanges) {
   EXPECT_EQ(lists, 3);  // one more when the two came, one more when the first was due
 }
 
-TEST_F(ParametersTest, ListHasOnlyWhatMayChangeWhileRunning) {
+TEST_F(ParametersTest, ListHasOnlyParametersThatMayChangeDuringARun) {
   const auto run = make();
   run->advance(1);
   const auto* list = run->latest(topics::kControlParameters);

@@ -1,4 +1,4 @@
-// What can happen next in a QueueWorld.
+// An action that a QueueWorld can perform next.
 #pragma once
 
 #include <string>

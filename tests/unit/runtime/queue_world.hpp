@@ -1,5 +1,6 @@
 // A run on queues in which each delivery, step, tick, crash and restart is an explicit action, so that a test can try
-// all orders. Each (writer incarnation, topic, reader) has a channel: in order within, any order between, as in DDS.
+// all orders. There is a channel for each combination of writer incarnation, topic and reader. As in DDS, messages keep
+// their order within a channel, and the order of messages of different channels is arbitrary.
 #pragma once
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ class QueueWorld : private ConductorSink {
     return true;
   }
 
-  /// Everything that can happen now; crashes only of members in `mortal`, resets only if asked.
+  /// All actions that are possible now. Only members in `mortal` may crash; a reset is possible only if `may_reset`.
   [[nodiscard]] std::vector<Action> actions(const std::set<std::string>& mortal, bool may_reset) const {
     std::vector<Action> list;
     for (const auto& [name, queue] : channels_) {
@@ -90,7 +91,7 @@ class QueueWorld : private ConductorSink {
     }
   }
 
-  /// Delivers all there is: used before the first tick, where another test explores the orders of the start.
+  /// Delivers all messages until there are none. For tests that do not explore the orders of the start.
   void settle() {
     for (bool any = true; any;) {
       any = false;
@@ -103,7 +104,7 @@ class QueueWorld : private ConductorSink {
     }
   }
 
-  /// What can be observed of the state: states with equal fingerprints have equal futures.
+  /// The whole state as text: equal fingerprints mean that the same actions have the same results from here on.
   [[nodiscard]] std::string fingerprint() const {
     std::string text = std::to_string(conductor_->next_index()) + (conductor_->may_tick() ? "m" : "-") +
                        (conductor_->epoch() ? std::to_string(conductor_->epoch()->epoch) : "?");
@@ -142,8 +143,8 @@ class QueueWorld : private ConductorSink {
     QueueWorld* world = nullptr;
     std::size_t index = 0;
     std::unique_ptr<Member> member;
-    std::optional<EpochId> ready_in;                     ///< what it said ready for
-    std::map<std::uint8_t, std::deque<Sample>> history;  ///< transient-local, dies with the process
+    std::optional<EpochId> ready_in;                     ///< the epoch for which it has sent Ready
+    std::map<std::uint8_t, std::deque<Sample>> history;  ///< kept for late readers, lost when the process dies
     void publish(const TopicInfo& topic, const Sample& sample) override {
       auto& kept = history[topic.id];
       kept.push_back(sample);
@@ -159,7 +160,7 @@ class QueueWorld : private ConductorSink {
     }
   };
 
-  /// A message under way: what it is, for the fingerprint, and what its arrival does.
+  /// A message that has not arrived: its text in the fingerprint, and the action of its arrival.
   struct Message {
     std::string what;
     std::function<void()> deliver;
@@ -223,8 +224,9 @@ class QueueWorld : private ConductorSink {
       }
       if (channel.ends_with(">" + name)) queue.clear();
     }
-    std::erase_if(delivered_,
-                  [&](const auto& entry) { return entry.first.ends_with(">" + name); });  // gone with its buffers
+    std::erase_if(delivered_, [&](const auto& entry) {
+      return entry.first.ends_with(">" + name);
+    });  // the buffers of the dead member are lost
     nodes_[index]->member.reset();
     start(index, incarnation);
     Node& reborn = *nodes_[index];
@@ -254,9 +256,7 @@ class QueueWorld : private ConductorSink {
   }
   void start_epoch(const EpochId& epoch, std::uint64_t seed) override {
     ticks_.clear();
-    for (auto& node : nodes_) {
-      send_epoch(*node, epoch, seed);
-    }
+    for (auto& node : nodes_) send_epoch(*node, epoch, seed);
   }
   void send_epoch(Node& to, const EpochId& epoch, std::uint64_t seed) {
     Node* reader = &to;
@@ -264,11 +264,11 @@ class QueueWorld : private ConductorSink {
     push(name, fmt::format("e{}", epoch.epoch), [this, name, reader, epoch, seed] {
       ++delivered_[name];
       reader->member->on_epoch(epoch, seed);
-      say_ready(*reader);
+      send_ready(*reader);
     });
   }
-  /// As a process does: once for each epoch that its member is in.
-  void say_ready(Node& from) {
+  /// Sends Ready once for each epoch of the member, as the process of a member does.
+  void send_ready(Node& from) {
     const Member& member = *from.member;
     if (!member.in_epoch() || from.ready_in == member.epoch()) return;
     from.ready_in = member.epoch();
@@ -282,7 +282,7 @@ class QueueWorld : private ConductorSink {
     const std::string what = fmt::format("R{},{}", resume.epoch.epoch, resume.index);
     push("conductor>resume>" + resume.component, what, [this, reader, resume] {
       reader->member->on_resume(resume);
-      say_ready(*reader);
+      send_ready(*reader);
     });
   }
   void refuse(const Hello& hello, const std::string& reason) override {

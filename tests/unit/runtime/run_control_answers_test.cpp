@@ -30,7 +30,7 @@ TEST(RunControlAnswers, ARepeatedCommandGetsItsFirstAnswerAgain) {
   EXPECT_STREQ(answers.given(command("a", 5))->refusal, "reset: no");
   EXPECT_EQ(answers.given(command("a", 4)), nullptr);
   EXPECT_EQ(answers.given(command("a", 6)), nullptr);
-  EXPECT_EQ(answers.given(command("b", 5)), nullptr) << "each source counts for itself";
+  EXPECT_EQ(answers.given(command("b", 5)), nullptr) << "each source has its own numbers";
 }
 
 TEST(RunControlAnswers, TheNewestNumberOfASourceNeverFalls) {
@@ -42,7 +42,7 @@ TEST(RunControlAnswers, TheNewestNumberOfASourceNeverFalls) {
   EXPECT_EQ(answers.newest("b"), 0u);
 }
 
-TEST(RunControlAnswers, NewSourcesAreRememberedHoweverManyThereWere) {
+TEST(RunControlAnswers, ANewSourceReplacesTheOneWhoseLastAnswerIsTheOldest) {
   RunControlAnswers answers;
   const auto name = [](std::size_t i) { return "source" + std::to_string(i); };
   for (std::size_t i = 0; i < RunControlAnswers::kMost; ++i) answers.keep(answer(name(i), 9));

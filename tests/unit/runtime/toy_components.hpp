@@ -1,4 +1,4 @@
-// Small components that mix everything they see into everything they write: any lost, doubled, reordered or early input
+// Small components that mix every input into every output: an input that is lost, doubled, early or in another order
 // changes all later outputs.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace constrictor::toys {
 
-/// A value in [0, 1) that depends on every bit of what was mixed before.
+/// A hash of all values that were mixed into it; unit() returns it as a number in [0, 1).
 struct Mixer {
   std::uint64_t value = 0x9e3779b97f4a7c15ULL;
   void mix(std::uint64_t x) {
@@ -26,7 +26,7 @@ struct Mixer {
   }
 };
 
-/// Writes JointState (every tick) from what JointCommand says.
+/// Reads JointCommand, and writes a JointState that depends on it in every tick.
 class ToyPlant : public Plant {
  public:
   ToyPlant(Wiring& wiring, const Setup& setup)
@@ -56,7 +56,7 @@ class ToyPlant : public Plant {
   Mixer mixer_;
 };
 
-/// Reads JointState, writes TaskEvents (two in each step: Events readers must see both).
+/// Reads JointState, and writes two TaskEvents in each step: readers with an Events port must see both.
 class ToyNavigation : public StatefulComponent<Mixer> {
  public:
   ToyNavigation(Wiring& wiring, const Setup& setup, Timing timing)
@@ -81,7 +81,7 @@ class ToyNavigation : public StatefulComponent<Mixer> {
   Timing timing_;
 };
 
-/// Reads JointState and every TaskEvent, writes JointCommand.
+/// Reads JointState and every TaskEvent, and writes JointCommand.
 class ToyControl : public StatefulComponent<Mixer> {
  public:
   ToyControl(Wiring& wiring, const Setup& setup)
@@ -105,7 +105,7 @@ class ToyControl : public StatefulComponent<Mixer> {
   Output<msg::JointCommand> command_;
 };
 
-/// Reads everything the others write and writes nothing that they read.
+/// Reads the outputs of navigation and control, and writes a topic that no other toy reads.
 class ToyPlanner : public StatefulComponent<Mixer> {
  public:
   ToyPlanner(Wiring& wiring, const Setup& setup)

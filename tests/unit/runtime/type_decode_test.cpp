@@ -1,4 +1,5 @@
-// Decoding of samples by a described type, byte by byte as the standard has them (OMG DDS-XTypes 1.3, section 7.4).
+// Samples are decoded by the description of their type. The bytes are written by hand from the standard (OMG DDS-XTypes
+// 1.3, section 7.4).
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -115,7 +116,7 @@ TEST(TypeDecode, EveryTruncatedSampleIsNamedAsDamaged) {
   }
 }
 
-TEST(TypeDecode, NoBytesMakeItReadBeyondTheSampleOrRunForEver) {
+TEST(TypeDecode, RandomBytesNeverLeadToReadsBeyondTheSampleOrEndlessLoops) {
   std::mt19937 random(20261122);
   int decoded = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -129,7 +130,7 @@ TEST(TypeDecode, NoBytesMakeItReadBeyondTheSampleOrRunForEver) {
   EXPECT_GT(decoded, 0);
 }
 
-TEST(TypeDecode, NotANumberIsNullAndAnUnknownLiteralIsItsNumber) {
+TEST(TypeDecode, NanBecomesNullAndAnUnknownEnumeratorBecomesItsNumber) {
   TypeNode colour;
   colour.kind = Kind::kEnum;
   colour.primitive = kInt32;

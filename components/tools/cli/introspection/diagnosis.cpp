@@ -36,7 +36,7 @@ std::string processes_of(const Facts& facts, const std::set<dds::Guid>& particip
 void check_domain(const Facts& facts, Findings& found) {
   if (!facts.participants.empty()) return;
   if (facts.runs.empty()) {
-    found.push_back({"nobody there",
+    found.push_back({"empty domain",
                      fmt::format("no process is in domain {}, and no run is on this host", facts.domain),
                      "start one with `constrictor run`; for a run on another host set CYCLONEDDS_URI "
                      "(deploy/cyclonedds/hosts.xml)"});
@@ -146,7 +146,7 @@ void check_idl(const Facts& facts, Findings& found) {
   for (const auto& [hash, who] : by_hash) {
     if (hash == facts.idl_hash) continue;
     found.push_back({"differing IDL hash",
-                     fmt::format("{}: messages {}, here {}", fmt::join(who, ", "), hash.substr(0, 12),
+                     fmt::format("IDL hash of {}: {}; of this program: {}", fmt::join(who, ", "), hash.substr(0, 12),
                                  facts.idl_hash.substr(0, 12)),
                      "build or install the same version on every host, then restart the run"});
   }

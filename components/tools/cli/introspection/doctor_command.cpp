@@ -106,7 +106,7 @@ Diagnosis examine(std::uint32_t domain, const Facts& host) {
   if (!error.empty()) {
     // The domain was not examined, so whether processes are in it is unknown.
     std::erase_if(findings, [](const Finding& finding) {
-      return finding.fault == "nobody there" || finding.fault == "wrong domain";
+      return finding.fault == "empty domain" || finding.fault == "wrong domain";
     });
     findings.push_back({"no DDS", error,
                         findings.empty() ? "unset CYCLONEDDS_URI, or correct it (deploy/README.md)"

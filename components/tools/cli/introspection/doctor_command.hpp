@@ -1,4 +1,4 @@
-// `constrictor doctor`: finds what keeps processes from working together, and names the cure.
+// `constrictor doctor`: finds faults that prevent processes from working together, and names the cure.
 #pragma once
 
 #include <CLI/CLI.hpp>

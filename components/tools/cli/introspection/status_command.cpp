@@ -108,7 +108,7 @@ std::string run_line(const RunView& view) {
     std::string who = fmt::format("authority: {}{}{}", words_of(constants::kAuthority, authority.level),
                                   *authority.source ? " " : "", authority.source);
     if (authority.refused_count > 0)
-      who += fmt::format("; {} requests refused, the last that of {}: {}", authority.refused_count,
+      who += fmt::format("; {} requests refused, the last one from {}: {}", authority.refused_count,
                          authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }

@@ -58,7 +58,7 @@ int list(const Options& options) {
     fmt::print("{}\n", json_text(json, 2));
     return exit_status::kOk;
   }
-  fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "what");
+  fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "content");
   for (const auto& [name, row] : rows) {
     fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", name, row.type, row.writers, row.readers,
                known(name) ? known(name)->doc : "");

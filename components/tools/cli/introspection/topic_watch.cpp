@@ -54,7 +54,7 @@ void print_raw(const dds::RawSample& sample, const char* why) {
   if (sample.bytes.size() > kMostShown * 4) fmt::print("  ... and {} more\n", sample.bytes.size() - kMostShown * 4);
 }
 
-/// The part of a sample that --field names. Empty if there is none; `accepted` then says what was found and accepted.
+/// The part of a sample that --field names. Empty if there is none; `accepted` then holds what was found and accepted.
 std::optional<Json> part(const Json& sample, const std::string& field, std::string& accepted) {
   const Json* at = &sample;
   for (const auto& name : CLI::detail::split(field, '.')) {
@@ -92,7 +92,7 @@ std::optional<dds::Endpoint> wait_for_writer(const DomainView& view, const Watch
     if (auto writer = view.find_writer(options.topic, bound - kDiscovery)) return writer;
   }
   if (!interrupted())
-    std::fprintf(stderr, "topic: nobody writes '%s' in DDS domain %u\n", options.topic.c_str(), view.domain());
+    std::fprintf(stderr, "topic: no writer of '%s' in DDS domain %u\n", options.topic.c_str(), view.domain());
   return std::nullopt;
 }
 

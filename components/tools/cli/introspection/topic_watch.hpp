@@ -1,4 +1,4 @@
-// `topic echo`, `topic hz` and `topic delay`: what happens to the samples of one topic.
+// `topic echo`, `topic hz` and `topic delay`: the samples of one topic, their rate and their delay.
 #pragma once
 
 #include <cstdint>
