@@ -46,7 +46,7 @@ class FieldMapper {
   void release_slot(Landmark& landmark);
   /// Whether a point touches another module than `module` or its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
-  /// Where the centre of an object of this radius lies in the U, in the frame of the head.
+  /// [m] place in the U of the centre of an object of this radius, in the frame of the head.
   [[nodiscard]] Eigen::Vector2d base_of_u(const BodyChain& chain, double radius_m) const;
 
   FieldState& state_;

@@ -17,7 +17,7 @@
 
 namespace constrictor {
 
-/// What a task receives at each step.
+/// The input of a task at each step.
 struct TaskInput {
   const Tick& tick;
   const RobotModel& robot;
@@ -43,7 +43,7 @@ struct EventRecord {
   std::uint16_t handle = 0;  ///< in guidance's map; 0: the event is not about an object, or the map does not have it
 };
 
-/// What a step of a task results in.
+/// The result of a step of a task.
 struct TaskOutput {
   msg::DesiredTrajectory desired{};  ///< the caller fills in motion_id
   bool new_motion = false;           ///< the motion starts again, although its method is the same as before

@@ -1,4 +1,4 @@
-// What the label image shows across the course of the line.
+// Evaluates the label image along cross-sections of the line.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,7 +8,7 @@
 
 namespace constrictor::perception {
 
-/// What a point of the ground shows.
+/// The content of the image at a point of the ground.
 enum class Seen {
   kGround,
   kLine,
@@ -16,7 +16,7 @@ enum class Seen {
   kOutside,   ///< the point is out of view
 };
 
-/// What a cross-section shows.
+/// The content of a cross-section.
 enum class Section {
   kGood,     ///< the line with both edges
   kOneEdge,  ///< the line; something hides its other edge

@@ -50,8 +50,8 @@ function(constrictor_include_root result)
   set(${result} ${root} PARENT_SCOPE)
 endfunction()
 
-# What the libraries of a folder may link, besides others of the same folder: the arrows of the design. A row is a
-# regular expression for the folder and one for the folders it may use; the first row that fits counts.
+# The folders whose libraries the libraries of a folder may link, besides those of the folder itself. A row is a regular
+# expression for the folder and one for the folders that it may use; the first row that fits counts.
 set(CONSTRICTOR_LAYERS
   "idl.* => idl.*"
   "components/lib/(configuration|log) => none"

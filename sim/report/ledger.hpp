@@ -22,7 +22,7 @@ struct ObjectRecord {
   }
 };
 
-/// Where an object lies relative to the nearest zone of its colour.
+/// The place of an object relative to the nearest zone of its colour.
 struct ZoneVerdict {
   bool in_zone = false;     ///< the centre of the object lies inside the zone
   double distance_m = 0.0;  ///< of the object's centre from the zone's centre; NaN if no zone has the object's colour
@@ -41,7 +41,7 @@ struct ObjectLedger {
   void on_mission(const msg::MissionStatus& mission);
   /// A grasp counts only if an object of the event's colour is at most 0.05 m from the body.
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
-  /// What is missing to a complete mission, in words; empty if nothing is missing. A mission is complete if every
+  /// The reasons, in words, why the mission is not complete; empty if it is complete. A mission is complete if every
   /// object of the sequence was dropped and lies in the zone of its colour. The objects that the built-in planner
   /// dropped must have been dropped in the order of the sequence; an operator or an external planner may use another
   /// order.

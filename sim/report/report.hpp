@@ -75,7 +75,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] bool success() const;
   /// Why the mission did not succeed; empty on success.
   [[nodiscard]] std::string failure() const;
-  /// What is missing to a mission without objects by ground truth; empty if the head is at the end of the line.
+  /// The reason why a mission without objects is not complete; empty if the head is at the end of the line.
   [[nodiscard]] std::string line_shortfall() const;
   // In report_files.cpp.
   void write_files(const Tick& tick);

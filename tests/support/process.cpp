@@ -38,7 +38,7 @@ Process::Process(std::vector<std::string> arguments, const std::map<std::string,
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ > 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing outlives the test program
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the kernel kills this child when the test program ends
   for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   ::dup2(::open(out.c_str(), O_CREAT | O_WRONLY | O_APPEND, 0600), 1);
   ::dup2(::open(err.c_str(), O_CREAT | O_WRONLY | O_APPEND, 0600), 2);

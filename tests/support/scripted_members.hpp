@@ -19,7 +19,7 @@ class PlantBase : public Plant {
   [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
 };
 
-/// What a member does at each step.
+/// The step function of a member.
 using StepFunction = std::function<void(const Tick&)>;
 /// Declares the ports of a member, once for each epoch and incarnation, and returns its step.
 using WireFunction = std::function<StepFunction(Wiring&)>;

@@ -9,7 +9,7 @@ class Hold : public ControlMethod {
  public:
   std::string_view name() const override { return "hold"; }
   void start(const MethodInput& input, BodyState& body) const override {
-    // Where setpoint and measured angle agree, the setpoint is held: otherwise a loaded servo would creep by its own
+    // If setpoint and measured angle agree, the setpoint is held: otherwise a loaded servo would creep by its own
     // error with each new hold.
     constexpr double kAgreement_rad = 0.1;
     for (std::size_t j = 0; j < input.robot.joints.size(); ++j) {

@@ -13,7 +13,7 @@ namespace constrictor {
 /// the buffer is empty.
 class InputBuffer {
  public:
-  /// What becomes of an arriving sample.
+  /// The treatment of an arriving sample.
   enum class Arrival {
     kNew,          ///< keep() it
     kReplacement,  ///< keep() it: a newer incarnation of the writer repeated a step that this reader has not seen

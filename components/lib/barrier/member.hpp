@@ -26,7 +26,7 @@ class MemberSink {
   virtual void done(const TickDone& done) = 0;
 };
 
-/// What a member waits for, for messages to people.
+/// The input for which a member waits; for log lines and `Waiting` messages.
 struct MissingInput {
   std::int64_t tick = -1;
   const TopicInfo* topic = nullptr;  ///< null: it waits for the next Tick
@@ -44,7 +44,7 @@ class Member {
   Member& operator=(const Member&) = delete;
 
   [[nodiscard]] const std::string& name() const { return setup_.component; }
-  /// What the component is built from, with the configuration file that is in force.
+  /// The setup from which the component is built, with the configuration file that is in force.
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] std::uint32_t incarnation() const { return incarnation_; }
   [[nodiscard]] Timing timing() const { return timing_; }

@@ -65,7 +65,7 @@ class RequestClient {
   /// Waits until a goal ends; calls `each_poll` about every 10 ms, for reading other topics. Throws CommandError if the
   /// run is reset, or `input` is gone for 5 s.
   GoalTracker::End wait_for_end(std::uint64_t goal, const std::function<void()>& each_poll = {});
-  /// What is known of all goals of the run. The first call creates the readers; poll() keeps it up to date.
+  /// The known states of all goals of the run. The first call creates the readers; poll() keeps it up to date.
   const GoalTracker& goals();
   /// Gives authority back and waits for the answer. Returns true if this client has no authority afterwards.
   bool release(std::chrono::milliseconds bound = std::chrono::seconds(5));

@@ -8,7 +8,7 @@
 
 namespace constrictor {
 
-/// What a client can observe of its run.
+/// The observations of a client that show whether its run still exists.
 struct RunSigns {
   bool launcher = true;                 ///< the launcher holds its claim of the DDS domain
   bool plant_ended = false;             ///< the plant reported that it has ended

@@ -13,7 +13,7 @@
 
 namespace constrictor {
 
-/// What a run's note contains.
+/// The content of a run's note.
 struct RunNote {
   std::uint32_t domain = 0;  ///< DDS domain
   pid_t pid = 0;             ///< process id of the launcher

@@ -7,7 +7,7 @@
 
 namespace constrictor::dds {
 
-/// Where a participant can be discovered if $CYCLONEDDS_URI is not set.
+/// The networks on which a participant can be discovered if $CYCLONEDDS_URI is not set.
 enum class Reach {
   kLoopback,  ///< the loopback interface only, without multicast, up to 120 participants on this host
   kNetwork,   ///< Cyclone DDS's default, which processes of ROS 2 use

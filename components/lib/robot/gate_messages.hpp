@@ -22,8 +22,8 @@ namespace constrictor {
           std::span(command.torque_limit_nm, count)};
 }
 
-/// What the newest Authority message, `age_ticks` old, demands of the joints. Before the first message (null) commands
-/// are obeyed.
+/// The order that the newest Authority message, which is `age_ticks` old, gives to the gate. Before the first message
+/// (null) commands are obeyed.
 [[nodiscard]] inline GateOrder gate_order(const msg::Authority* authority, std::int64_t age_ticks, GateState& state) {
   if (!authority) return GateOrder::kObey;
   return SafetyGate::order_of(authority->emergency_stop, level_in_force(authority->level, age_ticks), authority->source,

@@ -37,7 +37,7 @@ enum class GateMode : std::uint8_t {
   kStopped,  ///< emergency stop: the posture is held until the stop is cleared
 };
 
-/// What authority demands of the joints. It overrides the commands.
+/// The order that follows from the authority. It overrides the commands.
 enum class GateOrder : std::uint8_t {
   kObey,
   kHold,  ///< the source released authority or died: the posture is held until a source takes authority
@@ -117,10 +117,10 @@ class SafetyGate {
   /// is silence, not a mistake.
   GateRefusal offer(const GateCommand& command, const GateInstant& now, GateState& state) const;
 
-  /// What the topic `authority` demands. `level`: kAuthority... of mission.idl. `source`: the name of the source, which
-  /// ends at the first zero. Level 0 (no source) demands a hold only after a source has had authority: at the start of
-  /// a run control holds the posture by itself. A level or source that differs from the one that was obeyed last, also
-  /// before a hold or a stop, is a takeover. The first source of a run takes nothing over.
+  /// The order that follows from `authority`. `level`: kAuthority... of mission.idl. `source`: the name of the source,
+  /// which ends at the first zero. Level 0 (no source) demands a hold only after a source has had authority: at the
+  /// start of a run control holds the posture by itself. A level or source that differs from the one that was obeyed
+  /// last, also before a hold or a stop, is a takeover. The first source of a run takes nothing over.
   static GateOrder order_of(bool emergency_stop, std::uint8_t level, std::span<const char> source, GateState& state);
 
   /// The setpoints for the next `dt_s`. There may be at most one offer() between two calls. The first setpoints are the

@@ -34,7 +34,7 @@ class ConductorSide : private ConductorSink {
   /// Publishes RunState once a second, and at once if `changed`; not before the run has begun.
   void publish_run_state(bool changed);
 
-  // What members of this process report.
+  // Reports of the members of this process.
   void on_hello(const Hello& hello) { conductor_->on_hello(hello); }
   void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
   void on_done(const TickDone& step) { conductor_->on_done(step); }

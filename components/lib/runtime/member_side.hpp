@@ -40,7 +40,7 @@ class MemberSide : private MemberSink {
   /// False while a member has still to send Ready.
   [[nodiscard]] bool all_ready() const;
 
-  // What the conductor of this process sends.
+  // Messages of the conductor of this process.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);
   void on_tick(const msg::Tick& tick);
 

@@ -18,7 +18,7 @@ std::string bytes_of(const dds_sequence_octet& sequence) {
   return {reinterpret_cast<const char*>(sequence._buffer), sequence._length};
 }
 
-// What both messages about a checkpoint begin with: which component, in which life of it, and after which tick.
+// The common fields of both messages about a checkpoint: the component, its incarnation, the epoch and the last tick.
 template <class Value, class Message>
 void identity_to_wire(const Value& value, Message& message) {
   set_text(message.component, value.component);

@@ -1,4 +1,4 @@
-// What `constrictor run` shows while the run goes on.
+// The output of `constrictor run` while the run goes on.
 #pragma once
 
 #include <unistd.h>

@@ -11,7 +11,7 @@
 
 namespace constrictor::cli {
 
-/// What the launcher knows of how the run ended.
+/// The end of a run as the launcher knows it.
 struct RunOutcome {
   std::string scenario;
   std::uint64_t seed = 1;

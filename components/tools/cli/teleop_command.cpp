@@ -195,7 +195,7 @@ class Teleop {
   KeyReader keys_;
   TeleopScreen screen_;
   std::uint64_t number_ = 0;  ///< request that is not answered yet; 0: none
-  std::string request_;       ///< what it asks for
+  std::string request_;       ///< the name of this request on the screen
   std::string farewell_;
 };
 

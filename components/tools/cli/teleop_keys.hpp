@@ -1,4 +1,4 @@
-// What the keys of `constrictor teleop` mean. Pure.
+// The keys of `constrictor teleop` and their actions. Pure.
 #pragma once
 
 #include <string>

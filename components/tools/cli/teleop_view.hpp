@@ -1,4 +1,4 @@
-// What `constrictor teleop` shows of a run, read over DDS as an observer.
+// The state of a run that `constrictor teleop` shows, read over DDS as an observer.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What all subcommands have in common: errors of usage, checks of numbers, and the last part of --help.
+// The common parts of all subcommands: errors of usage, checks of numbers, and the last part of --help.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ std::string help_footer(const std::string& about, std::initializer_list<const ch
 /// The exit statuses of every command that looks for a run, for its help_footer().
 inline constexpr const char* kRunStatuses = "64 wrong usage; 70 no run, or several and none chosen";
 
-/// What is wrong with a command line that `app` could not parse, with the closest name for a mistyped subcommand or
+/// The error message for a command line that `app` could not parse, with the closest name for a mistyped subcommand or
 /// option.
 std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error);
 

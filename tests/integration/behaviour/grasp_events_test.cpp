@@ -101,7 +101,7 @@ TEST_F(GraspEvents, GraspsCarriesAndDropsAnObjectOnItsZone) {
   EXPECT_NEAR(world().object_poses[0].position_m.z, 0.075, 0.01) << "it stands upright";
   EXPECT_GT(nearest_module_m(), kRadius_m + kModuleRadius_m + 0.05) << "the robot has left it";
   EXPECT_LT(object_touched_s, dropped.time_s - 1.0);
-  EXPECT_GT(std::abs(torque_nm), 0.5) << "while the object was carried";
+  EXPECT_GT(std::abs(torque_nm), 0.5) << "the base must press on a carried object";
 }
 
 // The zone is farther away than the time limit allows: the robot keeps the object and does not drop it elsewhere.

@@ -99,7 +99,7 @@ TEST_F(Behaviour, RotateTurnsToTheRequestedSideUntilItsTimeout) {
   }
   happened.clear();
   start(msg::kTaskRotate, &msg::TaskParameters::direction, msg::kDirectionLeft);
-  EXPECT_EQ(until_end(8.0), msg::kGoalIdle) << "without a timeout it continues";
+  EXPECT_EQ(until_end(8.0), msg::kGoalIdle) << "without a timeout the task must continue";
   EXPECT_FALSE(first(msg::kEventTimeout));
 }
 

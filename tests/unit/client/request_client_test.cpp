@@ -1,5 +1,5 @@
-// What a client concludes while `input` is killed and restarted: the new process publishes the last messages of its
-// predecessor again.
+// The conclusions of a client while `input` is killed and restarted: the new process publishes the last messages of its
+// predecessor again, and the client must not take them for new ones.
 #include "client/request_client.hpp"
 
 #include <gtest/gtest.h>
@@ -88,7 +88,7 @@ TEST_F(RequestClientTest, AnEarlierStopDoesNotConfirmANewOne) {
   ASSERT_TRUE(receives(12));
   const std::uint64_t stop = client_.ask(msg::kRequestEmergencyStop);
   restart_input();
-  EXPECT_EQ(client_.wait_for_answer(stop, 300ms), Answer::kNone) << "no `input` has received it";
+  EXPECT_EQ(client_.wait_for_answer(stop, 300ms), Answer::kNone) << "no process of `input` has received the request";
   publish(13, true, msg::kAuthorityEmergencyStop);
   EXPECT_EQ(client_.wait_for_answer(stop, 5s), Answer::kGranted);
 }

@@ -42,7 +42,7 @@ RobotModel fine_snake() {
   return model;
 }
 
-/// Such a body whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
+/// A body of short links whose joints all lie on one path and slide along it: the ideal gait without lateral slip.
 class SlidingBody {
  public:
   /// `heading`: of the path at a length.

@@ -1,4 +1,4 @@
-// What the arbiter knows of its sources: repeated requests, writers, deaths, detached sources, and the number of names.
+// The arbiter's memory of its sources: repeated requests, writers, deaths, detached sources, and the number of names.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -32,7 +32,7 @@ class TwoWriters {
   void check() {
     for (const auto& [tick, now] : at_) {
       SCOPED_TRACE(::testing::Message() << "tick " << tick);
-      std::vector<std::uint64_t> starts;  // that must be sent, in this order
+      std::vector<std::uint64_t> starts;  // goals that must be started, in this order
       std::vector<std::uint8_t> motion;   // the last motion, which must be sent; empty: none
       bool external_came = false;
       bool operator_obeyed = false;
@@ -75,7 +75,7 @@ class TwoWriters {
           motion.clear();  // the task ends it
         }
       }
-      EXPECT_EQ(now.starts, starts) << "in the order of the answers";
+      EXPECT_EQ(now.starts, starts) << "tasks must be started in the order of the answers";
       // A release ends a motion of an earlier tick: stand.
       const std::vector<std::uint8_t> stand{msg::kAuthorityNone};
       EXPECT_TRUE(now.motions == motion || (motion.empty() && now.motions == stand))

@@ -167,7 +167,7 @@ TEST_F(SafetyGateTest, HoldsTheLastSetpointWhereTheJointAgreesElseTheMeasuredAng
   measured_ = {0.46, 0.2};  // one joint yields a little, the other one was pushed away
   tick();
   EXPECT_EQ(state_.setpoints[0].position_rad, 0.5);
-  EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 1.5) << "what was held with a capped torque is not squeezed harder";
+  EXPECT_EQ(state_.setpoints[0].torque_limit_nm, 1.5) << "a hold must keep the torque limit of a grasp";
   EXPECT_EQ(state_.setpoints[1].position_rad, 0.2);
   measured_ = {0.0, 0.0};  // a joint that sags under load must not move the setpoint
   tick();

@@ -97,7 +97,7 @@ TEST(InputBuffer, AnInvalidSampleKeepsItsPlaceAndThePreviousOneStaysInForce) {
     buffer.keep(numbered(1), true);
     buffer.present(showing(1));
     buffer.keep(numbered(2), false);
-    ASSERT_TRUE(buffer.complete(showing(2))) << "no step waits for an invalid sample";
+    ASSERT_TRUE(buffer.complete(showing(2))) << "a step must not wait for an invalid sample";
     buffer.present(showing(2));
     EXPECT_TRUE(fresh(buffer).empty());
     EXPECT_EQ(buffer.slot().latest.header->sequence_number, 1u);
