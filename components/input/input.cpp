@@ -14,12 +14,7 @@ constexpr std::int64_t kStale_ticks = 50;
 }  // namespace
 
 Input::Input(Wiring& wiring, const Setup& setup, std::shared_ptr<ClientRequests> client_requests)
-    : planner_requests_(wiring.events(topics::kPlannerRequest)),
-      command_(wiring.output(topics::kTaskCommand)),
-      authority_(wiring.output(topics::kAuthority)),
-      motion_out_(wiring.output(topics::kMotionCommand)),
-      parameter_out_(wiring.output(topics::kParameterChange)),
-      answer_out_(wiring.output(topics::kRequestAnswer)),
+    : wiring_(wiring),
       parameters_in_{wiring.latest(topics::kNavigationParameters), wiring.latest(topics::kControlParameters),
                      wiring.latest(topics::kPerceptionParameters), wiring.latest(topics::kGuidanceParameters)},
       planned_(load_planned_changes(setup.config_file)),

@@ -48,12 +48,13 @@ class Input : public StatefulComponent<InputState> {
   void cancel_running();
   void publish_authority(const Tick& tick);
 
-  Events<msg::Request> planner_requests_;
-  Output<msg::TaskCommand> command_;
-  Output<msg::Authority> authority_;
-  Output<msg::MotionCommand> motion_out_;
-  Output<msg::ParameterChange> parameter_out_;
-  Output<msg::RequestAnswer> answer_out_;
+  Wiring& wiring_;
+  Events<msg::Request> planner_requests_ = wiring_.events(topics::kPlannerRequest);
+  Output<msg::TaskCommand> command_ = wiring_.output(topics::kTaskCommand);
+  Output<msg::Authority> authority_ = wiring_.output(topics::kAuthority);
+  Output<msg::MotionCommand> motion_out_ = wiring_.output(topics::kMotionCommand);
+  Output<msg::ParameterChange> parameter_out_ = wiring_.output(topics::kParameterChange);
+  Output<msg::RequestAnswer> answer_out_ = wiring_.output(topics::kRequestAnswer);
   std::vector<Latest<msg::ParameterList>> parameters_in_;
   std::vector<PlannedChange> planned_;
   std::shared_ptr<ClientRequests> client_requests_;

@@ -30,9 +30,9 @@ void update_line_tracker(const LineTrackerConfig& config, const msg::LinePercept
                          LineTrackerState& state) {
   const bool wanted = colour == msg::kColourUnknown || percept.colour == colour;
   const double offset_m = line_offset_m(percept, config.lookahead_m);
-  if (wanted && std::isfinite(offset_m)) {
-    ++state.seen;
-    state.missed = 0;
+  const bool shown = wanted && std::isfinite(offset_m);
+  debounce(config, shown, state);
+  if (shown) {
     state.offset_m = offset_m;
     if (std::isfinite(percept.heading_rad)) state.heading_rad = percept.heading_rad;
     state.seen_tick = percept.exposure_tick;
@@ -43,12 +43,7 @@ void update_line_tracker(const LineTrackerConfig& config, const msg::LinePercept
       state.end_distance_m = 1e9;
       state.end_seen = 0;
     }
-  } else {
-    state.seen = 0;
-    ++state.missed;
   }
-  if (state.seen >= config.found_after) state.visible = true;
-  if (state.missed >= config.lost_after) state.visible = false;
 }
 
 }  // namespace constrictor

@@ -3,15 +3,12 @@
 
 #include <cstdint>
 
-#include "configuration/parameter_set.hpp"
 #include "constrictor/messages.hpp"
+#include "navigation/debounce.hpp"
 
 namespace constrictor {
 
-struct LineTrackerState {
-  int seen = 0;           ///< consecutive images that showed the line
-  int missed = 0;         ///< consecutive images that did not show it
-  bool visible = false;   ///< debounced
+struct LineTrackerState : Visibility {
   double offset_m = 0.0;  ///< lateral offset at the lookahead in the newest image with the line, positive left
   double heading_rad = 0.0;
   double end_distance_m = 1e9;  ///< to the end of the line as last seen; 1e9: not seen
@@ -23,11 +20,8 @@ struct LineTrackerState {
   }
 };
 
-struct LineTrackerConfig : ParameterSet {
-  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, kWhileRunning,
-                        "The line is visible after this number of consecutive images with it");
-  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, kWhileRunning,
-                       "The line is not visible after this number of consecutive images without it");
+struct LineTrackerConfig : DebounceConfig {
+  LineTrackerConfig() : DebounceConfig("The line") {}
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", {0.1, 2.0}, kWhileRunning,
                            "Distance ahead of the head at which the offset of the line is taken");
 };

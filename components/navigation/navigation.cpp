@@ -8,26 +8,6 @@
 
 namespace constrictor {
 
-msg::TaskParameters GoalState::parameters() const {
-  msg::TaskParameters p{};
-  p.line_colour = line_colour;
-  p.object_colour = object_colour;
-  p.object_handle = object_handle;
-  p.drop_zone_colour = drop_zone_colour;
-  p.direction = direction;
-  p.timeout_s = timeout_s;
-  return p;
-}
-
-void GoalState::set_parameters(const msg::TaskParameters& p) {
-  line_colour = p.line_colour;
-  object_colour = p.object_colour;
-  object_handle = p.object_handle;
-  drop_zone_colour = p.drop_zone_colour;
-  direction = p.direction;
-  timeout_s = p.timeout_s;
-}
-
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
     : TunableComponent(wiring, setup, topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
@@ -79,7 +59,7 @@ void Navigation::step(const Tick& tick) {
                   done};
   take_commands(input);
   take_direct_motions();
-  input.parameters = state_.goal.parameters();
+  input.parameters = state_.goal.parameters;
   if (state_.task) {
     run_task(input, output);
   } else if (state_.direct.active) {
@@ -135,7 +115,7 @@ void Navigation::start_goal(const msg::TaskCommand& command, TaskInput input) {
     state_.goal.goal_id = command.goal_id;
     state_.goal.task = command.task;
     state_.goal.state = goal_state;
-    state_.goal.set_parameters(command.parameters);
+    state_.goal.parameters = command.parameters;
     state_.goal.reason = refusal;
   };
   if (!refusal.empty()) {
@@ -215,7 +195,7 @@ void Navigation::write_status(const TaskOutput& output) {
   status.task = state_.goal.task;
   status.goal_state = state_.goal.state;
   status.progress = state_.goal.progress;
-  status.parameters = state_.goal.parameters();
+  status.parameters = state_.goal.parameters;
   status.carrying = state_.grip.carrying;
   status.cross_track_m = output.cross_track_m;
   set_text(status.phase, state_.goal.phase);

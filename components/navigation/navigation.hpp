@@ -17,22 +17,16 @@ struct GoalState {
   std::uint64_t goal_id = 0;
   std::uint8_t task = msg::kTaskNone;
   std::uint8_t state = msg::kGoalIdle;
-  std::uint8_t line_colour = 0;
-  std::uint8_t object_colour = 0;
-  std::uint16_t object_handle = 0;
-  std::uint8_t drop_zone_colour = 0;
-  std::uint8_t direction = 0;
-  double timeout_s = 0.0;
+  msg::TaskParameters parameters{};
   double progress = 0.0;
   std::string phase;
   std::string reason;
 
-  [[nodiscard]] msg::TaskParameters parameters() const;
-  void set_parameters(const msg::TaskParameters& parameters);
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(goal_id, task, state, line_colour, object_colour, object_handle, drop_zone_colour, direction, timeout_s,
-            progress, phase, reason);
+    auto& p = parameters;
+    archive(goal_id, task, state, p.line_colour, p.object_colour, p.object_handle, p.drop_zone_colour, p.direction,
+            p.timeout_s, progress, phase, reason);
   }
 };
 

@@ -8,12 +8,6 @@ namespace {
 
 constexpr std::size_t kPosesKept = 40;
 
-void miss(const ObjectTrackerConfig& config, Sighting& s) {
-  s.seen = 0;
-  ++s.missed;
-  if (s.missed >= config.lost_after) s.visible = false;
-}
-
 /// Radius from the image if it shows the whole width; otherwise the radius so far.
 double measured_radius_m(const ObjectTrackerConfig& config, const msg::Blob& blob, const Sighting& s) {
   const bool whole = !blob.cut_left && !blob.cut_right && std::isfinite(blob.width_m) && blob.width_m > 0.0;
@@ -25,12 +19,9 @@ double measured_radius_m(const ObjectTrackerConfig& config, const msg::Blob& blo
 
 void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, const PlanarPose& X_MH, std::int64_t tick,
          Sighting& s) {
-  ++s.seen;
-  s.missed = 0;
   s.seen_tick = tick;
   s.bearing_rad = blob.bearing_rad;
   s.range_m = blob.range_m;
-  if (s.seen >= config.found_after) s.visible = true;
   if (!zone) s.radius_m = measured_radius_m(config, blob, s);
   // If the image cuts the object at the bottom or at a side, the centre of the visible part is not the object's centre.
   const bool whole = !blob.cut_bottom && !blob.cut_left && !blob.cut_right;
@@ -89,11 +80,8 @@ void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectP
   }
   for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
     auto take = [&](const msg::Blob* blob, bool flat, Sighting& s) {
-      if (blob) {
-        see(config, *blob, flat, X_MH, percepts.exposure_tick, s);
-      } else {
-        miss(config, s);
-      }
+      debounce(config, blob != nullptr, s);
+      if (blob) see(config, *blob, flat, X_MH, percepts.exposure_tick, s);
     };
     take(object[colour], false, state.objects[colour]);
     take(zone[colour], true, state.zones[colour]);

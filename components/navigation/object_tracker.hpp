@@ -8,19 +8,16 @@
 #include <cstdint>
 #include <deque>
 
-#include "configuration/parameter_set.hpp"
 #include "constrictor/messages.hpp"
+#include "navigation/debounce.hpp"
 #include "robot/planar.hpp"
 
 namespace constrictor {
 
 /// The object, or the drop zone, of one colour as seen so far.
-struct Sighting {
-  int seen = 0;          ///< consecutive images that showed it
-  int missed = 0;        ///< consecutive images that did not
-  bool visible = false;  ///< debounced
-  bool known = false;    ///< its position was measured at least once
-  double x_m = 0.0;      ///< centre in M
+struct Sighting : Visibility {
+  bool known = false;  ///< its position was measured at least once
+  double x_m = 0.0;    ///< centre in M
   double y_m = 0.0;
   double radius_m = 0.0;     ///< estimate
   double weight = 0.0;       ///< number of images in the average of the position, limited to memory_images
@@ -34,11 +31,8 @@ struct Sighting {
   }
 };
 
-struct ObjectTrackerConfig : ParameterSet {
-  int found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, kWhileRunning,
-                        "An object is visible after this number of consecutive images with it");
-  int lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, kWhileRunning,
-                       "An object is not visible after this number of consecutive images without it");
+struct ObjectTrackerConfig : DebounceConfig {
+  ObjectTrackerConfig() : DebounceConfig("An object") {}
   double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, kAtStart,
                                "Radius of an object until an image shows its whole width");
   double min_radius_m =

@@ -1,6 +1,9 @@
 // The interface of the paper's tasks (Section III-A, Tables I to XV).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -87,6 +90,15 @@ class Task {
 /// A task whose whole state is one serialisable struct.
 template <class State>
 using StatefulTask = Stateful<Task, State>;
+
+/// Calls the member function of `task` that does the present phase of its work. `parts`: one function for each phase,
+/// in the order of the phases. An unknown phase (a damaged checkpoint) counts as the last one.
+template <class PhasedTask, std::size_t kCount>
+void run_phase(PhasedTask& task,
+               const std::array<void (PhasedTask::*)(const TaskInput&, Grip&, TaskOutput&), kCount>& parts, int phase,
+               const TaskInput& input, Grip& grip, TaskOutput& output) {
+  (task.*parts[std::min(static_cast<std::size_t>(phase), kCount - 1)])(input, grip, output);
+}
 
 /// A new task of the kind kTask…; null for kTaskNone and unknown numbers. The kinds are registered in
 /// task_registry.cpp.

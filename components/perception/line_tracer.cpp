@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "perception/line_view.hpp"
 
 namespace constrictor::perception {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMaxSteps = 400;
 constexpr int kMaxSeeds = 6;
 constexpr double kMinLength_m = 0.06;
@@ -127,7 +127,7 @@ class Tracer {
     width_samples_ = 0;
     const Eigen::Vector2d guess = first_direction(seed);
     // The principal axis comes first, then others: a short piece that the image cuts may be wider than long.
-    for (const double turn : {0.0, 0.5 * kPi, 0.25 * kPi, -0.25 * kPi}) {
+    for (const double turn : {0.0, 0.5 * std::numbers::pi, 0.25 * std::numbers::pi, -0.25 * std::numbers::pi}) {
       Eigen::Vector2d direction(std::cos(turn) * guess.x() - std::sin(turn) * guess.y(),
                                 std::sin(turn) * guess.x() + std::cos(turn) * guess.y());
       if (direction.x() < 0.0) direction = -direction;

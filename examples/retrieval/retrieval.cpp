@@ -222,19 +222,13 @@ Order Retrieval::order_of_stage() {
       order.line_colour = line_colour_;
       break;
     case kSearch:
-      order.task = kSearchObject;
-      order.object_colour = colour();
-      break;
     case kTrack:
-      order.task = kTrackObject;
-      order.object_colour = colour();
-      break;
     case kPre:
-      order.task = kPregrasp;
-      order.object_colour = colour();
-      break;
     case kHold:
-      order.task = kGrasp;
+      order.task = stage_ == kSearch  ? kSearchObject
+                   : stage_ == kTrack ? kTrackObject
+                   : stage_ == kPre   ? kPregrasp
+                                      : kGrasp;
       order.object_colour = colour();
       break;
     case kPutDown:

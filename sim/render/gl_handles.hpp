@@ -60,55 +60,25 @@ class GlName {
   GLuint name_ = 0;
 };
 
-struct BufferTraits {
+/// Names that OpenGL generates and deletes in arrays.
+template <void (*kGenerate)(GLsizei, GLuint*), void (*kDelete)(GLsizei, const GLuint*)>
+struct ArrayTraits {
   static GLuint create() {
     GLuint n = 0;
-    glGenBuffers(1, &n);
+    kGenerate(1, &n);
     return n;
   }
-  static void destroy(GLuint n) { glDeleteBuffers(1, &n); }
-};
-struct VertexArrayTraits {
-  static GLuint create() {
-    GLuint n = 0;
-    glGenVertexArrays(1, &n);
-    return n;
-  }
-  static void destroy(GLuint n) { glDeleteVertexArrays(1, &n); }
-};
-struct TextureTraits {
-  static GLuint create() {
-    GLuint n = 0;
-    glGenTextures(1, &n);
-    return n;
-  }
-  static void destroy(GLuint n) { glDeleteTextures(1, &n); }
-};
-struct FramebufferTraits {
-  static GLuint create() {
-    GLuint n = 0;
-    glGenFramebuffers(1, &n);
-    return n;
-  }
-  static void destroy(GLuint n) { glDeleteFramebuffers(1, &n); }
-};
-struct RenderbufferTraits {
-  static GLuint create() {
-    GLuint n = 0;
-    glGenRenderbuffers(1, &n);
-    return n;
-  }
-  static void destroy(GLuint n) { glDeleteRenderbuffers(1, &n); }
+  static void destroy(GLuint n) { kDelete(1, &n); }
 };
 struct ProgramTraits {
   static GLuint create() { return glCreateProgram(); }
   static void destroy(GLuint n) { glDeleteProgram(n); }
 };
-using GlBuffer = GlName<BufferTraits>;
-using GlVertexArray = GlName<VertexArrayTraits>;
-using GlTexture = GlName<TextureTraits>;
-using GlFramebuffer = GlName<FramebufferTraits>;
-using GlRenderbuffer = GlName<RenderbufferTraits>;
+using GlBuffer = GlName<ArrayTraits<glGenBuffers, glDeleteBuffers>>;
+using GlVertexArray = GlName<ArrayTraits<glGenVertexArrays, glDeleteVertexArrays>>;
+using GlTexture = GlName<ArrayTraits<glGenTextures, glDeleteTextures>>;
+using GlFramebuffer = GlName<ArrayTraits<glGenFramebuffers, glDeleteFramebuffers>>;
+using GlRenderbuffer = GlName<ArrayTraits<glGenRenderbuffers, glDeleteRenderbuffers>>;
 using GlProgram = GlName<ProgramTraits>;
 
 /// Compiles and links a shader program. Throws std::runtime_error with the message of the compiler.

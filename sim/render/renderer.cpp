@@ -47,6 +47,14 @@ void set_uniform(const GlProgram& program, const char* name, int value) {
   glUniform1i(glGetUniformLocation(program.get(), name), value);
 }
 
+/// Draws into this framebuffer from now on, with a depth test.
+void begin_pass(const GlFramebuffer& framebuffer, int width, int height) {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
+  glViewport(0, 0, width, height);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+}
+
 }  // namespace
 
 class Renderer::Implementation {
@@ -164,10 +172,7 @@ void Renderer::Implementation::draw_solids() {
 
 void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
   if (options_.shadow_map_size == 0) return;
-  glBindFramebuffer(GL_FRAMEBUFFER, shadow_map_.framebuffer().get());
-  glViewport(0, 0, options_.shadow_map_size, options_.shadow_map_size);
-  glDepthMask(GL_TRUE);
-  glEnable(GL_DEPTH_TEST);
+  begin_pass(shadow_map_.framebuffer(), options_.shadow_map_size, options_.shadow_map_size);
   glEnable(GL_DEPTH_CLAMP);
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
@@ -181,10 +186,7 @@ void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
 }
 
 void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow) {
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer().get());
-  glViewport(0, 0, camera.width, camera.height);
-  glDepthMask(GL_TRUE);
-  glEnable(GL_DEPTH_TEST);
+  begin_pass(target_.framebuffer(), camera.width, camera.height);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
   const auto display = [](float radiance) { return std::sqrt(radiance); };

@@ -66,31 +66,36 @@ void read_line(Configuration line, ScenarioDraft& draft) {
   line.finish();
 }
 
+/// Reads a list of bodies, each with its placement. `read` reads what else a body has.
+template <class Body>
+void read_list(Configuration& root, const char* key, void (*read)(Configuration& from, Body& body),
+               std::vector<Body>& bodies, std::vector<Placement>& placements) {
+  for (Configuration& from : root.list(key, false)) {
+    read(from, bodies.emplace_back());
+    placements.push_back(read_placement(from));
+    from.finish();
+  }
+}
+
+void read_object(Configuration& from, ScenarioObject& object) {
+  object.colour = read_colour(from);
+  std::tie(object.shape, object.size_m) = read_shape(from, 0.5);
+  object.mass_kg = from.number("mass_kg", {0.02, 20.0});
+}
+
+void read_zone(Configuration& from, ScenarioZone& zone) {
+  zone.colour = read_colour(from);
+  zone.radius_m = from.number("radius_m", {0.02, 5.0});
+}
+
+void read_obstacle(Configuration& from, ScenarioObstacle& obstacle) {
+  std::tie(obstacle.shape, obstacle.size_m) = read_shape(from, 20.0);
+}
+
 void read_bodies(Configuration& root, ScenarioDraft& draft) {
-  for (Configuration& from : root.list("objects", false)) {
-    ScenarioObject object;
-    object.colour = read_colour(from);
-    std::tie(object.shape, object.size_m) = read_shape(from, 0.5);
-    object.mass_kg = from.number("mass_kg", {0.02, 20.0});
-    draft.objects.push_back(read_placement(from));
-    draft.fixed.objects.push_back(object);
-    from.finish();
-  }
-  for (Configuration& from : root.list("zones", false)) {
-    ScenarioZone zone;
-    zone.colour = read_colour(from);
-    zone.radius_m = from.number("radius_m", {0.02, 5.0});
-    draft.zones.push_back(read_placement(from));
-    draft.fixed.zones.push_back(zone);
-    from.finish();
-  }
-  for (Configuration& from : root.list("obstacles", false)) {
-    ScenarioObstacle obstacle;
-    std::tie(obstacle.shape, obstacle.size_m) = read_shape(from, 20.0);
-    draft.obstacles.push_back(read_placement(from));
-    draft.fixed.obstacles.push_back(obstacle);
-    from.finish();
-  }
+  read_list(root, "objects", read_object, draft.fixed.objects, draft.objects);
+  read_list(root, "zones", read_zone, draft.fixed.zones, draft.zones);
+  read_list(root, "obstacles", read_obstacle, draft.fixed.obstacles, draft.obstacles);
   const auto limit = [&](const char* key, std::size_t found, std::size_t most) {
     if (found > most) throw root.error(key, fmt::format("found a list of {}, accepted a list of 0 to {}", found, most));
   };

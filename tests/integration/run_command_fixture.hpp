@@ -51,6 +51,14 @@ class RunCommand : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return command(arguments);
   }
+  /// Starts a run of 300 ticks, reported in "r", whose planner is a shell script with these commands.
+  [[nodiscard]] Process run_with_planner(const std::string& commands) const {
+    write("script", "#!/bin/sh\n" + commands + "\n");
+    fs::permissions(dir_ / "script", fs::perms::owner_all);
+    write("scripted.yaml",
+          replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "script").string()));
+    return run(300, "r", {}, "scripted.yaml");
+  }
   [[nodiscard]] nlohmann::json report(const std::string& name) const {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }

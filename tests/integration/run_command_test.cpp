@@ -151,11 +151,7 @@ TEST_F(RunCommand, ProcessesAreKilledIfTheConductorDoesNotAnswerAndTheReportName
 }
 
 TEST_F(RunCommand, CtrlCBeforeTheRunBeginsKillsItsProcesses) {
-  write("sleeper", "#!/bin/sh\nexec sleep 100\n");
-  fs::permissions(dir_ / "sleeper", fs::perms::owner_all);
-  write("lazy.yaml",
-        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "sleeper").string()));
-  Process launcher = run(300, "r", {}, "lazy.yaml");
+  Process launcher = run_with_planner("exec sleep 100");
   ASSERT_TRUE(eventually([&] { return members().size() >= 4; }));
   launcher.signal(SIGINT);
   EXPECT_EQ(launcher.wait(10s), 128 + SIGINT) << launcher.output();
@@ -233,22 +229,14 @@ TEST_F(RunCommand, AMemberWithAnotherNumericProfileIsRefusedWithNameAndReason) {
 }
 
 TEST_F(RunCommand, AMemberThatNeverJoinsIsNamed) {
-  write("sleeper", "#!/bin/sh\nexec sleep 100\n");
-  fs::permissions(dir_ / "sleeper", fs::perms::owner_all);
-  write("lazy.yaml",
-        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "sleeper").string()));
-  Process launcher = run(300, "r", {}, "lazy.yaml");
+  Process launcher = run_with_planner("exec sleep 100");
   EXPECT_EQ(launcher.wait(30s), exit_status::kWaitedTooLong) << launcher.output();
   EXPECT_NE(launcher.output().find("waits for Hello of planner"), std::string::npos) << launcher.output();
   expect_nobody_left();
 }
 
 TEST_F(RunCommand, AMemberThatDiesFiveTimesInARowEndsTheRun) {
-  write("faulty", "#!/bin/sh\necho no luck today\nexit 3\n");
-  fs::permissions(dir_ / "faulty", fs::perms::owner_all);
-  write("faulty.yaml",
-        replaced(kManifest, "[planner], program: toy_host", "[planner], program: " + (dir_ / "faulty").string()));
-  Process launcher = run(300, "r", {}, "faulty.yaml");
+  Process launcher = run_with_planner("echo no luck today\nexit 3");
   EXPECT_EQ(launcher.wait(30s), exit_status::kSoftware);
   EXPECT_NE(launcher.output().find("planner: no luck today"), std::string::npos) << launcher.output();
   EXPECT_NE(launcher.output().find("died 5 times in a row"), std::string::npos) << launcher.output();

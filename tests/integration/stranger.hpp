@@ -101,14 +101,18 @@ class Stranger {
 
  private:
   void send_done(const char* name, std::uint64_t run_id, std::uint32_t incarnation) {
-    for (const std::int64_t index : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{1} << 40,
-                                     std::numeric_limits<std::int64_t>::max()}) {
+    const auto done_at = [&](std::int64_t index) {
       msg::TickDone done{};
       dds::set_text(done.component, name);
       done.run_id = run_id;
       done.epoch = run_.epoch;
       done.incarnation = incarnation;
       done.index = index;
+      return done;
+    };
+    for (const std::int64_t index : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{1} << 40,
+                                     std::numeric_limits<std::int64_t>::max()}) {
+      msg::TickDone done = done_at(index);
       done_.write(done);
       done.published_count = done.consumed_count = 255;
       done_.write(done);
@@ -117,23 +121,13 @@ class Stranger {
     std::string endless(8, '\xff');
     for (std::string block :
          {std::string("x"), endless, endless + endless, std::string(8, '\0') + endless, std::string(16, '\0') + "x"}) {
-      msg::TickDone done{};
-      dds::set_text(done.component, name);
-      done.run_id = run_id;
-      done.epoch = run_.epoch;
-      done.incarnation = incarnation;
-      done.index = run_.tick;
+      msg::TickDone done = done_at(run_.tick);
       done.checkpoint = {static_cast<std::uint32_t>(block.size()), static_cast<std::uint32_t>(block.size()),
                          reinterpret_cast<std::uint8_t*>(block.data()), false};
       done_.write(done);
     }
     for (std::int64_t index = run_.tick - 2; index < run_.tick + 14; ++index) {
-      msg::TickDone done{};
-      dds::set_text(done.component, name);
-      done.run_id = run_id;
-      done.epoch = run_.epoch;
-      done.incarnation = incarnation;
-      done.index = index;
+      msg::TickDone done = done_at(index);
       done.published_count = 2;
       done.published[0] = {63, 1};
       done.published[1] = {topics::kMissionStatus.id, std::numeric_limits<std::uint64_t>::max()};

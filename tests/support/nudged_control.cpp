@@ -6,8 +6,7 @@
 #include <string>
 
 #include "control/control.hpp"
-#include "runtime/component_main.hpp"
-#include "runtime/numeric_profile.hpp"
+#include "control_main.hpp"
 
 namespace {
 
@@ -67,17 +66,12 @@ class NudgedControl : public Component {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
-  if (argc > 1 && std::string(argv[1]) == "control") {
-    --argc;  // the launcher passes the names of the components as the first argument
-    ++argv;
-  }
   const char* text = std::getenv("CONSTRICTOR_NUDGE_TICK");
   const std::int64_t tick = text ? std::atoll(text) : 1000;
-  return component_main(argc, argv,
-                        {"control",
-                         [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
-                           return std::make_unique<NudgedControl>(wiring, setup, tick);
-                         },
-                         make_control_factory().default_config});
+  return testing::control_main(argc, argv,
+                               {"control",
+                                [tick](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
+                                  return std::make_unique<NudgedControl>(wiring, setup, tick);
+                                },
+                                make_control_factory().default_config});
 }

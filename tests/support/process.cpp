@@ -98,6 +98,12 @@ bool Process::wait_for(const std::string& text, std::chrono::seconds bound) {
   return eventually(found_or_ended, bound, kPoll) && found;
 }
 
+unsigned domain_of(Process& run) {
+  if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
+  const std::string output = run.output();
+  return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
+}
+
 std::string program(const std::string& name) { return std::string(CONSTRICTOR_BIN) + "/" + name; }
 
 }  // namespace constrictor::testing

@@ -42,6 +42,9 @@ class Process {
   std::unique_ptr<TemporaryFolder> folder_;  ///< of output and errors
 };
 
+/// The domain that a `constrictor run` has claimed and printed; 0 if it printed none in time.
+unsigned domain_of(Process& run);
+
 /// Path of a program of this build.
 std::string program(const std::string& name);
 

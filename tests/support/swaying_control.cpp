@@ -6,9 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "control_main.hpp"
 #include "robot/robot_model.hpp"
-#include "runtime/component_main.hpp"
-#include "runtime/numeric_profile.hpp"
 #include "swaying_control.hpp"
 
 namespace {
@@ -43,14 +42,9 @@ class SwayingControl : public StatefulComponent<int> {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
-  if (argc > 1 && std::string(argv[1]) == "control") {
-    --argc;  // the launcher passes the names of the components as the first argument
-    ++argv;
-  }
   const char* fault = std::getenv("CONSTRICTOR_FAULT");
-  return component_main(argc, argv,
-                        {"control", [fault](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
-                           return std::make_unique<SwayingControl>(wiring, setup, fault ? fault : "");
-                         }});
+  return testing::control_main(argc, argv,
+                               {"control", [fault](Wiring& wiring, const Setup& setup) -> std::unique_ptr<Component> {
+                                  return std::make_unique<SwayingControl>(wiring, setup, fault ? fault : "");
+                                }});
 }

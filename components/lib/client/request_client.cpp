@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/goal_reader.hpp"
+#include "client/polling.hpp"
 #include "client/request_writer.hpp"
 #include "client/run_attachment.hpp"
 #include "constrictor/topics.hpp"
@@ -16,8 +17,6 @@ namespace constrictor {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-constexpr auto kPoll = 10ms;
 constexpr auto kRepeat = 200ms;
 constexpr auto kAnswerBound = 5s;
 constexpr auto kEventBound = 1s;           // after which a TaskStatus proves the end of a goal, too
@@ -53,9 +52,9 @@ RequestClient::~RequestClient() = default;
 bool RequestClient::connected() const { return endpoints_->request.heard(); }
 
 bool RequestClient::connect(std::chrono::milliseconds bound) {
-  const auto end = Clock::now() + bound;
+  const auto end = WaitClock::now() + bound;
   while (!connected() || !authority()) {
-    if (Clock::now() > end || interrupted()) return false;
+    if (WaitClock::now() > end || interrupted()) return false;
     std::this_thread::sleep_for(kPoll);
     poll();
   }
@@ -81,7 +80,7 @@ std::uint64_t RequestClient::ask(msg::Request request) {
     take_authority();  // messages that have arrived already cannot confirm this stop
     authority_.stop_asked();
   }
-  unanswered_.asked(request, Clock::now());
+  unanswered_.asked(request, WaitClock::now());
   endpoints_->request.write(request);
   return sequence_;
 }
@@ -117,7 +116,8 @@ std::uint64_t RequestClient::start_goal(const msg::Request& request) {
       throw CommandError("interrupted while waiting for the answer of `input`", CommandError::Cause::kInterrupted);
   }
   const std::uint64_t goal = goal_;
-  for (const auto bound = Clock::now() + kAnswerBound; Clock::now() < bound; std::this_thread::sleep_for(kPoll)) {
+  for (const auto bound = WaitClock::now() + kAnswerBound; WaitClock::now() < bound;
+       std::this_thread::sleep_for(kPoll)) {
     poll();
     if (const msg::TaskEvent* answer = goals().answer(goal)) {
       if (answer->goal_state != msg::kGoalRefused) return goal;
@@ -134,12 +134,12 @@ std::uint64_t RequestClient::start_goal(const msg::Request& request) {
 
 GoalTracker::End RequestClient::wait_for_end(std::uint64_t goal, const std::function<void()>& each_poll) {
   const std::uint32_t epoch = goals().epoch();
-  std::optional<Clock::time_point> status_ended;
-  auto input_seen = Clock::now();
+  std::optional<WaitClock::time_point> status_ended;
+  auto input_seen = WaitClock::now();
   for (;; std::this_thread::sleep_for(kPoll)) {
     poll();
     if (each_poll) each_poll();
-    const auto now = Clock::now();
+    const auto now = WaitClock::now();
     if (const auto end = goals().end(goal, false)) return *end;
     // The event may be lost; it arrives soon after the status if it is not.
     if (const auto end = goals().end(goal, true)) {
@@ -165,8 +165,8 @@ const GoalTracker& RequestClient::goals() {
 bool RequestClient::release(std::chrono::milliseconds bound) {
   // Not wait_for_answer(): a client that was interrupted must still be able to give authority back.
   const std::uint64_t number = ask(msg::kRequestRelease);
-  const auto end = Clock::now() + bound;
-  while (!answer(number) && Clock::now() < end) {
+  const auto end = WaitClock::now() + bound;
+  while (!answer(number) && WaitClock::now() < end) {
     std::this_thread::sleep_for(kPoll);
     poll();
   }
@@ -204,7 +204,7 @@ void RequestClient::poll() {
     unanswered_.answered(stop);
   }
   if (endpoints_->goals) endpoints_->goals->poll();
-  unanswered_.repeat(Clock::now(), kRepeat,
+  unanswered_.repeat(WaitClock::now(), kRepeat,
                      [this](const msg::Request& request) { endpoints_->request.write(request); });
   assert_alive();
 }
@@ -219,7 +219,7 @@ const msg::RequestAnswer* RequestClient::answer(std::uint64_t number) const {
 }
 
 RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound) {
-  const auto end = Clock::now() + bound;
+  const auto end = WaitClock::now() + bound;
   for (;;) {
     poll();
     if (const msg::RequestAnswer* found = answer(number)) {
@@ -228,7 +228,7 @@ RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::
       return found->granted ? Answer::kGranted : Answer::kRefused;
     }
     if (interrupted()) return Answer::kInterrupted;
-    if (Clock::now() > end) return Answer::kNone;
+    if (WaitClock::now() > end) return Answer::kNone;
     std::this_thread::sleep_for(kPoll);
   }
 }

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "client/polling.hpp"
 #include "client/source.hpp"
 #include "client/tick_wait.hpp"
 #include "constrictor/topics.hpp"
@@ -16,8 +17,6 @@ namespace constrictor {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-constexpr auto kPoll = 10ms;
 constexpr auto kRepeatEvery = 500ms;
 
 }  // namespace
@@ -61,12 +60,12 @@ RunControlClient::~RunControlClient() = default;
 msg::RunState RunControlClient::send(msg::RunControl command) {
   dds::set_text(command.source, source_);
   command.sequence_number = ++sequence_;
-  const auto end = Clock::now() + bound_;
-  auto repeat_at = Clock::now();
-  for (std::optional<msg::RunControlAnswer> answer; Clock::now() < end; std::this_thread::sleep_for(kPoll)) {
-    if (Clock::now() >= repeat_at) {
+  const auto end = WaitClock::now() + bound_;
+  auto repeat_at = WaitClock::now();
+  for (std::optional<msg::RunControlAnswer> answer; WaitClock::now() < end; std::this_thread::sleep_for(kPoll)) {
+    if (WaitClock::now() >= repeat_at) {
       endpoints_->control.write(command);
-      repeat_at = Clock::now() + kRepeatEvery;
+      repeat_at = WaitClock::now() + kRepeatEvery;
     }
     endpoints_->answers.take([&](const msg::RunControlAnswer& each) {
       if (each.source == source_ && each.sequence_number == command.sequence_number) answer = each;
@@ -122,14 +121,14 @@ msg::RunState RunControlClient::step(std::uint32_t ticks) {
 }
 
 msg::RunState RunControlClient::wait_for_tick(std::int64_t tick) {
-  for (TickWait wait(bound_, Clock::now());; std::this_thread::sleep_for(kPoll)) {
+  for (TickWait wait(bound_, WaitClock::now());; std::this_thread::sleep_for(kPoll)) {
     std::optional<msg::RunState> found;
     endpoints_->states.take([&](const msg::RunState& state) {
       if (!found && state.tick >= tick) found = state;
-      wait.heard(state.tick, Clock::now());
+      wait.heard(state.tick, WaitClock::now());
     });
     if (found) return *found;
-    if (wait.over(Clock::now())) {
+    if (wait.over(WaitClock::now())) {
       const std::string next = wait.next_tick() < 0 ? "" : fmt::format("; its next tick is {}", wait.next_tick());
       throw CommandError(fmt::format("run {}: no further tick within {} s{} (see `constrictor status --run {}`)",
                                      domain_, bound_.count(), next, domain_),

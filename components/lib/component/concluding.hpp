@@ -7,9 +7,6 @@ namespace constrictor {
 
 class Concluding {
  public:
-  Concluding() = default;
-  Concluding(const Concluding&) = delete;
-  Concluding& operator=(const Concluding&) = delete;
   virtual ~Concluding() = default;
   /// Called once, at the final tick of the run and after the component's last step, whether a component, `run_control`
   /// or the limit of simulated time ended the run. `last`: the tick of the last step. The input ports still hold what

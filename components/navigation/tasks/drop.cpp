@@ -42,28 +42,8 @@ class Drop : public StatefulTask<DropState> {
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     state_.phase_s += input.tick.dt_s();
     output.progress = state_.phase / 6.0;
-    switch (state_.phase) {
-      case kApproach:
-      case kOver:
-        drive(input, grip, output);
-        break;
-      case kStop:
-        output.phase = "stop";
-        stand(grip, output);
-        if (state_.phase_s < 1.0) break;
-        grip.carrying = false;  // on purpose: no loss is reported
-        enter(input, kOpen);
-        break;
-      case kOpen:
-        open(input, grip, output);
-        break;
-      case kBack:
-        back(input, grip, output);
-        break;
-      default:
-        straighten(input, grip, output);
-        break;
-    }
+    run_phase<Drop, 6>(*this, {&Drop::drive, &Drop::drive, &Drop::stop, &Drop::open, &Drop::back, &Drop::straighten},
+                       state_.phase, input, grip, output);
   }
 
  private:
@@ -110,6 +90,14 @@ class Drop : public StatefulTask<DropState> {
       enter(input, kStop);
       stand(grip, output);
     }
+  }
+
+  void stop(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    output.phase = "stop";
+    stand(grip, output);
+    if (state_.phase_s < 1.0) return;
+    grip.carrying = false;  // on purpose: no loss is reported
+    enter(input, kOpen);
   }
 
   void open(const TaskInput& input, Grip& grip, TaskOutput& output) {

@@ -49,23 +49,8 @@ class Grasp : public StatefulTask<GraspState> {
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     state_.phase_s += input.tick.dt_s();
     output.progress = 0.25 * state_.phase;
-    switch (state_.phase) {
-      case kWrap:
-        wrap(input, grip, output);
-        break;
-      case kSeat:
-        seat(input, grip, output);
-        break;
-      case kSqueeze:
-        squeeze(input, grip, output);
-        break;
-      case kCheck:
-        check(input, grip, output);
-        break;
-      default:
-        open(input, grip, output);
-        break;
-    }
+    run_phase<Grasp, 5>(*this, {&Grasp::wrap, &Grasp::seat, &Grasp::squeeze, &Grasp::check, &Grasp::open}, state_.phase,
+                        input, grip, output);
   }
 
  private:
@@ -77,7 +62,7 @@ class Grasp : public StatefulTask<GraspState> {
     return input.grip_sense.open_shape(grip.side, input.config.grip.base_angle_rad);
   }
 
-  void wrap(const TaskInput& input, const Grip& grip, TaskOutput& output) {
+  void wrap(const TaskInput& input, Grip& grip, TaskOutput& output) {
     output.phase = "wrap";
     // The head bends round the object before the body begins to move; otherwise it would pass the object.
     Gait gait = input.config.grasp.wrap;

@@ -56,7 +56,6 @@ class Pregrasp : public StatefulTask<PregraspState> {
   }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
-    const PregraspConfig& config = input.config.pregrasp;
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     state_.phase_s += input.tick.dt_s();
     if (state_.phase == kBendAway && object.missed == 0 && input.new_percepts) {
@@ -64,29 +63,9 @@ class Pregrasp : public StatefulTask<PregraspState> {
       state_.radius_m = object.radius_m;
     }
     output.progress = std::min(0.95, 0.2 * state_.phase + 0.1 * state_.attempts);
-    switch (state_.phase) {
-      case kBendAway:
-        bend_away(input, grip, object, output);
-        break;
-      case kAdvance:
-        advance(input, grip, output);
-        break;
-      case kSettle:
-        output.phase = "settle";
-        bend_head(0.0, config.touch_rate_rad_s, grip, output);
-        if (state_.phase_s < config.settle_s || !input.motion_done) break;
-        state_.rest = input.X_MH;
-        state_.felt = false;
-        state_.deep = false;
-        enter(kTouch);
-        break;
-      case kTouch:
-        touch(input, grip, output);
-        break;
-      default:
-        unbend(input, grip, output);
-        break;
-    }
+    run_phase<Pregrasp, 5>(
+        *this, {&Pregrasp::bend_away, &Pregrasp::advance, &Pregrasp::settle, &Pregrasp::touch, &Pregrasp::unbend},
+        state_.phase, input, grip, output);
   }
 
  private:
@@ -148,7 +127,8 @@ class Pregrasp : public StatefulTask<PregraspState> {
     return PlanarPose{state_.p_MO, state_.course_rad}.to_local(input.X_MH.p).x();
   }
 
-  void bend_away(const TaskInput& input, Grip& grip, const Sighting& object, TaskOutput& output) {
+  void bend_away(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     output.phase = "bend away";
     pass(input, input.config.travel, grip, output);
     const bool beside =
@@ -167,6 +147,17 @@ class Pregrasp : public StatefulTask<PregraspState> {
     pass(input, input.config.creep, grip, output);
     if (past_m(input) >= state_.past_m - config.brake_m) enter(kSettle);
     if (state_.phase_s > 15.0) enter(kSettle);
+  }
+
+  void settle(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    output.phase = "settle";
+    bend_head(0.0, config.touch_rate_rad_s, grip, output);
+    if (state_.phase_s < config.settle_s || !input.motion_done) return;
+    state_.rest = input.X_MH;
+    state_.felt = false;
+    state_.deep = false;
+    enter(kTouch);
   }
 
   void touch(const TaskInput& input, Grip& grip, TaskOutput& output) {

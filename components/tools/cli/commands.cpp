@@ -16,6 +16,7 @@
 
 #include "cli/launch_plan.hpp"
 #include "cli/run_difference.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
 #include "cyclone/domain_claim.hpp"
@@ -87,9 +88,9 @@ int host_command(int argc, char** argv) {
   return exit_status::kSoftware;
 }
 
-void add_commands(CLI::App& app, std::function<int()>& action) {
+void add_commands(CLI::App& app, Action& action) {
   auto domain = std::make_shared<std::optional<std::uint32_t>>();
-  auto* end = app.add_subcommand("end", "end a run in order, with a complete report");
+  auto* end = add_subcommand(app, "end", "end a run in order, with a complete report", action, domain, end_command);
   add_run_option(*end, *domain);
   end->footer(help_footer(
       "Asks the run's launcher to end the run and waits until its last process has ended. All components finish the\n"
@@ -97,13 +98,13 @@ void add_commands(CLI::App& app, std::function<int()>& action) {
       "run is ending, kills its processes.",
       {"constrictor end"},
       "0 the run has ended; 64 wrong usage; 70 no run, or several and none chosen; 75 it did not end within 90 s"));
-  end->callback([&action, domain] { action = [domain] { return end_command(*domain); }; });
 
   struct Directories {
     std::string a, b;
   };
   auto runs = std::make_shared<Directories>();
-  auto* diff = app.add_subcommand("diff", "name the first tick, component, topic and field in which two runs differ");
+  auto* diff = add_subcommand(app, "diff", "name the first tick, component, topic and field in which two runs differ",
+                              action, runs, [](const Directories& chosen) { return diff_command(chosen.a, chosen.b); });
   diff->add_option("RUN_A", runs->a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
   diff->add_option("RUN_B", runs->b, "report directory of another run")->required()->check(CLI::ExistingDirectory);
   diff->footer(
@@ -118,7 +119,6 @@ void add_commands(CLI::App& app, std::function<int()>& action) {
       "EXIT STATUS\n"
       "  0 equal; 1 different; 64 wrong usage; 70 hashes.bin of a run is missing, damaged, or has no tick\n\n"
       "ENVIRONMENT\n  none");
-  diff->callback([&action, runs] { action = [runs] { return diff_command(runs->a, runs->b); }; });
 
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
       ->footer(

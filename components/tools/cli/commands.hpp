@@ -3,12 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
-
-namespace CLI {
-class App;
-}
 
 namespace constrictor::cli {
 
@@ -21,9 +16,5 @@ int diff_command(const std::filesystem::path& a, const std::filesystem::path& b)
 
 /// `constrictor host NAME... [OPTION...]`: replaces this process by constrictor_host, which hosts these components.
 int host_command(int argc, char** argv);
-
-/// Adds these subcommands; the chosen one puts its function into `action`. `host` has only its help here, because its
-/// options are those of constrictor_host.
-void add_commands(CLI::App& app, std::function<int()>& action);
 
 }  // namespace constrictor::cli

@@ -1,5 +1,4 @@
-#include "cli/list_command.hpp"
-
+// `constrictor list`: the names that other subcommands accept.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +7,8 @@
 
 #include "cli/child_process.hpp"
 #include "cli/launch_plan.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "component/data_path.hpp"
 #include "runtime/host.hpp"
 
@@ -51,20 +52,18 @@ int list(const Options& options) {
 
 }  // namespace
 
-void add_list(CLI::App& app, std::function<int()>& action) {
+void add_list(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   auto* sub =
-      app.add_subcommand("list", "list the scenarios, robots, manifests or components that can be chosen by name");
+      add_subcommand(app, "list", "list the scenarios, robots, manifests or components that can be chosen by name",
+                     action, options, list);
   sub->add_option("KIND", options->kind, "scenarios, robots, manifests or components")
       ->required()
       ->check(CLI::IsMember({"scenarios", "robots", "manifests", "components"}));
   sub->add_flag("--names", options->names, "print the names only, one per line, for scripts");
-  sub->footer(
-      "EXAMPLES\n  constrictor list scenarios\n  constrictor list components --names\n\n"
-      "EXIT STATUS\n  0 done; 64 wrong usage; 70 constrictor_host, which knows the components, does not start\n\n"
-      "ENVIRONMENT\n"
-      "  CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix");
-  sub->callback([&action, options] { action = [options] { return list(*options); }; });
+  sub->footer(help_footer("", {"constrictor list scenarios", "constrictor list components --names"},
+                          "0 done; 64 wrong usage; 70 constrictor_host, which knows the components, does not start",
+                          kDataEnvironment));
 }
 
 }  // namespace constrictor::cli

@@ -2,21 +2,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <string>
 
 #include "cli/commands.hpp"
-#include "cli/introspection/completion.hpp"
-#include "cli/introspection/doctor_command.hpp"
-#include "cli/introspection/node_command.hpp"
-#include "cli/introspection/status_command.hpp"
-#include "cli/introspection/topic_command.hpp"
-#include "cli/list_command.hpp"
-#include "cli/param_command.hpp"
-#include "cli/run_command.hpp"
-#include "cli/run_control.hpp"
-#include "cli/task_command.hpp"
-#include "cli/teleop_command.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
@@ -30,19 +19,8 @@ int dispatch(int argc, char** argv) {
   CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
-  std::function<int()> action;
-  cli::add_run(app, action);
-  cli::add_list(app, action);
-  cli::add_commands(app, action);
-  cli::add_run_control(app, action);
-  cli::add_teleop(app, action);
-  cli::add_task(app, action);
-  cli::add_param(app, action);
-  cli::add_topic(app, action);
-  cli::add_node(app, action);
-  cli::add_status(app, action);
-  cli::add_doctor(app, action);
-  cli::add_completion(app, action);
+  cli::Action action;
+  for (const auto add : cli::kSubcommands) add(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,5 +1,4 @@
-#include "cli/param_command.hpp"
-
+// `constrictor param`: lists, prints and changes the parameters of a run while it runs.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,6 +11,8 @@
 #include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/operator.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "client/parameters.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/topics.hpp"
@@ -146,11 +147,10 @@ int set(const Options& options) {
 
 }  // namespace
 
-void add_param(CLI::App& app, std::function<int()>& action) {
+void add_param(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  auto* param = app.add_subcommand("param", "list and change the parameters of a run while it runs");
-  param->require_subcommand(1);
-  param->footer(
+  auto* param = add_group(app, "param", "list and change the parameters of a run while it runs");
+  param->footer(help_footer(
       "A parameter's name is that of its component and the keys in its configuration file: "
       "navigation.travel.frequency_hz is `travel:\n"
       "frequency_hz:` in navigation.yaml. Each component announces which of its parameters may change, with unit and "
@@ -162,24 +162,19 @@ void add_param(CLI::App& app, std::function<int()>& action) {
       "Setting "
       "a parameter takes\n"
       "no authority. While an operator has authority, only operators may set parameters; this command does so as an "
-      "operator.\n\n"
-      "EXAMPLES\n"
-      "  constrictor param list\n"
-      "  constrictor param list navigation.follow_line\n"
-      "  constrictor param get navigation.travel.frequency_hz\n"
-      "  constrictor param set navigation.travel.frequency_hz 0.9\n"
-      "  constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
-      "2000\n"
-      "  constrictor param list --changed --json\n\n"
-      "EXIT STATUS\n"
-      "  0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no "
-      "answer;\n"
-      "  130 interrupted by Ctrl-C\n\n"
-      "ENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
+      "operator.",
+      {"constrictor param list", "constrictor param list navigation.follow_line",
+       "constrictor param get navigation.travel.frequency_hz",
+       "constrictor param set navigation.travel.frequency_hz 0.9",
+       "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
+       "2000",
+       "constrictor param list --changed --json"},
+      "0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no answer;\n"
+      "  130 interrupted by Ctrl-C",
+      "CONSTRICTOR_DOMAIN  the run, like --run"));
   const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
-    auto* sub = param->add_subcommand(name, what);
+    auto* sub = add_subcommand(*param, name, what, action, options, run);
     add_view_options(*sub, options->view);
-    sub->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
     return sub;
   };
   auto* list_app = add(

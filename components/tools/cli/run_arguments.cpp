@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/run_command.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "runtime/host.hpp"
 
@@ -27,8 +28,9 @@ void add_file_options(CLI::App& app, RunOptions& options) {
       ->allow_extra_args(false);
 }
 
-void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, std::function<int()>& action) {
-  auto* run = app.add_subcommand("run", "run a scenario, each component in a process of its own, and write a report");
+void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Action& action) {
+  auto* run = add_subcommand(app, "run", "run a scenario, each component in a process of its own, and write a report",
+                             action, options, run_command);
   add_file_options(*run, *options);
   run->add_option("--pace", options->pace,
                   "speed of simulated time: lockstep (as fast as possible), realtime (on the wall clock, late "
@@ -75,7 +77,6 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, std:
       "  CONSTRICTOR_DOMAIN  the domain, like --domain\n"
       "  CONSTRICTOR_DATA    directory of the default files, instead of the source tree or the install prefix\n"
       "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
-  run->callback([&action, options] { action = [options] { return run_command(*options); }; });
 }
 
 int check_command(const RunOptions& options) {
@@ -90,27 +91,22 @@ int check_command(const RunOptions& options) {
   return exit_status::kOk;
 }
 
-void add_check_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, std::function<int()>& action) {
-  auto* check = app.add_subcommand("check", "check manifest, scenario, robot and all configurations; start no run");
+void add_check_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Action& action) {
+  auto* check = add_subcommand(app, "check", "check manifest, scenario, robot and all configurations; start no run",
+                               action, options, check_command);
   add_file_options(*check, *options);
-  check->footer(
+  check->footer(help_footer(
       "Every component reads its own files, as it does at the start of a run. `constrictor run` makes the same check\n"
-      "before it starts anything.\n\n"
-      "EXAMPLES\n"
-      "  constrictor check\n"
-      "  constrictor check line --robot serpens --seed 7\n"
-      "  constrictor check --config planner=components/planner/planner.yaml\n\n"
-      "EXIT STATUS\n"
-      "  0 no errors; 64 wrong usage; 78 wrong configuration, with file, line, key, what was found and what is "
-      "accepted\n\n"
-      "ENVIRONMENT\n"
-      "  CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix");
-  check->callback([&action, options] { action = [options] { return check_command(*options); }; });
+      "before it starts anything.",
+      {"constrictor check", "constrictor check line --robot serpens --seed 7",
+       "constrictor check --config planner=components/planner/planner.yaml"},
+      "0 no errors; 64 wrong usage; 78 wrong configuration, with file, line, key, what was found and what is accepted",
+      kDataEnvironment));
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, std::function<int()>& action) {
+void add_run(CLI::App& app, Action& action) {
   add_run_app(app, std::make_shared<RunOptions>(), action);
   add_check_app(app, std::make_shared<RunOptions>(), action);
 }

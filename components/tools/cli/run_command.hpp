@@ -2,13 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 
 #include "cli/launch_plan.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace constrictor::cli {
 
@@ -19,8 +14,5 @@ std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
 /// Throws UsageError or ConfigurationError for whatever is wrong before anything is started. Returns the exit status:
 /// 0 only after a successful mission.
 int run_command(const RunOptions& options);
-
-/// Adds the subcommands `run` and `check`; the chosen one puts its function into `action`.
-void add_run(CLI::App& app, std::function<int()>& action);
 
 }  // namespace constrictor::cli

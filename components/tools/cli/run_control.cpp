@@ -1,5 +1,4 @@
-#include "cli/run_control.hpp"
-
+// Commands for the time of a run (pause, resume, step, pace, reset) and for its safety (stop, clear-stop, release).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
@@ -113,7 +113,7 @@ int operate(const Options& options, const char* command, int (*use)(RequestClien
 
 }  // namespace
 
-void add_run_control(CLI::App& app, std::function<int()>& action) {
+void add_run_control(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   const std::string time_status = fmt::format("0 done; {}, or no answer;\n  130 interrupted by Ctrl-C", kRunStatuses);
   const std::string safety_status = fmt::format(

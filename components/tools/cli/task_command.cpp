@@ -13,6 +13,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/task_wait.hpp"
@@ -131,10 +132,9 @@ std::chrono::milliseconds parse_duration(const std::string& option, const std::s
   return std::chrono::milliseconds(std::llround(1e3 * value * factor));
 }
 
-void add_task(CLI::App& app, std::function<int()>& action) {
+void add_task(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
-  auto* task = app.add_subcommand("task", "start, cancel and wait for tasks from a script");
-  task->require_subcommand(1);
+  auto* task = add_group(app, "task", "start, cancel and wait for tasks from a script");
   task->footer(help_footer(
       "The tasks are those of the paper (Tables I to XV), and follow_path. A script has the level of an operator: it "
       "takes authority from the\nplanner and keeps it until `constrictor release`.",

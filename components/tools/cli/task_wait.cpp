@@ -12,6 +12,7 @@
 #include "cli/task_request.hpp"
 #include "cli/usage.hpp"
 #include "client/goal_reader.hpp"
+#include "client/polling.hpp"
 #include "client/run_registry.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
@@ -21,8 +22,6 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-constexpr auto kPoll = 10ms;
 /// After this time all messages that writers keep for late readers have arrived.
 constexpr auto kSettle = 200ms;
 /// After this time a TaskStatus proves the end of a goal, too: its event is lost.
@@ -40,7 +39,7 @@ class Waiting {
 
   int run(std::chrono::milliseconds bound) {
     catch_interrupts();
-    for (const auto begin = Clock::now(); Clock::now() - begin < bound; std::this_thread::sleep_for(kPoll)) {
+    for (const auto begin = WaitClock::now(); WaitClock::now() - begin < bound; std::this_thread::sleep_for(kPoll)) {
       if (interrupt_signal() != 0) {
         std::fprintf(stderr,
                      "task: interrupted; the goal goes on, and authority has not changed (`constrictor task "
@@ -48,8 +47,8 @@ class Waiting {
         return interrupt_status();
       }
       reader_.poll();
-      if (goals().epoch() != 0 && !heard_) heard_ = Clock::now();
-      if (!heard_ || Clock::now() - *heard_ < kSettle) continue;
+      if (goals().epoch() != 0 && !heard_) heard_ = WaitClock::now();
+      if (!heard_ || WaitClock::now() - *heard_ < kSettle) continue;
       if (epoch_ == 0) from_ = goals().tick();
       if (epoch_ != 0 && goals().epoch() != epoch_) {
         if (!any_) return failed("the run was reset");
@@ -58,7 +57,7 @@ class Waiting {
       epoch_ = goals().epoch();
       if (!any_ && goal_ == 0)
         goal_ = options_.goal.empty() ? goals().newest() : goals().find(std::stoull(options_.goal));
-      if (const auto status = look(Clock::now() - *heard_ > kEventLost)) return *status;
+      if (const auto status = look(WaitClock::now() - *heard_ > kEventLost)) return *status;
       if (!domain_claimed(domain_)) return failed("the run has ended");
     }
     std::fprintf(stderr, "task: no %s within %s\n", wanted().c_str(), options_.timeout.c_str());
@@ -105,7 +104,7 @@ class Waiting {
   std::uint64_t goal_ = 0;  ///< 0: no such goal yet, or any
   std::uint32_t epoch_ = 0;
   std::int64_t from_ = -1;  ///< tick after which events of any goal count
-  std::optional<Clock::time_point> heard_;
+  std::optional<WaitClock::time_point> heard_;
 };
 
 }  // namespace

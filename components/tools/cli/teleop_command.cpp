@@ -1,5 +1,4 @@
-#include "cli/teleop_command.hpp"
-
+// `constrictor teleop`: drive the robot by hand, in a terminal or from a script.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +8,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/teleop_drive.hpp"
@@ -107,49 +107,25 @@ class Teleop {
       else if (action == TeleopAction::kStand) asked("stand", client_.move(msg::kMotionStand));
       return true;
     }
-    const auto still = [this] { screen_.drive.forward = screen_.drive.turn = 0.0; };
-    switch (action) {
-      case TeleopAction::kLookLeft:
-      case TeleopAction::kLookAhead:
-      case TeleopAction::kLookRight:
-        still();
-        asked("look", client_.move(msg::kMotionLook, 0.0, 0.0, screen_.drive.look_rad));
-        break;
-      case TeleopAction::kWrapLeft:
-      case TeleopAction::kWrapRight:
-        still();
-        asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, action == TeleopAction::kWrapLeft ? 1.0 : -1.0));
-        break;
-      case TeleopAction::kSqueeze:
-        still();
-        asked("squeeze", client_.move(msg::kMotionSqueeze));
-        break;
-      case TeleopAction::kOpen:
-        still();
-        asked("open", client_.move(msg::kMotionOpen));
-        break;
-      case TeleopAction::kEmergencyStop:
-        still();
-        asked("emergency stop", client_.ask(msg::kRequestEmergencyStop));
-        break;
-      case TeleopAction::kClearStop:
-        asked("clear stop", client_.ask(msg::kRequestClearStop));
-        break;
-      case TeleopAction::kRelease:
-        still();
-        asked("release", client_.ask(msg::kRequestRelease));
-        break;
-      case TeleopAction::kCancel:
-        still();
-        asked("cancel: stand", client_.move(msg::kMotionStand));
-        break;
-      case TeleopAction::kTask:
-        screen_.prompt = "";
-        break;
-      default:
-        break;
-    }
+    if (action == TeleopAction::kTask) screen_.prompt = "";
+    else if (action != TeleopAction::kNone) request(action);
     return true;
+  }
+
+  /// Sends the request of an action that is neither a drive nor a task. All but one also end the drive.
+  void request(TeleopAction action) {
+    using enum TeleopAction;
+    if (action != kClearStop) screen_.drive.forward = screen_.drive.turn = 0.0;
+    if (action == kLookLeft || action == kLookAhead || action == kLookRight)
+      asked("look", client_.move(msg::kMotionLook, 0.0, 0.0, screen_.drive.look_rad));
+    if (action == kWrapLeft) asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, 1.0));
+    if (action == kWrapRight) asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, -1.0));
+    if (action == kSqueeze) asked("squeeze", client_.move(msg::kMotionSqueeze));
+    if (action == kOpen) asked("open", client_.move(msg::kMotionOpen));
+    if (action == kCancel) asked("cancel: stand", client_.move(msg::kMotionStand));
+    if (action == kEmergencyStop) asked("emergency stop", client_.ask(msg::kRequestEmergencyStop));
+    if (action == kClearStop) asked("clear stop", client_.ask(msg::kRequestClearStop));
+    if (action == kRelease) asked("release", client_.ask(msg::kRequestRelease));
   }
 
   /// Takes keys for the task line.
@@ -227,9 +203,10 @@ int teleop(const Options& options) {
 
 }  // namespace
 
-void add_teleop(CLI::App& app, std::function<int()>& action) {
+void add_teleop(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
-  auto* sub = app.add_subcommand("teleop", "drive the robot by hand in a terminal; with --drive from a script");
+  auto* sub = add_subcommand(app, "teleop", "drive the robot by hand in a terminal; with --drive from a script", action,
+                             options, teleop);
   add_run_option(*sub, options->run);
   sub->add_option("--drive", options->drive,
                   "SPEED,TURN in m/s and rad/s (0.3,0.5): drive without a screen, then stand and release authority");
@@ -243,7 +220,6 @@ void add_teleop(CLI::App& app, std::function<int()>& action) {
       fmt::format("0 done; 1 refused, authority lost, or the run is gone; {}, or no terminal;\n"
                   "  75 no answer from `input`; 130 --drive ended by Ctrl-C",
                   kRunStatuses)));
-  sub->callback([&action, options] { action = [options] { return teleop(*options); }; });
 }
 
 }  // namespace constrictor::cli

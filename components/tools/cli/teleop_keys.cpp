@@ -1,6 +1,8 @@
 #include "cli/teleop_keys.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace constrictor::cli {
 namespace {
@@ -10,57 +12,20 @@ constexpr double kRotate_rad_per_m = 2.5;  // turn rate on the spot per speed
 constexpr double kLook_rad = 0.25;
 constexpr std::size_t kMaxSequence = 16;  // bytes of a key
 
+constexpr std::array<std::pair<char, TeleopAction>, 24> kKeys{{
+    {'i', TeleopAction::kForward},   {',', TeleopAction::kBack},       {'j', TeleopAction::kLeft},
+    {'l', TeleopAction::kRight},     {'u', TeleopAction::kRotateLeft}, {'o', TeleopAction::kRotateRight},
+    {'k', TeleopAction::kStand},     {'+', TeleopAction::kFaster},     {'=', TeleopAction::kFaster},
+    {'-', TeleopAction::kSlower},    {'f', TeleopAction::kLookLeft},   {'g', TeleopAction::kLookAhead},
+    {'h', TeleopAction::kLookRight}, {'w', TeleopAction::kWrapLeft},   {'e', TeleopAction::kWrapRight},
+    {'s', TeleopAction::kSqueeze},   {'d', TeleopAction::kOpen},       {' ', TeleopAction::kEmergencyStop},
+    {'c', TeleopAction::kClearStop}, {'t', TeleopAction::kTask},       {'x', TeleopAction::kCancel},
+    {'r', TeleopAction::kRelease},   {'q', TeleopAction::kQuit},       {'\003', TeleopAction::kQuit},
+}};
+
 TeleopAction action_of_character(char key) {
-  switch (key) {
-    case 'i':
-      return TeleopAction::kForward;
-    case ',':
-      return TeleopAction::kBack;
-    case 'j':
-      return TeleopAction::kLeft;
-    case 'l':
-      return TeleopAction::kRight;
-    case 'u':
-      return TeleopAction::kRotateLeft;
-    case 'o':
-      return TeleopAction::kRotateRight;
-    case 'k':
-      return TeleopAction::kStand;
-    case '+':
-    case '=':
-      return TeleopAction::kFaster;
-    case '-':
-      return TeleopAction::kSlower;
-    case 'f':
-      return TeleopAction::kLookLeft;
-    case 'g':
-      return TeleopAction::kLookAhead;
-    case 'h':
-      return TeleopAction::kLookRight;
-    case 'w':
-      return TeleopAction::kWrapLeft;
-    case 'e':
-      return TeleopAction::kWrapRight;
-    case 's':
-      return TeleopAction::kSqueeze;
-    case 'd':
-      return TeleopAction::kOpen;
-    case ' ':
-      return TeleopAction::kEmergencyStop;
-    case 'c':
-      return TeleopAction::kClearStop;
-    case 't':
-      return TeleopAction::kTask;
-    case 'x':
-      return TeleopAction::kCancel;
-    case 'r':
-      return TeleopAction::kRelease;
-    case 'q':
-    case '\003':
-      return TeleopAction::kQuit;
-    default:
-      return TeleopAction::kNone;
-  }
+  const auto* found = std::find_if(kKeys.begin(), kKeys.end(), [key](const auto& row) { return row.first == key; });
+  return found == kKeys.end() ? TeleopAction::kNone : found->second;
 }
 
 }  // namespace

@@ -71,13 +71,10 @@ void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain) {
 }
 
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,
-                        const std::string& exit_status) {
+                        const std::string& exit_status, const std::string& environment) {
   std::string text = about + (about.empty() ? "" : "\n\n") + "EXAMPLES\n";
   for (const char* example : examples) text += fmt::format("  {}\n", example);
-  return text + "\nEXIT STATUS\n  " + exit_status +
-         "\n\nENVIRONMENT\n"
-         "  CONSTRICTOR_DOMAIN  the run, like --run\n"
-         "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)";
+  return text + "\nEXIT STATUS\n  " + exit_status + "\n\nENVIRONMENT\n  " + environment;
 }
 
 std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error) {

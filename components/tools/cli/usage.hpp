@@ -33,10 +33,19 @@ CLI::Validator number(double min, double max, const std::string& unit);
 /// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN.
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);
 
-/// The last part of a --help: remarks, EXAMPLES (one per line), EXIT STATUS, and the ENVIRONMENT of every command that
-/// joins a run.
+/// The ENVIRONMENT of the commands that join a run, for help_footer().
+inline constexpr const char* kRunEnvironment =
+    "CONSTRICTOR_DOMAIN  the run, like --run\n"
+    "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)";
+
+/// The ENVIRONMENT of the commands that only read files.
+inline constexpr const char* kDataEnvironment =
+    "CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix";
+
+/// The last part of a --help: remarks, EXAMPLES (one per line), EXIT STATUS and ENVIRONMENT. Further lines of a text
+/// begin with two spaces.
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,
-                        const std::string& exit_status);
+                        const std::string& exit_status, const std::string& environment = kRunEnvironment);
 
 /// The exit statuses of every command that looks for a run, for its help_footer().
 inline constexpr const char* kRunStatuses = "64 wrong usage; 70 no run, or several and none chosen";

@@ -106,6 +106,8 @@ class Behaviour : public ::testing::Test {
   std::uint64_t start(std::uint8_t task, std::uint8_t msg::TaskParameters::*parameter, std::uint8_t value) {
     return start(task, [&](msg::TaskParameters& p) { p.*parameter = value; });
   }
+  /// Starts a task for the green object.
+  void start_green(std::uint8_t task) { start(task, &msg::TaskParameters::object_colour, msg::kColourGreen); }
 
   /// Advances until `condition` is true; false if it is not within `bound_s` of simulated time.
   bool until(const std::function<bool()>& condition, double bound_s) {

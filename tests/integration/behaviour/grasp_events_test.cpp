@@ -19,7 +19,6 @@ std::string scene(const std::string& more = "") {
 
 class GraspEvents : public Behaviour {
  protected:
-  void start_green(std::uint8_t task) { start(task, &msg::TaskParameters::object_colour, msg::kColourGreen); }
   void pregrasp() {
     start_green(msg::kTaskSearchObject);
     ASSERT_EQ(until_end(20.0), msg::kGoalSucceeded);

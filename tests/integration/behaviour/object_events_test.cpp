@@ -20,7 +20,6 @@ std::string thrown(double at_s) {
 
 class ObjectEvents : public Behaviour {
  protected:
-  void start_green(std::uint8_t task) { start(task, &msg::TaskParameters::object_colour, msg::kColourGreen); }
   void find() {
     start_green(msg::kTaskSearchObject);
     ASSERT_EQ(until_end(20.0), msg::kGoalSucceeded);

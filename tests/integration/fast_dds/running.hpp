@@ -21,12 +21,6 @@ class RosBridge : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments));
   }
-  /// The domain that a run has claimed and printed; 0 if it printed none in time.
-  [[nodiscard]] static unsigned domain_of(Process& run) {
-    if (!run.wait_for("report in", std::chrono::seconds(15))) return 0;
-    const std::string output = run.output();
-    return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
-  }
   [[nodiscard]] nlohmann::json report(const std::string& name) const {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
   }

@@ -7,25 +7,16 @@
 
 #include "guidance/field_mapper.hpp"
 #include "robot/planar.hpp"
+#include "snake.hpp"
 
 namespace constrictor {
 namespace {
 
 using namespace guidance;
+using testing::snake;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-RobotModel snake() {
-  RobotModel model;
-  model.module_count = 24;
-  model.module_length_m = 0.089;
-  model.module_radius_m = 0.035;
-  model.module_mass_kg = 0.3;
-  model.joints.resize(23);
-  for (std::size_t i = 0; i < 23; ++i) model.joints[i].axis = i % 2 == 0 ? JointAxis::kYaw : JointAxis::kPitch;
-  return model;
-}
 
 /// A map; the robot stands at the origin.
 struct Mapping {

@@ -10,26 +10,17 @@
 #include "guidance/pose_filter.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/planar.hpp"
+#include "snake.hpp"
 
 namespace constrictor {
 namespace {
 
 using namespace guidance;
+using testing::snake;
 
 const OdometryConfig kConfig = GuidanceConfig{}.odometry;
 
 constexpr double kPi = std::numbers::pi;
-
-RobotModel snake() {
-  RobotModel model;
-  model.module_count = 24;
-  model.module_length_m = 0.089;
-  model.module_radius_m = 0.035;
-  model.module_mass_kg = 0.3;
-  model.joints.resize(23);
-  for (std::size_t i = 0; i < 23; ++i) model.joints[i].axis = i % 2 == 0 ? JointAxis::kYaw : JointAxis::kPitch;
-  return model;
-}
 
 /// A body whose links are so short that it is nearly a curve.
 RobotModel fine_snake() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cli/subcommands.hpp"
 #include "cli/task_names.hpp"
 #include "constrictor/topics.hpp"
 #include "runtime/host.hpp"
@@ -232,7 +233,7 @@ std::string completion_script(const CLI::App& app, const std::string& shell) {
                         : script;
 }
 
-void add_completion(CLI::App& app, std::function<int()>& action) {
+void add_completion(CLI::App& app, Action& action) {
   auto shell = std::make_shared<std::string>();
   auto* sub =
       app.add_subcommand("completion", "print a script that lets a shell complete subcommands, options and names");

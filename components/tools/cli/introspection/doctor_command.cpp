@@ -1,5 +1,4 @@
-#include "cli/introspection/doctor_command.hpp"
-
+// `constrictor doctor`: finds faults that prevent processes from working together, and names the cure.
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
@@ -12,6 +11,8 @@
 
 #include "cli/introspection/diagnosis.hpp"
 #include "cli/introspection/domain_view.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "client/run_registry.hpp"
 #include "constrictor/json.hpp"
 #include "cyclone/endpoint.hpp"
@@ -152,19 +153,19 @@ int doctor(const ViewOptions& options) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app, std::function<int()>& action) {
+void add_doctor(CLI::App& app, Action& action) {
   auto options = std::make_shared<ViewOptions>();
-  auto* sub = app.add_subcommand("doctor", "find faults that keep processes from communicating, and name the cure");
+  auto* sub = add_subcommand(app, "doctor", "find faults that keep processes from communicating, and name the cure",
+                             action, options, doctor);
   add_view_options(*sub, *options);
-  sub->footer(
+  sub->footer(help_footer(
       "Finds: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two "
       "members\n"
       "of one name, small socket buffers. Without --run it examines the domains of all runs on this host; --json then\n"
-      "prints a list if there are several.\n\n"
-      "EXAMPLES\n  constrictor doctor\n  constrictor doctor --run 7 --json\n\n"
-      "EXIT STATUS\n  0 no fault found; 1 a fault was found; 64 wrong usage\n\nENVIRONMENT\n"
-      "  CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      DDS configuration; it is examined, too");
-  sub->callback([&action, options] { action = [options] { return doctor(*options); }; });
+      "prints a list if there are several.",
+      {"constrictor doctor", "constrictor doctor --run 7 --json"},
+      "0 no fault found; 1 a fault was found; 64 wrong usage",
+      "CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      DDS configuration; it is examined, too"));
 }
 
 }  // namespace constrictor::cli

@@ -22,6 +22,11 @@ struct ViewOptions {
   bool json = false;
 };
 
+/// The ENVIRONMENT of the commands that examine a DDS domain, for help_footer().
+inline constexpr const char* kDomainEnvironment =
+    "CONSTRICTOR_DOMAIN  the domain, like --run\n"
+    "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)";
+
 /// Adds --run and --json.
 void add_view_options(CLI::App& app, ViewOptions& options);
 

@@ -1,5 +1,4 @@
-#include "cli/introspection/node_command.hpp"
-
+// `constrictor node`: the processes of a domain.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/run_observer.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
@@ -135,24 +136,20 @@ int info(const Options& options) {
 
 }  // namespace
 
-void add_node(CLI::App& app, std::function<int()>& action) {
+void add_node(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  auto* node = app.add_subcommand("node", "list or describe the processes of a DDS domain");
-  node->require_subcommand(1);
-  node->footer(
-      "A node is a DDS participant: one per process and domain, also of programs that are no part of this project.\n\n"
-      "EXAMPLES\n"
-      "  constrictor node list\n  constrictor node info navigation --json\n\n"
-      "EXIT STATUS\n  0 done; 64 wrong usage; 70 no such node or run\n\nENVIRONMENT\n"
-      "  CONSTRICTOR_DOMAIN  the domain, like --run\n"
-      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
-  auto* list_app = node->add_subcommand("list", "list every process: host, pid, version, IDL hash");
+  auto* node = add_group(app, "node", "list or describe the processes of a DDS domain");
+  node->footer(help_footer(
+      "A node is a DDS participant: one per process and domain, also of programs that are no part of this project.",
+      {"constrictor node list", "constrictor node info navigation --json"},
+      "0 done; 64 wrong usage; 70 no such node or run", kDomainEnvironment));
+  auto* list_app =
+      add_subcommand(*node, "list", "list every process: host, pid, version, IDL hash", action, options, list);
   add_view_options(*list_app, options->view);
-  list_app->callback([&action, options] { action = [options] { return list(*options); }; });
-  auto* info_app = node->add_subcommand("info", "describe one process: its components and its topics");
+  auto* info_app =
+      add_subcommand(*node, "info", "describe one process: its components and its topics", action, options, info);
   info_app->add_option("NODE", options->node, "a component, the name of a node, or a process id")->required();
   add_view_options(*info_app, options->view);
-  info_app->callback([&action, options] { action = [options] { return info(*options); }; });
 }
 
 }  // namespace constrictor::cli

@@ -1,5 +1,4 @@
-#include "cli/introspection/status_command.hpp"
-
+// `constrictor status`: the runs of this host, and a live table of one's components.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -12,6 +11,8 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/run_observer.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "client/run_registry.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
@@ -246,20 +247,19 @@ int status(const Options& options) {
 
 }  // namespace
 
-void add_status(CLI::App& app, std::function<int()>& action) {
+void add_status(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  auto* sub = app.add_subcommand("status", "show the runs on this host, and the state of the components of one run");
+  auto* sub = add_subcommand(app, "status", "show the runs on this host, and the state of the components of one run",
+                             action, options, status);
   add_view_options(*sub, options->view);
   sub->add_flag("--watch,-w", options->watch, "update the table every second, until Ctrl-C or the end of the run");
-  sub->footer(
+  sub->footer(help_footer(
       "Step times are those since a component's previous status, which it publishes every 50 ticks. Rates are in "
       "ticks\n"
-      "per second of wall time. The column inc is the incarnation: 1, and one more after each restart.\n\n"
-      "EXAMPLES\n  constrictor status\n  constrictor status --watch\n"
-      "  constrictor status --json | jq '.components[].rate_hz'\n\n"
-      "EXIT STATUS\n  0 done; 64 wrong usage; 70 no run, or several and none chosen with --json\n\n"
-      "ENVIRONMENT\n  CONSTRICTOR_DOMAIN  the run, like --run");
-  sub->callback([&action, options] { action = [options] { return status(*options); }; });
+      "per second of wall time. The column inc is the incarnation: 1, and one more after each restart.",
+      {"constrictor status", "constrictor status --watch", "constrictor status --json | jq '.components[].rate_hz'"},
+      "0 done; 64 wrong usage; 70 no run, or several and none chosen with --json",
+      "CONSTRICTOR_DOMAIN  the run, like --run"));
 }
 
 }  // namespace constrictor::cli

@@ -1,5 +1,5 @@
-#include "cli/introspection/topic_command.hpp"
-
+// `constrictor topic`: list, info, echo, hz and delay of any topic on a domain, also of types this project does not
+// define.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/introspection/topic_watch.hpp"
+#include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/command_error.hpp"
 #include "constrictor/json.hpp"
@@ -125,61 +126,55 @@ int info(const Options& options) {
   return exit_status::kOk;
 }
 
-CLI::App* add_watch(CLI::App& topic, Options& options, const char* name, const char* what) {
-  auto* app = topic.add_subcommand(name, what);
-  app->add_option("TOPIC", options.watch.topic, "name of the topic")->required();
-  add_view_options(*app, options.view);
-  app->add_option("--timeout", options.watch.timeout_s, "[s] give up when no sample has arrived for this long")
+void add_watch_options(CLI::App& app, Options& options) {
+  app.add_option("TOPIC", options.watch.topic, "name of the topic")->required();
+  add_view_options(app, options.view);
+  app.add_option("--timeout", options.watch.timeout_s, "[s] give up when no sample has arrived for this long")
       ->capture_default_str()
       ->check(number(1e-3, 1e6, "s"));
-  return app;
 }
 
 }  // namespace
 
-void add_topic(CLI::App& app, std::function<int()>& action) {
+void add_topic(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  auto* topic = app.add_subcommand("topic", "list, describe, print or measure the topics of a DDS domain");
-  topic->require_subcommand(1);
-  topic->footer(
+  auto* topic = add_group(app, "topic", "list, describe, print or measure the topics of a DDS domain");
+  topic->footer(help_footer(
       "Works on every topic of the domain, also on topics of other programs and other vendors' DDS. The writers "
-      "describe\n"
-      "the types; if they do not, echo prints the encoded bytes.\n\nEXAMPLES\n"
-      "  constrictor topic list\n  constrictor topic info joint_state\n"
-      "  constrictor topic echo task/event\n  constrictor topic echo guidance/pose --count 1 --json\n"
-      "  constrictor topic hz joint_state --for 5\n\nEXIT STATUS\n"
-      "  0 done; 1 no sample arrived in time; 64 wrong usage; 70 no such topic or run\n\nENVIRONMENT\n"
-      "  CONSTRICTOR_DOMAIN  the domain, like --run\n"
-      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
-  const auto act = [&action, options](CLI::App* sub, std::function<int(const Options&)> run) {
-    sub->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+      "describe\nthe types; if they do not, echo prints the encoded bytes.",
+      {"constrictor topic list", "constrictor topic info joint_state", "constrictor topic echo task/event",
+       "constrictor topic echo guidance/pose --count 1 --json", "constrictor topic hz joint_state --for 5"},
+      "0 done; 1 no sample arrived in time; 64 wrong usage; 70 no such topic or run", kDomainEnvironment));
+  const auto add = [&](const char* name, const char* what, std::function<int(const Options&)> run) {
+    return add_subcommand(*topic, name, what, action, options, std::move(run));
   };
-  auto* list_app =
-      topic->add_subcommand("list", "list every topic with its type and the numbers of its writers and readers");
+  auto* list_app = add("list", "list every topic with its type and the numbers of its writers and readers", list);
   add_view_options(*list_app, options->view);
-  act(list_app, list);
-  auto* info_app = topic->add_subcommand(
-      "info", "describe a topic: type, fields, writers, readers, and which reader cannot receive from which writer");
+  auto* info_app =
+      add("info", "describe a topic: type, fields, writers, readers, and which reader cannot receive from which writer",
+          info);
   info_app->add_option("TOPIC", options->watch.topic, "name of the topic")->required();
   add_view_options(*info_app, options->view);
-  act(info_app, info);
-  auto* echo_app = add_watch(*topic, *options, "echo", "print the samples of a topic");
+  auto* echo_app = add("echo", "print the samples of a topic",
+                       [](const Options& chosen) { return echo_command(chosen.view, chosen.watch); });
+  add_watch_options(*echo_app, *options);
   echo_app->add_option("--count,-n", options->watch.count, "end after this many samples (default: until Ctrl-C)")
       ->check(whole_number());
   echo_app->add_option("--field", options->watch.field,
                        "print only this field, for example header.tick or position_rad");
   echo_app->add_flag("--raw", options->watch.raw, "print the encoded bytes in hexadecimal");
-  act(echo_app, [](const Options& chosen) { return echo_command(chosen.view, chosen.watch); });
   for (const char* name : {"hz", "delay"}) {
     const bool hz = std::string(name) == "hz";
-    auto* meter_app = add_watch(*topic, *options, name,
-                                hz ? "measure how often samples arrive and how large they are"
-                                   : "measure how old samples are when they arrive, by the clocks of their writers");
+    auto* meter_app =
+        add(name,
+            hz ? "measure how often samples arrive and how large they are"
+               : "measure how old samples are when they arrive, by the clocks of their writers",
+            [hz](const Options& chosen) {
+              return hz ? hz_command(chosen.view, chosen.watch) : delay_command(chosen.view, chosen.watch);
+            });
+    add_watch_options(*meter_app, *options);
     meter_app->add_option("--for", options->watch.for_s, "[s] end after this time (default: until Ctrl-C)")
         ->check(number(1e-3, 1e6, "s"));
-    act(meter_app, [hz](const Options& chosen) {
-      return hz ? hz_command(chosen.view, chosen.watch) : delay_command(chosen.view, chosen.watch);
-    });
   }
 }
 

@@ -1,0 +1,49 @@
+// The subcommands of `constrictor`, and how each is added to the command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace constrictor::cli {
+
+/// What the chosen subcommand does. It returns the exit status.
+using Action = std::function<int()>;
+
+/// Each adds the subcommands that its file implements. When one of them is chosen on the command line, `action` is set.
+void add_run(CLI::App& app, Action& action);          ///< run, check
+void add_list(CLI::App& app, Action& action);         ///< list
+void add_commands(CLI::App& app, Action& action);     ///< end, diff; host has only its help here
+void add_run_control(CLI::App& app, Action& action);  ///< pause, resume, step, pace, reset, stop, clear-stop, release
+void add_teleop(CLI::App& app, Action& action);       ///< teleop
+void add_task(CLI::App& app, Action& action);         ///< task
+void add_param(CLI::App& app, Action& action);        ///< param
+void add_topic(CLI::App& app, Action& action);        ///< topic
+void add_node(CLI::App& app, Action& action);         ///< node
+void add_status(CLI::App& app, Action& action);       ///< status
+void add_doctor(CLI::App& app, Action& action);       ///< doctor
+void add_completion(CLI::App& app, Action& action);   ///< completion
+
+inline constexpr std::array kSubcommands{add_run,    add_list,   add_commands, add_run_control,
+                                         add_teleop, add_task,   add_param,    add_topic,
+                                         add_node,   add_status, add_doctor,   add_completion};
+
+/// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
+template <class Options, class Run>
+CLI::App* add_subcommand(CLI::App& parent, const std::string& name, const std::string& what, Action& action,
+                         std::shared_ptr<Options> options, Run run) {
+  CLI::App* sub = parent.add_subcommand(name, what);
+  sub->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+  return sub;
+}
+
+/// Adds the subcommand `name` whose own subcommands do the work; one of them must be chosen.
+inline CLI::App* add_group(CLI::App& parent, const std::string& name, const std::string& what) {
+  CLI::App* group = parent.add_subcommand(name, what);
+  group->require_subcommand(1);
+  return group;
+}
+
+}  // namespace constrictor::cli
