@@ -52,9 +52,9 @@ class Control : public TunableComponent<ControlState, ControlConfig> {
   MethodRegistry registry_;
   Latest<msg::DesiredTrajectory> trajectory_in_ = wiring_.latest(topics::kDesiredTrajectory);
   BodyView body_{wiring_};
+  FieldView field_{wiring_};
   Latest<msg::Authority> authority_in_ = wiring_.latest(topics::kAuthority);
   Latest<msg::ImuState> imu_in_ = wiring_.latest(topics::kImuState);
-  FieldView field_{wiring_};
   Output<msg::JointCommand> command_out_ = wiring_.output(topics::kJointCommand);
   Output<msg::MotionStatus> status_out_ = wiring_.output(topics::kMotionStatus);
 };

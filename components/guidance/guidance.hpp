@@ -38,8 +38,6 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   Guidance(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
 
-  [[nodiscard]] const GuidanceState& state() const { return state_; }
-
  private:
   /// Whether a new message has arrived and is plausible. An implausible message is counted as a refusal.
   template <class Message, class... Limits>

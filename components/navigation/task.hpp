@@ -91,6 +91,17 @@ class Task {
 template <class State>
 using StatefulTask = Stateful<Task, State>;
 
+/// Which part of its work a task with several phases does, and since when. The first phase is 0.
+struct PhaseState {
+  int phase = 0;
+  double phase_s = 0.0;
+
+  void enter(int next) {
+    phase = next;
+    phase_s = 0.0;
+  }
+};
+
 /// Calls the member function of `task` that does the present phase of its work. `parts`: one function for each phase,
 /// in the order of the phases. An unknown phase (a damaged checkpoint) counts as the last one.
 template <class PhasedTask, std::size_t kCount>

@@ -40,8 +40,6 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   Perception(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
 
-  [[nodiscard]] const PerceptionState& state() const { return state_; }
-
  private:
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 

@@ -11,8 +11,7 @@ namespace constrictor {
 
 /// A point of the line in the map's frame M, with the direction that leads along the line to the objects.
 struct TrailPoint {
-  double x_m = 0.0;
-  double y_m = 0.0;
+  double x_m = 0.0, y_m = 0.0;
   double outbound_rad = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
@@ -22,8 +21,7 @@ struct TrailPoint {
 
 /// A point of the line in M.
 struct LinePoint {
-  double x_m = 0.0;
-  double y_m = 0.0;
+  double x_m = 0.0, y_m = 0.0;
   bool known = false;
   template <class Archive>
   void serialize(Archive& archive) {

@@ -201,11 +201,9 @@ void Retrieval::follow_time() {
       if (in_stage_s > 480.0) set_back(kFindLine);
       return;
     case kTrack:
-      if (in_stage_s > 60.0) set_back(kSearch);
+    case kSearch:  // the look round begins where the object was last seen
+      if (in_stage_s > 60.0) set_back(stage_ == kTrack ? kSearch : kLook);
       return;
-    case kSearch:
-      if (in_stage_s > 60.0) set_back(kLook);
-      return;  // the look round begins where the object was last seen
     default:
       if (in_stage_s > 240.0) set_back(loaded() ? kFindLine : kSearch);
       return;

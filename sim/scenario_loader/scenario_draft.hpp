@@ -22,20 +22,12 @@ struct Placement {
 
 /// Ranges of the variation about the values of the file. The names without a unit are relative.
 struct Variation {
-  bool mirror_line = false;
-  bool object_sides = false;
-  bool zone_sides = false;
-  double line_curvature = 0.0;
-  double line_length = 0.0;
-  double object_position_m = 0.0;
-  double zone_position_m = 0.0;
-  double start_position_m = 0.0;
-  double start_yaw_rad = 0.0;
-  double radius = 0.0;
-  double mass = 0.0;
-  double friction = 0.0;
-  double light_intensity = 0.0;
-  double light_direction_rad = 0.0;
+  bool mirror_line = false, object_sides = false, zone_sides = false;
+  double line_curvature = 0.0, line_length = 0.0;
+  double object_position_m = 0.0, zone_position_m = 0.0;
+  double start_position_m = 0.0, start_yaw_rad = 0.0;
+  double radius = 0.0, mass = 0.0, friction = 0.0;
+  double light_intensity = 0.0, light_direction_rad = 0.0;
   double camera_noise = 0.0;
 };
 

@@ -29,6 +29,16 @@ Process toys(const std::string& group, const std::string& roster, std::uint32_t 
   return Process(std::move(arguments));
 }
 
+/// Waits for the newest Hello of an incarnation; if none arrives in time, the newest of any.
+msg::Hello hello_of(const dds::Reader<msg::Hello>& hellos, std::uint32_t incarnation) {
+  msg::Hello newest{};
+  static_cast<void>(eventually([&] {
+    hellos.take([&](const msg::Hello& message) { newest = message; });
+    return newest.incarnation == incarnation;
+  }));
+  return newest;
+}
+
 // Both members were in one process that died. The time between their two Resume messages is not bounded.
 TEST(BarrierMessages, EachMemberOfARestartedProcessSendsReadyOnceItIsResumed) {
   const DomainClaim claim;
@@ -44,11 +54,8 @@ TEST(BarrierMessages, EachMemberOfARestartedProcessSendsReadyOnceItIsResumed) {
   Process process = toys("navigation,control", "physics,navigation,control", claim.domain(),
                          {"--incarnation", "2", "--scenario", "100"});
 
-  msg::Hello physics{};
-  ASSERT_TRUE(eventually([&] {
-    hellos.take([&](const msg::Hello& message) { physics = message; });
-    return physics.incarnation == 2;
-  }));
+  msg::Hello physics = hello_of(hellos, 2);
+  ASSERT_EQ(physics.incarnation, 2u);
   dds::set_text(physics.component, "physics");
   physics.incarnation = 1;
   physics.reads = reads.bits();
@@ -173,11 +180,8 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
   Process rest = toys("physics,navigation,control,report", "physics,navigation,control,planner,report", claim.domain(),
                       {"--scenario", "100000"});
 
-  msg::Hello mine{};
-  ASSERT_TRUE(eventually([&] {
-    hellos.take([&](const msg::Hello& message) { mine = message; });
-    return mine.incarnation == 1;
-  }));
+  msg::Hello mine = hello_of(hellos, 1);
+  ASSERT_EQ(mine.incarnation, 1u);
   dds::set_text(mine.component, "planner");
   mine.pid = 1;
   mine.reads = 0;

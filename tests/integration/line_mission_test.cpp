@@ -5,8 +5,7 @@ namespace constrictor::testing {
 namespace {
 
 TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByCamera) {
-  EXPECT_EQ(run("line", 25.0), exit_status::kOk) << output_;
-  ASSERT_TRUE(report_.is_object()) << output_;
+  ASSERT_NO_FATAL_FAILURE(succeeds("line", 25.0));
   EXPECT_EQ(report_["processes"].size(), 10U);
   EXPECT_LT(event_s("line_found"), 2.0);
   EXPECT_LT(event_s("end_of_line"), 20.0);
@@ -28,11 +27,9 @@ TEST_F(MissionRun, FindsTheLineAgainAfterLosingItBehindASharpBend) {
       "2.0}\n"
       "    - {length_m: 0.38, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
       "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n");
-  EXPECT_EQ(run(bend, 40.0), exit_status::kOk) << output_;
-  ASSERT_TRUE(report_.is_object()) << output_;
+  ASSERT_NO_FATAL_FAILURE(succeeds(bend, 40.0));
   const double lost_s = event_s("line_lost");
-  ASSERT_TRUE(std::isfinite(lost_s)) << report_["events"];
-  EXPECT_NEAR(state_s("search line or object", lost_s - 0.05), lost_s, 0.05);
+  ASSERT_NO_FATAL_FAILURE(expect_state_at("search line or object", lost_s));
   const double found_s = event_s("line_found", lost_s);
   EXPECT_LT(found_s, lost_s + 20.0) << report_["events"];
   // The rest of the line is 3 m long: the robot did not follow the line back.

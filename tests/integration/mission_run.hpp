@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,11 @@ class MissionRun : public ::testing::Test {
     report_ = nlohmann::json::parse(std::ifstream(dir_ / "out" / "report.json"), nullptr, false);
     return status;
   }
+  /// The same, and expects that the mission succeeds. Without a report the test ends.
+  void succeeds(const std::string& scenario, double most_s) {
+    EXPECT_EQ(run(scenario, most_s), exit_status::kOk) << output_;
+    ASSERT_TRUE(report_.is_object()) << output_;
+  }
   std::string scenario(const std::string& text) {
     write("scenario.yaml", text);
     return (dir_ / "scenario.yaml").string();
@@ -45,6 +51,12 @@ class MissionRun : public ::testing::Test {
   }
   [[nodiscard]] double state_s(const std::string& name, double from_s = 0.0) const {
     return first(report_["states"], "state", name, from_s);
+  }
+
+  /// Expects that something happened at `at_s`, and that the mission came into this state because of it.
+  void expect_state_at(const std::string& state, double at_s) const {
+    ASSERT_TRUE(std::isfinite(at_s)) << report_["events"];
+    EXPECT_NEAR(state_s(state, at_s - 0.05), at_s, 0.05);
   }
 
   const TemporaryFolder folder_;

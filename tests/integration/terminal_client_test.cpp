@@ -48,6 +48,11 @@ class TerminalClient : public CliFixture {
   [[nodiscard]] bool shows(const std::string& text, std::chrono::milliseconds bound = 20s) const {
     return eventually([&] { return screen().find(text) != std::string::npos; }, bound);
   }
+  /// Types a key and expects that the screen then shows `text`.
+  void expect_after(const std::string& key, const std::string& text) const {
+    type(key);
+    EXPECT_TRUE(shows(text)) << "key " << key << ": no \"" << text << "\" in\n" << screen();
+  }
   [[nodiscard]] std::string file(const std::string& name) const {
     std::ifstream stream(dir_ / name);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -86,28 +91,21 @@ TEST_F(TerminalClient, KeysDriveTheRobotAndTheTerminalIsRestored) {
   EXPECT_TRUE(shows("(you)")) << screen();
   EXPECT_TRUE(shows("drive      +0.3 m/s")) << screen();
   EXPECT_TRUE(shows("(at most 1x")) << screen();
-  type("+");
-  EXPECT_TRUE(shows("+0.4 m/s")) << screen();
-  type("Left");  // the arrow key: an escape sequence
-  EXPECT_TRUE(shows("turn +0.32 rad/s")) << screen();
+  expect_after("+", "+0.4 m/s");
+  expect_after("Left", "turn +0.32 rad/s");  // the arrow key: an escape sequence
 
-  type("t");
-  EXPECT_TRUE(shows("task> _")) << screen();
+  expect_after("t", "task> _");
   enter("rotate direction=up");
   EXPECT_TRUE(shows("direction: found 'up'")) << screen();
   type("t");
   enter("rotate direction=left");
   EXPECT_TRUE(shows("rotate running")) << screen();
 
-  type("Space");
-  EXPECT_TRUE(shows("EMERGENCY STOP")) << screen();
-  type("i");
-  EXPECT_TRUE(shows("REFUSED")) << screen();
-  type("c");
-  EXPECT_TRUE(shows("authority  none")) << screen();
+  expect_after("Space", "EMERGENCY STOP");
+  expect_after("i", "REFUSED");
+  expect_after("c", "authority  none");
 
-  type("q");
-  EXPECT_TRUE(shows("was here before")) << screen();
+  expect_after("q", "was here before");
   EXPECT_EQ(settings("after"), before);
 
   // SIGKILL gives teleop no chance to restore the terminal itself.

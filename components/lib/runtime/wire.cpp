@@ -19,28 +19,31 @@ std::string bytes_of(const dds_sequence_octet& sequence) {
 }
 
 // The common fields of both messages about a checkpoint: the component, its incarnation, the epoch and the last tick.
-template <class Value, class Message>
-void identity_to_wire(const Value& value, Message& message) {
+template <class Message, class Value>
+Message identity_to_wire(const Value& value) {
+  Message message{};
   set_text(message.component, value.component);
   message.run_id = value.epoch.run_id;
   message.epoch = value.epoch.epoch;
   message.incarnation = value.incarnation;
   message.index = value.index;
+  return message;
 }
 
-template <class Message, class Value>
-void identity_from_wire(const Message& message, Value& value) {
+template <class Value, class Message>
+Value identity_from_wire(const Message& message) {
+  Value value;
   value.component = message.component;
   value.epoch = {message.run_id, message.epoch};
   value.incarnation = message.incarnation;
   value.index = message.index;
+  return value;
 }
 
 }  // namespace
 
 msg::TickDone to_wire(const TickDone& done, std::string& block) {
-  msg::TickDone message{};
-  identity_to_wire(done, message);
+  auto message = identity_to_wire<msg::TickDone>(done);
   if (done.published.size() > std::size(message.published))
     throw std::logic_error(done.component + " writes too many topics");
   message.published_count = static_cast<std::uint8_t>(done.published.size());
@@ -54,14 +57,12 @@ msg::TickDone to_wire(const TickDone& done, std::string& block) {
     message.consumed[i] = {done.consumed[i].topic, done.consumed[i].count};
   std::copy(done.output_hash.begin(), done.output_hash.end(), message.output_hash);
   message.end_of_run = done.end_of_run;
-  block = pack_checkpoint(done.state, done.written);
-  message.checkpoint = borrow(block);
+  message.checkpoint = borrow(block = pack_checkpoint(done.state, done.written));
   return message;
 }
 
 std::optional<TickDone> from_wire(const msg::TickDone& message) {
-  TickDone done;
-  identity_from_wire(message, done);
+  auto done = identity_from_wire<TickDone>(message);
   for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
     done.published.push_back({message.published[i].topic, message.published[i].count});
   }
@@ -111,17 +112,14 @@ Hello from_wire(const msg::Hello& message) {
 }
 
 msg::Resume to_wire(const Resume& resume, std::string& block) {
-  msg::Resume message{};
-  identity_to_wire(resume, message);
+  auto message = identity_to_wire<msg::Resume>(resume);
   message.seed = resume.seed;
-  block = pack_checkpoint(resume.state, resume.outputs);
-  message.checkpoint = borrow(block);
+  message.checkpoint = borrow(block = pack_checkpoint(resume.state, resume.outputs));
   return message;
 }
 
 std::optional<Resume> from_wire(const msg::Resume& message) {
-  Resume resume;
-  identity_from_wire(message, resume);
+  auto resume = identity_from_wire<Resume>(message);
   resume.seed = message.seed;
   if (!unpack_checkpoint(bytes_of(message.checkpoint), resume.state, resume.outputs)) return {};
   return resume;

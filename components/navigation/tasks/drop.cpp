@@ -11,9 +11,7 @@ namespace {
 
 enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten };
 
-struct DropState {
-  int phase = kApproach;
-  double phase_s = 0.0;
+struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;  ///< heading in M of the straight course over the zone
   bool course_fixed = false;
@@ -48,8 +46,7 @@ class Drop : public StatefulTask<DropState> {
 
  private:
   void enter(const TaskInput& input, int phase) {
-    state_.phase = phase;
-    state_.phase_s = 0.0;
+    state_.enter(phase);
     state_.from = input.X_MH;
   }
 

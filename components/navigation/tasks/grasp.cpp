@@ -11,9 +11,7 @@ namespace {
 
 enum Phase : int { kWrap, kSeat, kSqueeze, kCheck, kOpen };
 
-struct GraspState {
-  int phase = kWrap;
-  double phase_s = 0.0;
+struct GraspState : PhaseState {
   double seated_s = 0.0;
   int touching = 0;                                  ///< modules near the base that touched within touch_memory_s
   std::array<double, msg::kMaxModules> touched_s{};  ///< time since the last touch of each module
@@ -54,10 +52,6 @@ class Grasp : public StatefulTask<GraspState> {
   }
 
  private:
-  void enter(int phase) {
-    state_.phase = phase;
-    state_.phase_s = 0.0;
-  }
   static std::array<double, msg::kMaxJoints> open_u(const TaskInput& input, const Grip& grip) {
     return input.grip_sense.open_shape(grip.side, input.config.grip.base_angle_rad);
   }
@@ -78,7 +72,7 @@ class Grasp : public StatefulTask<GraspState> {
                                  : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
     wrap_round(input.config, input.grip_sense, gait, grip.side, speed_m_s, grip, output);
     state_.slid_m += speed_m_s * input.tick.dt_s();
-    if (input.motion_done && state_.phase_s > 0.2) enter(kSeat);
+    if (input.motion_done && state_.phase_s > 0.2) state_.enter(kSeat);
   }
 
   void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
@@ -88,9 +82,9 @@ class Grasp : public StatefulTask<GraspState> {
     if (input.grip_sense.apex_force_n(input.touches) >= config.seat_force_n) state_.seated_s += input.tick.dt_s();
     if (state_.seated_s >= config.seat_time_s) {
       state_.touched_s.fill(1e9);
-      enter(kSqueeze);
+      state_.enter(kSqueeze);
     } else if (state_.phase_s > config.seat_timeout_s) {
-      enter(kOpen);
+      state_.enter(kOpen);
     }
   }
 
@@ -117,12 +111,12 @@ class Grasp : public StatefulTask<GraspState> {
     if (!firm && !closed) return;
     if (!firm && ++state_.squeezes < config.squeeze_attempts) {
       state_.seated_s = 0.0;
-      enter(kSeat);
+      state_.enter(kSeat);
       return;
     }
     grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip.side);
     input.grip_sense.hold_starts(grip);
-    enter(kCheck);
+    state_.enter(kCheck);
   }
 
   void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
@@ -139,7 +133,7 @@ class Grasp : public StatefulTask<GraspState> {
       output.emit(msg::kEventObjectGrasped, grip.colour, grip.handle);
       output.succeed();
     } else {
-      enter(kOpen);
+      state_.enter(kOpen);
     }
   }
 

@@ -13,9 +13,7 @@ namespace {
 
 enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
 
-struct PregraspState {
-  int phase = kBendAway;
-  double phase_s = 0.0;
+struct PregraspState : PhaseState {
   double side = 1.0;        ///< +1: the object stays on the left
   double course_rad = 0.0;  ///< heading of the passing line in M
   Eigen::Vector2d p_MO{0.0, 0.0};
@@ -70,8 +68,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
 
  private:
   void enter(int phase) {
-    state_.phase = phase;
-    state_.phase_s = 0.0;
+    state_.enter(phase);
     state_.steering = {};
   }
 

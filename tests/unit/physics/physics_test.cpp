@@ -132,28 +132,26 @@ TEST(Physics, HoldsPostureWhenTheCommandIsStaleAndRelaxesLater) {
   EXPECT_EQ(mode_of(*run), GateMode::kRelaxed);
 }
 
-TEST(Physics, DoesNotObeyACommandWithNaNOrBeyondTheLimits) {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 2.5}) {
-    auto run = make_run([bad](std::int64_t, msg::JointCommand& command) {
-      command.position_rad[0] = 0.5;
-      command.position_rad[4] = bad;
-      return true;
-    });
-    run->advance(50);
-    EXPECT_EQ(mode_of(*run), GateMode::kHolding);
-    EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
-  }
-}
-
-TEST(Physics, DoesNotObeyACommandOfTheWrongSize) {
-  auto run = make_run([](std::int64_t, msg::JointCommand& command) {
-    command.joint_count = 22;
+/// Spoils a good command in every tick, and expects that the robot holds its posture.
+void expect_refused(const std::function<void(msg::JointCommand&)>& spoil) {
+  auto run = make_run([spoil](std::int64_t, msg::JointCommand& command) {
     command.position_rad[0] = 0.5;
+    spoil(command);
     return true;
   });
   run->advance(50);
   EXPECT_EQ(mode_of(*run), GateMode::kHolding);
   EXPECT_NEAR(run->latest(topics::kJointState)->position_rad[0], 0.0, 0.01);
+}
+
+TEST(Physics, DoesNotObeyACommandWithNaNOrBeyondTheLimits) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 2.5}) {
+    expect_refused([bad](msg::JointCommand& command) { command.position_rad[4] = bad; });
+  }
+}
+
+TEST(Physics, DoesNotObeyACommandOfTheWrongSize) {
+  expect_refused([](msg::JointCommand& command) { command.joint_count = 22; });
 }
 
 TEST(Physics, EqualRunsHaveEqualHashes) {

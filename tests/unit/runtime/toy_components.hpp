@@ -56,13 +56,19 @@ class ToyPlant : public Plant {
   Mixer mixer_;
 };
 
-/// Reads JointState, and writes two TaskEvents in each step: readers with an Events port must see both.
-class ToyNavigation : public StatefulComponent<Mixer> {
+/// A component whose state begins with its seed.
+class Toy : public StatefulComponent<Mixer> {
  public:
-  ToyNavigation(Wiring& wiring, const Setup& setup, Timing timing)
-      : joints_(wiring.latest(topics::kJointState)), events_(wiring.output(topics::kTaskEvent)), timing_(timing) {
-    state_.mix(setup.component_seed());
-  }
+  Toy(Wiring& wiring, const Setup& setup) : wiring_(wiring) { state_.mix(setup.component_seed()); }
+
+ protected:
+  Wiring& wiring_;
+};
+
+/// Reads JointState, and writes two TaskEvents in each step: readers with an Events port must see both.
+class ToyNavigation : public Toy {
+ public:
+  ToyNavigation(Wiring& wiring, const Setup& setup, Timing timing) : Toy(wiring, setup), timing_(timing) {}
   [[nodiscard]] Timing timing() const override { return timing_; }
   void step(const Tick& tick) override {
     state_.mix(joints_->position_rad[0]);
@@ -76,20 +82,15 @@ class ToyNavigation : public StatefulComponent<Mixer> {
   }
 
  private:
-  Latest<msg::JointState> joints_;
-  Output<msg::TaskEvent> events_;
+  Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
+  Output<msg::TaskEvent> events_ = wiring_.output(topics::kTaskEvent);
   Timing timing_;
 };
 
 /// Reads JointState and every TaskEvent, and writes JointCommand.
-class ToyControl : public StatefulComponent<Mixer> {
+class ToyControl : public Toy {
  public:
-  ToyControl(Wiring& wiring, const Setup& setup)
-      : joints_(wiring.latest(topics::kJointState)),
-        events_(wiring.events(topics::kTaskEvent)),
-        command_(wiring.output(topics::kJointCommand)) {
-    state_.mix(setup.component_seed());
-  }
+  using Toy::Toy;
   void step(const Tick&) override {
     state_.mix(joints_->position_rad[0]);
     for (const auto& event : events_) state_.mix(event.goal_id);
@@ -100,20 +101,15 @@ class ToyControl : public StatefulComponent<Mixer> {
   }
 
  private:
-  Latest<msg::JointState> joints_;
-  Events<msg::TaskEvent> events_;
-  Output<msg::JointCommand> command_;
+  Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
+  Events<msg::TaskEvent> events_ = wiring_.events(topics::kTaskEvent);
+  Output<msg::JointCommand> command_ = wiring_.output(topics::kJointCommand);
 };
 
 /// Reads the outputs of navigation and control, and writes a topic that no other toy reads.
-class ToyPlanner : public StatefulComponent<Mixer> {
+class ToyPlanner : public Toy {
  public:
-  ToyPlanner(Wiring& wiring, const Setup& setup)
-      : events_(wiring.events(topics::kTaskEvent)),
-        command_(wiring.latest(topics::kJointCommand)),
-        mission_(wiring.output(topics::kMissionStatus)) {
-    state_.mix(setup.component_seed());
-  }
+  using Toy::Toy;
   [[nodiscard]] Timing timing() const override { return {1, 1}; }
   void step(const Tick&) override {
     for (const auto& event : events_) state_.mix(event.goal_id);
@@ -124,9 +120,9 @@ class ToyPlanner : public StatefulComponent<Mixer> {
   }
 
  private:
-  Events<msg::TaskEvent> events_;
-  Latest<msg::JointCommand> command_;
-  Output<msg::MissionStatus> mission_;
+  Events<msg::TaskEvent> events_ = wiring_.events(topics::kTaskEvent);
+  Latest<msg::JointCommand> command_ = wiring_.latest(topics::kJointCommand);
+  Output<msg::MissionStatus> mission_ = wiring_.output(topics::kMissionStatus);
 };
 
 inline ComponentFactory plant() {
