@@ -14,6 +14,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/parameters.hpp"
+#include "client/run_registry.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
@@ -47,7 +48,7 @@ void report_silent(const ParameterView& view) {
 }
 
 int list(const Options& options) {
-  const dds::Domain domain(chosen_domain(options.view));
+  const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
   bool begins = false;  // any of them with the prefix
@@ -77,7 +78,7 @@ int list(const Options& options) {
 }
 
 int get(const Options& options) {
-  const dds::Domain domain(chosen_domain(options.view));
+  const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
@@ -113,7 +114,8 @@ int set(const Options& options) {
       return exit_status::kUsage;
     }
   }
-  RequestClient client(chosen_domain(options.view), operator_options(unique_source("param"), 0ms, /*detached=*/true));
+  RequestClient client(find_domain(options.view.domain),
+                       operator_options(unique_source("param"), 0ms, /*detached=*/true));
   ParameterSetter setter(client);
   if (const int failed = connect(client, "param"); failed != exit_status::kOk) return failed;
   Json json = Json::array();

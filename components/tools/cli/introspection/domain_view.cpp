@@ -32,12 +32,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
   app.add_flag("--json", options.json, "print JSON instead of text, for scripts");
 }
 
-std::uint32_t chosen_domain(const ViewOptions& options) {
-  return options.domain ? *options.domain : find_run(std::nullopt).domain;
-}
-
 DomainView::DomainView(const ViewOptions& options)
-    : number_(chosen_domain(options)), domain_(number_), discovery_(domain_.participant()) {}
+    : number_(find_domain(options.domain)), domain_(number_), discovery_(domain_.participant()) {}
 
 bool DomainView::settle(std::chrono::milliseconds bound) const {
   const auto end = Clock::now() + bound;

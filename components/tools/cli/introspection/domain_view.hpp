@@ -36,9 +36,6 @@ struct Member {
   std::optional<msg::ComponentStatus> status;
 };
 
-/// The domain that the options name, or that of the only run there is. Throws CommandError.
-std::uint32_t chosen_domain(const ViewOptions& options);
-
 class DomainView {
  public:
   /// Joins the domain that the options name, or that of the only run there is. Throws CommandError or dds::Error.
