@@ -1,6 +1,7 @@
 // The commands topic, node and status with real processes: a run of toy components, and programs of other projects.
 #include <signal.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "cyclone/domain.hpp"
@@ -132,8 +133,11 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   ASSERT_TRUE(eventually([&] {
     return command({"topic", "list", "--json"}) == 0 && output_.find("joint_state") != std::string::npos;
   })) << output_;
-  const json sample = json_of({"topic", "echo", "joint_state", "--count", "1"});
-  EXPECT_GT(sample["header"]["tick"], 0) << output_;
+  json sample;
+  EXPECT_TRUE(eventually([&] {  // the first sample may be that of tick 0
+    sample = json_of({"topic", "echo", "joint_state", "--count", "1"});
+    return sample.is_object() && sample["header"]["tick"] > 0;
+  })) << output_;
   EXPECT_EQ(sample["robot_id"], 1);
 
   const json nodes = json_of({"node", "list"});
@@ -147,13 +151,17 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   const json node = json_of({"node", "info", "control"});
   EXPECT_EQ(node[0]["node"], "navigation,control");
 
-  const json status = json_of({"status"});
+  json status;
+  EXPECT_TRUE(eventually([&] {  // after a delay the run makes up for lost ticks, faster than its 50 Hz
+    status = json_of({"status"});
+    const auto& all = status["components"];
+    return std::all_of(all.begin(), all.end(), [](const json& component) {
+      return component["rate_hz"].is_number() && component["rate_hz"] > 0.0 && component["rate_hz"] < 60.0;
+    });
+  })) << status;
   EXPECT_EQ(status["components"].size(), 3u);
   for (const auto& component : status["components"]) {
     EXPECT_EQ(component["state"], "running") << component;
-    if (!component["rate_hz"].is_null()) {
-      EXPECT_LT(component["rate_hz"], 60.0);
-    }
     EXPECT_GE(component["step_time_p99_us"], component["step_time_p50_us"]);
   }
   EXPECT_EQ(command({"status"}), 0) << output_;
