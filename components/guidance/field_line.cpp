@@ -24,7 +24,7 @@ void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposu
     const Eigen::Vector2d z = to_parent(exposure, p_G);
     const Eigen::Vector2d p = to_parent(filter_.pose(), z);
 
-    // The piece of the known line around the point.
+    // The mapped points near this point give the position and the direction of the line here.
     const double reach_m = std::max(3.0 * config_.line_spacing_m, config_.line_correct_gate_m);
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();
     double nearest_m = 1e9;

@@ -64,7 +64,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
   const double distance_m = blob.range_m + radius_m;
   const Eigen::Vector2d sight = along(blob.bearing_rad), across = left(blob.bearing_rad);
   const Eigen::Vector2d z = to_parent(exposure, distance_m * sight);
-  // The centre of an object that the border of the image cuts lies somewhere else.
+  // If the image's border cuts the object, the blob's centre is not the object's centre.
   const double range_sd = config_.range_sd_m + config_.range_sd_1_m * distance_m * distance_m;
   const double across_sd = config_.bearing_sd_rad * distance_m + 0.01 + (whole ? 0.0 : radius_m);
   Eigen::Matrix2d noise =
@@ -79,7 +79,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
     if (landmark.colour != blob.colour || landmark.kind != blob.kind) continue;
     const double apart_m = (position(landmark) - p_M).norm();
     if (landmark.carried) {
-      if (apart_m < 0.3) return;  // the object that the body holds is no landmark
+      if (apart_m < 0.3) return;  // this is the object that the body holds: it creates no landmark
       continue;
     }
     if (used[i] || landmark.slot < 0) continue;
@@ -98,7 +98,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
     Landmark& moved = state_.landmarks[nearest];
     used[nearest] = true;
     if (!whole || ++moved.strays < config_.confirm) return;
-    // The object was pushed: it gets a new place and keeps its handle.
+    // The object has been pushed: its landmark gets a new place and keeps its handle.
     release_slot(moved);
     moved.slot = static_cast<std::int32_t>(filter_.landmark_count());
     filter_.add(z, noise);
@@ -125,7 +125,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
 }
 
 void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick) {
-  // The blob is too near for a range. It belongs to the landmark of its colour that is near, in its direction.
+  // The blob is too near for a range. It belongs to a landmark of its colour that is nearby and in the same direction.
   for (Landmark& landmark : state_.landmarks) {
     if (landmark.colour != blob.colour || landmark.kind != blob.kind || landmark.carried) continue;
     const Eigen::Vector2d p = exposure.to_local(filter_.pose().to_local(position(landmark)));

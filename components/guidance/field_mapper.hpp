@@ -15,8 +15,8 @@ using BodyChain = std::vector<PlanarPose>;
 /// [m] radius of an object whose width has not been measured.
 inline constexpr double kDefaultRadius_m = 0.085;
 
-/// Works on a FieldState and a PoseFilter that the caller owns. `exposure` is the pose of the head at the exposure of
-/// the image in the frame of the head now, so that neither motion nor delay distorts the map.
+/// Works on a FieldState and a PoseFilter that the caller owns. `exposure` is the pose that the head had when the image
+/// was exposed, in the head's present frame. With it, neither motion nor delay distorts the map.
 class FieldMapper {
  public:
   FieldMapper(FieldState& state, PoseFilter& filter, const RobotModel& model, const GuidanceConfig& config);
@@ -36,17 +36,18 @@ class FieldMapper {
  private:
   [[nodiscard]] Eigen::Vector2d position(const Landmark& landmark) const;
   [[nodiscard]] double sd(const Landmark& landmark) const;
-  /// A blob with a range: updates, moves or creates its landmark. `used`: landmarks that have a blob in this image.
+  /// Updates, moves or creates the landmark of a blob with a range. `used` marks the landmarks that already have a blob
+  /// in this image.
   void place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used);
-  /// A blob without a range.
+  /// Refreshes the time at which the landmark of a blob without a range was seen.
   void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);
   /// Takes the landmark out of the pose filter and keeps its place and standard deviation in the landmark itself.
   void release_slot(Landmark& landmark);
-  /// Whether a point touches another module than `module` or its neighbours.
+  /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
-  /// [m] place in the U of the centre of an object of this radius, in the frame of the head.
+  /// [m] position of the centre of an object of this radius that lies in the base of the U, in the head's frame.
   [[nodiscard]] Eigen::Vector2d base_of_u(const BodyChain& chain, double radius_m) const;
 
   FieldState& state_;

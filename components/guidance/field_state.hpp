@@ -9,16 +9,16 @@
 
 namespace constrictor::guidance {
 
-/// An object or zone. Its place is in the pose filter; while it is carried, its place is here.
+/// An object or zone. The pose filter keeps its place; while the robot carries the object, this struct keeps its place.
 struct Landmark {
   std::uint16_t handle = 0;
   std::uint8_t colour = 0;
   std::uint8_t kind = 0;
-  std::int32_t slot = -1;                   ///< number of the landmark in the pose filter; -1: none
-  double x_m = 0.0, y_m = 0.0, sd_m = 0.0;  ///< in M, while slot is -1
+  std::int32_t slot = -1;  ///< number of the landmark in the pose filter; -1: the filter does not keep it
+  double x_m = 0.0, y_m = 0.0, sd_m = 0.0;  ///< position in M and its standard deviation; valid while slot is -1
   double radius_m = 0.0;                    ///< running mean; 0: unknown
-  std::int32_t hits = 0;                    ///< number of percepts that belonged to it, at most 1000
-  std::int32_t strays = 0;                  ///< number of successive percepts that showed it at another place
+  std::int32_t hits = 0;                    ///< number of percepts of this landmark; counting stops at 1000
+  std::int32_t strays = 0;                  ///< number of successive percepts that showed the landmark at another place
   bool felt = false;
   bool carried = false;
   std::int64_t last_seen_tick = 0;
@@ -28,7 +28,7 @@ struct Landmark {
   }
 };
 
-/// A contact with neither the ground nor the robot itself, in M.
+/// A contact of the robot with something other than the ground and itself. Positions are in M.
 struct Felt {
   double x_m = 0.0, y_m = 0.0, force_n = 0.0;
   std::uint8_t module_index = 0;

@@ -7,7 +7,7 @@
 namespace constrictor::guidance {
 namespace {
 
-constexpr double kPushed_m = 0.04;  // standard deviation by which a touched object may slide in a tick
+constexpr double kPushed_m = 0.04;  // standard deviation of the distance that a touched object may slide in a tick
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     if (is_self(chain, module, p)) continue;
     const Eigen::Vector2d p_M = to_parent(filter_.pose(), p);
 
-    // A contact that lasts is kept as one entry.
+    // A contact that lasts several ticks stays one entry.
     const auto same = std::find_if(state_.felt.begin(), state_.felt.end(), [&](const Felt& felt) {
       return felt.module_index == module && std::hypot(felt.x_m - p_M.x(), felt.y_m - p_M.y()) < 0.04;
     });
@@ -59,7 +59,7 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     }
     if (nearest == nullptr) continue;
     nearest->felt = true;
-    // A pushed object slides: from now on, percepts of it must move the landmark, not the pose.
+    // The touched object may have been pushed. Later percepts of it must correct the landmark, not the robot's pose.
     if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
   }
 }
@@ -85,7 +85,8 @@ void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std
   const auto held =
       std::find_if(state_.landmarks.begin(), state_.landmarks.end(), [](const Landmark& l) { return l.carried; });
   if (task.carrying && !state_.carrying && held == state_.landmarks.end()) {
-    // The held object is the one that the task names, else the nearest one of its colour, else the nearest one.
+    // The held object is the object that the task names. If the task names none, it is the nearest object of the task's
+    // colour, or of any colour if the task has none.
     const Eigen::Vector2d base = to_parent(filter_.pose(), base_of_u(chain, kDefaultRadius_m));
     Landmark* best = nullptr;
     double best_m = 1e9;
@@ -116,7 +117,7 @@ void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std
       landmark.y_m = p_M.y();
       landmark.sd_m = 0.05;
     } else {
-      // The body let go: from now on the object stays where the base was.
+      // The body has released the object: the object stays where the base of the U was.
       landmark.carried = false;
       landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
       filter_.add(base, 0.06 * 0.06 * Eigen::Matrix2d::Identity());

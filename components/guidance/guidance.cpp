@@ -27,14 +27,14 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   input.yaw_rad = yaw_of(imu_->orientation);
   if (!std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
-  // A robot that has rolled over cannot distinguish ground and wall. Then only the motion of the body counts.
+  // A robot that has rolled over cannot distinguish ground and wall: only the motion of the body is used.
   const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&
       body_.contacts->module_count >= model_.module_count) {
     input.load_n.resize(model_.module_count);
     for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = body_.contacts->force_n[i].z;
-    // Pushes from the side. Touches between the robot's own modules cancel in the sum.
+    // Sum of the sideways pushes. Forces between the robot's own modules cancel in the sum.
     const int count = std::min<int>(body_.contacts->contact_count, msg::kMaxContacts);
     for (int i = 0; i < count; ++i) {
       const msg::Contact& contact = body_.contacts->contacts[i];
@@ -86,7 +86,7 @@ double Guidance::speed_m_s(double period_s) const {
   const auto from = std::lower_bound(state_.track_tick.begin(), state_.track_tick.end(), newest - ticks);
   const auto i = static_cast<std::size_t>(from - state_.track_tick.begin());
   if (newest == state_.track_tick[i]) return 0.0;
-  // Measured along the mean course, so that the sway of the head adds nothing.
+  // The speed is measured along the mean course, so that the sway of the head does not count.
   Eigen::Vector2d course = Eigen::Vector2d::Zero();
   for (std::size_t k = i; k < state_.track_tick.size(); ++k) course += along(state_.track_yaw_rad[k]);
   if (course.norm() < 1e-6) return 0.0;

@@ -15,7 +15,7 @@ struct GuidanceState {
   std::int64_t last_tick = 0;  ///< tick of the joints and of the IMU sample that were used last
   guidance::OdometryState odometry;
   guidance::PoseFilterState filter;
-  /// Dead reckoning alone, by tick, the oldest first. It relates the poses of different ticks to each other,
+  /// Poses from dead reckoning alone, one per tick, the oldest first. They give the motion between two ticks,
   /// independently of later corrections by the filter.
   std::vector<std::int64_t> track_tick;
   std::vector<double> track_x_m, track_y_m, track_yaw_rad;
@@ -31,8 +31,8 @@ struct GuidanceState {
 
 /// Estimates the pose of the head in M from the motion of the body (odometry on a skin that hardly slips sideways), the
 /// yaw of the IMU, and recognised landmarks; keeps the map. Publishes the pose in every tick. Before the first joint
-/// and IMU samples it is the start pose with zero covariance. Without new plausible joint and IMU samples the pose
-/// stays; the next samples then count for the whole time that has passed.
+/// and IMU samples it is the start pose with zero covariance. Without new plausible joint and IMU samples the pose does
+/// not change; the next samples then give the motion over the whole time since the last ones.
 class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);
@@ -45,7 +45,7 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   void dead_reckon(const Tick& tick, const guidance::BodyChain& chain);
   /// Appends a step to the track of dead-reckoned poses.
   void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
-  /// Pose of the head at an earlier tick, in the frame of the head now.
+  /// Pose of the head at an earlier tick, in the head's present frame.
   [[nodiscard]] PlanarPose past(std::int64_t tick) const;
   [[nodiscard]] double speed_m_s(double period_s) const;
 

@@ -18,7 +18,7 @@ constexpr int kIterations = 15;
 struct Slider {
   Eigen::Vector2d direction;
   double own_m_s;  ///< speed in that direction relative to the centre of mass
-  double limit_n;  ///< Coulomb's
+  double limit_n;  ///< Coulomb friction force at which the module slides
 };
 
 Eigen::Vector2d centre_of(const std::vector<PlanarPose>& poses) {
@@ -53,7 +53,8 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
   result.turn_rad = wrap_angle_by_shift(input.yaw_rad - state.yaw_rad);
   state.yaw_rad = input.yaw_rad;
 
-  // The shapes before and after the step, in the direction of the head in the middle of the step.
+  // The shapes of the body before and after the step. Their x axis is the heading of the head in the middle of the
+  // step.
   const double half_turn = 0.5 * result.turn_rad;
   const auto before = planar_module_poses(model, before_rad, {{0.0, 0.0}, -half_turn});
   const auto after = planar_module_poses(model, state.joint_rad, {{0.0, 0.0}, half_turn});
@@ -76,7 +77,7 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     sliders.push_back({a, own.dot(a), load_n * model.friction_along * config.friction_along_share});
   }
 
-  // The velocity without friction, then with friction.
+  // First compute the velocity without friction, then the velocity with friction.
   const double inertia = mass_kg / input.dt_s;
   const Eigen::Vector2d free = turned({state.vx_m_s, state.vy_m_s}, -half_turn) + input.push_n / inertia;
   Eigen::Vector2d velocity = free;

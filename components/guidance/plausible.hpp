@@ -1,5 +1,5 @@
-// Rejects messages that no robot can produce. The estimates of guidance integrate their inputs: a single absurd value,
-// finite or not, would stay in them for ever.
+// Rejects messages that no robot can produce. Guidance integrates its inputs: a single absurd value, finite or not,
+// would spoil its estimates for the rest of the run.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace constrictor::guidance {
 
-/// Whether every value lies within -bound to bound. NaN does not.
+/// True if every value lies from -bound to bound. False if a value is NaN.
 inline bool all_within(const double* values, std::size_t count, double bound) {
   return std::all_of(values, values + count, [bound](double v) { return std::abs(v) <= bound; });
 }
 
-// Each function returns the field that is wrong and what is accepted there; null if the message is plausible.
+// Each function returns a text that names the wrong field and the accepted values; null if the message is plausible.
 
 /// The robot has `count` joints. No angle may exceed a full turn, no rate the speed of any servo.
 inline const char* implausible(const msg::JointState& joints, std::size_t count) {
@@ -48,7 +48,7 @@ inline const char* implausible(const msg::ImuState& imu) {
   return square > 0.5 && square < 2.0 ? nullptr : "orientation: accepted a unit quaternion";
 }
 
-/// NaN means "unknown". Known values lie within sight; close to the horizon, distances are large and inaccurate.
+/// NaN means "unknown". Known distances are limited; close to the horizon, distances are large and inaccurate.
 inline bool in_sight(double value) { return std::isnan(value) || std::abs(value) <= 1e4; }
 
 inline const char* implausible(const msg::LinePercept& line) {

@@ -10,8 +10,8 @@
 
 namespace constrictor::guidance {
 
-/// A point of the frame at `pose` in the parent frame. Like PlanarPose::to_parent, but the sum is rounded in another
-/// order, on which the hashes of recorded runs depend.
+/// Transforms a point from the frame at `pose` to the parent frame, like PlanarPose::to_parent. The order of its
+/// additions differs and must stay, because the hashes of recorded runs depend on the rounding.
 inline Eigen::Vector2d to_parent(const PlanarPose& pose, const Eigen::Vector2d& p) {
   return pose.p + turned(p, pose.yaw_rad);
 }
@@ -50,8 +50,8 @@ class PoseFilter {
   /// Increases the variance of a landmark that may have been moved by `variance_m2`, up to 0.25 m2.
   void loosen(std::size_t index, double variance_m2);
 
-  /// The head lies `residual_m` off a known line with unit normal `normal` (in M), measured at a point `arm_m` (in M)
-  /// from the head: pulls the pose so that the residual vanishes.
+  /// Corrects the pose by a known line with unit normal `normal` (in M): a point of it that was seen at `arm_m` (in M)
+  /// from the head is `residual_m` away from the line. The correction reduces this residual.
   void observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m, double variance_m2);
 
  private:

@@ -1,4 +1,5 @@
-// Included before the sources that fastddsgen 2.3 generates: they use constants in array bounds without the namespace.
+// Included before the sources that fastddsgen 2.3 generates. These sources use constants as array bounds, but omit the
+// namespace of the constants.
 #pragma once
 namespace constrictor {
 namespace msg {}

@@ -168,15 +168,15 @@ class Planner {
     pose_->get_subscription_matched_status(writers);
     return over_ || (now_s_ >= 0 && writers.current_count == 0);
   }
-  /// True once `input` has been discovered. It does not receive requests that were written before.
+  /// True once `input` has been discovered. `input` does not receive requests that were written earlier.
   bool connected() const {
     eprosima::fastdds::dds::PublicationMatchedStatus readers;
     requests_->get_publication_matched_status(readers);
     return readers.current_count > 0;
   }
 
-  /// This planner's own number of a goal; 0: a goal of another source. The id on task/event and task/status is
-  /// (level << 48) + (number of the source << 32) + own number.
+  /// The number that this planner gave to a goal; 0 if the goal belongs to another source. The goal id on task/event
+  /// and task/status is (level << 48) + (number of the source << 32) + this number.
   std::uint64_t own(std::uint64_t goal) const {
     return mine_ && goal >> 48 == msg::kAuthorityExternal ? goal & 0xffffffffu : 0;
   }
@@ -230,7 +230,7 @@ class Planner {
   eprosima::fastdds::dds::DataReader* pose_ = nullptr;
   struct Unanswered {
     msg::Request request;
-    Clock::time_point written;  ///< last time
+    Clock::time_point written;  ///< time of the last write
   };
   std::map<std::uint64_t, Unanswered> unanswered_;  // by number
   std::uint64_t sequence_ = 0;

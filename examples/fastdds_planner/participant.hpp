@@ -30,10 +30,12 @@ T* made(T* entity, const std::string& what) {
   return entity;
 }
 
-/// A participant with writers, and with readers whose samples `wait` delivers.
+/// A participant with writers and readers. `wait` passes the samples that have arrived to the functions given to
+/// `read`.
 class Participant {
  public:
-  /// `domain` as `constrictor run` prints it. `address`: of the interface on which the robot's processes are.
+  /// `domain` is the number that `constrictor run` prints. `address` is the address of the network interface on which
+  /// the robot's processes communicate.
   Participant(std::uint32_t domain, const std::string& name, const std::string& address = "127.0.0.1") {
     namespace rtps = eprosima::fastrtps::rtps;
     fdds::DomainParticipantQos qos;
@@ -43,7 +45,8 @@ class Participant {
     qos.transport().use_builtin_transports = false;
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList.push_back(address);
-    udp->maxInitialPeersRange = 120;  // without multicast a participant is found by its number; a run has about twelve
+    // Without multicast, Fast DDS finds only participants whose number is below this. A run has about twelve.
+    udp->maxInitialPeersRange = 120;
     qos.transport().user_transports.push_back(udp);
     rtps::Locator_t peer;
     peer.kind = LOCATOR_KIND_UDPv4;
@@ -61,9 +64,9 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Calls `use` for each sample of a topic. `PubSubType` is fastddsgen's class for the message. The reader keeps
-  /// `depth` samples until `wait` takes them. `every`: reliable, and with the samples that writers keep for late
-  /// readers.
+  /// Creates a reader of a topic; `wait` calls `use` for each of its samples. `PubSubType` is fastddsgen's class for
+  /// the message. The reader keeps the newest `depth` samples until `wait` takes them. If `every` is true, the reader
+  /// is reliable and also receives the samples that writers keep for late readers.
   template <class PubSubType, class Use>
   fdds::DataReader* read(const std::string& topic, bool every, int depth, Use use) {
     fdds::DataReaderQos qos;
@@ -85,7 +88,8 @@ class Participant {
     return reader;
   }
 
-  /// A reliable writer. `lease`: `input` regards the source as dead half a second after the end of this process.
+  /// Creates a reliable writer. If `lease` is true, `input` regards the source as dead half a second after the end of
+  /// this process.
   template <class PubSubType>
   fdds::DataWriter* write(const std::string& topic, int depth, bool lease = true) {
     fdds::DataWriterQos qos;
@@ -103,7 +107,8 @@ class Participant {
     return made(publisher_->create_datawriter(find_topic<PubSubType>(topic), qos), "a writer of " + topic);
   }
 
-  /// Waits for samples, at most `bound_s` seconds, and delivers those of every reader.
+  /// Waits at most `bound_s` seconds for a sample. Then takes the samples of all readers and calls their `use`
+  /// functions.
   void wait(double bound_s) {
     fdds::ConditionSeq triggered;
     wait_set_.wait(triggered, {static_cast<std::int32_t>(bound_s),

@@ -121,7 +121,7 @@ class Planner {
   /// True if the run has ended, or its processes are dead.
   [[nodiscard]] bool gone() const { return over_ || (now_s_ >= 0 && pose_.writers() == 0); }
 
-  /// This client's own number of a goal, by which the logic knows its goals; 0: a goal of another source.
+  /// The number that this client gave to a goal; `logic_` uses it. 0 if the goal belongs to another source.
   [[nodiscard]] std::uint64_t own(std::uint64_t goal) const {
     return client_.holds_authority() && constrictor::goal_level(goal) == msg::kAuthorityExternal
                ? constrictor::goal_number(goal)
@@ -147,7 +147,7 @@ class Planner {
   double at_s_;
   std::size_t wait_for_, objects_count_;
   constrictor::RequestClient client_;
-  std::vector<std::uint64_t> numbers_;  ///< of requests that are not answered yet
+  std::vector<std::uint64_t> numbers_;  ///< numbers of the requests that are not answered yet
   retrieval::Retrieval logic_;
   Reader<msg::RobotPose> pose_;
   Reader<msg::LinePercept> line_;

@@ -9,7 +9,7 @@ namespace {
 constexpr int kSure = 3;               // consecutive images that prove that something is in view
 constexpr double kObjectNear_m = 1.6;  // objects nearer than this are approached
 constexpr double kZoneNear_m = 1.7;    // zones nearer than this are near enough for a drop
-constexpr double kAfterEnd_s = 8.0;    // just after the end of the line, only its last piece can be in view
+constexpr double kAfterEnd_s = 8.0;    // for this long after the end of the line, only its last piece can be in view
 
 }  // namespace
 
@@ -151,7 +151,7 @@ void Retrieval::follow_senses() {
   switch (stage_) {
     case kLook:
       if (object) return enter(kTrack);
-      if (line && may_follow()) return enter(kFollow);  // else the look round turns to the wanted direction
+      if (line && may_follow()) return enter(kFollow);  // otherwise the robot turns to the wanted direction
       break;
     case kFollow:
       if (object) return enter(kTrack);

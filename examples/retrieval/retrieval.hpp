@@ -14,10 +14,10 @@
 namespace retrieval {
 
 inline constexpr double kPi = 3.14159265358979323846;
-/// Angle [rad] between course and wanted direction up to which they agree.
+/// Largest angle [rad] between course and wanted direction at which the course is accepted.
 inline constexpr double kAligned_rad = 1.0;
 
-/// The same angle in [-pi, pi].
+/// The equivalent angle in [-pi, pi].
 inline double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * kPi); }
 
 // The constants of idl/constrictor/task.idl that the logic needs.
@@ -71,9 +71,9 @@ struct GoalEvent {
 };
 /// The task to start next (a Request of kind task).
 struct Order {
-  std::uint64_t goal = 0;  ///< own number, from 1
+  std::uint64_t goal = 0;  ///< this planner's own number of the goal, from 1
   std::uint8_t task = kNoTask, line_colour = 0, object_colour = 0, zone_colour = 0, direction = 0;
-  double timeout_s = 0;                         ///< [s] of rotate; 0: none
+  double timeout_s = 0;                         ///< [s] time limit of rotate; 0: no limit
   std::vector<std::pair<double, double>> path;  ///< [m] of follow_path, in the map; at most 64 points
 };
 
@@ -93,7 +93,7 @@ class Retrieval {
 
   /// Continues the mission from the present state of the world. To be called when this planner has gained authority.
   void take_over(double time_s);
-  /// The order that replaces the present one; empty: the present one goes on.
+  /// The order that replaces the present order; empty if the present order goes on.
   std::optional<Order> decide(double time_s);
 
   [[nodiscard]] bool done() const { return remaining_.empty(); }
@@ -117,18 +117,20 @@ class Retrieval {
   void follow_senses();
   void follow_time();
   [[nodiscard]] const TrailPoint* nearest_trail_point(double x_m, double y_m) const;
-  /// [rad] Heading in which the robot moves when it drives forwards. After a turn on the spot the body is curled up and
-  /// points elsewhere than the head.
+  /// [rad] Heading in which the robot moves when it drives forwards. It differs from the head's heading after a turn on
+  /// the spot, because the body is then curled up.
   [[nodiscard]] double course_rad() const { return loaded() ? pose_.yaw_rad : pose_.body_yaw_rad; }
-  /// [rad] From the course to the wanted direction along the line, positive: left; empty: the line here is unknown.
+  /// [rad] Angle from the course to the wanted direction along the line, positive to the left; empty if the line is not
+  /// known here.
   [[nodiscard]] std::optional<double> off_line_rad() const;
-  /// [rad] From the course to the remembered place of the object or zone, else to the line, positive: left.
+  /// [rad] Angle from the course to the remembered place of the object or zone, positive to the left. Without such a
+  /// place: angle to the line.
   [[nodiscard]] std::optional<double> to_turn_rad() const;
   [[nodiscard]] bool has_turned() const;
   [[nodiscard]] bool may_follow() const;
   Order order_of_stage();
   void look_round(Order& order);
-  /// [m] A path from the robot to the remembered line and along it in the wanted direction; empty: unknown.
+  /// [m] A path from the robot to the remembered line and along it in the wanted direction; empty if no line is known.
   [[nodiscard]] std::vector<std::pair<double, double>> way_back() const;
 
   std::vector<std::uint8_t> remaining_;
@@ -136,11 +138,11 @@ class Retrieval {
   Pose pose_;
   GoalStatus status_;
   Line line_;
-  std::vector<TrailPoint> trail_;  ///< the line, with the direction that leads to the objects
+  std::vector<TrailPoint> trail_;  ///< points of the line, with the direction that leads to the objects
   std::map<std::pair<std::uint8_t, bool>, std::pair<double, double>>
-      places_;                     ///< [m] last place in the map, by (colour, is a zone)
+      places_;                     ///< [m] last known place in the map, by (colour, whether it is a zone)
   std::vector<GoalEvent> events_;  ///< since the last decide()
-  std::uint8_t held_ = 0;          ///< colour of the object that was grasped and not dropped
+  std::uint8_t held_ = 0;          ///< colour of the object that the robot holds
   Stage stage_ = kLook;
   double now_s_ = 0, since_s_ = 0, asked_s_ = 0, line_end_s_ = -1e9, differs_since_s_ = 0;
   bool asked_ = true;  ///< there are no orders before take_over()

@@ -1,4 +1,4 @@
-// The retrieval logic's memory of the line, and the directions to which the robot turns because of this memory.
+// The part of the retrieval logic that remembers the line and computes from it the directions to which the robot turns.
 #include <algorithm>
 #include <cmath>
 

@@ -22,8 +22,8 @@ void PerturbationScript::apply(World& world, double time_s) {
                                                      : time_s >= perturbation.at_s;
       if (due) began_s_[i] = time_s;
     }
-    // The comparison is false if the perturbation has not begun (NaN). The small time prevents that rounding adds a
-    // tick.
+    // If the perturbation has not begun, its time is NaN and the comparison is false. The subtracted small time
+    // prevents a rounding error from adding a tick.
     if (time_s - began_s_[i] < perturbation.duration_s - 1e-9)
       world.apply_force(perturbation.object, perturbation.force_n);
   }

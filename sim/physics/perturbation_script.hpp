@@ -18,7 +18,7 @@ class PerturbationScript {
  private:
   std::vector<ScenarioPerturbation> perturbations_;
   std::vector<Eigen::Vector3d> start_m_;  ///< position of each object at the start, in W
-  std::vector<double> began_s_;           ///< when each perturbation began; NaN: not yet
+  std::vector<double> began_s_;           ///< [s] time at which each perturbation began; NaN: it has not begun
 };
 
 }  // namespace constrictor

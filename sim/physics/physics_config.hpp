@@ -34,7 +34,8 @@ struct PhysicsConfig : ParameterSet {
           "Greatest velocity with which a contact is corrected"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "At a joint only the front module touches the ground. The solver is a third faster, the gait 1.4 %")};
+          "At a joint only the front module touches the ground: the solver is a third faster, and the gait 1.4 % "
+          "faster")};
   GateLimits command{
       add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
           kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
@@ -42,11 +43,11 @@ struct PhysicsConfig : ParameterSet {
           kAtStart, "After this time without an acceptable command the joints relax")};
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
-  /// [s] the period as the run counts it, in whole nanoseconds.
+  /// [s] the period of the run's ticks: `period_s` rounded to whole nanoseconds.
   [[nodiscard]] double period_s() const { return static_cast<double>(period_ns()) * 1e-9; }
 
-  /// Checks that a tick is a whole number of steps; otherwise the time of the world would drift from the ticks. Throws
-  /// ConfigurationError.
+  /// Checks that a tick is a whole number of solver steps; otherwise the world's time would drift from that of the
+  /// ticks. Throws ConfigurationError.
   void complete(const Configuration& root) const {
     const double steps = control_period_s / solver.step_s;
     if (steps >= 0.5 && std::abs(steps - std::round(steps)) <= 1e-6) return;

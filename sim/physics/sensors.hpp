@@ -9,7 +9,7 @@
 
 namespace constrictor {
 
-/// Each sensor has its own random stream. Rates of joints have no noise.
+/// Each sensor has its own random stream. Measured joint rates have no noise.
 class Sensors {
  public:
   /// `seed` is Setup::component_seed(). If `noise` is false, every reading is exact.
@@ -19,8 +19,8 @@ class Sensors {
   /// Fills ContactState and TouchedState in the same order. If there are more contacts than a message can hold, the
   /// weakest ones are left out.
   void contacts(const World& world, msg::ContactState& felt, msg::TouchedState& touched);
-  /// `elapsed_s` is the time since the previous reading; the drift of the yaw grows with its square root. The yaw is
-  /// relative to the first reading.
+  /// `elapsed_s` is the time since the previous reading: the yaw drifts by a random step that is proportional to its
+  /// square root. The yaw is relative to the first reading.
   [[nodiscard]] msg::ImuState imu(const World& world, double elapsed_s);
 
  private:

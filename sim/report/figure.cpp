@@ -20,7 +20,7 @@ constexpr int kGap = 10;
 constexpr int kPanelHeight = 180;
 constexpr std::array<int, 5> kColumnWidths{150, 320, 240, 240, 362};  // caption, scene, camera, processed, torque
 constexpr int kHeaderHeight = 104;
-constexpr int kFailureHeight = 24;  // of the line that names why the mission did not succeed
+constexpr int kFailureHeight = 24;  // height of the text line that says why the mission did not succeed
 const cv::Scalar kInk(45, 40, 38);
 const cv::Scalar kGreyInk(125, 120, 118);
 const cv::Scalar kRedInk(40, 40, 190);

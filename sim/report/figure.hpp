@@ -13,7 +13,7 @@ namespace constrictor::report {
 struct FigureHeading {
   std::string title;
   std::string subtitle;
-  std::string failure;  ///< why the mission did not succeed; empty: it succeeded
+  std::string failure;  ///< why the mission did not succeed; empty if it succeeded
 };
 
 struct FigureRow {
@@ -27,7 +27,7 @@ struct FigureRow {
 /// Torques of the yaw joints over time.
 struct TorqueSeries {
   std::vector<double> time_s;
-  std::vector<std::vector<double>> torque_nm;  ///< by joint from the head, each as long as time_s
+  std::vector<std::vector<double>> torque_nm;  ///< a series for each joint, head to tail, as long as time_s
 };
 
 /// Reads joint_torques.csv: a heading, then a line "time,torque,torque,…" for each sample.

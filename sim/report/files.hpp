@@ -9,12 +9,12 @@
 
 namespace constrictor::report {
 
-/// A file to which lines are appended. Its length belongs to the state of the component. The first append after a
-/// restart removes the lines that were written after the checkpoint; the ticks that are done again then write the same
-/// lines.
+/// A file to which lines are appended. Its length belongs to the state of the component. After a restart, the first
+/// append removes all lines that were written after the checkpoint; the component repeats those ticks and writes the
+/// same lines again.
 class Journal {
  public:
-  /// With an empty path the journal discards its lines.
+  /// If `path` is empty, the journal writes no file and discards its lines.
   explicit Journal(std::filesystem::path path) : path_(std::move(path)) {}
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;

@@ -1,4 +1,4 @@
-// Which objects were grasped and dropped, and where they lie: the outcome of the mission by ground truth.
+// The outcome of the mission by ground truth: which objects were grasped and dropped, and where they lie.
 #pragma once
 
 #include <cereal/types/vector.hpp>
@@ -13,8 +13,8 @@ namespace constrictor::report {
 struct ObjectRecord {
   bool grasped = false;
   bool dropped = false;
-  std::int64_t drop_tick = -1;  ///< of the last drop
-  bool by_others = false;       ///< an operator or external planner dropped it, not the built-in planner
+  std::int64_t drop_tick = -1;  ///< tick of the last drop; -1: not dropped
+  bool by_others = false;       ///< the goal that dropped it came from an operator or external planner
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -25,8 +25,8 @@ struct ObjectRecord {
 /// The place of an object relative to the nearest zone of its colour.
 struct ZoneVerdict {
   bool in_zone = false;     ///< the centre of the object lies inside the zone
-  double distance_m = 0.0;  ///< of the object's centre from the zone's centre; NaN if no zone has the object's colour
-  double radius_m = 0.0;    ///< of the zone
+  double distance_m = 0.0;  ///< between the centres of object and zone; NaN if no zone has the object's colour
+  double radius_m = 0.0;    ///< radius of the zone
 };
 [[nodiscard]] ZoneVerdict judge_zone(const msg::SceneDescription& scene, const msg::WorldState& world,
                                      std::size_t object);
@@ -35,7 +35,7 @@ struct ZoneVerdict {
 struct ObjectLedger {
   std::vector<ObjectRecord> objects;   ///< in the order of the scene
   std::int32_t held = -1;              ///< index of the object in the robot's grip; -1: none
-  std::vector<std::uint8_t> sequence;  ///< colours in the order of the mission; kColourUnknown: not yet announced
+  std::vector<std::uint8_t> sequence;  ///< colours in the mission's order; kColourUnknown: not yet announced
 
   void start(const msg::SceneDescription& scene);
   void on_mission(const msg::MissionStatus& mission);
@@ -55,7 +55,8 @@ struct ObjectLedger {
  private:
   /// Indices of the dropped objects in the order in which they were dropped.
   [[nodiscard]] std::vector<std::size_t> dropped() const;
-  /// Index of the object of this colour that is nearest to the robot's body, at most `reach_m` away; -1: there is none.
+  /// Index of the object of this colour that is nearest to the robot's body, at most `reach_m` away; -1 if there is
+  /// none.
   [[nodiscard]] std::int32_t nearest(std::uint8_t colour, double reach_m, const msg::SceneDescription& scene,
                                      const msg::WorldState& world) const;
 };

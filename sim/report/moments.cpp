@@ -59,7 +59,7 @@ std::vector<Moment> figure_rows(const std::vector<Moment>& moments) {
 
 void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera) {
   if (moments.size() >= kMostMoments) return;
-  if (!moments.empty() && moments.back().tick == moment.tick) return;  // the pictures of that moment show both
+  if (!moments.empty() && moments.back().tick == moment.tick) return;  // that moment has the same pictures
   if (camera != nullptr) {
     save(MomentFiles(folder, moment).camera, *camera);
     moment.camera_exposure = camera->exposure_tick;

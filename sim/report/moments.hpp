@@ -28,8 +28,8 @@ struct Moment {
   }
 };
 
-/// Files of a moment's pictures. They are named by tick, so that a tick that is done again after a restart writes the
-/// same files with the same content.
+/// Files of a moment's pictures. Their names contain the tick: a process that repeats the tick after a restart writes
+/// the same files again, with the same content.
 struct MomentFiles {
   std::filesystem::path scene, camera, processed;
   MomentFiles(const std::filesystem::path& folder, const Moment& moment);
@@ -38,22 +38,23 @@ struct MomentFiles {
 /// Whether the event gets a row in the figure.
 [[nodiscard]] bool is_key_event(std::uint8_t event);
 
-/// Chooses the moments that become rows of the figure, in order of time. Of several findings of the same colour the
-/// first is chosen; of events that may be repeated after a recovery (pregrasped, grasped, dropped) the last.
+/// Chooses the moments that become rows of the figure, in order of time. If the line or the same colour of object was
+/// found several times, the first moment is chosen. If a recovery repeated pregrasped, grasped or dropped, the last one
+/// is chosen.
 [[nodiscard]] std::vector<Moment> figure_rows(const std::vector<Moment>& moments);
 
-/// Saves the pictures of moments as they become visible: the raw image at once; the processed image of the same
-/// exposure and the picture of the scene when they arrive.
+/// Saves the pictures of each moment: the raw image at once, and later the processed image of the same exposure and the
+/// picture of the scene, when these two arrive.
 struct MomentAlbum {
   std::vector<Moment> moments;
 
-  /// All images given to this class must be whole. Moments after the first 100 are ignored, so that the state stays
-  /// small; `camera` may be null.
+  /// Images given to this class must have the right number of bytes (image_violation()). `camera` may be null. Moments
+  /// after the first 100 are ignored, so that the state stays small.
   void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera);
   void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image);
   void on_scene(const std::filesystem::path& folder, const msg::CameraImage& image);
-  /// At the end of the run no further images arrive: moments without a picture receive the newest ones, which may be
-  /// null.
+  /// Saves the newest images for all moments that still have no picture, because no further images arrive after the end
+  /// of the run. `processed` and `scene` may be null.
   void finish(const std::filesystem::path& folder, const msg::CameraImage* processed, const msg::CameraImage* scene);
 
   template <class Archive>

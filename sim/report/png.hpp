@@ -11,7 +11,7 @@ namespace constrictor::report {
 /// fails; the image must not be empty.
 [[nodiscard]] std::string encode_png(const cv::Mat& bgr);
 
-/// The image in a PNG file (8 bits, 3 channels, blue first); an empty image if the file is missing or is no PNG file.
+/// Reads a PNG file (8 bits, 3 channels, blue first). Returns an empty image if the file is missing or not a PNG file.
 [[nodiscard]] cv::Mat read_png(const std::filesystem::path& file);
 
 }  // namespace constrictor::report

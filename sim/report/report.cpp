@@ -64,9 +64,9 @@ void Report::step(const Tick& tick) {
 
 void Report::conclude(const Tick& last) {
   if (state_.finished || !world_ || !scene_) return;
-  read_line();  // a process that was restarted in the last tick has not stepped
+  read_line();  // a process that was restarted in the last tick has not read it in a step
   if (state_.mission_end_tick < 0) {
-    // The plant's limit counts ticks, the last of which no component steps.
+    // No component steps in the run's final tick: at the plant's time limit, the last step was one period earlier.
     const bool at_limit = plant_limit_s_ > 0 && last.time_s() + 1.5 * last.period_s() >= plant_limit_s_;
     end_early(last, at_limit ? fmt::format("time limit of {:g} s", plant_limit_s_)
                              : fmt::format("ended by user at {:.1f} s", last.time_s()));
@@ -169,7 +169,7 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
 
 void Report::follow_images() {
   if (folder_.empty()) return;
-  // A camera of another make may send images of a wrong size.
+  // Another program's camera may send images of a wrong size.
   const auto whole = [&](const Latest<msg::CameraImage>& image, std::string_view topic) {
     if (!image || !image.fresh()) return false;
     const std::string violation = image_violation(*image);
@@ -177,7 +177,7 @@ void Report::follow_images() {
     wiring_.count_refusal(fmt::format("{}.{}", topic, violation));
     return false;
   };
-  static_cast<void>(whole(camera_, topics::kCameraImage.name));  // only counts; the next moment uses the image
+  static_cast<void>(whole(camera_, topics::kCameraImage.name));  // only counts refusals; add_moment() uses the image
   if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_);
   if (whole(overview_, topics::kOverviewImage.name)) state_.album.on_scene(folder_, *overview_);
 }
@@ -206,7 +206,7 @@ void Report::end_early(const Tick& tick, const std::string& reason) {
 }
 
 std::string Report::line_shortfall() const {
-  constexpr double kAtEnd_m = 0.7;  // the event "end of the line" comes before the head has reached the last point
+  constexpr double kAtEnd_m = 0.7;  // the task ends before the head has reached the last point of the line
   if (line_m_.empty()) return "the scenario has neither objects nor a line";
   const msg::Vector3& head = world_->module_poses[0].position_m;
   const double distance_m = (Eigen::Vector2d(head.x, head.y) - line_m_.back()).norm();

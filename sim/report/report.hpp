@@ -21,10 +21,10 @@ namespace constrictor {
 
 struct ReportState {
   report::RootMeanSquare cross_track;   ///< [m] distance of the head from the line while follow_line runs
-  report::RootMeanSquare pose_error_m;  ///< RobotPose compared with ground truth, in the frame M
+  report::RootMeanSquare pose_error_m;  ///< position error of RobotPose, in M
   report::RootMeanSquare pose_error_rad;
   std::uint64_t percepts_following = 0;  ///< number of line percepts while follow_line runs
-  std::uint64_t percepts_visible = 0;    ///< number of those in which the line was visible
+  std::uint64_t percepts_visible = 0;    ///< number of these percepts in which the line was visible
   report::PoseAtTick start;              ///< X_WM: pose of the head at the start of the run
   std::deque<report::PoseAtTick> heads;  ///< true poses of the last ticks: an estimate may belong to an earlier tick
   report::ObjectLedger ledger;
@@ -38,7 +38,7 @@ struct ReportState {
   std::string mission_reason;
   std::uint16_t recoveries = 0;
   std::int64_t mission_end_tick = -1;  ///< -1: the planner has not ended the mission
-  std::string run_end_reason;          ///< why the run ended while the mission was running; empty: it did not
+  std::string run_end_reason;          ///< why the run ended before the mission; empty: it did not
   bool finished = false;
 
   template <class Archive>
@@ -49,11 +49,11 @@ struct ReportState {
   }
 };
 
-/// The component `report`. It appends long series to journals in Setup::output_dir, whose lengths belong to the state,
-/// and writes pictures to files that are named by tick; therefore a restarted process leaves the same files. Without an
-/// output directory it judges the mission and ends the run, but writes nothing. It ends the run `settle_s` after the
+/// The component `report`. It appends long series to journals in Setup::output_dir and writes pictures. The lengths of
+/// the journals belong to the state, and pictures are named by tick: a restarted process leaves the same files. Without
+/// an output directory it judges the mission and ends the run, but writes nothing. It ends the run `settle_s` after the
 /// end of the mission, or at `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same
-/// files and names that as the reason.
+/// files, and they give this end as the reason.
 class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
@@ -69,7 +69,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   void follow_images();
   void journal_torques(const Tick& tick);
   void add_moment(std::int64_t tick, double time_s, std::uint8_t event, std::uint8_t colour);
-  /// The run ends while the mission is running: `reason` goes to the report, and the figure gets a last row.
+  /// Records that the run ends while the mission is running: the report shows `reason`, and the figure gets a last row.
   void end_early(const Tick& tick, const std::string& reason);
   /// True if the planner ended the mission successfully and ground truth agrees.
   [[nodiscard]] bool success() const;
@@ -77,7 +77,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] std::string failure() const;
   /// The reason why a mission without objects is not complete; empty if the head is at the end of the line.
   [[nodiscard]] std::string line_shortfall() const;
-  // In report_files.cpp.
+  // Defined in report_files.cpp.
   void write_files(const Tick& tick);
   [[nodiscard]] std::string mission_json(const Tick& tick) const;
   void draw(const Tick& tick) const;

@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// The lines of a journal, each of which is a JSON value.
+/// The lines of a journal. Each line is a JSON value.
 ordered_json lines_of(const std::string& journal) {
   ordered_json lines = ordered_json::array();
   for (std::size_t at = 0; at < journal.size();) {
@@ -117,7 +117,8 @@ void Report::write_files(const Tick& tick) {
   };
   state_.album.finish(folder_, newest(processed_), newest(overview_));
   draw(tick);
-  report::replace_file(folder_ / "mission.json", mission_json(tick));  // the last file: it shows that the others exist
+  // mission.json is written last: its presence shows that the other files are complete.
+  report::replace_file(folder_ / "mission.json", mission_json(tick));
 }
 
 }  // namespace constrictor

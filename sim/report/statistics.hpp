@@ -36,8 +36,8 @@ struct RootMeanSquare {
   }
 };
 
-/// [m] distance of a point from a polyline. Empty if the nearest point of the line is one of its ends and the point
-/// lies beyond it, or if the line has fewer than two points.
+/// [m] distance of a point from a polyline. Empty if the point lies beyond an end of the line, or if the line has fewer
+/// than two points.
 [[nodiscard]] std::optional<double> cross_track_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& line_m);
 
 /// A pose and the tick to which it belongs.

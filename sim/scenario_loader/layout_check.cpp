@@ -71,9 +71,9 @@ bool overlap(const Footprint& a, const Footprint& b) {
 }  // namespace
 
 std::string find_overlap(const Scenario& scenario, double body_length_m, double body_half_width_m) {
-  std::vector<Footprint> moving;  // no two of them may overlap
+  std::vector<Footprint> moving;  // no two of these footprints may overlap
   const Vector2d forward(std::cos(scenario.start_yaw_rad), std::sin(scenario.start_yaw_rad));
-  // From the nose to the tail, with 0.1 m to spare at each end.
+  // The robot's footprint reaches from 0.1 m ahead of the centre of the head to 0.1 m behind the tail.
   Footprint robot{"the robot's body at the start",
                   false,
                   scenario.start_m - 0.5 * body_length_m * forward,

@@ -7,8 +7,8 @@
 
 namespace constrictor {
 
-/// The first overlap in words ("objects[0] overlaps objects[1]"); empty if there is none. The body of the robot counts
-/// as a strip of the given length behind the head and the given half width.
+/// Returns the first overlap in words ("objects[0] overlaps objects[1]"), or an empty text if no bodies overlap. The
+/// robot's body is treated as a strip of the given length behind the head, with the given half width.
 [[nodiscard]] std::string find_overlap(const Scenario& scenario, double body_length_m, double body_half_width_m);
 
 }  // namespace constrictor

@@ -6,7 +6,7 @@
 namespace constrictor {
 namespace {
 
-/// The frame at `s` metres along an arc.
+/// The frame at the arc length `s` [m] of an arc.
 PlanarFrame along_arc(const PlanarFrame& from, double curvature_1_m, double s) {
   const double turn = curvature_1_m * s;
   // The chord of an arc has the mean heading of the arc.

@@ -25,7 +25,7 @@ struct PlanarFrame {
 
 struct LinePath {
   PlanarFrame begin;
-  PlanarFrame end;                        ///< its x axis points on beyond the line
+  PlanarFrame end;                        ///< frame at the end of the line; its x axis points away from the line
   std::vector<Eigen::Vector2d> points_m;  ///< in W, at most `most_points`
 };
 

@@ -1,5 +1,5 @@
-// One concrete scene, after the seed has chosen every variation. The world is built from it. World frame W: z up,
-// ground at z = 0. SI units.
+// One concrete scene, after the seed has chosen every variation. The simulated world is built from it. World frame W:
+// z up, ground at z = 0. SI units.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ struct ScenarioObject {
   Eigen::Vector2d position_m{0.0, 0.0};
   double yaw_rad = 0.0;
 
-  /// [m] radius of the circle about its axis that contains its footprint.
+  /// [m] radius of the smallest circle about the object's vertical axis that contains its footprint.
   [[nodiscard]] double footprint_radius_m() const {
     return shape == BodyShape::kCylinder ? size_m.x() : 0.5 * size_m.head<2>().norm();
   }
@@ -43,7 +43,7 @@ struct ScenarioObstacle {
 };
 
 /// A scripted force on an object, for example to pull it out of a grasp. It begins at `at_s`, or once the object is
-/// `displaced_m` away from its start; the other one of the two is NaN. It lasts `duration_s`.
+/// `displaced_m` away from its start; the unused one of these two fields is NaN. The force lasts `duration_s`.
 struct ScenarioPerturbation {
   std::size_t object = 0;
   double at_s = 0.0;
@@ -52,11 +52,12 @@ struct ScenarioPerturbation {
   Eigen::Vector3d force_n{0.0, 0.0, 0.0};  ///< in W, at the object's centre
 };
 
-/// Coulomb coefficients of all contacts but those of the skin with the ground.
+/// Coulomb friction coefficients. The robot file has those of the robot's skin on the ground; `ground_scale` scales
+/// them.
 struct ScenarioFriction {
-  double ground_scale = 1.0;  ///< multiplies the robot's own coefficients on the ground
+  double ground_scale = 1.0;  ///< factor on the robot file's coefficients for skin on ground
   double object_robot = 0.5;
-  double object_ground = 0.4;  ///< also of objects with objects and with obstacles
+  double object_ground = 0.4;  ///< also for contacts of objects with objects and obstacles
   double robot_robot = 0.2;
 };
 
@@ -81,9 +82,9 @@ struct Scenario {
   Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  ///< linear RGB
   Eigen::Vector2d start_m{0.0, 0.0};             ///< centre of the head; the body lies straight behind it
   double start_yaw_rad = 0.0;
-  double start_height_m = 0.0;   ///< [m] of the body above the ground; only tests set it
+  double start_height_m = 0.0;   ///< [m] height of the body above the ground; only tests set it
   bool sensor_noise = true;      ///< false: the noise in the robot file is ignored
-  double camera_noise_sd = 0.0;  ///< standard deviation of pixels; the full scale is 1
+  double camera_noise_sd = 0.0;  ///< standard deviation of pixel values on a scale from 0 to 1
 };
 
 }  // namespace constrictor

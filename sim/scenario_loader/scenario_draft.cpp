@@ -104,8 +104,8 @@ void read_bodies(Configuration& root, ScenarioDraft& draft) {
   limit("obstacles", draft.obstacles.size(), kMostObstacles);
 }
 
-/// Checks that the mission can be carried out in this scene. The simulation does not use the mission otherwise: the
-/// launcher passes this section to the planner.
+/// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the
+/// launcher passes this section of the file to the planner.
 void check_mission(Configuration mission, const Scenario& scenario) {
   const std::vector<std::string> sequence = mission.texts("sequence", colours());
   for (const std::string& colour : sequence) {

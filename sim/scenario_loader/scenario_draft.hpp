@@ -20,7 +20,7 @@ struct Placement {
   double yaw_rad = 0.0;
 };
 
-/// Ranges of the variation about the values of the file. The names without a unit are relative.
+/// Ranges of the variation about the values of the file. Fields whose name has no unit are relative: 0.1 is 10 %.
 struct Variation {
   bool mirror_line = false, object_sides = false, zone_sides = false;
   double line_curvature = 0.0, line_length = 0.0;

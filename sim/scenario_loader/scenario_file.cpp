@@ -11,7 +11,7 @@
 namespace constrictor {
 namespace {
 
-// The overlap check leaves room for the longest supported robot.
+// The overlap check assumes the longest supported robot.
 constexpr double kBodyLength_m = 2.2;
 constexpr double kHalfWidth_m = 0.06;
 constexpr int kMostDraws = 200;
@@ -21,11 +21,12 @@ Eigen::Vector3d turned(const Eigen::Vector3d& direction, double by_rad, Random& 
   const Eigen::AngleAxisd tilt(random.uniform(-by_rad, by_rad), Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd turn(random.uniform(-by_rad, by_rad) * 3.0, Eigen::Vector3d::UnitZ());
   Eigen::Vector3d result = (turn * tilt * direction).normalized();
-  result.z() = std::max(result.z(), 0.2);  // the light must not graze the ground
+  result.z() = std::max(result.z(), 0.2);  // otherwise the light would be nearly parallel to the ground
   return result.normalized();
 }
 
-/// Draws one scene from the variation. Each aspect has its own random stream, and each attempt has its own streams.
+/// Draws one scene from the variation. Each varied quantity has its own random stream, and each attempt has new
+/// streams.
 Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint64_t seed, int attempt) {
   const auto stream = [&](const std::string& purpose) {
     return Random(seed + 0x10001ULL * static_cast<std::uint64_t>(attempt), purpose);

@@ -26,14 +26,14 @@ class AuthorityTracker {
   /// Empty before the first message.
   [[nodiscard]] const std::optional<msg::Authority>& newest() const { return newest_; }
 
-  /// To be called when an emergency stop is requested: only a message that is newer than the newest one can confirm it.
-  /// Before the first message, only one that is newer than the first.
+  /// To be called when an emergency stop is requested. From then on, only a message of a later tick than the newest
+  /// message can confirm the stop; if no message has arrived, only a message of a later tick than the first one.
   void stop_asked() {
     stop_latched_ = false;
     stop_asked_after_.reset();
     if (newest_) stop_asked_after_ = moment(*newest_);
   }
-  /// True if a message of a later tick than that of stop_asked() reported a latched emergency stop.
+  /// True if such a message has reported a latched emergency stop since stop_asked().
   [[nodiscard]] bool stop_latched() const { return stop_latched_; }
 
  private:

@@ -15,8 +15,8 @@ namespace constrictor {
 constexpr std::uint8_t goal_level(std::uint64_t goal) { return static_cast<std::uint8_t>(goal >> 48); }
 constexpr std::uint32_t goal_number(std::uint64_t goal) { return static_cast<std::uint32_t>(goal); }
 
-/// Takes messages in any order, also those that writers keep for late readers. It ignores messages of another run than
-/// the first and of an epoch before the newest. Pure: no DDS, no clock.
+/// Takes messages in any order, also messages that writers keep for late readers. It ignores messages of any run but
+/// the first, and of any epoch but the newest. Pure: no DDS, no clock.
 class GoalTracker {
  public:
   void take(const msg::Authority& authority);
@@ -25,14 +25,15 @@ class GoalTracker {
 
   /// Id of the goal that `input` forwarded last, from any source; 0: none in this epoch, or no message arrived.
   [[nodiscard]] std::uint64_t newest() const;
-  /// Id of the newest goal with this number of its source (goal_number()), those of operators first; 0: none is known.
-  /// A whole id is returned as it is.
+  /// Id of the newest goal whose source gave it this number (goal_number()); goals of operators take precedence. 0 if
+  /// there is no such goal. If the argument is already a whole id, it is returned unchanged.
   [[nodiscard]] std::uint64_t find(std::uint64_t number) const;
-  /// Navigation's first event of a goal: refused if `goal_state` is kGoalRefused, accepted otherwise. Null: none yet.
+  /// Navigation's first event of a goal: the goal was refused if `goal_state` is kGoalRefused, and accepted otherwise.
+  /// Null if no event of the goal has arrived.
   [[nodiscard]] const msg::TaskEvent* answer(std::uint64_t goal) const;
-  /// The first event of this kind in a goal; null: none yet.
+  /// The first event of this kind in a goal; null if none has arrived.
   [[nodiscard]] const msg::TaskEvent* event(std::uint64_t goal, std::uint8_t kind) const;
-  /// The first event of this kind in any goal after a tick; null: none yet.
+  /// The first event of this kind in any goal after a tick; null if none has arrived.
   [[nodiscard]] const msg::TaskEvent* event_after(std::int64_t tick, std::uint8_t kind) const;
   /// All events of the newest epoch that arrived, in the order of their sequence numbers.
   [[nodiscard]] const std::vector<msg::TaskEvent>& events() const { return events_; }
@@ -41,15 +42,15 @@ class GoalTracker {
     std::uint8_t state = msg::kGoalIdle;  ///< kGoalSucceeded or above
     std::string reason;
   };
-  /// How a goal ended; empty while it has not. `by_status`: accept navigation's TaskStatus as proof, because its event
-  /// may be lost.
+  /// How a goal ended; empty while the goal has not ended. If `by_status` is true, navigation's TaskStatus is accepted
+  /// as proof of the end, because the event may be lost.
   [[nodiscard]] std::optional<End> end(std::uint64_t goal, bool by_status) const;
 
   [[nodiscard]] std::uint32_t epoch() const { return present_.epoch(); }  ///< 0: no message arrived
   [[nodiscard]] std::int64_t tick() const { return tick_; }               ///< newest tick of any message; -1: none
 
  private:
-  /// False: the message is ignored.
+  /// Returns false if the message must be ignored.
   bool counts(const msg::Header& header);
 
   NewestEpoch present_;

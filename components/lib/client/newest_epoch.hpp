@@ -11,9 +11,9 @@ class NewestEpoch {
   enum class Is {
     kOther,    ///< of another run, of no run, or of an epoch before the newest
     kPresent,  ///< of the newest epoch
-    kNew,      ///< the first message of a newer epoch: what was known of earlier epochs is void
+    kNew,      ///< the first message of a newer epoch: discard everything known about earlier epochs
   };
-  /// `run_id` 0: the run of the first message.
+  /// If `run_id` is 0, the run is that of the first message.
   explicit NewestEpoch(std::uint64_t run_id = 0) : run_id_(run_id) {}
 
   Is take(std::uint64_t run_id, std::uint32_t epoch) {

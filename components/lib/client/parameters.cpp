@@ -79,7 +79,7 @@ msg::ParameterChange ParameterSetter::set(const std::string& name, double value,
                                           std::chrono::milliseconds bound) {
   if (name.size() >= sizeof(msg::Request::parameter))
     throw CommandError("no parameter '" + name + "'", CommandError::Cause::kRefused);
-  changes_.take([](const msg::ParameterChange&) {});  // earlier changes are no answer
+  changes_.take([](const msg::ParameterChange&) {});  // earlier changes do not answer this request
   msg::Request request{};
   request.kind = msg::kRequestParameter;
   request.parameters = no_parameters();

@@ -25,8 +25,8 @@ struct ParameterView {
   std::vector<std::string> silent;  ///< components of the run that have a parameter list but have not published it yet
 };
 
-/// Reads the parameter lists of all components over a DDS participant. Returns when no new list has arrived for a
-/// moment, at most after `bound`.
+/// Reads the parameter lists of all components over a DDS participant. Returns when no new list has arrived for a short
+/// time, or after `bound`.
 ParameterView read_parameters(std::int32_t participant,
                               std::chrono::milliseconds bound = std::chrono::milliseconds(2000));
 
@@ -35,8 +35,9 @@ class ParameterSetter {
  public:
   /// `client` must outlive this object.
   explicit ParameterSetter(RequestClient& client);
-  /// Sets a parameter at `tick` (0: the next one) and waits for the change that `input` forwards: the value in force
-  /// and its tick. Throws CommandError: kRefused with the reason, kNoAnswer, kInterrupted.
+  /// Sets a parameter at `tick` (0: the next tick) and waits until `input` forwards the change. Returns the change,
+  /// with the value and the tick from which it is in force. Throws CommandError: kRefused with the reason, kNoAnswer,
+  /// kInterrupted.
   msg::ParameterChange set(const std::string& name, double value, std::int64_t tick = 0,
                            std::chrono::milliseconds bound = std::chrono::seconds(5));
 
@@ -49,7 +50,8 @@ class ParameterSetter {
 std::string accepted_text(const msg::Parameter& parameter);
 /// A value with its unit, for people: "0.7 Hz".
 std::string value_text(const msg::Parameter& parameter, double value);
-/// All fields of a parameter, for scripts; `pending` and `changed_tick` are null if there is no such change.
+/// All fields of a parameter, for scripts. `pending` is null if no change is waiting; `changed_tick` is null if the
+/// parameter has not been changed.
 nlohmann::ordered_json to_json(const OwnedParameter& owned);
 
 }  // namespace constrictor

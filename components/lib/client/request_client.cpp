@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kRepeat = 200ms;
 constexpr auto kAnswerBound = 5s;
-constexpr auto kEventBound = 1s;           // after which a TaskStatus proves the end of a goal, too
+constexpr auto kEventBound = 1s;           // after this time, a TaskStatus also proves the end of a goal
 constexpr std::size_t kMostAnswers = 256;  // kept for callers that ask late
 
 constexpr const char* kNoAnswerText =
@@ -77,7 +77,7 @@ std::uint64_t RequestClient::ask(msg::Request request) {
   request.detached = options_.detached;
   request.header.sequence_number = ++sequence_;
   if (request.kind == msg::kRequestEmergencyStop) {
-    take_authority();  // messages that have arrived already cannot confirm this stop
+    take_authority();  // messages that arrived before this request cannot confirm it
     authority_.stop_asked();
   }
   unanswered_.asked(request, WaitClock::now());
@@ -141,7 +141,7 @@ GoalTracker::End RequestClient::wait_for_end(std::uint64_t goal, const std::func
     if (each_poll) each_poll();
     const auto now = WaitClock::now();
     if (const auto end = goals().end(goal, false)) return *end;
-    // The event may be lost; it arrives soon after the status if it is not.
+    // If the event is not lost, it arrives soon after the status.
     if (const auto end = goals().end(goal, true)) {
       if (!status_ended) status_ended = now;
       if (now - *status_ended > kEventBound) return *end;
@@ -191,7 +191,8 @@ void RequestClient::take_authority() {
 void RequestClient::poll() {
   endpoints_->answer.take([this](const msg::RequestAnswer& answer) {
     if (options_.source != answer.source) return;
-    // `input` rules on a request once. Later answers under the same number repeat the first, without goal and reason.
+    // `input` decides on a request once. Later answers under the same number repeat this decision, without goal and
+    // reason.
     answers_.try_emplace(answer.request_sequence, answer);
     if (answers_.size() > kMostAnswers) answers_.erase(answers_.begin());
     unanswered_.answered(answer.request_sequence);

@@ -23,8 +23,8 @@ struct RequestClientOptions {
   std::string source;
   std::uint8_t level = msg::kAuthorityExternal;  ///< kAuthorityExternal or kAuthorityOperator
   std::uint16_t robot_id = 1;
-  /// If this client is dead for so long, `input` takes authority from it and the robot holds its posture. 0: `input`
-  /// notices the end of the process only when the lease of its DDS participant lapses.
+  /// If this client has been dead for this time, `input` takes authority from it and the robot holds its posture. 0:
+  /// `input` notices the end of the process only when the lease of its DDS participant lapses.
   std::chrono::milliseconds lease{500};
   /// True: the program must call poll(), wait_for_answer() or assert_alive() within each lease, so that a program that
   /// hangs counts as dead. False: DDS asserts that the process is alive.
@@ -79,7 +79,7 @@ class RequestClient {
   [[nodiscard]] const std::optional<msg::Authority>& authority() const { return authority_.newest(); }
   /// True if the newest Authority message names this client.
   [[nodiscard]] bool holds_authority() const;
-  /// The answer to one of the newest 256 requests; null: none yet.
+  /// The answer to one of the newest 256 requests; null if no answer has arrived.
   [[nodiscard]] const msg::RequestAnswer* answer(std::uint64_t number) const;
 
   enum class Answer { kGranted, kRefused, kNone, kInterrupted };
@@ -87,9 +87,10 @@ class RequestClient {
   /// when an Authority message of a later tick than the request reports a latched stop, even if another source
   /// requested it.
   Answer wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound);
-  /// Why the last request was refused for which wait_for_answer() returned kRefused.
+  /// The reason of the last refusal: that of the last wait_for_answer() that returned kRefused.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
-  /// Goal id, as on task/event, of the last request for which wait_for_answer() returned kGranted; 0: no task.
+  /// Goal id, as on task/event, of the last request for which wait_for_answer() returned kGranted; 0 if that request
+  /// started no task.
   [[nodiscard]] std::uint64_t goal() const { return goal_; }
 
   [[nodiscard]] const std::string& source() const { return options_.source; }
@@ -114,10 +115,10 @@ class RequestClient {
   std::uint64_t goal_ = 0;
 };
 
-/// Parameters of a task with nothing given (timeout: NaN).
+/// Parameters of a task in which no parameter is given (the timeout is NaN).
 msg::TaskParameters no_parameters();
 
-/// A request that starts a task: nothing given but the task, goal numbered by `input`.
+/// A request that starts a task. No parameter is given, and `input` chooses the number of the goal.
 msg::Request task_request(std::uint8_t task);
 
 }  // namespace constrictor

@@ -29,10 +29,10 @@ class RunAttachment {
 
   /// Why the client must leave, as text for people; empty while the run goes on.
   [[nodiscard]] const std::string& over() const { return over_; }
-  /// False while `input` is missing: a request that is repeated until then could move the robot later.
+  /// False while `input` is missing: a request that is repeated meanwhile could move the robot later, unexpectedly.
   [[nodiscard]] bool may_send() const { return over_.empty() && !input_gone_; }
-  /// An emergency stop may be requested also while `input` is missing: it is repeated until it is answered, and it
-  /// moves nothing.
+  /// True even while `input` is missing: an emergency stop is repeated until it is answered, and it never moves the
+  /// robot.
   [[nodiscard]] bool may_stop() const { return over_.empty(); }
   /// [s] since the last RunState; 0 before the first.
   [[nodiscard]] double silent_s() const { return silent_s_; }

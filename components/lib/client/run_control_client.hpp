@@ -22,7 +22,7 @@ class RunControlClient {
   /// when it returns true.
   explicit RunControlClient(std::uint32_t domain, std::chrono::seconds bound = std::chrono::seconds(10),
                             std::function<bool()> interrupted = {});
-  /// The same on a participant that this process already has. It must outlive this object.
+  /// The same on a participant that this process already has. The participant must outlive this object.
   RunControlClient(std::int32_t participant, std::uint32_t domain, std::chrono::seconds bound,
                    std::function<bool()> interrupted = {});
   ~RunControlClient();
@@ -30,9 +30,10 @@ class RunControlClient {
   /// Each returns the state of the run right after the command was obeyed.
   msg::RunState pause();
   msg::RunState resume();
-  /// Pauses the run, lets it make `ticks` more ticks and waits for them as long as the run makes ticks.
+  /// Pauses the run, lets it make `ticks` more ticks and waits until they are done. Throws kNoAnswer if the run stops
+  /// making ticks.
   msg::RunState step(std::uint32_t ticks);
-  /// `pace`: at most so many times real time, 0.001 to 1000; 0: lock-step, as fast as possible.
+  /// Limits the run to `pace` times real time, 0.001 to 1000; 0: lock-step, as fast as possible.
   msg::RunState set_pace(double pace);
   /// Ends the epoch and begins a new one with `seed`.
   msg::RunState reset(std::uint64_t seed);

@@ -1,4 +1,5 @@
-// Notes by which programs find the runs on this host: each launcher writes one beside its claim of a DDS domain.
+// How programs find the runs on this host: each launcher writes a small file, the note, next to the file with which it
+// claims a DDS domain.
 #pragma once
 
 #include <sys/types.h>
@@ -18,20 +19,21 @@ struct RunNote {
   std::uint32_t domain = 0;  ///< DDS domain
   pid_t pid = 0;             ///< process id of the launcher
   std::string scenario;
-  std::uint64_t seed = 0;  ///< in force
+  std::uint64_t seed = 0;  ///< seed of the present epoch
   std::vector<std::string> roster;
   std::string plant;  ///< the member of the roster that is the plant
   std::filesystem::path report_dir;
 };
 
-/// A note that other programs can read until this object is destroyed. Its owner must hold the claim of the domain.
+/// A note that other programs can read until this object is destroyed. The owner of this object must hold the claim of
+/// the domain.
 class PublishedNote {
  public:
   explicit PublishedNote(const RunNote& note);
   ~PublishedNote();
   PublishedNote(const PublishedNote&) = delete;
   PublishedNote& operator=(const PublishedNote&) = delete;
-  /// Rewrites the note with another seed: a reset changes it.
+  /// Rewrites the note after a reset, which changes the seed.
   void set_seed(std::uint64_t seed);
 
  private:

@@ -9,11 +9,11 @@ namespace constrictor::dds {
 namespace {
 
 void on_liveliness(dds_entity_t, const dds_liveliness_changed_status_t status, void* tracker) {
-  if (status.alive_count_change == 0) return;  // a writer that was dead already has been deleted
+  if (status.alive_count_change == 0) return;  // DDS deleted a writer that was already dead
   static_cast<WriterTracker*>(tracker)->note(status.last_publication_handle, status.alive_count_change > 0);
 }
 
-/// An emergency stop is obeyed even if other fields of its request are invalid: they are left out.
+/// The emergency stop of a request, without all other fields: it must be obeyed even if the other fields are invalid.
 msg::Request bare_stop(const msg::Request& request) {
   msg::Request stop{};
   stop.robot_id = request.robot_id;
@@ -69,11 +69,12 @@ ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::ch
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
-  // The instance of a dead source is deleted after its end was taken, because a long run has many sources.
+  // DDS deletes the instance of a dead source 1 s after its end was taken, because a long run has many sources.
   dds_qset_reader_data_lifecycle(qos.get(), DDS_SECS(1), DDS_SECS(1));
   const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr),
                      "dds_create_topic");
-  // A listener, because a status keeps only the last change. It is called from the reader's creation on.
+  // A listener receives every change; a status would keep only the last change. It is set before the reader exists, so
+  // that it misses none.
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(tracker_.get()),
                                                                             dds_delete_listener);
   dds_lset_liveliness_changed(listener.get(), on_liveliness);

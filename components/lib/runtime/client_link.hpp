@@ -27,13 +27,13 @@ class WriterTracker {
  public:
   /// `grace`: time after the start in which a writer may still be discovered.
   explicit WriterTracker(std::chrono::milliseconds grace) : grace_(grace) {}
-  /// From any thread: a writer has become alive or has ceased to be.
+  /// Records that a writer is now alive or dead. May be called from any thread.
   void note(dds_instance_handle_t writer, bool alive);
-  /// Takes the changes that the other threads have noted into account.
+  /// Applies the changes that other threads have recorded with note().
   void catch_up(dds_entity_t reader);
-  /// GUID of the writer; zeros if it has gone.
+  /// GUID of the writer; all zeros if the writer no longer exists.
   [[nodiscard]] WriterId id_of(dds_entity_t reader, dds_instance_handle_t writer);
-  /// Whether the writer is alive, or may still be discovered.
+  /// True if the writer is alive, or if it may still be discovered.
   [[nodiscard]] bool lives(dds_entity_t reader, const WriterId& writer);
 
  private:
@@ -55,7 +55,7 @@ inline constexpr std::chrono::milliseconds kWriterGrace{3000};
 class ClientLink {
  public:
   ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::chrono::milliseconds grace = kWriterGrace);
-  /// Lets `requests` ask which writers are alive. This object must outlive the last such question.
+  /// Lets `requests` ask this object which writers are alive. This object must outlive the last such call.
   void track_writers_for(ClientRequests& requests) const;
   /// Moves what has arrived to `requests`. Requests to another robot are ignored. `refused(reason)` is called for a
   /// request that violates its IDL.

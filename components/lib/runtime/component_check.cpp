@@ -9,7 +9,7 @@
 namespace constrictor {
 namespace {
 
-/// Ports without a run: inputs stay empty, and what is written is dropped.
+/// Ports without a run: inputs stay empty, and written messages are discarded.
 class UnconnectedWiring : public Wiring {
  public:
   void request_end_of_run() override {}
@@ -24,7 +24,7 @@ class UnconnectedWiring : public Wiring {
   }
 
  private:
-  std::deque<InputSlot> inputs_;  // a deque: components keep the addresses
+  std::deque<InputSlot> inputs_;  // a deque, because its elements keep the addresses that components store
   std::deque<OutputSlot> outputs_;
 };
 

@@ -26,7 +26,7 @@ ConductorSide::ConductorSide(HostContext& context, Links& links, MemberSide& mem
 
 void ConductorSide::make_conductor() {
   const HostOptions& options = context_.options;
-  std::random_device entropy;  // names the run; no result depends on it
+  std::random_device entropy;  // for the run id, on which no result depends
   ConductorOptions conductor;
   conductor.run_id =
       options.run_id != 0 ? options.run_id : (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
@@ -60,7 +60,7 @@ void ConductorSide::make_endpoints() {
   control_reader_ = dds::Reader<msg::RunControl>::member(participant, wire::kRunControl);
   links_.attach(done_reader_, wire::kTickDone, [this](const msg::TickDone& m) { take_done(m); });
   links_.attach(ready_reader_, wire::kReady, [this](const msg::Ready& m) { take_ready(m); });
-  // Without validation: a command that violates its IDL is answered, too.
+  // Commands are not validated here, because a command that violates its IDL must be answered, too.
   links_.attach(control_reader_.get(),
                 [this] { control_reader_.take([this](const msg::RunControl& m) { take_control(m); }); });
 }
@@ -145,8 +145,8 @@ void ConductorSide::report_waiting() {
 }
 
 void ConductorSide::finish(bool wait_for_final_tick) {
-  // The final tick must reach every member before its writer goes. The wait is bounded, because a stopped process must
-  // not keep the run from ending.
+  // The final tick must reach every member before its writer is deleted. The wait is bounded, because a stopped process
+  // (SIGSTOP) must not prevent the end of the run.
   if (wait_for_final_tick) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
   if (hash_log_) hash_log_->close();
 }

@@ -20,14 +20,14 @@ class MemberSide;
 
 class ConductorSide : private ConductorSink {
  public:
-  /// `members` has the plant. All arguments must outlive this object. Throws dds::Error, or std::runtime_error if the
-  /// hash log cannot be written.
+  /// The plant must be one of `members`. All arguments must outlive this object. Throws dds::Error, or
+  /// std::runtime_error if the hash log cannot be written.
   ConductorSide(HostContext& context, Links& links, MemberSide& members);
 
   [[nodiscard]] std::optional<EpochId> epoch() const { return conductor_->epoch(); }
   /// Sends the next tick if the members and the pace allow it. Returns whether it did.
   bool tick();
-  /// True while the pace, and not a member, keeps the next tick back.
+  /// True while only the pace delays the next tick, and no member does.
   [[nodiscard]] bool held() const { return pacer_.holding() || conductor_->may_tick(); }
   /// [ns] time until the pace may allow the next tick.
   [[nodiscard]] std::int64_t wait_ns() const { return pacer_.wait_ns(); }
@@ -39,13 +39,14 @@ class ConductorSide : private ConductorSink {
   void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
   void on_done(const TickDone& step) { conductor_->on_done(step); }
 
-  /// Lets the pace depend on who has authority; samples of other topics and runs are ignored.
+  /// Adapts the pace to the source that has authority. Samples of other topics and runs are ignored.
   void note_authority(const TopicInfo& topic, const Sample& sample);
-  /// Adds a sample that a member of this process has written to the hash log, if there is one.
+  /// A member of this process has written `sample`: adds it to the hash log, if this run has a hash log.
   void record(const TopicInfo& topic, const Sample& sample);
-  /// Reports which members the next tick waits for.
+  /// Reports the members that delay the next tick.
   void report_waiting();
-  /// Waits until the final tick is received, with a bound, if `wait_for_final_tick`; closes the hash log.
+  /// Closes the hash log. If `wait_for_final_tick` is true, first waits a limited time until all members have received
+  /// the final tick.
   void finish(bool wait_for_final_tick);
 
  private:

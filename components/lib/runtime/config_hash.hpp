@@ -1,4 +1,5 @@
-// Hashes of configuration: all processes of a run must have the same, and a restarted one the same as before.
+// Hashes of the configuration. They must be equal in all processes of a run, and in a process before and after a
+// restart.
 #pragma once
 
 #include <filesystem>

@@ -18,7 +18,7 @@ class HashLog {
     std::uint64_t sequence_number;
     std::uint8_t topic;
     std::uint64_t hash;  ///< first 8 bytes of the SHA-256 of the message with a neutral header
-    std::string bytes;   ///< canonical bytes; empty if not recorded
+    std::string bytes;   ///< canonical bytes of the message; empty if they were not recorded
   };
 
   /// Creates `directory`/hashes.bin. Throws std::runtime_error if that fails.
@@ -26,11 +26,11 @@ class HashLog {
   /// A new epoch begins: empties the log.
   void restart();
   void add(const TopicInfo& topic, const Sample& sample);
-  /// The same for a message as canonical bytes; damaged ones are ignored.
+  /// Adds a message that is given as canonical bytes; a damaged message is ignored.
   void add(std::uint8_t topic, const std::string& bytes);
   void close() { file_.close(); }
 
-  /// Reads a log, ordered by tick, topic and sequence number. An incomplete last entry is left out. Throws
+  /// Reads a log, ordered by tick, topic and sequence number. An incomplete last entry is skipped. Throws
   /// std::runtime_error if the file is missing or damaged.
   static std::vector<Entry> read(const std::filesystem::path& directory);
 

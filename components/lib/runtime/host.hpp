@@ -27,7 +27,7 @@ struct HostOptions {
   std::uint32_t domain = 0;
   std::vector<std::string> roster;  ///< every member of the run, in this or another process
   std::string plant = "physics";    ///< the member that is the plant
-  std::uint32_t incarnation = 1;    ///< of this process
+  std::uint32_t incarnation = 1;    ///< incarnation of this process
   std::uint64_t run_id = 0;         ///< the launcher's number of the run; 0: the first run in the domain; plant: random
   double pace = 0.0;                ///< plant only: at most this many times real time; 0: no limit
   double operator_pace = 1.0;       ///< plant only: the same while an operator has authority; 0: no limit
@@ -35,7 +35,7 @@ struct HostOptions {
   double max_sim_time_s = 0.0;      ///< plant only: ends the run at this simulated time; 0: never
   double patience_s = 60.0;  ///< [s] wall time that the process waits for another one before it gives up; 0: for ever
   bool hash_log = true;      ///< plant only: writes output_dir/hashes.bin, which `constrictor diff` compares
-  bool record = false;       ///< plant only: the hash log also has the messages themselves, images aside
+  bool record = false;       ///< plant only: the hash log also has the messages themselves, except images
   Setup setup;               ///< of every component; its name is set by the host
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; a component without one has its default
 };

@@ -21,7 +21,7 @@ class Links {
   explicit Links(std::uint32_t domain);
   [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
 
-  /// Must be set before the first message is taken.
+  /// Sets the function that receives rejections. Must be called before the first message is taken.
   void on_rejected(Reject reject) { reject_ = std::move(reject); }
   /// Calls `take` when `reader` has samples.
   void attach(dds_entity_t reader, std::function<void()> take);
@@ -46,7 +46,7 @@ class Links {
   dds::Domain domain_;
   dds::Entity wait_set_;
   Reject reject_;
-  std::vector<std::function<void()>> takers_;  ///< by the number under which the reader is attached
+  std::vector<std::function<void()>> takers_;  ///< index: the number under which the reader is attached
   std::vector<dds_attach_t> triggered_;
 };
 

@@ -90,7 +90,8 @@ std::string MemberBus::explain(const Unmatched& missing) const {
                                     descriptor_of_id(missing.topic->id));
   std::string text = topic + ": the " + here + " here (" + describe(own.qos) + ") has not met the " + there + " of " +
                      missing.counterpart;
-  // Prefers an endpoint that names the component to one without user data, whose author may have forgotten it.
+  // Prefer an endpoint that names the component. Otherwise use an endpoint without user data: its author may have
+  // forgotten to set the name.
   std::optional<Endpoint> found;
   for (auto& endpoint : Discovery(participant_).endpoints()) {
     if (endpoint.topic != topic || endpoint.writer != missing.reader) continue;

@@ -144,7 +144,8 @@ void MemberSide::take_tick(const msg::Tick& tick) {
   for (auto& local : members_) {
     const std::int64_t newest = local.member->newest_tick();
     local.member->on_tick(tick);
-    if (local.member->newest_tick() > newest) context_.note_progress();  // the run goes on, also if no step is due here
+    // A new tick is progress of the run, even if no member of this process has a step to do.
+    if (local.member->newest_tick() > newest) context_.note_progress();
   }
 }
 

@@ -100,7 +100,7 @@ void MemberSide::send_ready() {
   for (const auto& name : context_.options.roster) {
     if (hosts(name)) continue;
     const auto hello = hellos_.find(name);
-    if (hello == hellos_.end()) return;  // without its Hello, the topics that it reads are not known
+    if (hello == hellos_.end()) return;  // the member's topics are not known before its Hello
     for (const auto& topic : topics::kInfos) {
       if (hello->second.reads.contains(topic.id)) readers_of[topic.id].push_back(name);
     }

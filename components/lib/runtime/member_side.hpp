@@ -46,7 +46,8 @@ class MemberSide : private MemberSink {
 
   /// Counts a rejected message in the ComponentStatus of a member of this process.
   void reject(const std::string& topic, const std::string& reason);
-  /// Whether a message names the run of this process, if that run is known yet; otherwise the message is rejected.
+  /// True if a message belongs to the run of this process, or if that run is not known yet. Otherwise rejects the
+  /// message and returns false.
   [[nodiscard]] bool accept_run(const char* topic, std::uint64_t run_id);
   /// Logs and publishes what each member waits for.
   void report_waiting();

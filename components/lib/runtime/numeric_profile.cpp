@@ -43,8 +43,8 @@ std::vector<CpuFeature> opencv_features() {
 #endif
 }
 
-/// Their names, separated by commas. `only_present`: OpenCV prints a notice about each name of a feature that the
-/// processor does not have.
+/// The names of these features, separated by commas. `only_present` leaves out features that the processor does not
+/// have, because OpenCV prints a notice about each of them.
 std::string opencv_list(bool only_present) {
   std::string list;
   for (const auto& [name, present] : opencv_features()) {
@@ -84,7 +84,7 @@ std::string numeric_profile() {
     fingerprint = (fingerprint ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3ULL;
   };
   for (int i = 1; i <= 2000; ++i) {
-    // volatile: libm must compute the results, not the compiler.
+    // volatile, so that libm computes the results at run time instead of the compiler.
     volatile double x = 0.0137 * i - 7.3;
     add(std::sin(x));
     add(std::cos(x));

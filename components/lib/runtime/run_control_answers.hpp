@@ -23,7 +23,7 @@ class RunControlAnswers {
     if (source == sources_.end() || source->second.answer.sequence_number != command.sequence_number) return nullptr;
     return &source->second.answer;
   }
-  /// Number of the newest answered command of a source; 0 if there is none.
+  /// Number of the newest answered command of a source; 0 if no command of this source was answered.
   [[nodiscard]] std::uint64_t newest(const std::string& source) const {
     const auto known = sources_.find(source);
     return known == sources_.end() ? 0 : known->second.answer.sequence_number;

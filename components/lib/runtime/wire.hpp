@@ -15,7 +15,7 @@ namespace barrier_topics = ::constrictor::barrier_topics;
 /// The message points to the bytes in `block`, which must outlive it. Throws std::logic_error if the member reads or
 /// writes more topics than the message has room for.
 msg::TickDone to_wire(const TickDone& done, std::string& block);
-/// `message` must have passed validate(). Empty if the checkpoint is damaged.
+/// `message` must have passed validate(). Returns nothing if the checkpoint is damaged.
 std::optional<TickDone> from_wire(const msg::TickDone& message);
 msg::Hello to_wire(const Hello& hello, const std::string& version);
 Hello from_wire(const msg::Hello& message);

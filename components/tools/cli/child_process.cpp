@@ -62,7 +62,7 @@ std::string ChildExit::describe() const {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const std::vector<std::string>& environment,
                            const std::filesystem::path& log) {
-  // Everything that allocates memory comes before the fork: another thread may hold the lock of the heap then.
+  // All memory is allocated before the fork: during the fork, another thread may hold the lock of the heap.
   const auto arguments = pointers(argv);
   const auto variables = pointers(environment);
   const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);

@@ -1,4 +1,4 @@
-// The launcher's questions to constrictor_host: which components it hosts, and whether their files are correct.
+// Runs constrictor_host to find out which components it hosts, and whether their files are correct.
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kBound = 30s;  // normally a tenth of a second
+constexpr auto kBound = 30s;  // longest time that constrictor_host may take; normally 0.1 s
 constexpr std::size_t kMostLines = 40;
 
 /// A file in memory for the output of a process.
@@ -37,7 +37,7 @@ class MemoryFile {
 
 struct HostOutput {
   ChildExit exit;
-  std::vector<std::string> lines;  ///< of output and errors together
+  std::vector<std::string> lines;  ///< lines of standard output and standard error together
 };
 
 /// Runs constrictor_host to its end. Throws std::runtime_error if it does not end within kBound.

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file with this path, or else one of the project's files with this name.
+/// The file with this path. If there is no such file: the file of the project with this name.
 fs::path find_file(const std::string& text, const NamedFiles& files) {
   if (fs::is_regular_file(text)) return fs::absolute(text);
   const auto names = names_of(files);
@@ -86,7 +86,7 @@ std::vector<std::string> names_of(const NamedFiles& files) {
 fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 LaunchPlan make_launch_plan(const RunOptions& options) {
-  pace_arguments(options.pace);  // for its check
+  pace_arguments(options.pace);  // only checks the option
   LaunchPlan plan;
   LaunchManifest& manifest = plan.manifest = load_manifest(find_file(options.manifest, kManifests));
   plan.roster = manifest.roster();

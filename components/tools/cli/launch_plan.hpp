@@ -1,4 +1,4 @@
-// From the options of `constrictor run` to the processes of the run: which files, which components, which arguments.
+// Derives the processes of a run from the options of `constrictor run`: their files, components and arguments.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 namespace constrictor::cli {
 
 struct RunOptions {
-  std::string scenario;                 ///< name in sim/scenarios or a path; empty: the manifest's
+  std::string scenario;                 ///< name in sim/scenarios or a path; empty: the scenario of the manifest
   std::string manifest = "case_study";  ///< name in deploy or a path
-  std::string robot;                    ///< name in components/lib/robot or a path; empty: the manifest's
+  std::string robot;                    ///< name in components/lib/robot or a path; empty: the robot of the manifest
   std::uint64_t seed = 1;
   std::string pace = "lockstep";          ///< "lockstep", "realtime" or "2x"
   bool in_process = false;                ///< every component in one process
   std::vector<std::string> groups;        ///< each a comma-separated list of components that share a process
-  std::filesystem::path report_dir;       ///< empty: a new one below runs/
+  std::filesystem::path report_dir;       ///< empty: a new folder in runs/
   double max_sim_time_s = 0;              ///< [s] simulated time at which the run ends; 0: no limit
   bool record = false;                    ///< log the messages themselves, for `constrictor diff`
-  std::optional<std::uint32_t> domain;    ///< empty: the first free
+  std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
 };
 
@@ -30,7 +30,7 @@ struct RunOptions {
 struct NamedFiles {
   const char* kind;              ///< "scenario"
   std::filesystem::path folder;  ///< relative to the project's root
-  const char* list_argument;     ///< of `constrictor list`
+  const char* list_argument;     ///< argument of `constrictor list` that lists these names
 };
 inline const NamedFiles kScenarios{"scenario", "sim/scenarios", "scenarios"};
 inline const NamedFiles kManifests{"manifest", "deploy", "manifests"};
@@ -44,8 +44,8 @@ struct LaunchPlan {
   std::vector<std::string> roster;  ///< in the manifest's order, which does not depend on the distribution
 };
 
-/// Chooses files and processes. Throws UsageError for an option that is no valid text, and ConfigurationError for a
-/// file, program or component that does not exist. Starts nothing.
+/// Chooses files and processes. Throws UsageError if the text of an option is invalid, and ConfigurationError if a
+/// file, program or component does not exist. Starts no process of the run.
 [[nodiscard]] LaunchPlan make_launch_plan(const RunOptions& options);
 
 /// Lets the components that constrictor_host hosts read all of their files, in one process that joins no run.
@@ -53,17 +53,18 @@ struct LaunchPlan {
 /// whose files are wrong.
 void check_components(const RunOptions& options, const LaunchPlan& plan);
 
-/// The components that constrictor_host can host: those of this build. Throws std::runtime_error if it does not start.
+/// The components that constrictor_host can host: all components of this build. Throws std::runtime_error if it does
+/// not start.
 [[nodiscard]] std::vector<std::string> hosted_components();
 
-/// Arguments that give a component the mission of the scenario; none if the scenario states none. A planner reads its
-/// mission in this way because it must not see the scenario.
+/// Arguments that give a component the mission of the scenario; no arguments if the scenario has no mission. The
+/// planner receives its mission in this way, because it must not read the scenario.
 [[nodiscard]] std::vector<std::string> mission_arguments(const LaunchManifest& manifest);
 
 [[nodiscard]] CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan, std::uint32_t domain,
                                             const std::filesystem::path& report_dir, std::uint64_t run_id);
 
-/// This process's environment with the settings of the numeric profile, complete for a new process.
+/// The complete environment for a new process: that of this process with the settings of the numeric profile.
 [[nodiscard]] std::vector<std::string> run_environment();
 
 /// The folder of this program and of all component programs.

@@ -20,7 +20,7 @@ struct Options {
   bool names = false;
 };
 
-/// The first comment of a file, up to its first full stop or its first line that is no comment.
+/// The first sentence of the comment at the start of a file; without a full stop, the first paragraph of the comment.
 std::string first_sentence(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string text;

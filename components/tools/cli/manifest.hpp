@@ -12,10 +12,10 @@ namespace constrictor::cli {
 
 /// One process of a run.
 struct ProcessPlan {
-  std::vector<std::string> components;   ///< hosted by it, at least one
-  std::string program;                   ///< empty: the component's own, or constrictor_host for several
-  int restarts = 100;                    ///< how often it is restarted after it died; 0 for the plant's process
-  std::vector<std::string> environment;  ///< "NAME=VALUE", added to the launcher's
+  std::vector<std::string> components;  ///< components that the process hosts, at least one
+  std::string program;  ///< empty: the component's own program, or constrictor_host for several components
+  int restarts = 100;   ///< largest number of restarts; 0 for the plant's process
+  std::vector<std::string> environment;  ///< "NAME=VALUE", added to the launcher's environment
 
   /// "control", or "navigation+control" if it hosts several.
   [[nodiscard]] std::string name() const;
@@ -30,7 +30,7 @@ struct LaunchManifest {
   std::filesystem::path scenario_file;
   double patience_s = 60.0;  ///< [s] wall time that a process waits for another one before it gives up
   std::vector<ProcessPlan> processes;
-  std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: its default
+  std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: the default file
 
   /// Every component, in the order of the file.
   [[nodiscard]] std::vector<std::string> roster() const;
@@ -40,8 +40,8 @@ struct LaunchManifest {
 /// named twice or the plant is not among the components.
 LaunchManifest load_manifest(const std::filesystem::path& file);
 
-/// Puts each group of components into one process of its own; other components stay where they are. A run's identity
-/// depends on the manifest's roster() only, which must be taken before. Throws ConfigurationError if a component is
+/// Puts each group of components into one process of its own; other components stay where they are. Call roster()
+/// before: the order of the roster must not depend on the grouping. Throws ConfigurationError if a component is
 /// unknown or in two groups.
 void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string>>& groups);
 

@@ -9,8 +9,8 @@
 namespace constrictor::cli {
 
 /// Options of a client with the level of an operator, whose waits end at Ctrl-C (it calls catch_interrupts()).
-/// `lease` 0: authority ends with the process; above 0: also when the process hangs for so long. `detached`: authority
-/// stays until a source releases it (for scripts).
+/// If `lease` is 0, authority ends with the process; otherwise it also ends when the process hangs for this time. If
+/// `detached` is true, authority lasts until a source releases it (for scripts).
 RequestClientOptions operator_options(std::string source, std::chrono::milliseconds lease = {}, bool detached = false);
 
 /// Connects and returns 0. If `input` does not answer, or at Ctrl-C, prints what to do and returns an exit status.

@@ -30,8 +30,8 @@ struct Options {
   ViewOptions view;
   bool names = false;
   bool changed = false;
-  std::string name;                  ///< of get; of list: what names begin with
-  std::vector<std::string> changes;  ///< of set: NAME VALUE NAME VALUE ...
+  std::string name;                  ///< get: the parameter's name; list: prefix of the names to print
+  std::vector<std::string> changes;  ///< set: NAME VALUE NAME VALUE ...
   std::int64_t at_tick = 0;
 };
 
@@ -51,7 +51,7 @@ int list(const Options& options) {
   const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
-  bool begins = false;  // any of them with the prefix
+  bool begins = false;  // whether any name begins with the prefix
   std::size_t shown = 0;
   if (!options.view.json && !options.names)
     fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "meaning");

@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kMemoryEvery = 2s;
-constexpr auto kAnswerBound = 5s;  // of the conductor, to the request to end the run
+constexpr auto kAnswerBound = 5s;  // bound on the conductor's answer to the request to end the run
 constexpr auto kEndGrace = 60s;    // when the plant has ended, the report component still draws its figure
 
 fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
@@ -92,7 +92,7 @@ class Launcher {
     }
   }
 
-  /// Takes in what the run published, and passes it on to the supervisor and the note.
+  /// Reads the messages that the run has published, and passes their content to the supervisor and the note.
   void update() {
     for (const auto& line : observer_.poll()) display_.print(line);
     const RunView& view = observer_.view();
@@ -135,7 +135,8 @@ class Launcher {
       RunControlClient(observer_.participant(), claim_.domain(), kAnswerBound, meanwhile).end();
       ending_.accepted(Clock::now());
     } catch (const CommandError& error) {
-      if (error.cause() == CommandError::Cause::kInterrupted) ending_.accepted(Clock::now());  // ended, or a 2nd signal
+      // The wait was interrupted because the run has ended or a second signal arrived.
+      if (error.cause() == CommandError::Cause::kInterrupted) ending_.accepted(Clock::now());
       else ending_.failed(error.what());
     }
   }
@@ -175,7 +176,7 @@ class Launcher {
 
   const RunOptions& options_;
   LaunchPlan plan_;
-  SignalQueue signals_;  // before all that starts threads or processes
+  SignalQueue signals_;  // first, because it must exist before any thread or process is started
   ProgressDisplay display_;
   DomainClaim claim_;
   fs::path report_dir_;
@@ -187,7 +188,7 @@ class Launcher {
   Clock::time_point memory_sampled_{};
   RunEnding ending_;
   bool run_is_over_ = false;  ///< the plant has ended; the other processes are ending
-  std::string killed_;        ///< why the processes are killed; empty: they are not
+  std::string killed_;        ///< why the processes are killed; empty if they are not killed
 };
 
 }  // namespace

@@ -7,12 +7,12 @@
 
 namespace constrictor::cli {
 
-/// Makes a directory that did not exist before, also if other processes do the same at this moment: `wanted`, or that
-/// with -2, -3 ... appended. Throws std::filesystem::filesystem_error.
+/// Makes a new directory and returns its path: `wanted`, or `wanted` with -2, -3 ... appended if it exists already. Two
+/// processes that call this at the same time get different directories. Throws std::filesystem::filesystem_error.
 std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
 
-/// Throws UsageError or ConfigurationError for whatever is wrong before anything is started. Returns the exit status:
-/// 0 only after a successful mission.
+/// Carries out a run. Throws UsageError or ConfigurationError for faults that are found before a process is started.
+/// Returns the exit status: 0 only after a successful mission.
 int run_command(const RunOptions& options);
 
 }  // namespace constrictor::cli

@@ -89,13 +89,12 @@ int clear_stop(RequestClient& client) {
              "emergency stop cleared; the robot stands until `constrictor release` or another request");
 }
 
-/// Releases the authority of a script. Also lets a planner take authority if no source has it: takes it and releases
-/// it.
+/// Releases the authority of a script: takes authority and releases it. A planner may then take authority.
 int release(RequestClient& client) {
-  // `input` refuses this while a person at a terminal has authority: they keep it.
+  // `input` refuses this while a person at a terminal has authority. The person keeps it.
   const auto taken = client.wait_for_answer(client.ask(msg::kRequestTake), 5s);
   if (taken == RequestClient::Answer::kRefused) return report_not_granted(client, taken, "release");
-  // Released in every other case, also after Ctrl-C: the first request may have been granted meanwhile.
+  // In every other case authority is released, also after Ctrl-C: the first request may have been granted meanwhile.
   const auto answer = client.wait_for_answer(client.ask(msg::kRequestRelease), 5s);
   if (answer == RequestClient::Answer::kInterrupted && client.release(2s)) {
     fmt::print("release: interrupted, but authority was released\n");

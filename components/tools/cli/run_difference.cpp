@@ -14,7 +14,7 @@ namespace {
 
 using Entry = HashLog::Entry;
 
-/// Messages of so many last ticks may be missing: the longest latency of a component, and a margin.
+/// Number of last ticks whose messages may be missing from a log: the longest latency of a component, and a margin.
 constexpr std::int64_t kTail = 32;
 
 auto place(const Entry& entry) { return std::make_tuple(entry.tick, entry.topic, entry.sequence_number); }
@@ -111,7 +111,7 @@ std::optional<RunDifference> first_run_difference(const std::vector<Entry>& a, c
 std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto read = [](const std::filesystem::path& directory) {
     auto log = HashLog::read(directory);
-    // Without a tick there is nothing to compare.
+    // If a run made no tick, there is nothing to compare.
     if (last_tick(log) < 0) throw std::runtime_error((directory / "hashes.bin").string() + ": contains no tick");
     return log;
   };

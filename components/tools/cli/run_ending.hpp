@@ -1,5 +1,5 @@
-// How the launcher ends a run that a user wants to end: in order through the conductor, by force if that fails. Pure:
-// signals, answers and time are arguments.
+// How the launcher ends a run when the user asks for it: it asks the conductor, and kills the processes if that fails.
+// Pure: signals, answers and time are arguments.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@ class RunEnding {
   [[nodiscard]] bool wants_answer() const { return requested() && !accepted_at_ && kill_reason_.empty(); }
   /// The first signal; 0 before it.
   [[nodiscard]] int first_signal() const { return first_signal_; }
-  /// Why the processes must be killed now, for users; empty: they need not.
+  /// Why the processes must be killed now, as text for users; empty if they need not be killed.
   [[nodiscard]] std::string kill_reason(Time now) const;
   /// True after a second signal: processes get no time to end by themselves.
   [[nodiscard]] bool at_once() const { return at_once_; }

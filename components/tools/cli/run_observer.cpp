@@ -16,7 +16,7 @@ namespace {
 namespace wire = dds::barrier_topics;
 constexpr auto kSettle = std::chrono::milliseconds(500);  // until the first messages of all topics have arrived
 constexpr std::int64_t kMostAhead =
-    50;  // ticks that a component may be done with while another still waits for one, in any configuration
+    50;  // in any configuration, a component is at most this many ticks ahead of another one
 
 }  // namespace
 
@@ -49,7 +49,7 @@ bool RunView::ended(const std::string& component) const {
 
 bool RunView::over(const msg::Waiting& waiting) const {
   const auto waiter = components.find(waiting.component);
-  // A wait for the run to begin has ended when the waiter publishes a status of that run.
+  // `waiting` has no run id: the waiter waits for the begin of the run. Its first status with a run id ends the wait.
   if (waiting.run_id == 0) return waiter != components.end() && waiter->second.run_id != 0;
   if (present_.run_id() == 0) return false;
   const bool done =
@@ -138,7 +138,7 @@ std::vector<std::string> RunObserver::poll() {
   std::vector<std::string> waiting;
   std::vector<std::string> waiting_for_tick;
   readers_->waiting.take([&](const msg::Waiting& message) { waits_.push_back(message); });
-  // Waits are kept for late observers. Whether one has ended is known only when the state of the run is known.
+  // Writers keep messages about waits for late observers. Only the state of the run shows whether a wait has ended.
   if (std::chrono::steady_clock::now() - begun_ < kSettle) return {};
   for (const auto& message : std::exchange(waits_, {})) {
     if (view_.over(message)) continue;

@@ -15,21 +15,21 @@
 
 namespace constrictor::cli {
 
-/// The newest known state of a run. Takes messages in any order. A ComponentStatus always counts as the health of its
-/// component; other messages of an earlier epoch (before a reset) or of another run are ignored.
+/// The newest known state of a run. Takes messages in any order. Messages of an earlier epoch (before a reset) or of
+/// another run are ignored, except ComponentStatus, which is always used as the health of its component.
 struct RunView {
   /// `run_id`: the run to observe; 0: the first one of which a message arrives.
   explicit RunView(std::uint64_t run_id) : meant_(run_id), present_(run_id) {}
   RunView() : RunView(0) {}
 
-  std::int64_t tick = -1;  ///< newest of any component in this epoch; -1: the epoch has not begun
+  std::int64_t tick = -1;  ///< newest tick of any component in this epoch; -1: the epoch has not begun
   double period_s = 0.02;  ///< [s] control period
   std::optional<msg::MissionStatus> mission;
   std::optional<msg::TaskStatus> task;
   std::optional<msg::Authority> authority;
   std::optional<msg::RunState> run_state;
   std::map<std::string, msg::ComponentStatus> components;
-  std::map<std::string, std::uint64_t> overruns;  ///< by component, all of its incarnations
+  std::map<std::string, std::uint64_t> overruns;  ///< by component, summed over its incarnations
   std::map<std::string, std::uint64_t> refused;
 
   void take(const msg::Tick& message);
@@ -39,7 +39,7 @@ struct RunView {
   void take(const msg::Authority& message);
   void take(const msg::RunState& message);
 
-  /// True if a wait has ended: the tick that it delayed is done, or it belongs to another run.
+  /// True if a wait has ended: the tick that it delayed is done, or the wait belongs to another run.
   [[nodiscard]] bool over(const msg::Waiting& waiting) const;
   /// True if the component published that the run has ended.
   [[nodiscard]] bool ended(const std::string& component) const;
@@ -77,7 +77,7 @@ class RunObserver {
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::vector<msg::Waiting> waits_;                         ///< not examined yet
   std::map<std::string, std::int64_t> reported_waits_;      ///< tick of the last report by waiter and peer
-  std::chrono::steady_clock::time_point cause_reported_{};  ///< last report of a wait for anything but a tick
+  std::chrono::steady_clock::time_point cause_reported_{};  ///< last report of a wait that is not for a tick
 };
 
 /// "follow_line | mission carry | green, 1 of 2 done | 45.2 s simulated at 6.3x real time".

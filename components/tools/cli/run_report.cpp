@@ -46,7 +46,7 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   Json report = Json::object();
   report["success"] = verdict.success;
   report["reason"] = verdict.reason;
-  report["seed"] = mission.value("seed", outcome.seed);  // a reset may have changed it
+  report["seed"] = mission.value("seed", outcome.seed);  // a reset may have changed the seed
   report["scenario"] = outcome.scenario;
   report["sim_time_s"] = verdict.sim_time_s;
   report["wall_time_s"] = outcome.wall_time_s;

@@ -13,15 +13,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kLastLines = 5;        // of a dead process's log, shown to the user
-constexpr int kMostDeathsWithoutTick = 5;    // of one process by its own fault
+constexpr std::size_t kLastLines = 5;        // number of lines of a dead process's log that are shown to the user
+constexpr int kMostDeathsWithoutTick = 5;    // deaths of one process by its own fault at the same tick
 constexpr auto kEndTogether = 3s;            // a process may end this long before the plant's "the run is over" arrives
 constexpr auto kTermination = 3s;            // from SIGTERM to SIGKILL
 constexpr auto kTellWhoIsMissingAfter = 5s;  // while processes end
 constexpr auto kPoll = 10ms;
 constexpr int kNoSuchProgram = 127;
 
-/// A restart after this exit status would end in the same way.
+/// True if a process that ended with this status would end in the same way after a restart.
 bool is_final(int code) {
   return code == exit_status::kUsage || code == exit_status::kConfiguration || code == exit_status::kRefused ||
          code == exit_status::kWaitedTooLong || code == kNoSuchProgram;
@@ -94,8 +94,8 @@ void Supervisor::run_is_at(std::int64_t tick, bool held) {
 }
 
 void Supervisor::restart(Supervised& process, const std::string& why, bool own_fault) {
-  // A process that always dies in the same step would be restarted without end: no tick passes that step. A process
-  // that is killed from outside lets the run go on after each restart.
+  // Without this limit, a process that always dies in the same step would be restarted forever, and the run would never
+  // pass that tick. Processes killed from outside do not count: the run goes on after their restart.
   if (own_fault && ++process.deaths_without_tick >= kMostDeathsWithoutTick) {
     return fail(fmt::format("{} died {} times in a row while the run stood at tick {}; the last time it {}",
                             process.record.name, kMostDeathsWithoutTick, tick_, why),
@@ -147,7 +147,7 @@ void Supervisor::handle_plants_end(const Supervised& plant) {
 }
 
 Supervisor::State Supervisor::poll() {
-  // The plant comes first: the deaths that follow from its end must not be taken for the cause.
+  // Handle the plant first: its end makes other processes end, and these must not be reported as the cause.
   std::stable_partition(processes_.begin(), processes_.end(), [this](const Supervised& p) { return is_plant(p); });
   for (auto& process : processes_) {
     if (!process.running()) continue;

@@ -15,7 +15,7 @@ namespace constrictor::cli {
 
 /// One process of a run over all of its incarnations.
 struct ProcessRecord {
-  std::string name;  ///< as ProcessPlan::name()
+  std::string name;  ///< name of the process, as returned by ProcessPlan::name()
   std::vector<std::string> components;
   double cpu_s = 0;        ///< [s] user and system time
   double max_pss_mib = 0;  ///< [MiB] largest sample
@@ -79,13 +79,13 @@ class Supervisor {
     std::uint32_t incarnation = 0;
     Clock::time_point ended{};
     std::uintmax_t log_offset = 0;  ///< [byte] where the output of this incarnation begins in its log
-    int deaths_without_tick = 0;    ///< by its own fault, since the newest tick
-    bool over = false;              ///< ended, and its exit was handled
+    int deaths_without_tick = 0;    ///< number of deaths by its own fault since the newest tick
+    bool over = false;              ///< the process has ended, and its exit was handled
     [[nodiscard]] bool running() const { return !over && !child.empty(); }
   };
   void spawn(Supervised& process);
   void handle_exit(Supervised& process, const ChildExit& exit);
-  /// `own_fault`: not killed from outside, so that a restart may end in the same way.
+  /// `own_fault`: the process was not killed from outside, so that it may die in the same way after a restart.
   void restart(Supervised& process, const std::string& why, bool own_fault);
   void handle_plants_end(const Supervised& plant);
   void fail(const std::string& why, int status);
@@ -101,7 +101,7 @@ class Supervisor {
   std::filesystem::path log_dir_;
   Print print_;
   std::vector<Supervised> processes_;
-  std::int64_t tick_ = -1;  ///< newest known
+  std::int64_t tick_ = -1;  ///< newest known tick of the run
   State state_ = State::kRunning;
   bool ending_ = false;
   bool plant_gone_ = false;

@@ -42,8 +42,8 @@ int with_client(const Options& options, int (*use)(RequestClient&, const Options
   return use(client, options);
 }
 
-/// The task and its parameters as a request. Throws UsageError if they are wrong or incomplete: a request that cannot
-/// be done must not be sent, because it would end the mission that runs.
+/// The task and its parameters as a request. Throws UsageError if they are wrong or incomplete: such a request must not
+/// be sent, because it would end the running mission.
 msg::Request request_of(const Options& options) {
   const auto task = task_by_name(options.name);
   if (!task) throw UsageError(fmt::format("TASK: found '{}', accepted {}", options.name, task_words()));
@@ -101,7 +101,7 @@ int start(RequestClient& client, const Options& options) {
   }
 }
 
-/// Lets the robot stand, which ends the task that runs.
+/// Makes the robot stand. This ends the running task.
 int cancel(RequestClient& client, const Options&) {
   const auto answer = client.wait_for_answer(client.move(msg::kMotionStand), 5s);
   if (answer == RequestClient::Answer::kGranted)
@@ -155,7 +155,7 @@ void add_task(CLI::App& app, Action& action) {
   };
   auto* start_app =
       of_run(add("start", "start a task as an operator; authority stays until `constrictor release`", [options] {
-        static_cast<void>(request_of(*options));  // wrong usage is reported also without a run
+        static_cast<void>(request_of(*options));  // reports wrong usage even if there is no run
         return with_client(*options, start);
       }));
   start_app->add_option("TASK", options->name, task_words())->required();

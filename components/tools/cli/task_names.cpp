@@ -21,7 +21,7 @@ std::string wrong(const std::string& key, const std::string& value, const Consta
   return fmt::format("{}: found '{}', accepted {}", key, value, listed(group, 1));
 }
 
-/// The value of a name, but not the first of the group, which means "none".
+/// The value of a name. The first name of a group means "none" and is not accepted.
 std::optional<std::uint8_t> chosen(const ConstantGroup& group, const std::string& name) {
   const auto value = value_of(group, name);
   return value == 0 ? std::nullopt : value;

@@ -8,10 +8,11 @@
 
 namespace constrictor::cli {
 
-/// Why no robot can do this task request, whatever it sees or holds: "rotate needs ..."; empty if it is complete.
+/// Why this task request can never be carried out, for example "rotate needs ..."; empty if the request is complete.
 std::string task_problem(const msg::Request& request);
 
-/// A goal for people: the source's own number, "3", with the level of its source if that is no operator: "3 (planner)".
+/// A goal as text for people: the number that its source gave it, "3". If the source is not an operator, its level is
+/// added: "3 (planner)".
 std::string goal_text(std::uint64_t goal);
 
 }  // namespace constrictor::cli

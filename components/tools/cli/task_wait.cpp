@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 /// After this time all messages that writers keep for late readers have arrived.
 constexpr auto kSettle = 200ms;
-/// After this time a TaskStatus proves the end of a goal, too: its event is lost.
+/// After this time the event of a goal's end is regarded as lost, and a TaskStatus also proves the end.
 constexpr auto kEventLost = 1s;
 
 class Waiting {
@@ -101,7 +101,7 @@ class Waiting {
   dds::Domain participant_;
   GoalReader reader_;
   bool any_;
-  std::uint64_t goal_ = 0;  ///< 0: no such goal yet, or any
+  std::uint64_t goal_ = 0;  ///< 0: the goal does not exist yet, or any goal is accepted
   std::uint32_t epoch_ = 0;
   std::int64_t from_ = -1;  ///< tick after which events of any goal count
   std::optional<WaitClock::time_point> heard_;

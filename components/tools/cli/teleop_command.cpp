@@ -26,9 +26,9 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kTurn = 50ms;  // of the loop; well within the lease
+constexpr auto kTurn = 50ms;  // period of the loop; much shorter than the lease
 constexpr auto kRedraw = 100ms;
-constexpr auto kEscape = 400ms;  // after this time without a byte an escape character was the escape key
+constexpr auto kEscape = 400ms;  // if no byte follows an escape character for this time, it was the escape key
 constexpr const char* kInputMissing = "not sent: `input` is missing; the launcher restarts it";
 
 struct Options {
@@ -83,8 +83,8 @@ class Teleop {
   }
 
  private:
-  /// Releases authority if this program has it: the robot then stands. If no answer comes, DDS reports the end of this
-  /// program to `input`, which releases it half a second later.
+  /// Releases authority if this program has it; the robot then stands. If no answer arrives, DDS reports the end of
+  /// this program to `input`, which takes authority back half a second later.
   int leave() {
     if (!client_.holds_authority() && number_ == 0) farewell_ = authority_text(client_) + " (this program had none)";
     else if (client_.release(2s)) farewell_ = "authority was released, the robot stands";
@@ -92,7 +92,7 @@ class Teleop {
     return exit_status::kOk;
   }
 
-  /// False: quit.
+  /// Returns false if the program must quit.
   bool act(TeleopAction action) {
     if (action == TeleopAction::kQuit) return false;
     const RunAttachment& run = monitor_.attachment();
@@ -164,13 +164,13 @@ class Teleop {
     number_ = 0;
   }
 
-  Terminal terminal_;  // first: it forks, and the client starts threads
+  Terminal terminal_;  // first, because it forks: the client starts threads, which must not exist at the fork
   RequestClient client_;
   RunMonitor monitor_;
   TeleopObserver observer_;
   KeyReader keys_;
   TeleopScreen screen_;
-  std::uint64_t number_ = 0;  ///< request that is not answered yet; 0: none
+  std::uint64_t number_ = 0;  ///< number of the request that is not answered yet; 0: none
   std::string request_;       ///< the name of this request on the screen
   std::string farewell_;
 };
@@ -208,10 +208,12 @@ void add_teleop(CLI::App& app, Action& action) {
   auto* sub = add_subcommand(app, "teleop", "drive the robot by hand in a terminal; with --drive from a script", action,
                              options, teleop);
   add_run_option(*sub, options->run);
-  sub->add_option("--drive", options->drive,
-                  "SPEED,TURN in m/s and rad/s (0.3,0.5): drive without a screen, then stand and release authority");
+  sub->add_option(
+      "--drive", options->drive,
+      "SPEED,TURN in m/s and rad/s, for example 0.3,0.5: drive without a screen for the time of --for, then make "
+      "the robot stand and release authority");
   sub->add_option("--for", options->duration,
-                  "with --drive: how long, in wall time: 5s, 500ms, 2m (default: until Ctrl-C)");
+                  "duration of --drive in wall time, for example 5s, 500ms, 2m (default: until Ctrl-C)");
   sub->footer(help_footer(
       "The first key that moves the robot takes authority; q or Ctrl-C releases it. The screen shows the keys; the "
       "space bar is the emergency\nstop. If this program or its terminal dies, the robot holds its posture within half "

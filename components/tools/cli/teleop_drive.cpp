@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-constexpr auto kTurn = 50ms;  // of the loop; well within the lease
+constexpr auto kTurn = 50ms;  // period of the loop; much shorter than the lease
 
 DriveGait parse_drive(const std::string& text) {
   double speed_m_s = 0.0;
@@ -34,7 +34,7 @@ DriveGait parse_drive(const std::string& text) {
   return drive_gait(speed_m_s, turn_rad_s);
 }
 
-/// Ends a drive: the robot stands and this program has no authority. Prints what was reached.
+/// Ends a drive: makes the robot stand and releases authority. Prints whether `input` has confirmed the release.
 void stand_and_release(RequestClient& client) {
   client.move(msg::kMotionStand);
   if (client.release(2s)) {

@@ -8,8 +8,8 @@
 
 namespace constrictor::cli {
 
-/// If this process is dead or hangs for so long, `input` takes its authority away and the robot holds its posture. Long
-/// enough for a busy host, short enough for a person beside the robot.
+/// If this process is dead or hangs for this time, `input` takes its authority away and the robot holds its posture.
+/// The time is long enough for a busy host, and short enough for the safety of a person beside the robot.
 inline constexpr std::chrono::milliseconds kTeleopLease{500};
 
 /// Drives with `speed_and_turn`, "SPEED,TURN" in m/s and rad/s, for `duration` of wall time (empty: until Ctrl-C); then

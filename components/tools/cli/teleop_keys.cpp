@@ -8,9 +8,9 @@ namespace constrictor::cli {
 namespace {
 
 constexpr double kTurn_1_m = 0.8;          // path curvature of "left" and "right"
-constexpr double kRotate_rad_per_m = 2.5;  // turn rate on the spot per speed
+constexpr double kRotate_rad_per_m = 2.5;  // turn rate on the spot, divided by the chosen speed
 constexpr double kLook_rad = 0.25;
-constexpr std::size_t kMaxSequence = 16;  // bytes of a key
+constexpr std::size_t kMaxSequence = 16;  // largest number of bytes of a key
 
 constexpr std::array<std::pair<char, TeleopAction>, 24> kKeys{{
     {'i', TeleopAction::kForward},   {',', TeleopAction::kBack},       {'j', TeleopAction::kLeft},

@@ -12,7 +12,7 @@ enum class TeleopAction {
   kBack,
   kLeft,  ///< turn while driving
   kRight,
-  kRotateLeft,  ///< nearly on the spot
+  kRotateLeft,  ///< turn nearly on the spot
   kRotateRight,
   kStand,
   kFaster,
@@ -32,8 +32,9 @@ enum class TeleopAction {
   kQuit,
 };
 
-/// Cuts typed bytes into keys: one byte, or an escape sequence (arrows and other special keys). An incomplete sequence
-/// waits for the rest, because terminals, tmux and SSH cut sequences anywhere and send many of them at once.
+/// Splits typed bytes into keys. A key is one byte, or an escape sequence (arrows and other special keys). An
+/// incomplete sequence is kept until its rest arrives, because terminals, tmux and SSH split sequences anywhere and may
+/// send several at once.
 class KeyReader {
  public:
   void add(std::string_view bytes) { typed_ += bytes; }
@@ -55,8 +56,8 @@ extern const char* const kTeleopHelp[3];
 
 /// The motion that the operator has chosen.
 struct TeleopDrive {
-  double speed_m_s = 0.3;  ///< [m/s] of the driving keys, without sign
-  double forward = 0.0;    ///< +1, 0, -1
+  double speed_m_s = 0.3;  ///< [m/s] speed of the driving keys, always positive
+  double forward = 0.0;    ///< +1 forwards, 0, -1 backwards
   double turn = 0.0;       ///< +1 left, -1 right
   double look_rad = 0.0;
 

@@ -19,7 +19,8 @@ constexpr int kBar = 12;
 constexpr double kFullBar_nm = 6.0;
 constexpr double kSilent_s = 2.5;  // the conductor sends a RunState once a second at least
 
-/// Lines that are shown together or not at all. Those with the highest `rank` are left out first.
+/// Lines that are shown together or not at all. If the screen is too small, blocks with the highest `rank` are left out
+/// first.
 struct Block {
   int rank;
   std::vector<std::string> lines;
@@ -33,7 +34,7 @@ std::string line(std::string text, std::size_t columns) {
   return text;
 }
 
-/// The help in lines of at most `columns`; its entries, which two blanks separate, are not broken.
+/// The help in lines of at most `columns` characters. Two blanks separate its entries; lines break only there.
 std::vector<std::string> help_lines(std::size_t columns) {
   std::vector<std::string> lines(1);
   for (const std::string_view text : {kTeleopHelp[0], kTeleopHelp[1]}) {

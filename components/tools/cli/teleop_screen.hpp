@@ -30,8 +30,9 @@ struct TeleopScreen {
   std::optional<std::string> prompt;  ///< a task that is being typed; empty: none
 };
 
-/// At most `size.rows` lines of at most `size.columns` printable characters. What matters least is left out first; the
-/// key of the emergency stop is always shown. Below kSmallestScreen a message names the required size of the terminal.
+/// At most `size.rows` lines of at most `size.columns` printable characters. The least important lines are left out
+/// first; the key of the emergency stop is always shown. If the terminal is smaller than kSmallestScreen, a message
+/// names the required size.
 std::vector<std::string> render(const TeleopScreen& screen, ScreenSize size = {});
 
 }  // namespace constrictor::cli

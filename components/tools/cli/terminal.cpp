@@ -28,7 +28,8 @@ void put(std::string_view text) {
   }
 }
 
-/// Waits until the other end of the pipe closes. If no byte came before, its owner died: restores the terminal.
+/// Waits until the other end of the pipe is closed. If no byte arrived before that, the owner of the terminal has died:
+/// restores the terminal.
 [[noreturn]] void guard(int pipe, const termios& before) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTTOU, SIGTSTP}) ::signal(number, SIG_IGN);
   char farewell = 0;
@@ -65,7 +66,7 @@ Terminal::Terminal() {
   termios raw = before_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | IEXTEN);
   raw.c_iflag &= ~static_cast<tcflag_t>(IXON | ICRNL);
-  raw.c_cc[VMIN] = 1;  // with 0 a shell that reads before the guardian has restored the terminal sees end of input
+  raw.c_cc[VMIN] = 1;  // if 0, a shell that reads before the guardian restores the terminal would see an end of input
   raw.c_cc[VTIME] = 0;
   ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
   put(kEnter);
@@ -102,7 +103,7 @@ bool Terminal::read(std::string& typed, std::chrono::milliseconds bound) {
 void Terminal::draw(const std::vector<std::string>& lines, ScreenSize size) {
   std::string text;
   if (size != drawn_size_) {
-    text = "\033[2J";  // after a resize nothing on the screen is where it was
+    text = "\033[2J";  // clear the screen: a resize moves its content
     drawn_.clear();
   }
   for (std::size_t row = 0; row < lines.size(); ++row) {

@@ -13,7 +13,7 @@
 namespace constrictor::cli {
 namespace {
 
-/// The whole text as a number; empty if it is no number or does not fit into one.
+/// The whole text as a number; empty if the text is not a number, or if the number is too large for its type.
 template <class Number>
 std::optional<Number> parse(const std::string& text) {
   Number value{};
@@ -22,7 +22,7 @@ std::optional<Number> parse(const std::string& text) {
   return value;
 }
 
-/// The subcommand that the words of the command line lead to.
+/// The subcommand that the words of the command line name.
 const CLI::App& chosen_subcommand(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? app : chosen_subcommand(*chosen.back());

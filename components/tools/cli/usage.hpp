@@ -47,7 +47,7 @@ inline constexpr const char* kDataEnvironment =
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,
                         const std::string& exit_status, const std::string& environment = kRunEnvironment);
 
-/// The exit statuses of every command that looks for a run, for its help_footer().
+/// Text for help_footer(): the exit statuses of all commands that look for a run.
 inline constexpr const char* kRunStatuses = "64 wrong usage; 70 no run, or several and none chosen";
 
 /// The error message for a command line that `app` could not parse, with the closest name for a mistyped subcommand or

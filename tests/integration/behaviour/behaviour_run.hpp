@@ -109,7 +109,7 @@ class Behaviour : public ::testing::Test {
   /// Starts a task for the green object.
   void start_green(std::uint8_t task) { start(task, &msg::TaskParameters::object_colour, msg::kColourGreen); }
 
-  /// Advances until `condition` is true; false if it is not within `bound_s` of simulated time.
+  /// Advances until `condition` is true. Returns false if that takes longer than `bound_s` of simulated time.
   bool until(const std::function<bool()>& condition, double bound_s) {
     for (const double end_s = run_->time_s() + bound_s; run_->time_s() < end_s; run_->advance(1)) {
       if (condition()) return true;
@@ -120,7 +120,8 @@ class Behaviour : public ::testing::Test {
     const std::size_t from = happened.size();
     return until([&] { return first(event, from) != nullptr; }, bound_s);
   }
-  /// Advances until the newest goal has ended, and returns its state; kGoalIdle if it has not ended within the bound.
+  /// Advances until the newest goal has ended, and returns its state. Returns kGoalIdle if the goal is still running
+  /// after `bound_s` of simulated time.
   std::uint8_t until_end(double bound_s) {
     const auto ended = [&]() -> std::uint8_t {
       for (const auto& h : happened) {
@@ -132,7 +133,7 @@ class Behaviour : public ::testing::Test {
     until([&] { return ended() != msg::kGoalIdle; }, bound_s);
     return ended();
   }
-  /// The first event of this kind from index `from` on; null if there is none.
+  /// The first event of this kind from index `from` of `happened` on; null if there is no such event.
   [[nodiscard]] const Happened* first(std::uint8_t event, std::size_t from = 0) const {
     for (std::size_t i = from; i < happened.size(); ++i) {
       if (happened[i].event.event == event) return &happened[i];
@@ -140,7 +141,7 @@ class Behaviour : public ::testing::Test {
     return nullptr;
   }
 
-  /// Handle of the only object of a colour in guidance's map; 0: there is none, or more than one.
+  /// Handle of the object of this colour in guidance's map; 0 if the map has no object of this colour, or several.
   [[nodiscard]] std::uint16_t mapped_handle(std::uint8_t colour) const {
     const auto& map = *run_->latest(topics::kFieldMap);
     std::vector<std::uint16_t> handles;
@@ -150,8 +151,8 @@ class Behaviour : public ::testing::Test {
     }
     return handles.size() == 1 ? handles.front() : 0;
   }
-  /// Handle of the mapped object within 0.3 m of a place; 0: there is none. The robot must have started at the origin
-  /// of W, so that M is W.
+  /// Handle of the object in guidance's map that is less than 0.3 m from `place`; 0 if there is no such object. The
+  /// robot must have started at the origin of W, because the frame M of the map is then equal to W.
   [[nodiscard]] std::uint16_t mapped_near(const Place& place) const {
     const auto& map = *run_->latest(topics::kFieldMap);
     for (int i = 0; i < map.object_count; ++i) {
@@ -180,7 +181,7 @@ class Behaviour : public ::testing::Test {
                        head.y_m + kCameraAhead_m * std::sin(head.yaw_rad), head.yaw_rad};
     return std::abs(camera.bearing_rad(point)) < 0.25 * M_PI && camera.distance_m(point) < most_m;
   }
-  /// [m] distance of the nearest point of the line in the camera's view; infinite if there is none.
+  /// [m] distance from the head to the nearest line point in the camera's view; infinite if no point is in view.
   [[nodiscard]] double line_in_view_m() const {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (const Place& point : line()) {

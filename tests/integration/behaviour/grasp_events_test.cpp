@@ -1,5 +1,5 @@
 // Tables VII to XII (pregrasp, grasp, drop) with simulated contact: an object is pregrasped, grasped, carried and
-// dropped. Where a scripted force takes it away, torque and touch reveal the loss.
+// dropped. When a scripted force takes the object away, navigation must notice the loss by torque and touch.
 #include "behaviour_run.hpp"
 
 namespace constrictor::testing {
@@ -49,7 +49,7 @@ class GraspEvents : public Behaviour {
         over_s);
     return sum / count;
   }
-  /// [rad] angle by which the direction from the object to the body turns from tail to head.
+  /// [rad] angle by which the body is wrapped around the object, from the tail to the head; positive: counterclockwise.
   [[nodiscard]] double wound_rad() const {
     double sum_rad = 0.0;
     for (std::size_t m = world().module_count - 1; m > 0; --m) {

@@ -40,12 +40,13 @@ TEST_F(Behaviour, FollowsTheLineToItsEndByGroundTruth) {
   ASSERT_TRUE(first(msg::kEventLineFound));
   EXPECT_LT(first(msg::kEventLineFound)->time_s, end.time_s);
   EXPECT_FALSE(first(msg::kEventLineLost));
-  // Navigation's `end_reached_m` is 0.35; the image is at least two ticks old, and the head pitches and sways.
+  // The bounds leave room around navigation's `end_reached_m` (0.35 m), because the image is at least two ticks old
+  // and the head pitches and sways.
   EXPECT_LT(line().back().distance_m(end.head), 0.45);
   EXPECT_GT(line().back().distance_m(end.head), 0.15);
   std::printf("distance from the line %.3f m rms\n", std::sqrt(squares_m2 / count));
-  EXPECT_LT(std::sqrt(squares_m2 / count),
-            0.12);  // 0.08 to 0.09 m including the sway of the gait, and the way from the start to the line
+  // Measured: 0.08 to 0.09 m. A part of it is the gait's sway and the way from the start to the line.
+  EXPECT_LT(std::sqrt(squares_m2 / count), 0.12);
   EXPECT_EQ(until_end(1.0), msg::kGoalSucceeded);
 }
 
@@ -65,7 +66,7 @@ TEST_F(Behaviour, ReportsLineLostAfterTheLineHasLeftTheView) {
   ASSERT_TRUE(first(msg::kEventLineFound));
   const double lost_s = first(msg::kEventLineLost)->time_s;
   std::printf("left the view at %.2f s, lost at %.2f s\n", left_view_s, lost_s);
-  // Ten images, 0.1 s apart, without the line, and the latency of camera and perception.
+  // Navigation waits for ten images without the line, 0.1 s apart. The latency of camera and perception comes on top.
   EXPECT_NEAR(lost_s, left_view_s + 1.0, 0.3);
   EXPECT_FALSE(first(msg::kEventEndOfLine));
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
@@ -95,7 +96,7 @@ TEST_F(Behaviour, RotateTurnsToTheRequestedSideUntilItsTimeout) {
     EXPECT_EQ(until_end(1.0), msg::kGoalSucceeded);
     EXPECT_NEAR(first(msg::kEventTimeout)->time_s - happened.front().time_s, 3.0, 0.041);
     std::printf("turned by %.2f rad in 3 s\n", rad);
-    EXPECT_GT(left ? rad : -rad, 1.0);  // 66 to 83 degrees per second at full speed
+    EXPECT_GT(left ? rad : -rad, 1.0);  // measured at full speed: 66 to 83 degrees per second
   }
   happened.clear();
   start(msg::kTaskRotate, &msg::TaskParameters::direction, msg::kDirectionLeft);
@@ -111,14 +112,15 @@ TEST_F(Behaviour, ExploreMovesInTheRequestedDirectionAndLooksToBothSides) {
     start(msg::kTaskExplore, &msg::TaskParameters::direction,
           forwards ? msg::kDirectionForwards : msg::kDirectionBackwards);
     until(
-        [&] {  // the head relative to a module behind those that turn it
+        [&] {  // the heading of the head relative to module 8, which does not turn when the head looks aside
           const double look_rad = std::remainder(head().yaw_rad - module(8).yaw_rad, 2.0 * M_PI);
           leftmost_rad = std::max(leftmost_rad, look_rad);
           rightmost_rad = std::min(rightmost_rad, look_rad);
           return false;
         },
         20.0);
-    const double ahead_m = module(12).x_m + 12 * 0.089 - from.x_m;  // of the body, because the head looks to both sides
+    // The motion is measured at module 12, because the head looks to both sides.
+    const double ahead_m = module(12).x_m + 12 * 0.089 - from.x_m;
     std::printf("body moved %.2f m ahead, head looked from %.2f to %.2f rad\n", ahead_m, rightmost_rad, leftmost_rad);
     EXPECT_GT(forwards ? ahead_m : -ahead_m, 0.4);
     EXPECT_GT(leftmost_rad, 0.7);  // navigation's `head_turn_rad` is 0.9
@@ -127,7 +129,7 @@ TEST_F(Behaviour, ExploreMovesInTheRequestedDirectionAndLooksToBothSides) {
   }
 }
 
-// The heading is that of the front of the body, because the head looks to both sides.
+// The test measures the heading of the front of the body, because the head looks to both sides.
 TEST_F(Behaviour, ExploreToASideBendsToThatSide) {
   for (const bool left : {true, false}) {
     begin(std::string("name: nothing\n") + kStart);

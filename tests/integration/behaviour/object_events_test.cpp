@@ -1,5 +1,5 @@
-// Tables III to VIII (search, track, pregrasp): objects are found, reached and lost by the rendered camera; a scripted
-// force throws them away where a test needs a loss.
+// Tables III to VIII (search, track, pregrasp): objects are found, reached and lost in rendered images. Where a test
+// needs a loss, a scripted force throws the object away.
 #include "behaviour_run.hpp"
 
 namespace constrictor::testing {
@@ -75,7 +75,7 @@ TEST_F(ObjectEvents, SearchReportsObjectLostWhenTheFoundObjectVanishes) {
   ASSERT_TRUE(until_event(msg::kEventObjectLost, 3.0));
   const Happened& lost = *first(msg::kEventObjectLost);
   EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
-  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // ten images without the object
+  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // navigation waits for ten images without the object
   EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "the search continues";
 }
 
@@ -90,7 +90,7 @@ TEST_F(ObjectEvents, TrackReachesTheObject) {
   std::printf("reached at %.2f m, %.2f rad\n", range_m, reached.head.bearing_rad(reached.object));
   EXPECT_NEAR(range_m, 0.9, 0.15);  // navigation's `reach_m`
   EXPECT_LT(std::abs(reached.head.bearing_rad(reached.object)),
-            0.45);  // `reach_bearing_rad` is 0.3 for the mean bearing of a swaying head
+            0.45);  // `reach_bearing_rad` is 0.3 and limits the mean bearing; the head sways about the mean
   EXPECT_EQ(until_end(1.0), msg::kGoalSucceeded);
 }
 

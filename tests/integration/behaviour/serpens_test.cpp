@@ -1,5 +1,5 @@
 // The series-elastic robot follows a line nearly as fast as the stiff robot, its odometry agrees with ground truth, and
-// each joint lags its motor by torque over stiffness.
+// the deflection of each joint's spring is its torque divided by its stiffness.
 #include "behaviour_run.hpp"
 
 namespace constrictor::testing {
@@ -20,9 +20,9 @@ struct Spring {
 class SerpensBehaviour : public Behaviour {
  protected:
   struct Run {
-    double distance_m = 0.0;    ///< of the head along the line
-    double from_line_m = 0.0;   ///< of the head, rms, including the sway of the gait
-    double pose_error_m = 0.0;  ///< of guidance's estimate at the end
+    double distance_m = 0.0;    ///< distance that the head has moved along the line
+    double from_line_m = 0.0;   ///< rms distance of the head from the line, including the sway of the gait
+    double pose_error_m = 0.0;  ///< distance of guidance's estimate from the true position at the end
     double most_deflection_rad = 0.0;
     Spring spring;
   };
@@ -58,7 +58,7 @@ class SerpensBehaviour : public Behaviour {
         duration_s);
     way.from_line_m = std::sqrt(way.from_line_m / count);
     const auto& pose = *run_->latest(topics::kRobotPose);
-    way.pose_error_m = head().distance_m({pose.x_m, pose.y_m, pose.yaw_rad});  // M is W: the robot starts at its origin
+    way.pose_error_m = head().distance_m({pose.x_m, pose.y_m, pose.yaw_rad});  // the robot starts at W's origin: M = W
     std::printf(
         "%s: %.2f m along the line, %.3f m from it rms, pose error %.3f m, deflection to %.3f rad, %.1f Nm/rad, "
         "correlation %.3f\n",
@@ -79,7 +79,8 @@ TEST_F(SerpensBehaviour, FollowsALineNearlyAsFastAsTheStiffRobot) {
   EXPECT_LT(elastic.from_line_m, 0.12);
   EXPECT_LT(elastic.pose_error_m, 0.1);
   EXPECT_FALSE(first(msg::kEventLineLost));
-  // Hooke's law over all joints and ticks. The torque of the damping is out of phase and lowers the correlation.
+  // Hooke's law must hold over all joints and ticks. The damping torque is not in phase with the deflection, therefore
+  // the correlation is less than 1.
   const RobotModel robot = load_robot(data_path("components/lib/robot/serpens.yaml"));
   EXPECT_GT(elastic.most_deflection_rad, 0.01);
   EXPECT_NEAR(elastic.spring.stiffness_nm_rad(), robot.joints[0].stiffness_nm_rad,

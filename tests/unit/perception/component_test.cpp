@@ -1,4 +1,5 @@
-// The component in a run: attitudes of the exposure, colours of the task, refused images, restarts.
+// The component in a run: it uses the head's attitude at the exposure and the task's colours, refuses broken images,
+// and can be restarted.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +82,8 @@ ComponentFactory tasks() {
 /// and later changes them back. Each change is requested some ticks before it comes into force.
 class Desk : public StatefulComponent<int> {
  public:
-  static constexpr std::int64_t kGone = 22, kBack = 43;  // kGone: the image of tick 20 arrives; kBack: that of 40 has
+  // Ticks of the two changes. The image of tick 20 arrives at tick 22, and the image of tick 40 at tick 42.
+  static constexpr std::int64_t kGone = 22, kBack = 43;
   Desk(Wiring& wiring, const Setup&) : change_(wiring.output(topics::kParameterChange)) {}
   void step(const Tick& tick) override {
     if (tick.index == 10) change("perception.colour.yellow.from_deg", 71.0, kGone);
@@ -122,7 +124,7 @@ TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {
     EXPECT_NEAR(line.heading_rad, 0.0, 0.06);
   });
   run->advance(30);
-  EXPECT_EQ(percepts, 5);  // exposures 0, 5, 10, 20, 25: 15 was broken
+  EXPECT_EQ(percepts, 5);  // exposures at ticks 0, 5, 10, 20 and 25; the image of tick 15 is broken
   EXPECT_EQ(run->member("perception").counters().refused, 1u);
   EXPECT_EQ(run->member("perception").counters().last_refusal,
             "camera/image: data: found 100 bytes, accepted 160 x 120 x 3 = 57600");
@@ -136,7 +138,7 @@ TEST(PerceptionComponent, SearchesForTheColourThatATaskNamedLast) {
   EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourBlue);
   run->advance(20);
   EXPECT_EQ(run->latest(topics::kLinePercept)->colour, msg::kColourYellow);
-  EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // the yellow cylinder is no line
+  EXPECT_FALSE(run->latest(topics::kLinePercept)->visible);  // a yellow cylinder is not a line
 }
 
 TEST(PerceptionComponent, RestartChangesNothing) {
@@ -149,7 +151,7 @@ TEST(PerceptionComponent, RestartChangesNothing) {
   EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
 }
 
-/// The exposures in which the yellow cylinder was reported, and those in which it was not.
+/// Ticks of the exposures in which the yellow cylinder was reported (first set) and was not reported (second set).
 std::pair<std::set<std::int64_t>, std::set<std::int64_t>> yellow_seen(LocalRun& run, std::int64_t ticks,
                                                                       const std::set<std::int64_t>& restarts) {
   std::pair<std::set<std::int64_t>, std::set<std::int64_t>> seen;
@@ -169,7 +171,7 @@ TEST(PerceptionComponent, AppliesAHueFromItsTickOnAlsoAfterARestart) {
   using Exposures = std::set<std::int64_t>;
   const Exposures before_and_after{0, 5, 10, 45, 50, 55},
       between{20, 25, 30, 35, 40};  // the image of tick 15 is broken
-  // Restarts with a change waiting, in force, and taken back.
+  // Restart while the change is requested but not in force, while it is in force, and after it was taken back.
   for (const Exposures& restarts : {Exposures{}, Exposures{12, 22}, Exposures{23, 28, 42}, Exposures{44, 50}}) {
     auto run = make_run(true);
     const auto seen = yellow_seen(*run, 60, restarts);

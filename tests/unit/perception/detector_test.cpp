@@ -86,7 +86,7 @@ TEST(Line, OffsetHeadingAndCurvatureMatchTheArc) {
       EXPECT_EQ(percepts.objects.blob_count, 0);
       ASSERT_GE(line.point_count, 8);
       for (int i = 0; i < line.point_count; ++i) {
-        // every point lies on the arc: its distance to the nearest point of it
+        // distance of the reported point from the nearest point of the arc
         double nearest = 1e9;
         for (double t = 0.0; t < arc.length_m; t += 0.01) {
           nearest = std::min(nearest, (arc.at(t) - Eigen::Vector2d(line.x_m[i], line.y_m[i])).norm());
@@ -194,7 +194,8 @@ TEST(Blobs, ZoneIsNotAnObject) {
       const double true_range = scene.rounds[0].centre.norm() - 0.15;
       EXPECT_NEAR(blob->bearing_rad, std::atan2(0.1, range + 0.15), 1.5 * kDegree);
       EXPECT_NEAR(blob->range_m, true_range, 0.06 * true_range + 0.005);
-      EXPECT_NEAR(blob->width_m, 0.30, range < 1.0 ? 0.05 : 0.12);  // far away its tips are thinner than a pixel
+      // Far away, the left and right ends of the zone are thinner than a pixel.
+      EXPECT_NEAR(blob->width_m, 0.30, range < 1.0 ? 0.05 : 0.12);
     }
   }
 }

@@ -12,7 +12,7 @@
 
 namespace constrictor::test {
 
-struct Arc {  // in G: begins at `start` with `heading_rad`; a positive curvature turns left
+struct Arc {  // in G; it begins at `start` in the direction `heading_rad`; a positive curvature bends to the left
   Eigen::Vector2d start{0.0, 0.0};
   double heading_rad = 0.0;
   double curvature_1_m = 0.0;
@@ -20,10 +20,10 @@ struct Arc {  // in G: begins at `start` with `heading_rad`; a positive curvatur
   double width_m = 0.05;
   std::uint8_t colour = msg::kColourBlue;
 
-  /// The point at a length along the arc.
+  /// The point at the arc length `s_m` from the start.
   [[nodiscard]] Eigen::Vector2d at(double s_m) const;
   [[nodiscard]] double heading_at(double s_m) const { return heading_rad + curvature_1_m * s_m; }
-  /// Length at which the arc passes x (searched from its start); none if it does not.
+  /// The smallest arc length [m] at which the arc crosses the coordinate `x_m`; empty if the arc does not cross it.
   [[nodiscard]] std::optional<double> length_at_x(double x_m) const;
 };
 
@@ -48,7 +48,7 @@ struct Scene {
 struct Head {
   double roll_rad = 0.0;
   double pitch_rad = 0.0;
-  double yaw_rad = 0.0;  // yaw that the inertial unit reports; the scene is drawn in G, which turns with the head
+  double yaw_rad = 0.0;  // yaw that the IMU reports; it does not change the drawing, because G turns with the head
   double height_m = 0.035;
 };
 

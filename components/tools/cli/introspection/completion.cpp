@@ -40,7 +40,7 @@ struct Node {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// Words from a list with commas; a blank within a word becomes an underscore: "line lost" is typed line_lost.
+/// The words of a comma-separated list. Blanks within a word become underscores: "line lost" becomes line_lost.
 std::string typed(std::string list) {
   std::string words;
   for (std::size_t at = 0; at < list.size(); ++at) {
@@ -134,8 +134,8 @@ std::string bash_words(const std::vector<std::string>& words, const Values& valu
   return text;
 }
 
-/// The script for bash, which zsh can use, too, by its bash-compatible completion. It must not use a variable `path`:
-/// in zsh that is $PATH.
+/// The script for bash. zsh can also use it, by its bash-compatible completion; therefore it must not use a variable
+/// `path`, which in zsh is another name of $PATH.
 std::string bash_script(const std::string& name, const std::vector<Node>& nodes) {
   std::string cases;
   std::string valued;

@@ -1,4 +1,5 @@
-// `constrictor completion`: scripts by which shells complete the command's words, made from the tree of its options.
+// `constrictor completion`: makes scripts with which shells complete subcommands, options and values. The scripts are
+// generated from the definitions of the options.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -15,7 +15,8 @@ namespace {
 
 namespace wire = dds::barrier_topics;
 
-/// Room for one uncompressed image of 640 x 480 pixels and the messages that arrive meanwhile.
+/// Smallest sufficient receive buffer: room for an uncompressed image of 640 x 480 pixels and the messages that arrive
+/// at the same time.
 constexpr std::uint64_t kEnoughBuffer_bytes = 1024 * 1024;
 
 using Findings = std::vector<Finding>;
@@ -131,7 +132,7 @@ void check_names(const Facts& facts, Findings& found) {
   for (const auto& [name, participants] : members) {
     if (participants.size() < 2) continue;
     if (plants.size() > 1 && std::includes(plants.begin(), plants.end(), participants.begin(), participants.end()))
-      continue;  // reported as two plants
+      continue;  // "two plants" already reports this fault
     found.push_back(
         {"two members of one name",
          fmt::format("{} processes host '{}': {}", participants.size(), name, processes_of(facts, participants)),

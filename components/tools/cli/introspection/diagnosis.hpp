@@ -21,12 +21,12 @@ struct Facts {
   std::uint32_t domain = 0;
   std::vector<std::uint32_t> runs;      ///< DDS domains of the runs on this host
   std::string dds_configuration;        ///< XML that CYCLONEDDS_URI names; empty: the built-in one for loopback
-  std::string dds_configuration_error;  ///< why the XML cannot be read; empty: it can
+  std::string dds_configuration_error;  ///< why the XML cannot be read; empty if it can be read
   std::vector<NetworkInterface> interfaces;
   std::uint64_t receive_buffer_max_bytes = 0;  ///< net.core.rmem_max; 0: unknown
   std::vector<dds::Participant> participants;
   std::vector<dds::Endpoint> endpoints;
-  std::vector<msg::Hello> hellos;  ///< of every writer, all that are kept for late readers
+  std::vector<msg::Hello> hellos;  ///< all Hello messages that writers keep for late readers
   std::string idl_hash;            ///< of this program
 };
 

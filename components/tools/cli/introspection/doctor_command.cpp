@@ -133,7 +133,8 @@ void tell(const Diagnosis& diagnosis) {
   if (diagnosis.findings.empty()) fmt::print("no fault found\n");
 }
 
-/// Examines the chosen domain; if none was chosen, those of all runs on this host; if there are no runs, domain 0.
+/// Examines the chosen domain. If none was chosen, examines the domains of all runs on this host, or domain 0 if there
+/// are no runs.
 int doctor(const ViewOptions& options) {
   const Facts host = facts_of_host();
   std::vector<std::uint32_t> domains = host.runs;

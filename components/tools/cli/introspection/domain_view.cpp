@@ -73,8 +73,8 @@ std::map<std::string, Member> DomainView::members() const {
   const auto hellos = dds::Reader<msg::Hello>::member(participant(), dds::barrier_topics::kHello);
   const auto statuses = dds::Reader<msg::ComponentStatus>::member(participant(), dds::barrier_topics::kStatus);
   std::map<std::string, Member> found;
-  // Writers send what they keep for late readers as soon as they have met the reader. Members that never wrote are not
-  // waited for.
+  // When a writer discovers the reader, it sends the messages that it keeps for late readers. Members that have written
+  // nothing are not waited for.
   const auto end = Clock::now() + 1500ms;
   auto changed = Clock::now();
   while (Clock::now() < end && Clock::now() - changed < 300ms) {

@@ -38,23 +38,25 @@ struct Member {
 
 class DomainView {
  public:
-  /// Joins the domain that the options name, or that of the only run there is. Throws CommandError or dds::Error.
+  /// Joins the domain that the options name, otherwise the domain of the only run on this host. Throws CommandError or
+  /// dds::Error.
   explicit DomainView(const ViewOptions& options);
   /// Waits until discovery has found nothing new for 0.25 s, up to `bound`. Returns false if it found no reader and no
   /// writer.
   bool settle(std::chrono::milliseconds bound = std::chrono::milliseconds(1500)) const;
-  /// The same, but throws CommandError if it found nothing.
+  /// The same, but throws CommandError if discovery found no reader and no writer.
   void settle_or_throw() const;
   /// Waits up to `bound` until `topic` has a writer.
   [[nodiscard]] std::optional<dds::Endpoint> find_writer(const std::string& topic,
                                                          std::chrono::milliseconds bound) const;
-  /// Hello and status by component; of several incarnations of a component the newest.
+  /// Hello and status by component. If a component has had several incarnations, those of the newest one.
   [[nodiscard]] std::map<std::string, Member> members() const;
 
   [[nodiscard]] std::uint32_t domain() const { return number_; }
   [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
   [[nodiscard]] const dds::Discovery& discovery() const { return discovery_; }
-  /// The components of a participant, from the user data of its endpoints; else its program's name, else its GUID.
+  /// The components of a participant, from the user data of its endpoints. If there is no user data: the name of its
+  /// program. If the name is unknown: its GUID.
   [[nodiscard]] static std::string name_of(const dds::Guid& participant,
                                            const std::vector<dds::Participant>& participants,
                                            const std::vector<dds::Endpoint>& endpoints);
@@ -68,7 +70,7 @@ class DomainView {
 /// The topics that have a reader or writer in the domain, and those that this project defines. Sorted.
 std::vector<std::string> topic_names(const DomainView& view);
 
-/// The message of an error: there is no topic of this name; with the closest one that there is.
+/// The error message for a topic that does not exist. It names the existing topic with the closest name.
 std::string no_such_topic(const DomainView& view, const std::string& topic);
 
 /// True once SIGINT or SIGTERM arrived after the first call of this function.

@@ -42,14 +42,14 @@ class Reader {
   }
   template <class T, std::size_t N>
   void make_readable(const FieldInfo& info, const T (&field)[N], Json& value) const {
-    if (!value.is_array()) return;  // a text is an array of characters in C++ only
+    if (!value.is_array()) return;  // a text: an array of characters in C++, but not in the sample
     if (N == capacity_ && count_ < value.size())
       value.erase(value.begin() + static_cast<std::ptrdiff_t>(count_), value.end());
     for (Json& element : value) make_readable(info, field[0], element);
   }
 
   Json& sample_;
-  std::size_t count_ = 0;     ///< in the newest ..._count field
+  std::size_t count_ = 0;     ///< value of the last ..._count field
   std::size_t capacity_ = 0;  ///< largest value of that field
 };
 

@@ -55,7 +55,7 @@ class RateMeter {
       }
     }
   }
-  /// NaN: not known yet.
+  /// [Hz] NaN if the rate is not known yet.
   [[nodiscard]] double rate_hz(const std::string& name) const {
     const auto found = marks_.find(name);
     return found == marks_.end() ? std::nan("") : found->second.rate_hz;
@@ -191,7 +191,8 @@ Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
   return json;
 }
 
-/// True once the launcher has removed its note or died. A plant that was killed publishes no end.
+/// True once the launcher has removed its note or died. It shows the end of a run whose plant was killed, because such
+/// a plant cannot publish the end.
 bool is_gone(const RunNote& run) {
   const auto runs = live_runs();
   return std::none_of(runs.begin(), runs.end(),

@@ -54,7 +54,8 @@ void print_raw(const dds::RawSample& sample, const char* why) {
   if (sample.bytes.size() > kMostShown * 4) fmt::print("  ... and {} more\n", sample.bytes.size() - kMostShown * 4);
 }
 
-/// The part of a sample that --field names. Empty if there is none; `accepted` then holds what was found and accepted.
+/// The part of a sample that --field names. Empty if the sample has no such field; `accepted` is then set to a text
+/// that names what was found and what is accepted.
 std::optional<Json> part(const Json& sample, const std::string& field, std::string& accepted) {
   const Json* at = &sample;
   for (const auto& name : CLI::detail::split(field, '.')) {
@@ -76,8 +77,8 @@ std::optional<Json> part(const Json& sample, const std::string& field, std::stri
   return *at;
 }
 
-/// Waits for a writer of the topic. Throws CommandError at once if nothing in the domain and no table of the project
-/// has a topic of this name.
+/// Waits for a writer of the topic. Throws CommandError at once if neither the domain nor the project has a topic of
+/// this name.
 std::optional<dds::Endpoint> wait_for_writer(const DomainView& view, const WatchOptions& options) {
   const auto bound = std::chrono::milliseconds(static_cast<std::int64_t>(options.timeout_s * 1e3));
   if (auto writer = view.find_writer(options.topic, std::min<std::chrono::milliseconds>(bound, kDiscovery)))
