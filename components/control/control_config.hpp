@@ -43,7 +43,7 @@ struct ControlConfig : ParameterSet {
       relax_after_ticks, "safety.relax_after_ticks", 250, "ticks", {2, 100000}, kAtStart,
       "Control relaxes the joints when the newest desired trajectory is older than this; at least hold_after_ticks");
 
-  /// Checks what spans several rows. Throws ConfigurationError.
+  /// Checks conditions on several parameters together. Throws ConfigurationError.
   void complete(const Configuration& root) const {
     if (relax_after_ticks >= hold_after_ticks) return;
     throw root.error("safety.relax_after_ticks", fmt::format("found {}, accepted at least safety.hold_after_ticks ({})",

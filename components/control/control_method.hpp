@@ -72,7 +72,7 @@ class ControlMethod {
  public:
   virtual ~ControlMethod() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Whether the method can follow this trajectory. If it cannot, control holds the posture.
+  /// True if the method can follow this trajectory. If it cannot, control holds the posture.
   [[nodiscard]] virtual bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const;
   /// Called before the first step of a motion: when motion_id or the method has changed.
   virtual void start(const MethodInput& input, BodyState& body) const;
@@ -90,7 +90,7 @@ class MethodRegistry {
   MethodRegistry();
   /// Adds a method. It replaces an earlier one of the same name.
   void add(std::unique_ptr<ControlMethod> method);
-  /// Null if there is no method of this name.
+  /// Returns null if there is no method of this name.
   [[nodiscard]] const ControlMethod* find(std::string_view name) const;
   [[nodiscard]] std::vector<std::string_view> names() const;
 

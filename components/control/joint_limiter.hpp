@@ -28,9 +28,9 @@ struct LimiterState {
   }
 };
 
-/// Limits position, rate and torque of every setpoint to those of the robot's model. The first setpoint starts at the
-/// measured posture, so that the body does not jump when control starts. Where a demanded position is not finite, the
-/// joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies.
+/// Limits position, rate and torque of every setpoint to the limits in the robot's model. The first setpoint starts at
+/// the measured posture, so that the body does not jump when control starts. Where a demanded position is not finite,
+/// the joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies.
 class JointLimiter {
  public:
   /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1.

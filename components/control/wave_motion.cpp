@@ -8,7 +8,7 @@ namespace constrictor {
 
 namespace {
 
-/// Whether, on this posture, the coordinate along the head's direction differs from the arc length.
+/// True if on this posture the coordinate along the head's direction differs from the arc length.
 bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
   constexpr double kAlike_m = 0.03;
   const LinkArray x = chain.coordinates(chain.headings(shape_rad));
@@ -26,7 +26,8 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   const ControlConfig& c = input.config;
   const double dt_s = input.dt_s;
   Wave& wave = body.wave;
-  // On a bent posture the two fields differ by whole wavelengths. The wave fades before its field changes.
+  // On a bent posture the waves of the two fields can differ by whole wavelengths. Therefore the wave fades out before
+  // its field changes.
   const bool fades = wave.field != field && fields_differ(input.chain, body.shape_rad);
   const double amplitude_rad = fades ? 0.0 : input.desired.amplitude_rad;
   wave.amplitude_rad = approach(wave.amplitude_rad, amplitude_rad, c.amplitude_rate_rad_s * dt_s);

@@ -16,10 +16,10 @@ double advance_shape(const MethodInput& input, const LinkArray& target_rad, doub
 /// in the base of the U that the posture `base_rad` defines get the torque limit of the trajectory, if it names one.
 void ride(const MethodInput& input, const LinkArray& base_rad, BodyState& body, Setpoints& setpoints);
 
-/// The posture of the trajectory, one angle for each yaw joint; 0 where it names none.
+/// The posture of the trajectory, one angle for each yaw joint; 0 for joints that the trajectory does not name.
 LinkArray desired_shape(const msg::DesiredTrajectory& desired, const YawChain& chain);
 
-/// [rad/s] the rate of posture changes for this trajectory: its own, or the configured one.
+/// [rad/s] the rate of posture changes: that of the trajectory if it names one, otherwise the configured rate.
 double desired_shape_rate(const MethodInput& input);
 
 /// Whether a joint that is bent by `shape_rad` belongs to the base of a U.

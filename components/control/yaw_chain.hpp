@@ -18,7 +18,7 @@ using LinkArray = std::array<double, msg::kMaxJoints>;
 struct Wave {
   double amplitude_rad = 0.0;
   double wavelength_m = 1.0;
-  double curvature_1_m = 0.0;  ///< of the path, positive left
+  double curvature_1_m = 0.0;  ///< curvature of the path, positive to the left
   double phase_rad = 0.0;
   /// The argument of the wave. 1: the coordinate X along the head's direction, so that the arms of a U undulate in
   /// parallel. 0: the arc length along the body, so that the body follows itself round bends.
@@ -27,7 +27,7 @@ struct Wave {
 
 /// How strongly each link takes part in the wave. The defaults are in ControlConfig.
 struct WaveWeights {
-  std::vector<double> head;     ///< share of the amplitude in the first links; the rest 1
+  std::vector<double> head;     ///< share of the amplitude in the first links; 1 in all others
   double rigid_bend_rad = 0.0;  ///< a link between two joints of the posture bent by this or more does not undulate
 };
 
@@ -47,7 +47,7 @@ class YawChain {
   [[nodiscard]] LinkArray headings(const LinkArray& shape_rad) const;
   /// [m] coordinate of each link's centre along the head's direction, from the head's centre (behind is negative).
   [[nodiscard]] LinkArray coordinates(const LinkArray& headings_rad) const;
-  /// [m] the same for the straight body: minus the arc length from the head's centre.
+  /// [m] the same for a straight body: the negative arc length from the head's centre.
   [[nodiscard]] const LinkArray& arc_coordinates() const { return arc_m_; }
   /// Weight 0..1 of each link in the wave on this posture.
   [[nodiscard]] LinkArray weights(const LinkArray& shape_rad, const WaveWeights& weights) const;

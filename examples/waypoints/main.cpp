@@ -17,7 +17,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Sends the robot along a path of waypoints, as an external planner."};
   app.add_option("--domain", domain, "DDS domain of the run, as `constrictor run` prints it (default: the only run)")
       ->envname("CONSTRICTOR_DOMAIN");
-  app.add_option("--path", points, "2 to 64 points X,Y in m: x along the robot's first direction, y to its left")
+  app.add_option(
+         "--path", points,
+         "2 to 64 points X,Y in m; origin and x axis are the robot's pose at the start of the run, y is to its left")
       ->expected(2, static_cast<int>(msg::kMaxPathPoints));
   CLI11_PARSE(app, argc, argv);
   try {

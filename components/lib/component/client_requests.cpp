@@ -38,8 +38,8 @@ void ClientRequests::add(const msg::Request& request, const WriterId& writer) {
   const Pool pool = pool_of(request);
   std::size_t of_source = 0;
   std::size_t of_all = 0;
-  auto own = items_.end();     // oldest of this source in the pool; motions before others
-  auto lowest = items_.end();  // oldest of the lowest level in the pool
+  auto own = items_.end();     // oldest motion of this source in the pool; if it has no motion: its oldest request
+  auto lowest = items_.end();  // oldest request of the lowest level in the pool
   for (auto at = items_.begin(); at != items_.end(); ++at) {
     if (at->died) continue;
     const bool same = at->source == item.source;
@@ -111,8 +111,8 @@ std::vector<ClientEvent> ClientRequests::latch(const std::vector<LivingSource>& 
   for (const auto& [source, writer] : living) {
     if (lives && writer != WriterId{} && !lives(writer)) items.push_back({source, true, {}, writer, {}, 1});
   }
-  // A death without a writer belongs to the previous writer of the source. If a request of another writer of this
-  // source is here, `input` learns of the death from that request.
+  // If a death does not name the writer, the source's previous writer has died. Such a death is removed if a request of
+  // a new writer of the same source has arrived: `input` concludes from this request that the previous writer is dead.
   const auto is_known_otherwise = [&](const ClientEvent& death) {
     const auto known =
         std::find_if(living.begin(), living.end(), [&](const LivingSource& l) { return l.source == death.source; });

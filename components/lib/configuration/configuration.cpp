@@ -24,7 +24,7 @@ std::string key_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// A node in the words of an error message.
+/// The text that describes a node in an error message.
 std::string describe(const YAML::Node& node) {
   if (!node.IsDefined()) return "nothing";
   if (node.IsNull()) return "an empty value";
@@ -42,7 +42,7 @@ std::string describe(const std::vector<std::string>& choices) {
 
 std::string describe(Range accepted) { return fmt::format("{:g} to {:g}", accepted.min, accepted.max); }
 
-/// The whole scalar as a number in the notation of the C locale. The locale of the process plays no part.
+/// The whole scalar as a number in the notation of the C locale, whatever the locale of the process is.
 template <class Number>
 std::optional<Number> parse_number(const YAML::Node& node) {
   if (!node.IsScalar()) return std::nullopt;
@@ -274,7 +274,7 @@ void Configuration::finish() const {
 }
 
 ConfigurationError Configuration::error(std::string_view key, const std::string& found_and_accepted) const {
-  int line = line_of(*node_);  // of the map, if it lacks the key
+  int line = line_of(*node_);  // the line of the map, if the map lacks the key
   YAML::Node node(*node_);
   std::string_view rest = key;
   while (!rest.empty() && node.IsMap()) {

@@ -25,7 +25,7 @@ std::string size_text(ListSize size) {
   return size.min == size.max ? fmt::format("{}", size.min) : fmt::format("{} to {}", size.min, size.max);
 }
 
-/// The names that a file may use: those of an enumeration whose unused numbers are empty.
+/// The names that a file may use: all names of an enumeration. Unused numbers of the enumeration have empty names.
 std::vector<std::string> usable(std::vector<std::string> names) {
   std::erase(names, "");
   return names;

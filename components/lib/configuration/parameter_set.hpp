@@ -53,7 +53,7 @@ struct ListSize {
 /// contradicts itself (a default outside of its bounds, a key that exists already) is a bug: std::logic_error.
 class ParameterSet {
  public:
-  using enum Changes;  // the rows of derived structs say kAtStart and kWhileRunning
+  using enum Changes;  // so that the rows of derived structs can write kAtStart instead of Changes::kAtStart
 
   /// A row as the set keeps it.
   struct Row {
@@ -94,7 +94,7 @@ class ParameterSet {
   std::vector<std::uint8_t> add(std::vector<std::uint8_t>& field, const std::string& key,
                                 const std::vector<std::uint8_t>& fallback, const std::vector<std::string>& names,
                                 ListSize size, const std::string& meaning);
-  /// A field that is itself a set of parameters; its keys are put below `key`.
+  /// A field that is itself a set of parameters. In the file, its keys are in the section `key`.
   template <class Section>
   requires std::is_base_of_v<ParameterSet, Section> Section add_section(Section& field, const std::string& key) {
     Section section;

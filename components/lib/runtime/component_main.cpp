@@ -80,7 +80,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       ->check(CLI::Range(0.0, 86400.0));
   bool check = false;
   app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
-  app.add_flag("--record", options.record, "plant only: record every message, images aside, for `constrictor diff`");
+  app.add_flag("--record", options.record, "plant only: record every message except images, for `constrictor diff`");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

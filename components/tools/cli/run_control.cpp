@@ -72,7 +72,7 @@ int control(const Options& options, std::uint8_t command) {
   }
 }
 
-/// Sends a request of a kind without parameters and prints `granted` if it is granted.
+/// Sends a request that needs no parameters. If `input` grants it, prints the text `granted`.
 int ask(RequestClient& client, const char* command, std::uint8_t kind, const char* granted) {
   const auto answer = client.wait_for_answer(client.ask(kind), 5s);
   if (answer == RequestClient::Answer::kGranted) fmt::print("{}\n", granted);
