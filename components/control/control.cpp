@@ -69,7 +69,8 @@ void Control::step(const Tick& tick) {
     state_.method = desired.method;
     state_.motion_id = desired.motion_id;
   }
-  Setpoints setpoints;
+  Setpoints setpoints{commanded_rad, {}};
+  for (std::size_t j = 0; j < count; ++j) setpoints.torque_limit_nm[j] = robot_.joints[j].max_torque_nm;
   const MethodProgress progress = method->step(input, state_.body, setpoints);
   const bool relaxed = std::string_view(desired.method) == "relax";
   msg::JointCommand wanted = relaxed ? limiter_.relax(measured_rad, state_.limiter)

@@ -76,7 +76,8 @@ class ControlMethod {
   [[nodiscard]] virtual bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const;
   /// Called before the first step of a motion: when motion_id or the method has changed.
   virtual void start(const MethodInput& input, BodyState& body) const;
-  /// Fills every joint of `setpoints`.
+  /// Writes the setpoints of the joints that the method moves. Before the call, `setpoints` holds the previous command
+  /// and the robot's own torque limit for every joint, so that a joint that the method leaves out keeps its posture.
   virtual MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const = 0;
 };
 

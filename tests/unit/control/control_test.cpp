@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -99,7 +100,6 @@ class Feeler : public ControlMethod {
  public:
   [[nodiscard]] std::string_view name() const override { return "feeler"; }
   MethodProgress step(const MethodInput& input, BodyState&, Setpoints& setpoints) const override {
-    setpoints.position_rad = input.commanded_rad;
     if (!input.around.pose || !input.around.contacts || input.around.map) return {};  // this run has no map
     setpoints.position_rad[0] =
         input.around.contacts->contact_count > 0 ? input.around.pose->yaw_rad : -input.around.pose->yaw_rad;
@@ -142,7 +142,33 @@ TEST(Control, PassesSensesToAnAddedMethod) {
       {estimate()});
   run.advance(100);
   EXPECT_TRUE(run.latest(topics::kMotionStatus)->accepted);
-  EXPECT_NEAR(run.latest(topics::kJointCommand)->position_rad[0], 0.3, 1e-9);
+  const msg::JointCommand& command = *run.latest(topics::kJointCommand);
+  EXPECT_NEAR(command.position_rad[0], 0.3, 1e-9);
+  EXPECT_EQ(run.latest(topics::kMotionStatus)->progress, 1.0);
+  // The method writes the angle of joint 0 only.
+  EXPECT_NEAR(command.position_rad[6], 0.4, 1e-12) << "a joint that a method leaves out keeps its posture";
+  for (int j = 0; j < 23; ++j)
+    EXPECT_EQ(command.torque_limit_nm[j], 6.0) << "the robot's own limit applies to joint " << j;
+}
+
+/// A file of the project as text.
+std::string text_of(const std::string& file) {
+  std::ifstream stream(data_path(file));
+  EXPECT_TRUE(stream) << file;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Control, EachMethodHasTheNameOfItsFileAndARowInTheReadme) {
+  const std::string folder = "components/control/";
+  const std::string readme = text_of(folder + "README.md");
+  const auto names = MethodRegistry().names();
+  EXPECT_GE(names.size(), 6u);
+  for (const std::string_view method : names) {
+    const std::string name(method);
+    EXPECT_NE(text_of(folder + "methods/" + name + ".cpp").find("make_" + name + "()"), std::string::npos) << name;
+    EXPECT_NE(readme.find("\n| `" + name + "` | "), std::string::npos)
+        << "the table of methods in components/control/README.md has no row for " << name;
+  }
 }
 
 TEST(Control, HoldsPostureOnUnknownMethodAndOnInvalidShape) {

@@ -11,6 +11,7 @@
 #include "barrier/topic_ops.hpp"
 #include "component/data_path.hpp"
 #include "constrictor/messages.hpp"
+#include "control/control_method.hpp"
 #include "host/known_components.hpp"
 #include "hostile_filler.hpp"
 #include "resident_memory.hpp"
@@ -69,8 +70,9 @@ void make_relevant(msg::JointCommand& m, HostileFiller& f) {
   }
 }
 void make_relevant(msg::DesiredTrajectory& m, HostileFiller& f) {
-  static constexpr const char* kMethods[] = {"hold", "relax", "undulation", "bend", "wrap", "squeeze"};
-  if (f.roll(4) != 0) std::snprintf(m.method, sizeof m.method, "%s", kMethods[f.roll(6)]);
+  static const MethodRegistry methods;
+  const auto names = methods.names();
+  if (f.roll(4) != 0) std::snprintf(m.method, sizeof m.method, "%s", names[f.roll(names.size())].data());
   if (f.roll(3) != 0) m.shape_count = static_cast<std::uint16_t>(f.roll(13));
   if (f.roll(3) != 0) m.motion_id = f.roll(3);
 }
