@@ -18,7 +18,7 @@ using Names = std::set<std::string>;
 /// The words of a list such as "guidance, control, observers".
 Names names_in(const std::string& list) {
   Names names;
-  static const std::regex word("[a-z]+");
+  static const std::regex word("[a-z_]+");
   for (std::sregex_iterator at(list.begin(), list.end(), word), end; at != end; ++at) names.insert(at->str());
   return names;
 }
