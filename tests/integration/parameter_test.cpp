@@ -129,6 +129,17 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(owners.size(), 4u) << all;
   EXPECT_EQ(ask({"param", "list", "perception.blob."}).size(), 2u);
   EXPECT_EQ(ask({"param", "list", "--changed"}), json::array());
+  ASSERT_EQ(command({"param", "list"}), 0) << output_;
+  const std::size_t column = output_.find("accepted");
+  std::istringstream rows(output_.substr(output_.find('\n') + 1));
+  std::size_t shown = 0;
+  for (std::string row; std::getline(rows, row); ++shown) {
+    double low = 0.0, high = 0.0;
+    ASSERT_GT(row.size(), column) << row;
+    EXPECT_EQ(row[column - 1], ' ') << "not below the heading: " << row;
+    EXPECT_EQ(std::sscanf(row.c_str() + column, "%lf to %lf", &low, &high), 2) << "not below the heading: " << row;
+  }
+  EXPECT_EQ(shown, all.size());
   EXPECT_EQ(command({"param", "list", "nosuch"}), 1);
   EXPECT_NE(output_.find("no parameter begins with 'nosuch'"), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "list", "--names", "control.squeeze"}), 0);

@@ -1,6 +1,7 @@
 // `constrictor param`: lists, prints and changes the parameters of a run while it runs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -53,8 +54,11 @@ int list(const Options& options) {
   Json json = Json::array();
   bool begins = false;  // whether any name begins with the prefix
   std::size_t shown = 0;
+  std::size_t width = 0;
+  for (const auto& [name, owned] : view.parameters) width = std::max(width, name.size());
   if (!options.view.json && !options.names)
-    fmt::print("  {:<38} {:>9} {:>9} {:<11} {:<18} {}\n", "name", "value", "default", "unit", "accepted", "meaning");
+    fmt::print("  {:<{}} {:>9} {:>9} {:<11} {:<18} {}\n", "name", width, "value", "default", "unit", "accepted",
+               "meaning");
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (name.rfind(options.name, 0) != 0) continue;
@@ -64,7 +68,7 @@ int list(const Options& options) {
     if (options.view.json) json.push_back(to_json(owned));
     else if (options.names) fmt::print("{}\n", name);
     else
-      fmt::print("{} {:<38} {:>9g} {:>9g} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, p.value,
+      fmt::print("{} {:<{}} {:>9g} {:>9g} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, width, p.value,
                  p.default_value, p.unit, fmt::format("{:g} to {:g}", p.minimum, p.maximum), p.doc, pending_text(p));
   }
   if (options.view.json) fmt::print("{}\n", json_text(json, 2));

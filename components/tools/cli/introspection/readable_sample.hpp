@@ -1,4 +1,4 @@
-// Samples of the project's own types for people: constants by name, arrays without their unused tail.
+// Samples of the project's own types: constants by name, and for people arrays without their unused tail.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,9 +6,13 @@
 
 namespace constrictor::cli {
 
+/// kUsed: an array whose length is in a field ..._count before it loses the elements after that length. kWhole: every
+/// array keeps its length, which scripts may rely on.
+enum class Arrays { kUsed, kWhole };
+
 /// Changes a decoded sample of the IDL type `type` ("constrictor::msg::TaskStatus"): a field that holds a constant gets
-/// the constant's name, and an array whose length is in a field ..._count before it loses the elements after that
-/// length. A sample of a type that the project does not define, or that does not fit its type, stays as it is.
-void make_readable(nlohmann::ordered_json& sample, const std::string& type);
+/// the constant's name, and arrays are shortened according to `arrays`. A sample of a type that the project does not
+/// define, or that does not fit its type, stays as it is.
+void make_readable(nlohmann::ordered_json& sample, const std::string& type, Arrays arrays);
 
 }  // namespace constrictor::cli

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/introspection/topic_watch.hpp"
@@ -26,10 +27,21 @@ struct Options {
   bool all = false;
 };
 
-const TopicInfo* known(const std::string& topic) {
-  const auto found =
-      std::find_if(topics::kInfos.begin(), topics::kInfos.end(), [&](const auto& info) { return info.name == topic; });
-  return found == topics::kInfos.end() ? nullptr : &*found;
+/// The columns of the project's table of topics that are written for people.
+struct Description {
+  std::string_view doc;
+  std::string_view rate;
+};
+
+/// Empty if the project does not define the topic.
+std::optional<Description> described(const std::string& topic) {
+  for (const auto& info : topics::kInfos) {
+    if (info.name == topic) return Description{info.doc, info.rate};
+  }
+  for (const auto& info : barrier_topics::kInfos) {
+    if (info.name == topic) return Description{info.doc, info.rate};
+  }
+  return std::nullopt;
 }
 
 int list(const Options& options) {
@@ -49,7 +61,7 @@ int list(const Options& options) {
   if (options.view.json) {
     Json json = Json::array();
     for (const auto& [name, row] : rows) {
-      const TopicInfo* info = known(name);
+      const auto info = described(name);
       json.push_back({{"topic", name},
                       {"type", row.type},
                       {"writers", row.writers},
@@ -62,7 +74,7 @@ int list(const Options& options) {
   fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "content");
   for (const auto& [name, row] : rows) {
     fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", name, row.type, row.writers, row.readers,
-               known(name) ? known(name)->doc : "");
+               described(name).value_or(Description{}).doc);
   }
   return exit_status::kOk;
 }
@@ -82,7 +94,7 @@ int info(const Options& options) {
       std::find_if(here.begin(), here.end(), [](const auto& endpoint) { return endpoint.type_info != nullptr; });
   const auto tree =
       with_type == here.end() ? nullptr : dds::TypeTree::find(view.participant(), *with_type, std::chrono::seconds(2));
-  const TopicInfo* topic = known(options.watch.topic);
+  const auto topic = described(options.watch.topic);
   Json json = {{"topic", options.watch.topic}, {"type", here.front().type}, {"keyed", here.front().keyed}};
   if (topic) json["what"] = std::string(topic->doc), json["rate"] = std::string(topic->rate);
   json["fields"] = tree ? Json(tree->text()) : Json(nullptr);

@@ -170,7 +170,7 @@ int echo_command(const ViewOptions& view, const WatchOptions& options) {
     if (tree) {
       try {
         json = tree->decode(sample.bytes);
-        if (!view.json) make_readable(json, type);
+        make_readable(json, type, view.json ? Arrays::kWhole : Arrays::kUsed);
         if (!options.field.empty()) {
           const auto found = part(json, options.field, wrong);
           if (!found) return false;
