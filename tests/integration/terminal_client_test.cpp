@@ -175,7 +175,8 @@ TEST_F(TerminalClient, AResizedTerminalAlwaysShowsTheEmergencyStop) {
   EXPECT_TRUE(shows("a full bar is")) << screen();
   type("q");
   EXPECT_TRUE(shows("was here before")) << screen();
-  EXPECT_TRUE(shows("teleop: authority")) << "teleop must print what happened to authority: " << screen();
+  EXPECT_TRUE(shows("teleop: the emergency stop of this program is latched"))
+      << "teleop must print what happened to authority: " << screen();
   EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
   launcher_->wait(10s);
 }

@@ -40,6 +40,8 @@ int report_not_granted(RequestClient& client, RequestClient::Answer answer, cons
       return exit_status::kOk;
     case Answer::kRefused:
       std::fprintf(stderr, "%s: refused: %s\n", command, client.refusal().c_str());
+      if (client.authority() && client.authority()->emergency_stop)
+        std::fprintf(stderr, "  `constrictor clear-stop` clears the emergency stop\n");
       return exit_status::kFailed;
     case Answer::kNone:
       client.flush();
@@ -53,16 +55,25 @@ int report_not_granted(RequestClient& client, RequestClient::Answer answer, cons
   }
   client.flush();
   std::fprintf(stderr, "%s: interrupted before the answer; the request was sent and may still be obeyed (%s)\n",
-               command, authority_text(client).c_str());
+               command, authority_text(client.authority()).c_str());
   return interrupt_status();
 }
 
-std::string authority_text(const RequestClient& client) {
-  if (!client.authority()) return "authority: not known";
-  const msg::Authority& authority = *client.authority();
-  const bool named = *authority.source != '\0' && authority.level != msg::kAuthorityPlanner;
-  return fmt::format("authority: {}{}{}", authority_name(authority.level), named ? " " : "",
-                     named ? authority.source : "");
+std::string authority_text(const std::optional<msg::Authority>& authority) {
+  if (!authority) return "authority: not known";
+  const bool named = *authority->source != '\0' && authority->level != msg::kAuthorityPlanner;
+  return fmt::format("authority: {}{}{}", authority_name(authority->level), named ? " " : "",
+                     named ? authority->source : "");
+}
+
+std::string no_authority_text(const std::optional<msg::Authority>& authority, const std::string& own) {
+  if (!authority || !authority->emergency_stop) {
+    const bool taken = authority && authority->level != msg::kAuthorityNone;
+    return fmt::format("{} ({})", taken ? "another source has authority" : "no source has authority",
+                       authority_text(authority));
+  }
+  return fmt::format("the emergency stop of {} is latched; the robot holds its posture until `constrictor clear-stop`",
+                     own == authority->source ? "this program" : authority->source);
 }
 
 }  // namespace constrictor::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "client/request_client.hpp"
@@ -19,7 +20,10 @@ int connect(RequestClient& client, const char* command);
 /// Prints why a request was not granted and what to do; `command` begins the message. Returns the exit status.
 int report_not_granted(RequestClient& client, RequestClient::Answer answer, const char* command);
 
-/// The holder of authority, for people: "authority: operator task", "authority: none".
-std::string authority_text(const RequestClient& client);
+/// The holder of authority, for people: "authority: operator task", "authority: none". `authority`: empty before the
+/// first message.
+std::string authority_text(const std::optional<msg::Authority>& authority);
+/// Why the source `own` has no authority (any more), and what to do about an emergency stop.
+std::string no_authority_text(const std::optional<msg::Authority>& authority, const std::string& own);
 
 }  // namespace constrictor::cli

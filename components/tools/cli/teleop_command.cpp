@@ -86,8 +86,11 @@ class Teleop {
   /// Releases authority if this program has it; the robot then stands. If no answer arrives, DDS reports the end of
   /// this program to `input`, which takes authority back half a second later.
   int leave() {
-    if (!client_.holds_authority() && number_ == 0) farewell_ = authority_text(client_) + " (this program had none)";
-    else if (client_.release(2s)) farewell_ = "authority was released, the robot stands";
+    const bool asks = client_.holds_authority() || number_ != 0;  // a request without an answer may be granted yet
+    const bool left = !asks || client_.release(2s);
+    const bool stopped = client_.authority() && client_.authority()->emergency_stop;
+    if (left && (stopped || !asks)) farewell_ = no_authority_text(client_.authority(), client_.source());
+    else if (left) farewell_ = "authority was released, the robot stands";
     else farewell_ = "no answer within 2 s; authority ends with this program, at the latest when the run resumes";
     return exit_status::kOk;
   }

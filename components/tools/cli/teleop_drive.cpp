@@ -70,7 +70,8 @@ int teleop_drive(const std::string& speed_and_turn, const std::string& duration,
     }
     client.poll();
     if (client.holds_authority()) continue;
-    std::fprintf(stderr, "teleop: another source took authority (%s)\n", authority_text(client).c_str());
+    std::fprintf(stderr, "teleop: authority was lost: %s\n",
+                 no_authority_text(client.authority(), client.source()).c_str());
     return exit_status::kFailed;
   }
   stand_and_release(client);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/introspection/domain_view.hpp"
+#include "cli/operator.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -106,8 +107,7 @@ std::string run_line(const RunView& view) {
   line = wrapped(line, 0);
   if (view.authority) {
     const auto& authority = *view.authority;
-    std::string who = fmt::format("authority: {}{}{}", words_of(constants::kAuthority, authority.level),
-                                  *authority.source ? " " : "", authority.source);
+    std::string who = authority_text(authority);
     if (authority.refused_count > 0)
       who += fmt::format("; {} requests refused, the last one from {}: {}", authority.refused_count,
                          authority.refused_source, authority.refusal);
