@@ -89,8 +89,9 @@ int start(RequestClient& client, const Options& options) {
   } catch (const CommandError& error) {
     if (error.cause() == CommandError::Cause::kInterrupted) return give_back(client);
     std::fprintf(stderr, "task: %s\n", error.what());
-    // Navigation refuses what the robot cannot do now, after `input` has given authority to this command.
-    const bool took = !held && client.holds_authority();
+    // Navigation refuses what the robot cannot do now, after `input` has given authority to this command. The grant
+    // proves it: the message with the new authority may arrive later than navigation's refusal.
+    const bool took = !held && client.goal() != 0;
     if (took && error.cause() == CommandError::Cause::kRefused) {
       std::fprintf(stderr, client.release(2s)
                                ? "  authority was released: a planner may take it again\n"
