@@ -109,6 +109,16 @@ TEST_F(RunControl, AfterAResetCommandsAndReportShowTheNewSeedAndTick) {
   EXPECT_EQ(report("r").value("seed", 0), 7);
 }
 
+TEST_F(RunControl, AStepBeyondTheEndOfTheRunReportsTheEnd) {
+  Process launcher = run(100, "r", {"--pace", "1x"});
+  ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(command({"step", "5000"}), exit_status::kSoftware);
+  EXPECT_NE(output_.find("the run ended before the command was done"), std::string::npos) << output_;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s) << "the command waited for ticks of a run that had ended";
+  launcher.wait(20s);
+}
+
 // `step N` waits as long as ticks advance, beyond the 10 s within which other commands must be answered. Here the plant
 // is stopped twice, each time for less than these 10 s and less than the manifest's patience. tick_wait_test
 // (unit/client) tests how long the command waits while no tick comes.

@@ -117,13 +117,14 @@ msg::RunState RunControlClient::step(std::uint32_t ticks) {
   message.command = msg::kRunStep;
   message.ticks = ticks;
   const msg::RunState state = send(message);
-  return state.tick >= from + ticks ? state : wait_for_tick(from + ticks);
+  return state.tick >= from + ticks ? state : wait_for_tick(state.run_id, from + ticks);
 }
 
-msg::RunState RunControlClient::wait_for_tick(std::int64_t tick) {
+msg::RunState RunControlClient::wait_for_tick(std::uint64_t run_id, std::int64_t tick) {
   for (TickWait wait(bound_, WaitClock::now());; std::this_thread::sleep_for(kPoll)) {
     std::optional<msg::RunState> found;
     endpoints_->states.take([&](const msg::RunState& state) {
+      if (state.run_id != run_id) return;  // of another run that has claimed the domain since
       if (!found && state.tick >= tick) found = state;
       wait.heard(state.tick, WaitClock::now());
     });

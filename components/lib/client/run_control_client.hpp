@@ -47,7 +47,7 @@ class RunControlClient {
   RunControlClient(std::unique_ptr<Endpoints> endpoints, std::uint32_t domain, std::chrono::seconds bound,
                    std::function<bool()> interrupted);
   msg::RunState send(std::uint8_t command);
-  msg::RunState wait_for_tick(std::int64_t tick);
+  msg::RunState wait_for_tick(std::uint64_t run_id, std::int64_t tick);
 
   std::unique_ptr<Endpoints> endpoints_;
   std::uint32_t domain_;

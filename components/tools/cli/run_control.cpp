@@ -14,6 +14,7 @@
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "cyclone/domain_claim.hpp"
 #include "runtime/host.hpp"
 #include "runtime/pacer.hpp"
 
@@ -53,7 +54,7 @@ int control(const Options& options, std::uint8_t command) {
   const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
   const RunNote run = find_run(options.run);
   catch_interrupts();
-  RunControlClient client(run.domain, 10s, [] { return interrupt_signal() != 0; });
+  RunControlClient client(run.domain, 10s, [&] { return interrupt_signal() != 0 || !domain_claimed(run.domain); });
   try {
     const msg::RunState state = command == msg::kRunStep    ? client.step(static_cast<std::uint32_t>(options.steps))
                                 : command == msg::kRunReset ? client.reset(options.seed)
@@ -67,6 +68,8 @@ int control(const Options& options, std::uint8_t command) {
     return exit_status::kOk;
   } catch (const CommandError& error) {
     if (error.cause() != CommandError::Cause::kInterrupted) throw;
+    if (interrupt_signal() == 0)
+      throw CommandError(fmt::format("run {}: the run ended before the command was done", run.domain));
     std::fprintf(stderr, "%s\n", error.what());
     return interrupt_status();
   }

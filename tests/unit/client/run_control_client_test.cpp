@@ -16,6 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::uint64_t kRun = 7;
+
 /// Answers each command when it has arrived `arrivals` times.
 class FakeConductor {
  public:
@@ -33,6 +35,7 @@ class FakeConductor {
               dds::set_text(answer.source, command.source);
               answer.sequence_number = command.sequence_number;
               dds::set_text(answer.refusal, refusal);
+              answer.state.run_id = kRun;
               answer.state.tick = 40;
               answer.state.seed = command.seed;
               answer.state.pace = command.pace;
@@ -91,6 +94,28 @@ TEST_F(RunControlClientTest, WithoutAConductorItThrowsAfterTheBoundAndNamesTheRu
     EXPECT_EQ(error.cause(), CommandError::Cause::kNoAnswer);
     EXPECT_NE(std::string(error.what()).find("run " + std::to_string(claim.domain())), std::string::npos);
   }
+}
+
+TEST_F(RunControlClientTest, AStepDoesNotCountTheTicksOfAnotherRun) {
+  const FakeConductor conductor(domain.participant(), 1, "");
+  const dds::Writer<msg::RunState> states(domain.participant(), barrier_topics::kRunState);
+  msg::RunState state{};
+  state.run_id = kRun + 1;
+  state.tick = 1000;
+  states.write(state);
+  RunControlClient control = client(20s);
+  std::atomic<bool> stepped = false;
+  std::thread own([&] {
+    while (conductor.obeyed() < 2) std::this_thread::sleep_for(1ms);  // pause and step
+    std::this_thread::sleep_for(50ms);
+    EXPECT_FALSE(stepped) << "the tick of another run ended the wait";
+    state.run_id = kRun;
+    state.tick = 45;
+    states.write(state);
+  });
+  EXPECT_EQ(control.step(5).tick, 45);
+  stepped = true;
+  own.join();
 }
 
 TEST_F(RunControlClientTest, AnInterruptEndsTheWait) {
