@@ -244,7 +244,7 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
     })) << output_;
   }
   const std::string text = flat(output_);
-  EXPECT_NE(text.find("authority: emergency stop "), std::string::npos) << text;
+  EXPECT_NE(text.find("authority: EMERGENCY STOP "), std::string::npos) << text;
   EXPECT_NE(text.find("; 1 requests refused, the last one from "), std::string::npos) << text;
   EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason of the refusal must be shown: " << text;
   const json status = json_of({"status"});
@@ -256,7 +256,7 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
     EXPECT_EQ(component["refused"], listens ? 1 : 0) << component;
     EXPECT_EQ(component["last_refusal"], listens ? "tick: of another epoch" : "") << component;
   }
-  EXPECT_TRUE(watch.wait_for("authority: emergency stop ", 20s))
+  EXPECT_TRUE(watch.wait_for("authority: EMERGENCY STOP ", 20s))
       << "status --watch must show the new authority: " << watch.output();
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
