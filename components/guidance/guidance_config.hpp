@@ -7,10 +7,13 @@
 namespace constrictor::guidance {
 
 struct GuidanceConfig : ParameterSet {
-  OdometryConfig odometry{add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.01, "m/s", {1e-4, 1.0},
-                              kWhileRunning, "Sliding speed from which the skin's friction is fully developed"),
-                          add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, kWhileRunning,
-                              "Share of a joint's measured angle; the rest is its integrated rate")};
+  OdometryConfig odometry{
+      add(odometry.friction_along_share, "odometry.friction_along_share", 0.85, "", {0.0, 2.0}, kWhileRunning,
+          "Factor on the robot file's friction along the modules; fitted to the simulator"),
+      add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.01, "m/s", {1e-4, 1.0}, kWhileRunning,
+          "Sliding speed from which the skin's friction is fully developed"),
+      add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, kWhileRunning,
+          "Share of a joint's measured angle; the rest is its integrated rate")};
   double speed_sd = add(speed_sd, "odometry.speed_sd", 0.08, "", {0.0, 1.0}, kWhileRunning,
                         "Standard deviation of the estimated velocity, as a share of the speed");
   double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, kAtStart,

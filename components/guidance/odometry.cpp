@@ -74,7 +74,7 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     const double heading = 0.5 * (before[i].yaw_rad + after[i].yaw_rad);
     const Eigen::Vector2d own = moved / input.dt_s, l = left(heading), a = along(heading);
     sliders.push_back({l, own.dot(l), load_n * model.friction_across});
-    sliders.push_back({a, own.dot(a), load_n * model.friction_along});
+    sliders.push_back({a, own.dot(a), load_n * model.friction_along * config.friction_along_share});
   }
 
   // First compute the velocity without friction, then the velocity with friction.

@@ -12,8 +12,9 @@ namespace constrictor::guidance {
 
 /// The defaults are in GuidanceConfig.
 struct OdometryConfig {
-  double slip_scale_m_s = 0.0;  ///< sliding speed above which the full Coulomb friction acts
-  double joint_gain = 0.0;      ///< share of a joint's measured angle; the rest is its integrated rate
+  double friction_along_share = 0.0;  ///< multiplies the robot file's friction coefficient along the modules
+  double slip_scale_m_s = 0.0;        ///< sliding speed above which the full Coulomb friction acts
+  double joint_gain = 0.0;            ///< share of a joint's measured angle; the rest is its integrated rate
 };
 
 struct OdometryState {
