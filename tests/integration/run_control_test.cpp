@@ -1,6 +1,7 @@
 // The commands pause, resume, step, pace and reset change when the ticks of a run happen, but never its result.
 #include <csignal>
 
+#include <algorithm>
 #include <optional>
 
 #include "cyclone/domain.hpp"
@@ -131,20 +132,31 @@ TEST_F(RunControl, StepWaitsLongerThanTheBoundOnAnAnswerWhileTicksAdvance) {
   const long paused = next_tick();
   ASSERT_EQ(command({"status", "--json"}), exit_status::kOk) << output_;
   const pid_t plant = nlohmann::json::parse(output_)["components"][0]["pid"];
-  Process steps = start({"step", "2500"});
+  const dds::Domain observer(domain());
+  const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
+  std::int64_t tick = paused;
+  const auto take = [&] { states.take([&](const msg::RunState& state) { tick = std::max(tick, state.tick); }); };
+  Process steps = start({"step", "5000"});
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 2; ++i) {
-    std::this_thread::sleep_for(100ms);
+    take();
+    const std::int64_t before = tick;
+    ASSERT_TRUE(eventually([&] {  // the command has been answered, and ticks advance
+      take();
+      return tick > before;
+    })) << "the run does no step: "
+        << steps.errors();
     ::kill(plant, SIGSTOP);
     std::this_thread::sleep_for(5100ms);
     EXPECT_TRUE(steps.running()) << "the steps ended before the plant was stopped: " << steps.output()
                                  << steps.errors();
+    take();  // what the plant published before it was stopped
     ::kill(plant, SIGCONT);
   }
   EXPECT_EQ(steps.wait(100s), exit_status::kOk) << steps.errors();
   EXPECT_GT(std::chrono::steady_clock::now() - begin, 10s);
   output_ = steps.output();
-  EXPECT_EQ(next_tick(), paused + 2500) << output_;
+  EXPECT_EQ(next_tick(), paused + 5000) << output_;
   EXPECT_EQ(command({"end"}), exit_status::kOk);
   launcher.wait(20s);
 }
