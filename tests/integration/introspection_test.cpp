@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "client/components.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/endpoint.hpp"
@@ -235,6 +236,9 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
   {
     // Every member that receives this tick refuses it, because it belongs to no run.
     const dds::Domain stranger(domain());
+    const auto components = read_components(stranger.participant());
+    ASSERT_EQ(components.size(), 3u) << "the client library must list physics, overview and input";
+    EXPECT_EQ(components.at("input").state, msg::kComponentRunning);
     const dds::Writer<msg::Tick> ticks(stranger.participant(), dds::barrier_topics::kTick, 1);
     ASSERT_TRUE(eventually([&] { return ticks.readers() >= 2; }));
     ticks.write(msg::Tick{});

@@ -2,25 +2,51 @@
 
 #include <thread>
 
+#include "client/polling.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/endpoint.hpp"
 
 namespace constrictor {
+namespace {
+
+/// When a writer discovers a reader, it sends the messages that it keeps for late readers. They arrive within this time
+/// of each other.
+constexpr std::chrono::milliseconds kQuiet{300};
+
+std::map<std::string, ComponentMessages> read(std::int32_t participant, std::chrono::milliseconds bound,
+                                              bool wait_for_first) {
+  const auto hellos = dds::Reader<msg::Hello>::member(participant, barrier_topics::kHello);
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(participant, barrier_topics::kStatus);
+  std::map<std::string, ComponentMessages> found;
+  const auto end = WaitClock::now() + bound;
+  auto changed = WaitClock::now();
+  while (WaitClock::now() < end && ((wait_for_first && found.empty()) || WaitClock::now() - changed < kQuiet)) {
+    hellos.take([&](const msg::Hello& hello) {
+      auto& component = found[hello.component];
+      if (!component.hello || component.hello->incarnation <= hello.incarnation) component.hello = hello;
+      changed = WaitClock::now();
+    });
+    statuses.take([&](const msg::ComponentStatus& status) {
+      auto& component = found[status.component];
+      if (!component.status) changed = WaitClock::now();
+      if (!component.status || component.status->incarnation <= status.incarnation) component.status = status;
+    });
+    std::this_thread::sleep_for(kPoll);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::map<std::string, ComponentMessages> read_component_messages(std::int32_t participant,
+                                                                 std::chrono::milliseconds bound) {
+  return read(participant, bound, false);
+}
 
 std::map<std::string, msg::ComponentStatus> read_components(std::int32_t participant, std::chrono::milliseconds bound) {
-  using Clock = std::chrono::steady_clock;
-  const auto reader = dds::Reader<msg::ComponentStatus>::member(participant, barrier_topics::kStatus);
   std::map<std::string, msg::ComponentStatus> components;
-  const auto start = Clock::now();
-  auto changed = start;
-  while (Clock::now() - start < bound &&
-         (components.empty() || Clock::now() - changed < std::chrono::milliseconds(300))) {
-    reader.take([&](const msg::ComponentStatus& status) {
-      const auto [entry, added] = components.try_emplace(status.component, status);
-      if (added) changed = Clock::now();
-      else if (entry->second.incarnation <= status.incarnation) entry->second = status;
-    });
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (const auto& [name, messages] : read(participant, bound, true)) {
+    if (messages.status) components.emplace(name, *messages.status);
   }
   return components;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "client/polling.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/discovery.hpp"
 #include "cyclone/endpoint.hpp"
@@ -15,7 +16,6 @@ namespace constrictor {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 /// Writers keep several lists for late readers. The lists arrive one after the other; the last one is valid.
 constexpr auto kQuiet = 300ms;
 
@@ -40,22 +40,22 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
     return std::any_of(endpoints.begin(), endpoints.end(),
                        [&](const auto& e) { return e.writer && e.topic == source.topic->name; });
   };
-  const auto start = Clock::now();
+  const auto start = WaitClock::now();
   auto heard = start;
   for (;;) {
     for (auto& source : sources) {
       source.reader.take([&](const msg::ParameterList& list) {
         source.newest = list;
-        heard = Clock::now();
+        heard = WaitClock::now();
       });
     }
-    const auto waited = Clock::now() - start;
+    const auto waited = WaitClock::now() - start;
     const bool all = std::all_of(sources.begin(), sources.end(), [](const auto& s) { return s.newest.has_value(); });
     // A component whose list has no writer after discovery has settled is not part of this run.
     const bool rest = waited > 700ms && std::none_of(sources.begin(), sources.end(),
                                                      [&](const auto& s) { return !s.newest && has_writer(s); });
-    if (((all || rest) && Clock::now() - heard > kQuiet) || waited > bound) break;
-    std::this_thread::sleep_for(10ms);
+    if (((all || rest) && WaitClock::now() - heard > kQuiet) || waited > bound) break;
+    std::this_thread::sleep_for(kPoll);
   }
   ParameterView view;
   for (const auto& source : sources) {
@@ -88,7 +88,7 @@ msg::ParameterChange ParameterSetter::set(const std::string& name, double value,
   request.effective_tick = tick;
   const std::uint64_t number = client_.ask(request);
   std::optional<msg::ParameterChange> change;
-  for (const auto end = Clock::now() + bound; Clock::now() < end;) {
+  for (const auto end = WaitClock::now() + bound; WaitClock::now() < end;) {
     const auto answer = client_.wait_for_answer(number, 20ms);
     if (answer == RequestClient::Answer::kRefused) throw CommandError(client_.refusal(), CommandError::Cause::kRefused);
     changes_.take([&](const msg::ParameterChange& each) {

@@ -1,7 +1,5 @@
 #include "cli/interrupt.hpp"
 
-#include <csignal>
-
 namespace constrictor::cli {
 namespace {
 
@@ -9,10 +7,10 @@ volatile std::sig_atomic_t g_signal = 0;
 
 }  // namespace
 
-void catch_interrupts() {
+void catch_interrupts(std::initializer_list<int> signals) {
   struct sigaction action {};
   action.sa_handler = [](int number) { g_signal = number; };
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaction(number, &action, nullptr);
+  for (const int number : signals) ::sigaction(number, &action, nullptr);
 }
 
 int interrupt_signal() { return static_cast<int>(g_signal); }

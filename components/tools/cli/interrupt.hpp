@@ -1,10 +1,13 @@
 // Ctrl-C: signals that only set a flag, so that a command can leave the run in a defined state before it ends.
 #pragma once
 
+#include <csignal>
+#include <initializer_list>
+
 namespace constrictor::cli {
 
-/// From now on SIGINT, SIGTERM, SIGHUP and SIGQUIT only set a flag.
-void catch_interrupts();
+/// From now on these signals only set a flag.
+void catch_interrupts(std::initializer_list<int> signals = {SIGINT, SIGTERM, SIGHUP, SIGQUIT});
 /// Number of the last such signal; 0: none.
 [[nodiscard]] int interrupt_signal();
 /// Exit status of a command that was ended by a signal.

@@ -2,8 +2,8 @@
 // no clock.
 //
 // Frames follow REP 103 and 105: `odom` is guidance's map frame M (z up, origin on the ground below the head's first
-// position), `base_link` is the head module, `module_01` … are the others by a chain of joints, `camera_optical` is the
-// camera. Units are SI on both sides.
+// position), `base_link` is the head module, `module_01` and so on are the others by a chain of joints, and
+// `camera_optical` is the camera. Units are SI on both sides.
 #pragma once
 
 #include <cstdint>

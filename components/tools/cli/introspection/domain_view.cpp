@@ -2,25 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <set>
 #include <thread>
 
+#include "cli/interrupt.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/topics.hpp"
-#include "cyclone/endpoint.hpp"
-#include "runtime/wire.hpp"
 
 namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-
-volatile std::sig_atomic_t g_interrupted = 0;
-void on_signal(int) { g_interrupted = 1; }
 
 }  // namespace
 
@@ -69,30 +64,6 @@ std::optional<dds::Endpoint> DomainView::find_writer(const std::string& topic, s
   return std::nullopt;
 }
 
-std::map<std::string, Member> DomainView::members() const {
-  const auto hellos = dds::Reader<msg::Hello>::member(participant(), dds::barrier_topics::kHello);
-  const auto statuses = dds::Reader<msg::ComponentStatus>::member(participant(), dds::barrier_topics::kStatus);
-  std::map<std::string, Member> found;
-  // When a writer discovers the reader, it sends the messages that it keeps for late readers. Members that have written
-  // nothing are not waited for.
-  const auto end = Clock::now() + 1500ms;
-  auto changed = Clock::now();
-  while (Clock::now() < end && Clock::now() - changed < 300ms) {
-    hellos.take([&](const msg::Hello& hello) {
-      auto& member = found[hello.component];
-      if (!member.hello || member.hello->incarnation <= hello.incarnation) member.hello = hello;
-      changed = Clock::now();
-    });
-    statuses.take([&](const msg::ComponentStatus& status) {
-      auto& member = found[status.component];
-      if (!member.status) changed = Clock::now();
-      if (!member.status || member.status->incarnation <= status.incarnation) member.status = status;
-    });
-    std::this_thread::sleep_for(10ms);
-  }
-  return found;
-}
-
 std::string DomainView::name_of(const dds::Guid& participant, const std::vector<dds::Participant>& participants,
                                 const std::vector<dds::Endpoint>& endpoints) {
   for (const auto& endpoint : endpoints) {
@@ -118,14 +89,9 @@ std::string no_such_topic(const DomainView& view, const std::string& topic) {
 }
 
 bool interrupted() {
-  static const bool listening = [] {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    ::sigaction(SIGINT, &action, nullptr);
-    ::sigaction(SIGTERM, &action, nullptr);
-    return true;
-  }();
-  return listening && g_interrupted != 0;
+  // These commands change nothing in a run, so the other signals may end them at once.
+  static const bool listening = (catch_interrupts({SIGINT, SIGTERM}), true);
+  return listening && interrupt_signal() != 0;
 }
 
 }  // namespace constrictor::cli

@@ -5,12 +5,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "constrictor/messages.hpp"
 #include "cyclone/discovery.hpp"
 #include "cyclone/domain.hpp"
 
@@ -30,12 +28,6 @@ inline constexpr const char* kDomainEnvironment =
 /// Adds --run and --json.
 void add_view_options(CLI::App& app, ViewOptions& options);
 
-/// The newest messages of a member of the barrier about itself.
-struct Member {
-  std::optional<msg::Hello> hello;
-  std::optional<msg::ComponentStatus> status;
-};
-
 class DomainView {
  public:
   /// Joins the domain that the options name, otherwise the domain of the only run on this host. Throws CommandError or
@@ -49,8 +41,6 @@ class DomainView {
   /// Waits up to `bound` until `topic` has a writer.
   [[nodiscard]] std::optional<dds::Endpoint> find_writer(const std::string& topic,
                                                          std::chrono::milliseconds bound) const;
-  /// Hello and status by component. If a component has had several incarnations, those of the newest one.
-  [[nodiscard]] std::map<std::string, Member> members() const;
 
   [[nodiscard]] std::uint32_t domain() const { return number_; }
   [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }

@@ -9,6 +9,7 @@
 #include "cli/run_observer.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "client/components.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
@@ -25,7 +26,7 @@ struct Options {
 
 /// One participant: what discovery found, and the newest Hello and status of its components.
 Json node_json(const dds::Participant& participant, const std::vector<dds::Participant>& participants,
-               const std::vector<dds::Endpoint>& endpoints, const std::map<std::string, Member>& members) {
+               const std::vector<dds::Endpoint>& endpoints, const std::map<std::string, ComponentMessages>& members) {
   const std::string name = DomainView::name_of(participant.guid, participants, endpoints);
   Json node = {{"node", name},
                {"host", participant.host},
@@ -65,7 +66,7 @@ Json node_json(const dds::Participant& participant, const std::vector<dds::Parti
 
 std::vector<Json> nodes(const DomainView& view) {
   view.settle_or_throw();
-  const auto members = view.members();
+  const auto members = read_component_messages(view.participant());
   const auto participants = view.discovery().participants();
   const auto endpoints = view.discovery().endpoints();
   std::vector<Json> list;
