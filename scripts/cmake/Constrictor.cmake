@@ -36,6 +36,14 @@ function(constrictor_precompile target)
   endif()
 endfunction()
 
+# constrictor_compile_quickly(TARGET...): for programs that wait for people or messages. CLI11 and JSON compile a third
+# faster at this level, which a user notices at the first build; the speed of these programs does not change noticeably.
+function(constrictor_compile_quickly)
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endforeach()
+endfunction()
+
 # constrictor_include_root(RESULT): an include directory that holds the current folder and nothing else. A folder's
 # headers are named `robot/...`, `navigation/...` or `sim/world/...`, without `components/`, `lib/` and `tools/`.
 # A target that does not link a library therefore cannot include its headers.
