@@ -1,21 +1,18 @@
 // The component `overview`: a camera that stands beside the scene. Its pictures are for people, never for the robot.
 #pragma once
 
-#include <cstdint>
+#include <Eigen/Core>
 #include <memory>
-#include <vector>
 
 #include "component/component.hpp"
 #include "sim/overview/overview_config.hpp"
+#include "sim/overview/overview_view.hpp"
 #include "sim/render/frame_count.hpp"
-#include "sim/render/renderer.hpp"
-#include "sim/render/viewpoint.hpp"
 
 namespace constrictor {
 
-/// The component `overview`. It writes a picture of the whole scene every period. The scene determines the viewpoint.
-/// The lower left corner, where the scene is always empty, has a close-up of the robot. A picture is a function of the
-/// world of its tick and of the scene. The component writes nothing before both are known.
+/// The component `overview`. It writes a picture of the whole scene (OverviewView) every period. A picture is a
+/// function of the world of its tick and of the scene. The component writes nothing before both are known.
 class Overview : public ConfiguredComponent<FrameCount, OverviewConfig> {
  public:
   Overview(Wiring& wiring, const Setup& setup);
@@ -23,19 +20,12 @@ class Overview : public ConfiguredComponent<FrameCount, OverviewConfig> {
   void step(const Tick& tick) override;
 
  private:
-  void build(const msg::SceneDescription& description);
-  void draw_inset(const ScenePoses& poses);
-
   Timing timing_;
+  Eigen::Vector3d head_camera_m_;  // p_HC
   Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
   Latest<msg::SceneDescription> description_ = wiring_.latest(topics::kSceneDescription);
   Output<msg::CameraImage> image_ = wiring_.output(topics::kOverviewImage);
-  std::unique_ptr<Renderer> renderer_;  // these members follow from the scene and are no state
-  std::unique_ptr<Renderer> inset_renderer_;
-  PinholeCamera camera_;
-  ShadowRegion shadow_;
-  double heading_rad_ = 0.0;
-  std::vector<std::uint8_t> rgb_;
+  std::unique_ptr<OverviewView> view_;  // built from the scene, no state
 };
 
 ComponentFactory make_overview_factory();

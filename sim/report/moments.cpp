@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <opencv2/imgproc.hpp>
 #include <string_view>
 
 #include "sim/report/files.hpp"
 #include "sim/report/png.hpp"
+#include "sim/report/scene_pictures.hpp"
 
 namespace constrictor::report {
 namespace {
@@ -14,20 +14,19 @@ namespace {
 constexpr std::size_t kMostMoments = 100;
 
 void save(const std::filesystem::path& file, const msg::CameraImage& image) {
-  const cv::Mat rgb(image.height, image.width, CV_8UC3, image.data._buffer);
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  replace_file(file, encode_png(bgr));
+  replace_file(file, encode_png(image.width, image.height, image.data._buffer));
 }
 
 }  // namespace
 
 MomentFiles::MomentFiles(const std::filesystem::path& folder, const Moment& moment) {
-  char prefix[16];
-  std::snprintf(prefix, sizeof prefix, "%07lld_", static_cast<long long>(moment.tick));
-  scene = folder / "snapshots" / (std::string(prefix) + "scene.png");
-  camera = folder / "snapshots" / (std::string(prefix) + "camera.png");
-  processed = folder / "snapshots" / (std::string(prefix) + "processed.png");
+  char tick[32];
+  std::snprintf(tick, sizeof tick, "%07lld", static_cast<long long>(moment.tick));
+  const auto file = [&](const std::string& end) { return folder / kFolder / (tick + end); };
+  scene = file("_scene.png");
+  camera = file("_camera.png");
+  processed = file("_processed.png");
+  world = file(kWorld);
 }
 
 bool is_key_event(std::uint8_t event) {
@@ -57,11 +56,15 @@ std::vector<Moment> figure_rows(const std::vector<Moment>& moments) {
   return rows;
 }
 
-void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera) {
+void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
+                      const msg::WorldState& world) {
   if (moments.size() >= kMostMoments) return;
   if (!moments.empty() && moments.back().tick == moment.tick) return;  // that moment has the same pictures
+  const MomentFiles files(folder, moment);
+  std::filesystem::remove(files.scene);
+  save_world(files.world, world);
   if (camera != nullptr) {
-    save(MomentFiles(folder, moment).camera, *camera);
+    save(files.camera, *camera);
     moment.camera_exposure = camera->exposure_tick;
   }
   moments.push_back(std::move(moment));
@@ -75,25 +78,11 @@ void MomentAlbum::on_processed(const std::filesystem::path& folder, const msg::C
   }
 }
 
-void MomentAlbum::on_scene(const std::filesystem::path& folder, const msg::CameraImage& image) {
+void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage& processed) {
   for (Moment& moment : moments) {
-    if (moment.has_scene || image.exposure_tick < moment.tick) continue;
-    save(MomentFiles(folder, moment).scene, image);
-    moment.has_scene = true;
-  }
-}
-
-void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage* processed,
-                         const msg::CameraImage* scene) {
-  for (Moment& moment : moments) {
-    if (!moment.has_processed && processed != nullptr) {
-      save(MomentFiles(folder, moment).processed, *processed);
-      moment.has_processed = true;
-    }
-    if (!moment.has_scene && scene != nullptr) {
-      save(MomentFiles(folder, moment).scene, *scene);
-      moment.has_scene = true;
-    }
+    if (moment.has_processed) continue;
+    save(MomentFiles(folder, moment).processed, processed);
+    moment.has_processed = true;
   }
 }
 

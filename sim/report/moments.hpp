@@ -20,18 +20,20 @@ struct Moment {
   std::string state;                  ///< state of the planner
   std::int64_t camera_exposure = -1;  ///< [tick] at which the raw image was exposed; -1: there is no image
   bool has_processed = false;
-  bool has_scene = false;
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(tick, time_s, event, colour, state, camera_exposure, has_processed, has_scene);
+    archive(tick, time_s, event, colour, state, camera_exposure, has_processed);
   }
 };
 
-/// Files of a moment's pictures. Their names contain the tick: a process that repeats the tick after a restart writes
-/// the same files again, with the same content.
+/// Files of a moment: its pictures, and the world state from which the picture of the scene is drawn. Their names
+/// contain the tick: a process that repeats the tick after a restart writes the same files again, with the same
+/// content.
 struct MomentFiles {
-  std::filesystem::path scene, camera, processed;
+  static constexpr const char* kFolder = "snapshots";  ///< within the output folder
+  static constexpr const char* kWorld = "_world.bin";  ///< end of the names of world states
+  std::filesystem::path scene, camera, processed, world;
   MomentFiles(const std::filesystem::path& folder, const Moment& moment);
 };
 
@@ -43,19 +45,20 @@ struct MomentFiles {
 /// is chosen.
 [[nodiscard]] std::vector<Moment> figure_rows(const std::vector<Moment>& moments);
 
-/// Saves the pictures of each moment: the raw image at once, and later the processed image of the same exposure and the
-/// picture of the scene, when these two arrive.
+/// Saves the raw image and the world state of each moment at once, and the processed image of the same exposure when it
+/// arrives. The picture of the scene is drawn after the end of the run (draw_scene_pictures()).
 struct MomentAlbum {
   std::vector<Moment> moments;
 
   /// Images given to this class must have the right number of bytes (image_violation()). `camera` may be null. Moments
-  /// after the first 100 are ignored, so that the state stays small.
-  void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera);
+  /// after the first 100 are ignored, so that the state stays small. A picture of the scene that an earlier run left
+  /// for this tick is removed.
+  void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
+           const msg::WorldState& world);
   void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image);
-  void on_scene(const std::filesystem::path& folder, const msg::CameraImage& image);
-  /// Saves the newest images for all moments that still have no picture, because no further images arrive after the end
-  /// of the run. `processed` and `scene` may be null.
-  void finish(const std::filesystem::path& folder, const msg::CameraImage* processed, const msg::CameraImage* scene);
+  /// Saves the newest processed image for all moments that still have none, because no further images arrive after the
+  /// end of the run.
+  void finish(const std::filesystem::path& folder, const msg::CameraImage& processed);
 
   template <class Archive>
   void serialize(Archive& archive) {

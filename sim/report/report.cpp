@@ -11,7 +11,6 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/image.hpp"
 #include "constrictor/json.hpp"
-#include "robot/robot_model.hpp"
 
 namespace constrictor {
 
@@ -33,11 +32,14 @@ std::filesystem::path in_folder(const std::filesystem::path& folder, const char*
 
 }  // namespace
 
-Report::Report(Wiring& wiring, const Setup& setup)
+Report::Report(Wiring& wiring, const Setup& setup) : Report(wiring, setup, load_robot(setup.robot_file)) {}
+
+Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
     : ConfiguredComponent(wiring, setup),
       plant_limit_s_(setup.max_sim_time_s),
       folder_(setup.output_dir),
-      yaw_joints_(load_robot(setup.robot_file).yaw_joints()),
+      yaw_joints_(robot.yaw_joints()),
+      head_camera_m_(robot.camera.p_HC),
       torques_(in_folder(folder_, "joint_torques.csv")),
       events_(in_folder(folder_, "events.jsonl")),
       states_(in_folder(folder_, "states.jsonl")),
@@ -164,7 +166,8 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.event = event;
   moment.colour = colour;
   moment.state = state_.mission_state;
-  state_.album.add(std::move(moment), folder_, camera_ && image_violation(*camera_).empty() ? &*camera_ : nullptr);
+  const bool has_camera = camera_ && image_violation(*camera_).empty();
+  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, *world_);
 }
 
 void Report::follow_images() {
@@ -179,7 +182,6 @@ void Report::follow_images() {
   };
   static_cast<void>(whole(camera_, topics::kCameraImage.name));  // only counts refusals; add_moment() uses the image
   if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_);
-  if (whole(overview_, topics::kOverviewImage.name)) state_.album.on_scene(folder_, *overview_);
 }
 
 void Report::journal_torques(const Tick& tick) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "component/concluding.hpp"
+#include "robot/robot_model.hpp"
 #include "sim/report/files.hpp"
 #include "sim/report/ledger.hpp"
 #include "sim/report/moments.hpp"
@@ -50,10 +51,11 @@ struct ReportState {
 };
 
 /// The component `report`. It appends long series to journals in Setup::output_dir and writes pictures. The lengths of
-/// the journals belong to the state, and pictures are named by tick: a restarted process leaves the same files. Without
-/// an output directory it judges the mission and ends the run, but writes nothing. It ends the run `settle_s` after the
-/// end of the mission, or at `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same
-/// files, and they give this end as the reason.
+/// the journals belong to the state, and pictures are named by tick: a restarted process leaves the same files.
+/// Pictures of the scene are drawn from saved world states when the run ends. Without an output directory it judges the
+/// mission and ends the run, but writes nothing. It ends the run `settle_s` after the end of the mission, or at
+/// `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same files, and they give this
+/// end as the reason.
 class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
@@ -61,6 +63,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   void conclude(const Tick& last) override;
 
  private:
+  Report(Wiring& wiring, const Setup& setup, const RobotModel& robot);
   void read_line();
   void follow_truth();
   void follow_events();
@@ -80,11 +83,12 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   // Defined in report_files.cpp.
   void write_files(const Tick& tick);
   [[nodiscard]] std::string mission_json(const Tick& tick) const;
-  void draw(const Tick& tick) const;
+  void draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const;
 
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never
   std::filesystem::path folder_;
   std::vector<std::size_t> yaw_joints_;
+  Eigen::Vector3d head_camera_m_;  // p_HC, for the pictures of the scene
   report::Journal torques_, events_, states_, parameters_;
   std::vector<Eigen::Vector2d> line_m_;  // points of the line in W, from the scene
   Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
@@ -98,7 +102,6 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   Latest<msg::LinePercept> line_ = wiring_.latest(topics::kLinePercept);
   Latest<msg::CameraImage> camera_ = wiring_.latest(topics::kCameraImage);
   Latest<msg::CameraImage> processed_ = wiring_.latest(topics::kProcessedImage);
-  Latest<msg::CameraImage> overview_ = wiring_.latest(topics::kOverviewImage);
 };
 
 ComponentFactory make_report_factory();

@@ -13,6 +13,7 @@
 #include "sim/report/figure.hpp"
 #include "sim/report/png.hpp"
 #include "sim/report/report.hpp"
+#include "sim/report/scene_pictures.hpp"
 
 namespace constrictor {
 
@@ -89,13 +90,17 @@ std::string Report::mission_json(const Tick& tick) const {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void Report::draw(const Tick& tick) const {
+void Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const {
   std::vector<report::FigureRow> rows;
-  for (const report::Moment& moment : report::figure_rows(state_.album.moments)) {
+  for (const report::Moment& moment : moments) {
     const report::MomentFiles files(folder_, moment);
-    report::FigureRow row{
-        moment.time_s, caption_of(moment, state_.mission_end_tick >= 0), moment.state, moment.colour, {}, {}, {}};
-    if (moment.has_scene) row.scene = files.scene;
+    report::FigureRow row{moment.time_s,
+                          caption_of(moment, state_.mission_end_tick >= 0),
+                          moment.state,
+                          moment.colour,
+                          files.scene,
+                          {},
+                          {}};
     if (moment.camera_exposure >= 0) row.camera = files.camera;
     if (moment.has_processed) row.processed = files.processed;
     rows.push_back(std::move(row));
@@ -112,13 +117,15 @@ void Report::draw(const Tick& tick) const {
 
 void Report::write_files(const Tick& tick) {
   if (folder_.empty()) return;
-  const auto newest = [](const Latest<msg::CameraImage>& image) {
-    return image && image_violation(*image).empty() ? &*image : nullptr;
-  };
-  state_.album.finish(folder_, newest(processed_), newest(overview_));
-  draw(tick);
+  if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_);
+  const std::vector<report::Moment> moments = report::figure_rows(state_.album.moments);
+  report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_);
+  draw_figure(tick, moments);
   // mission.json is written last: its presence shows that the other files are complete.
   report::replace_file(folder_ / "mission.json", mission_json(tick));
+  // If this process is killed before this line, the restarted process draws all pictures again. If it is killed while
+  // it removes world states, their moments keep the pictures that it has drawn.
+  report::remove_worlds(folder_);
 }
 
 }  // namespace constrictor

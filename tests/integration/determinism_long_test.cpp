@@ -43,7 +43,8 @@ TEST_F(WholeCaseStudy, SameHashInOneProcess) { EXPECT_EQ(run("one", {"--in-proce
 
 TEST_F(WholeCaseStudy, SameHashInTwoGroupings) {
   EXPECT_EQ(run("two", {"--group", "physics,control,navigation"}), reference());
-  EXPECT_EQ(run("three", {"--group", "camera,perception,guidance", "--group", "planner,input,report,overview"}),
+  EXPECT_EQ(run("three", {"--manifest", "case_study_live", "--group", "camera,perception,guidance", "--group",
+                          "planner,input,report,overview"}),
             reference());
 }
 
@@ -77,7 +78,7 @@ TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
   std::mt19937 random(seed);
   fs::create_directory(dir_ / "deaths");
   std::map<std::string, std::string> lines;
-  for (const auto& member : kRestartable) {
+  for (const auto& member : kRestartableLive) {
     std::set<int> ticks;
     while (ticks.size() < kDeaths) ticks.insert(10 + static_cast<int>(random() % 9000));
     std::string list;
@@ -85,9 +86,9 @@ TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
     lines[member] = "    program: mortal_host\n    environment: ['CONSTRICTOR_DEATHS=" + list +
                     "', 'CONSTRICTOR_DEATHS_DIR=" + (dir_ / "deaths").string() + "']\n";
   }
-  write_manifest("mortal.yaml", lines);
+  write_manifest("mortal.yaml", lines, "case_study_live");
   EXPECT_EQ(run("killed", {"--manifest", (dir_ / "mortal.yaml").string()}), expected);
-  EXPECT_EQ(restarts("killed"), kDeaths * static_cast<int>(kRestartable.size()));
+  EXPECT_EQ(restarts("killed"), kDeaths * static_cast<int>(kRestartableLive.size()));
 }
 
 TEST_F(WholeCaseStudy, SameHashAfterAResetFromAnotherSeed) {

@@ -17,8 +17,14 @@
 namespace constrictor::testing {
 
 /// All members of the case study except the plant: the members that the launcher restarts when they die.
-inline const std::vector<std::string> kRestartable = {"camera",  "overview", "perception", "guidance", "navigation",
-                                                      "control", "input",    "planner",    "report"};
+inline const std::vector<std::string> kRestartable = {"camera",  "perception", "guidance", "navigation",
+                                                      "control", "input",      "planner",  "report"};
+/// The same for the manifest case_study_live.
+inline const std::vector<std::string> kRestartableLive = [] {
+  std::vector<std::string> members = kRestartable;
+  members.insert(members.begin() + 1, "overview");
+  return members;
+}();
 
 class DeterminismRun : public ::testing::Test {
  protected:
@@ -59,10 +65,11 @@ class DeterminismRun : public ::testing::Test {
     Process process = start(name, more, environment);
     return hash_of(name, process);
   }
-  /// Writes the case study's manifest into the test's folder. `lines` maps a component to lines that are added to the
-  /// entry of its process; each is indented by four blanks.
-  void write_manifest(const std::string& name, const std::map<std::string, std::string>& lines) const {
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/case_study.yaml");
+  /// Writes a manifest of deploy/ into the test's folder. `lines` maps a component to lines that are added to the entry
+  /// of its process; each is indented by four blanks.
+  void write_manifest(const std::string& name, const std::map<std::string, std::string>& lines,
+                      const std::string& original = "case_study") const {
+    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/" + original + ".yaml");
     std::string text{std::istreambuf_iterator<char>(file), {}};
     for (const auto& [component, line] : lines) {
       const std::string plain = "components: [" + component + "]\n";

@@ -1,12 +1,12 @@
-// Line following in ten processes over DDS. The robot perceives the line only with its camera.
+// Line following in nine processes over DDS. The robot perceives the line only with its camera.
 #include "mission_run.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-TEST_F(MissionRun, TenProcessesFollowTheLineToItsEndByCamera) {
+TEST_F(MissionRun, NineProcessesFollowTheLineToItsEndByCamera) {
   ASSERT_NO_FATAL_FAILURE(succeeds("line", 25.0));
-  EXPECT_EQ(report_["processes"].size(), 10U);
+  EXPECT_EQ(report_["processes"].size(), 9U);
   EXPECT_LT(event_s("line_found"), 2.0);
   EXPECT_LT(event_s("end_of_line"), 20.0);
   EXPECT_GT(event_s("end_of_line"), 5.6 / 1.0);  // the line is 5.6 m long; the robot is slower than 1 m/s

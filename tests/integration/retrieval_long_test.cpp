@@ -1,4 +1,4 @@
-// A whole retrieval in ten processes over DDS: the robot finds, grasps, carries and drops an object.
+// A whole retrieval in nine processes over DDS: the robot finds, grasps, carries and drops an object.
 #include "mission_run.hpp"
 
 namespace constrictor::testing {

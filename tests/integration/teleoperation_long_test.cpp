@@ -46,7 +46,7 @@ TEST_F(MidMission, TheMissionSucceedsAlthoughAnOperatorDrivesOnTheLineAndWithThe
   EXPECT_EQ(std::count(states.begin(), states.end(), "grasp"), 1) << json["states"];
   // `status --json` in the middle of the mission listed all components.
   ASSERT_TRUE(before.is_object()) << output_;
-  EXPECT_EQ(before["components"].size(), 10U) << before;
+  EXPECT_EQ(before["components"].size(), 9U) << before;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <memory>
 
@@ -34,9 +35,12 @@ std::string first_sentence(const std::filesystem::path& file) {
 }
 
 int list_files(const NamedFiles& files, bool only_names) {
-  for (const auto& name : names_of(files)) {
+  const auto names = names_of(files);
+  std::size_t width = 12;
+  for (const auto& name : names) width = std::max(width, name.size());
+  for (const auto& name : names) {
     if (only_names) fmt::print("{}\n", name);
-    else fmt::print("{:<14}{}\n", name, first_sentence(data_path(files.folder / (name + ".yaml"))));
+    else fmt::print("{:<{}}  {}\n", name, width, first_sentence(data_path(files.folder / (name + ".yaml"))));
   }
   return exit_status::kOk;
 }

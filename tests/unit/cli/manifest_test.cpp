@@ -44,7 +44,13 @@ TEST(Manifest, TheCaseStudyRunsEachComponentInAProcessOfItsOwn) {
   const LaunchManifest manifest = load_manifest(data_path("deploy/case_study.yaml"));
   EXPECT_EQ(manifest.plant, "physics");
   EXPECT_EQ(manifest.processes.size(), manifest.roster().size());
-  EXPECT_GE(manifest.roster().size(), 9u);
+  EXPECT_EQ(manifest.roster().size(), 9u);
+}
+
+TEST(Manifest, TheLiveCaseStudyAddsOnlyTheOverview) {
+  std::vector<std::string> roster = load_manifest(data_path("deploy/case_study_live.yaml")).roster();
+  EXPECT_EQ(std::erase(roster, "overview"), 1u);
+  EXPECT_EQ(roster, load_manifest(data_path("deploy/case_study.yaml")).roster());
 }
 
 TEST(Manifest, ReadsProcesses) {

@@ -111,6 +111,7 @@ TEST(Report, FiguresAreThoseOfTheScript) {
 TEST(Report, LeavesTheSameFilesAfterRestarts) {
   const Outcome whole = report_of({});
   ASSERT_GT(whole.files.size(), 20U);
+  for (const auto& [name, bytes] : whole.files) EXPECT_FALSE(name.ends_with(".bin")) << name << " is left";
   // Restarts just after events, while pictures are missing, after the end of the mission, and in the last tick.
   const Outcome restarted =
       report_of({}, {1, 12, 61, 62, 63, 91, 125, 150, 201, 261, 300, 321, 401, 422, 423, 500, 521});
@@ -220,7 +221,6 @@ TEST(Report, PicturesShowTheirMomentOrShortlyAfterwards) {
   // The event of tick 120 is visible in tick 121. The newest camera image at that time was exposed in tick 115.
   EXPECT_EQ(brightness("0000120_camera.png"), 115);
   EXPECT_GE(brightness("0000120_processed.png"), 115);
-  EXPECT_EQ(brightness("0000120_scene.png"), 150);
 }
 
 // An image of 64 x 48 pixels with ten bytes, as a faulty camera may send it, is not drawn.

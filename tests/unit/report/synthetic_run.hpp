@@ -32,6 +32,8 @@ struct Story {
 };
 
 constexpr double kStartX = 1.0, kStartY = 2.0, kStartYaw = 0.5;
+constexpr int kModules = 8;
+constexpr double kModuleLength_m = 0.089;
 
 struct ScriptedEvent {
   std::int64_t tick;
@@ -66,13 +68,17 @@ class StoryPlant : public testing::PlantBase {
   void sample(const Tick& tick) override {
     if (tick.index == 0) write_scene();
     msg::WorldState world{};
-    world.module_count = 1;
+    world.module_count = kModules;
     const double c = std::cos(kStartYaw), s = std::sin(kStartYaw);
     const auto place = [&](double along, double across) {
       return msg::Vector3{kStartX + c * along - s * across, kStartY + s * along + c * across, 0.0};
     };
     world.module_poses[0] = {place(travel_m(tick.index), 0.0),
                              {std::cos(kStartYaw / 2), 0, 0, std::sin(kStartYaw / 2)}};
+    for (int i = 1; i < kModules; ++i) {
+      world.module_poses[i] = world.module_poses[0];
+      world.module_poses[i].position_m = place(travel_m(tick.index) - kModuleLength_m * i, 0.0);
+    }
     world.object_count = 2;
     // Objects move with the head until they are dropped; then they lie in their zones.
     const auto object = [&](int i, std::int64_t dropped, double zone_y, double miss) {
@@ -98,7 +104,14 @@ class StoryPlant : public testing::PlantBase {
     std::snprintf(scene->scenario, sizeof scene->scenario, "story");
     scene->seed = 11;
     scene->module_radius_m = 0.035;
-    scene->module_length_m = 0.089;
+    scene->module_length_m = kModuleLength_m;
+    scene->module_count = kModules;
+    scene->light_direction = {0.0, 0.6, 0.8};
+    scene->light_intensity = 1.0;
+    scene->ambient_intensity = 0.4;
+    scene->ground_colour = {0.45, 0.45, 0.45};
+    scene->line_colour = msg::kColourBlue;
+    scene->line_width_m = 0.05;
     scene->object_count = 2;
     scene->objects[0] = {msg::kColourGreen, msg::kShapeCylinder, {0.08, 0.08, 0.15}, 0.4};
     scene->objects[1] = {msg::kColourRed, msg::kShapeCylinder, {0.08, 0.08, 0.15}, 0.4};
@@ -194,11 +207,6 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
   members.push_back(scripted("camera", {5, 2}, [story](Wiring& wiring) {
     return [story, out = wiring.output(topics::kCameraImage)](const Tick& tick) {
       write_picture(out, tick, 64, 48, story);
-    };
-  }));
-  members.push_back(scripted("overview", {50, 25}, [story](Wiring& wiring) {
-    return [story, out = wiring.output(topics::kOverviewImage)](const Tick& tick) {
-      write_picture(out, tick, 64, 36, story);
     };
   }));
   members.push_back(scripted("perception", {5, 1}, [story](Wiring& wiring) {

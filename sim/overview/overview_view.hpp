@@ -1,0 +1,45 @@
+// The picture of the whole scene from beside the line, for people. The component `overview` publishes it during a run;
+// the report draws it for the key moments after the run.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "constrictor/messages.hpp"
+#include "sim/overview/overview_config.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/render/viewpoint.hpp"
+
+namespace constrictor {
+
+/// Draws pictures of one scene from one viewpoint, which follows from the scene. The lower left corner, where the scene
+/// is always empty, has a close-up of the robot. A picture is a pure function of scene, options, place of the camera
+/// and world state. Throws std::runtime_error if OpenGL fails.
+class OverviewView {
+ public:
+  /// `head_camera_m`: [m] p_HC, the place of the camera in the robot's head, where a small camera is drawn. The periods
+  /// of `options` are not used.
+  OverviewView(const msg::SceneDescription& description, const OverviewConfig& options,
+               const Eigen::Vector3d& head_camera_m);
+
+  /// Returns RGB8 rows from the top, width * height * 3 bytes, valid until the next call.
+  [[nodiscard]] std::vector<std::uint8_t>& draw(const msg::WorldState& world);
+  /// The camera that takes the pictures, with their size.
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+
+ private:
+  OverviewView(const Scene& scene, const OverviewConfig& options, const RenderOptions& render);
+  void draw_inset(const ScenePoses& poses);
+
+  double inset_;  // edge of the close-up relative to the picture
+  double heading_rad_;
+  PinholeCamera camera_;
+  ShadowRegion shadow_;
+  Renderer renderer_;
+  std::unique_ptr<Renderer> inset_renderer_;  // null: there is no close-up
+  std::vector<std::uint8_t> rgb_;
+};
+
+}  // namespace constrictor

@@ -1,0 +1,63 @@
+#include "sim/report/scene_pictures.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "constrictor/reflect.hpp"
+#include "constrictor/sha256.hpp"
+#include "sim/overview/overview_view.hpp"
+#include "sim/report/files.hpp"
+#include "sim/report/png.hpp"
+
+namespace constrictor::report {
+namespace {
+
+std::string digest_of(std::string_view bytes) {
+  const Sha256::Digest digest = sha256(std::as_bytes(std::span(bytes)));
+  return {digest.begin(), digest.end()};
+}
+
+}  // namespace
+
+void save_world(const std::filesystem::path& file, const msg::WorldState& world) {
+  std::string bytes;
+  canonical_bytes(world, bytes);
+  replace_file(file, digest_of(bytes) + bytes);
+}
+
+std::shared_ptr<const msg::WorldState> read_world(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  constexpr std::size_t kDigestSize = std::tuple_size_v<Sha256::Digest>;
+  if (content.size() < kDigestSize) return nullptr;
+  const std::string_view bytes = std::string_view(content).substr(kDigestSize);
+  if (digest_of(bytes) != content.substr(0, kDigestSize)) return nullptr;
+  return parse_shared<msg::WorldState>(std::as_bytes(std::span(bytes)));
+}
+
+void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
+                         const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m) {
+  std::unique_ptr<OverviewView> view;  // made for the first picture, because this compiles shaders
+  for (const Moment& moment : moments) {
+    const MomentFiles files(folder, moment);
+    const auto world = read_world(files.world);
+    if (!world) continue;
+    if (!view) view = std::make_unique<OverviewView>(scene, OverviewConfig{}, head_camera_m);
+    const std::vector<std::uint8_t>& rgb = view->draw(*world);
+    replace_file(files.scene, encode_png(view->camera().width, view->camera().height, rgb.data()));
+  }
+}
+
+void remove_worlds(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> worlds;
+  std::error_code error;  // without a moment there is no such folder
+  for (const auto& entry : std::filesystem::directory_iterator(folder / MomentFiles::kFolder, error)) {
+    if (entry.path().filename().string().ends_with(MomentFiles::kWorld)) worlds.push_back(entry.path());
+  }
+  for (const auto& world : worlds) std::filesystem::remove(world, error);
+}
+
+}  // namespace constrictor::report
