@@ -73,6 +73,8 @@ class Member {
 
   /// Does one step if a tick is due and all of its inputs have arrived. Returns whether it did.
   bool try_step();
+  /// Whether a tick is due whose step is not finished, because inputs are missing.
+  [[nodiscard]] bool has_due_tick() const { return due() != nullptr; }
   /// True after the run's final tick.
   [[nodiscard]] bool ended() const { return ended_; }
   /// Tick of the last finished step; -1 before the first.

@@ -58,12 +58,13 @@ class Host::Impl {
     links_.take_all();
     while (!context_.exit_status && !g_stop) {
       members_.send_ready();
-      const bool stepped = members_.step();
+      bool stepped = false;
+      while (members_.step()) stepped = true;  // the outputs of one member may let another one step
       const bool ticked = conductor_ && conductor_->tick();
       if (stepped || ticked) context_.note_progress();
       if (conductor_) conductor_->publish_run_state(false);
       if (members_.all_ended()) break;
-      links_.wait(stepped || ticked ? 0 : longest_wait_ns());
+      links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());
       if (!stepped && !ticked) check_patience();
     }
     const int status = context_.exit_status.value_or(exit_status::kOk);

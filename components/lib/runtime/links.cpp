@@ -5,12 +5,16 @@
 namespace constrictor {
 
 Links::Links(std::uint32_t domain)
-    : domain_(domain), wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset") {}
+    : domain_(domain),
+      wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
+      always_wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset") {}
 
-void Links::attach(dds_entity_t reader, std::function<void()> take) {
+void Links::attach(dds_entity_t reader, std::function<void()> take, Wakes wakes) {
   dds::check(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
   dds::check(dds_waitset_attach(wait_set_.get(), reader, static_cast<dds_attach_t>(takers_.size())),
              "dds_waitset_attach");
+  if (wakes == Wakes::kAlways)
+    dds::check(dds_waitset_attach(always_wait_set_.get(), reader, 0), "dds_waitset_attach");
   takers_.push_back(std::move(take));
   triggered_.resize(takers_.size());
 }
@@ -19,7 +23,11 @@ void Links::take_all() {
   for (const auto& take : takers_) take();
 }
 
-void Links::wait(dds_duration_t bound_ns) {
+void Links::wait(dds_duration_t bound_ns, bool wanted) {
+  if (!wanted && bound_ns > 0) {
+    dds::check(dds_waitset_wait(always_wait_set_.get(), nullptr, 0, bound_ns), "dds_waitset_wait");
+    bound_ns = 0;
+  }
   const int count =
       dds::check(dds_waitset_wait(wait_set_.get(), triggered_.data(), triggered_.size(), bound_ns), "dds_waitset_wait");
   const std::size_t used = std::min<std::size_t>(static_cast<std::size_t>(count), triggered_.size());

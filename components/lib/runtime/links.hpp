@@ -23,8 +23,14 @@ class Links {
 
   /// Sets the function that receives rejections. Must be called before the first message is taken.
   void on_rejected(Reject reject) { reject_ = std::move(reject); }
+  /// When the samples of a reader end a wait().
+  enum class Wakes {
+    kAlways,
+    kIfWanted,  ///< only while the process needs them at once; else they are taken after the next wait
+  };
+
   /// Calls `take` when `reader` has samples.
-  void attach(dds_entity_t reader, std::function<void()> take);
+  void attach(dds_entity_t reader, std::function<void()> take, Wakes wakes = Wakes::kAlways);
   /// Calls `use(message)` for each message that obeys its IDL; others are rejected. Both `reader` and what `use` refers
   /// to must outlive the last wait().
   template <class T, class Use>
@@ -39,12 +45,14 @@ class Links {
 
   /// Takes everything that has arrived.
   void take_all();
-  /// Waits until a message arrives, for at most `bound_ns`, and takes what has arrived.
-  void wait(dds_duration_t bound_ns);
+  /// Waits until a message arrives, for at most `bound_ns`, and takes everything that has arrived. `wanted`: whether
+  /// readers with Wakes::kIfWanted end the wait.
+  void wait(dds_duration_t bound_ns, bool wanted);
 
  private:
   dds::Domain domain_;
-  dds::Entity wait_set_;
+  dds::Entity wait_set_;         // of all readers
+  dds::Entity always_wait_set_;  // of the readers with Wakes::kAlways
   Reject reject_;
   std::vector<std::function<void()>> takers_;  ///< index: the number under which the reader is attached
   std::vector<dds_attach_t> triggered_;

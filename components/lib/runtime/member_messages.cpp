@@ -68,14 +68,15 @@ void MemberSide::attach_inputs() {
     });
   }
   for (const auto& [topic_id, reader] : bus_->readers()) {
-    links_.attach(reader, [this, id = topic_id] {
+    const auto take = [this, id = topic_id] {
       bus_->take(id, [&](const Sample& sample) {
         if (conductor_) conductor_->note_authority(topics::kInfos[id], sample);
         for (auto& local : members_) {
           if (local.member->reads().contains(id)) local.member->on_sample(id, sample);
         }
       });
-    });
+    };
+    links_.attach(reader, take, Links::Wakes::kIfWanted);
   }
 }
 

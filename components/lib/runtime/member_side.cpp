@@ -142,6 +142,11 @@ bool MemberSide::all_ended() const {
   return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->ended(); });
 }
 
+bool MemberSide::want_inputs() const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [](const auto& local) { return !local.ready_sent || local.member->has_due_tick(); });
+}
+
 bool MemberSide::all_ready() const {
   return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.ready_sent; });
 }

@@ -37,6 +37,9 @@ class MemberSide : private MemberSink {
   /// Does every step that is due. Returns whether there was one.
   bool step();
   [[nodiscard]] bool all_ended() const;
+  /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
+  /// samples can wait for the next tick, too.
+  [[nodiscard]] bool want_inputs() const;
   /// False while a member has still to send Ready.
   [[nodiscard]] bool all_ready() const;
 
