@@ -156,6 +156,8 @@ struct ByteReader {
 /// A message with the bytes that its sequence points to.
 template <class T>
 struct Owned {
+  Owned() = default;
+  explicit Owned(const T& original) : message(original) {}
   T message{};
   std::vector<std::uint8_t> octets;
 };
@@ -194,11 +196,10 @@ template <Described T>
   return std::shared_ptr<const T>(owned, &owned->message);
 }
 
-/// A deep, immutable copy.
+/// A deep copy.
 template <Described T>
-[[nodiscard]] std::shared_ptr<const T> share_copy(const T& message) {
-  auto owned = std::make_shared<reflect::Owned<T>>();
-  owned->message = message;
+[[nodiscard]] std::shared_ptr<T> share_copy(const T& message) {
+  auto owned = std::make_shared<reflect::Owned<T>>(message);
   reflect::OctetsFinder finder;
   Description<T>::visit(owned->message, finder);
   if (finder.found && finder.found->_length > 0) {
@@ -207,7 +208,7 @@ template <Described T>
   } else if (finder.found) {
     *finder.found = {};
   }
-  return std::shared_ptr<const T>(owned, &owned->message);
+  return std::shared_ptr<T>(owned, &owned->message);
 }
 
 }  // namespace constrictor

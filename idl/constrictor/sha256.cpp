@@ -17,22 +17,30 @@ void require(int success) {
   }
 }
 
+/// Fetched once, because EVP_sha256() would search the providers of OpenSSL at each use.
+const EVP_MD* algorithm() {
+  static const EVP_MD* const kAlgorithm = EVP_MD_fetch(nullptr, "SHA256", nullptr);
+  require(kAlgorithm != nullptr ? 1 : 0);
+  return kAlgorithm;
+}
+
 }  // namespace
 
-Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
-  require(EVP_DigestInit_ex(context_of(context_), EVP_sha256(), nullptr));
-}
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) { require(context_ != nullptr ? 1 : 0); }
 
 Sha256::~Sha256() { EVP_MD_CTX_free(context_of(context_)); }
 
 void Sha256::update(std::span<const std::byte> bytes) {
+  if (!begun_) require(EVP_DigestInit_ex(context_of(context_), algorithm(), nullptr));
+  begun_ = true;
   require(EVP_DigestUpdate(context_of(context_), bytes.data(), bytes.size()));
 }
 
 Sha256::Digest Sha256::finish() {
   Digest digest{};
+  update({});  // begins a hash of no bytes, if there were none
   require(EVP_DigestFinal_ex(context_of(context_), digest.data(), nullptr));
-  require(EVP_DigestInit_ex(context_of(context_), EVP_sha256(), nullptr));
+  begun_ = false;
   return digest;
 }
 

@@ -9,7 +9,7 @@
 
 namespace constrictor {
 
-/// SHA-256 over bytes given in pieces.
+/// SHA-256 over bytes given in pieces. To construct one costs much more than to hash a short message.
 class Sha256 {
  public:
   using Digest = std::array<std::uint8_t, 32>;
@@ -23,6 +23,7 @@ class Sha256 {
 
  private:
   void* context_;
+  bool begun_ = false;
 };
 
 /// SHA-256 of bytes given at once.

@@ -9,7 +9,6 @@
 #include "component/concluding.hpp"
 #include "component/data_path.hpp"
 #include "constrictor/reflect.hpp"
-#include "constrictor/sha256.hpp"
 
 namespace constrictor {
 namespace {
@@ -147,8 +146,9 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
                                   [topic_id](const auto& input) { return input->topic().id == topic_id; });
   if (found == inputs_.end()) return;
   const msg::Header& header = *sample.header;
-  const std::string topic((*found)->topic().name);
-  if (header.run_id != epoch_->run_id || header.epoch != epoch_->epoch) return refuse(topic + ": of another epoch");
+  const std::string_view topic = (*found)->topic().name;
+  if (header.run_id != epoch_->run_id || header.epoch != epoch_->epoch)
+    return refuse(fmt::format("{}: of another epoch", topic));
   const InputBuffer::Arrival arrival = (*found)->classify(header);
   if (arrival == InputBuffer::Arrival::kTooFarAhead) {
     return refuse(fmt::format("{}.sequence_number: found {}, accepted at most {} more than {}", topic,
@@ -157,7 +157,7 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   if (arrival != InputBuffer::Arrival::kNew) ++counters_.duplicates;
   if (arrival == InputBuffer::Arrival::kDuplicate) return;
   const auto violation = topic_ops(topic_id).validate(sample.message.get());
-  if (violation) refuse(topic + "." + *violation);
+  if (violation) refuse(fmt::format("{}.{}", topic, *violation));
   (*found)->keep(sample, !violation);
 }
 
@@ -215,21 +215,18 @@ void Member::write(OutputPort& port, const void* message) {
   header.sequence_number = ++port.count;
   const Sample sample = ops.stamp(message, header, setup_.robot_id);
   sink_.publish(topic, sample);
-  // The output hash must not depend on the random run id, nor on how often the member was restarted.
-  msg::Header neutral = header;
-  neutral.run_id = 0;
-  neutral.epoch = neutral.incarnation = 0;
-  Sha256 hash;
-  hash.update(std::as_bytes(std::span(output_hash_)));
   std::string bytes;
-  ops.append_bytes(ops.stamp(message, neutral, setup_.robot_id).message.get(), bytes);
-  hash.update(std::as_bytes(std::span(bytes)));
-  output_hash_ = hash.finish();
-  if (checkpoints_) {
-    bytes.clear();
-    ops.append_bytes(sample.message.get(), bytes);
-    written_.push_back({topic.id, std::move(bytes)});
-  }
+  bytes.reserve(ops.max_size);
+  ops.append_bytes(sample.message.get(), bytes);
+  const auto all = std::as_bytes(std::span(bytes));
+  const std::size_t header_at = ops.header_at(all).value();
+  // The output hash must not depend on the random run id, nor on how often the member was restarted.
+  hash_.update(std::as_bytes(std::span(output_hash_)));
+  hash_.update(all.first(header_at));
+  hash_.update(header_bytes(neutral_header(header)));
+  hash_.update(all.subspan(header_at + kHeaderSize));
+  output_hash_ = hash_.finish();
+  if (checkpoints_) written_.push_back({topic.id, std::move(bytes)});
 }
 
 void Member::finish_step(const msg::Tick& tick) {

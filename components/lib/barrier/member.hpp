@@ -15,6 +15,7 @@
 #include "barrier/protocol.hpp"
 #include "component/client_requests.hpp"
 #include "component/component.hpp"
+#include "constrictor/sha256.hpp"
 
 namespace constrictor {
 
@@ -136,6 +137,7 @@ class Member {
   bool end_requested_ = false;
   msg::Header stamp_{};  ///< header of the step in progress, sequence aside
   std::array<std::uint8_t, 32> output_hash_{};
+  Sha256 hash_;
   std::vector<TickDone::Written> written_;  ///< by the step in progress
   Counters counters_;
   std::shared_ptr<ClientRequests> client_requests_;

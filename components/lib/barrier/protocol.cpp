@@ -1,7 +1,5 @@
 #include "barrier/protocol.hpp"
 
-#include <string_view>
-
 namespace constrictor {
 namespace {
 
@@ -51,6 +49,9 @@ std::optional<std::string> difference(const Hello& hello, const Hello& ours) {
 std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs) {
   std::string block;
   if (state.empty() && outputs.empty()) return block;
+  std::size_t size = 2 * sizeof(std::uint64_t) + state.size();
+  for (const auto& output : outputs) size += 1 + sizeof(std::uint64_t) + output.bytes.size();
+  block.reserve(size);
   append_number(block, state.size());
   block += state;
   append_number(block, outputs.size());
@@ -62,7 +63,7 @@ std::string pack_checkpoint(const std::string& state, const std::vector<TickDone
   return block;
 }
 
-bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<TickDone::Written>& outputs) {
+bool unpack_checkpoint(std::string_view block, std::string& state, std::vector<TickDone::Written>& outputs) {
   state.clear();
   outputs.clear();
   if (block.empty()) return true;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "component/component.hpp"
@@ -79,6 +80,6 @@ struct Resume {
 std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs);
 /// The inverse. Any process may send the bytes: returns false, and leaves `state` and `outputs` empty, unless they are
 /// exactly one checkpoint whose outputs belong to known topics.
-bool unpack_checkpoint(const std::string& block, std::string& state, std::vector<TickDone::Written>& outputs);
+bool unpack_checkpoint(std::string_view block, std::string& state, std::vector<TickDone::Written>& outputs);
 
 }  // namespace constrictor

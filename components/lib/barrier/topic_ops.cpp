@@ -1,27 +1,56 @@
 #include "barrier/topic_ops.hpp"
 
+#include <cstdlib>
+#include <cstring>
+
 #include "constrictor/reflect.hpp"
 
 namespace constrictor {
 namespace {
 
+/// Visits a message's fields and finds the header in the canonical bytes. Only numbers and texts come before it.
+struct HeaderFinder {
+  std::span<const std::byte> bytes;
+  std::size_t at = 0;
+  bool found = false;
+  template <class T>
+  void operator()(const FieldInfo&, const T&) {
+    if (found) return;
+    if constexpr (std::is_same_v<T, msg::Header>) found = true;
+    else at += sizeof(T);
+  }
+  template <std::size_t N>
+  void operator()(const FieldInfo&, const char (&)[N]) {
+    if (found) return;
+    std::uint16_t length = 0;
+    if (at + sizeof length <= bytes.size()) std::memcpy(&length, bytes.data() + at, sizeof length);
+    at += sizeof length + length;
+  }
+};
+
 template <class T>
 TopicOps make_ops(const Topic<T>& topic) {
-  TopicOps ops{topic, sizeof(T), nullptr, nullptr, nullptr, nullptr, nullptr};
+  TopicOps ops{topic, sizeof(T), nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
   ops.stamp = [](const void* message, const msg::Header& header, std::uint16_t robot_id) {
-    T stamped = *static_cast<const T*>(message);  // sequences point to the writer's memory until share_copy()
-    stamped.header = header;
-    stamped.robot_id = robot_id;
-    std::shared_ptr<const T> shared = share_copy(stamped);
+    const std::shared_ptr<T> shared = share_copy(*static_cast<const T*>(message));
+    shared->header = header;
+    shared->robot_id = robot_id;
     return Sample{shared, &shared->header};
   };
   ops.copy = [](const void* message) {
-    std::shared_ptr<const T> shared = share_copy(*static_cast<const T*>(message));
+    const std::shared_ptr<const T> shared = share_copy(*static_cast<const T*>(message));
     return Sample{shared, &shared->header};
   };
   ops.validate = [](const void* message) { return validate(*static_cast<const T*>(message)); };
   ops.append_bytes = [](const void* message, std::string& bytes) {
     canonical_bytes(*static_cast<const T*>(message), bytes);
+  };
+  ops.header_at = [](std::span<const std::byte> bytes) -> std::optional<std::size_t> {
+    static const T kBlank{};  // the finder only looks at the types of its fields
+    HeaderFinder finder{bytes};
+    Description<T>::visit(kBlank, finder);
+    if (!finder.found || finder.at + kHeaderSize > bytes.size()) return {};
+    return finder.at;
   };
   ops.parse = [](std::span<const std::byte> bytes) {
     std::shared_ptr<const T> shared = parse_shared<T>(bytes);
@@ -36,5 +65,27 @@ const auto kOps = std::apply(
 }  // namespace
 
 const TopicOps& topic_ops(std::size_t topic_id) { return kOps.at(topic_id); }
+
+msg::Header neutral_header(msg::Header header) {
+  header.run_id = 0;
+  header.epoch = header.incarnation = 0;
+  return header;
+}
+
+HeaderBytes header_bytes(const msg::Header& header) {
+  std::string bytes;
+  canonical_bytes(header, bytes);
+  HeaderBytes result{};
+  if (bytes.size() != result.size()) std::abort();  // a bug: HeaderBytes is not as long as a header
+  std::memcpy(result.data(), bytes.data(), result.size());
+  return result;
+}
+
+msg::Header parse_header(std::span<const std::byte, kHeaderSize> bytes) {
+  msg::Header header{};
+  std::vector<std::uint8_t> unused;
+  Description<msg::Header>::visit(header, reflect::ByteReader{bytes, unused});
+  return header;
+}
 
 }  // namespace constrictor

@@ -6,8 +6,6 @@
 #include <tuple>
 
 #include "barrier/topic_ops.hpp"
-#include "constrictor/reflect.hpp"
-#include "constrictor/sha256.hpp"
 
 namespace constrictor {
 namespace {
@@ -39,25 +37,31 @@ void HashLog::restart() {
 }
 
 void HashLog::add(const TopicInfo& topic, const Sample& sample) {
-  msg::Header neutral = *sample.header;
-  neutral.run_id = 0;
-  neutral.epoch = neutral.incarnation = 0;
-  const auto& ops = topic_ops(topic.id);
   std::string bytes;
-  ops.append_bytes(ops.stamp(sample.message.get(), neutral, 0).message.get(), bytes);
-  Sha256 hash;
-  hash.update(std::as_bytes(std::span(bytes)));
-  const auto digest = hash.finish();
-  Fixed fixed{neutral.tick, neutral.sequence_number, 0, 0, topic.id};
-  std::memcpy(&fixed.hash, digest.data(), sizeof(fixed.hash));
-  if (record_ && bytes.size() <= kLargest) fixed.size = static_cast<std::uint32_t>(bytes.size());
-  file_.write(reinterpret_cast<const char*>(&fixed), sizeof(fixed));
-  file_.write(bytes.data(), fixed.size);
+  topic_ops(topic.id).append_bytes(sample.message.get(), bytes);
+  add(topic.id, bytes);
 }
 
 void HashLog::add(std::uint8_t topic, const std::string& bytes) {
-  const Sample sample = topic_ops(topic).parse(std::as_bytes(std::span(bytes)));
-  if (sample.message) add(topics::kInfos[topic], sample);
+  const auto message = std::as_bytes(std::span(bytes));
+  const auto header_at = topic_ops(topic).header_at(message);
+  if (!header_at) return;
+  const auto header = parse_header(message.subspan(*header_at).first<kHeaderSize>());
+  // The hash is that of the message with a neutral header and robot id 0.
+  constexpr std::array<std::byte, sizeof(std::uint16_t)> kNoRobot{};
+  const HeaderBytes neutral = header_bytes(neutral_header(header));
+  const std::array<std::span<const std::byte>, 4> pieces{kNoRobot, message.first(*header_at).subspan(kNoRobot.size()),
+                                                         neutral, message.subspan(*header_at + kHeaderSize)};
+  for (const auto& piece : pieces) hash_.update(piece);
+  const auto digest = hash_.finish();
+  Fixed fixed{header.tick, header.sequence_number, 0, 0, topic};
+  std::memcpy(&fixed.hash, digest.data(), sizeof(fixed.hash));
+  const bool whole = record_ && bytes.size() <= kLargest;
+  if (whole) fixed.size = static_cast<std::uint32_t>(bytes.size());
+  file_.write(reinterpret_cast<const char*>(&fixed), sizeof(fixed));
+  if (!whole) return;
+  for (const auto& piece : pieces)
+    file_.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
 }
 
 std::vector<HashLog::Entry> HashLog::read(const std::filesystem::path& directory) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "component/ports.hpp"
+#include "constrictor/sha256.hpp"
 
 namespace constrictor {
 
@@ -26,7 +27,7 @@ class HashLog {
   /// A new epoch begins: empties the log.
   void restart();
   void add(const TopicInfo& topic, const Sample& sample);
-  /// Adds a message that is given as canonical bytes; a damaged message is ignored.
+  /// Adds a message that is given as canonical bytes; one that is too short for its header is ignored.
   void add(std::uint8_t topic, const std::string& bytes);
   void close() { file_.close(); }
 
@@ -38,6 +39,7 @@ class HashLog {
   std::filesystem::path path_;
   std::ofstream file_;
   bool record_;
+  Sha256 hash_;
 };
 
 }  // namespace constrictor

@@ -13,8 +13,7 @@ void Links::attach(dds_entity_t reader, std::function<void()> take, Wakes wakes)
   dds::check(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
   dds::check(dds_waitset_attach(wait_set_.get(), reader, static_cast<dds_attach_t>(takers_.size())),
              "dds_waitset_attach");
-  if (wakes == Wakes::kAlways)
-    dds::check(dds_waitset_attach(always_wait_set_.get(), reader, 0), "dds_waitset_attach");
+  if (wakes == Wakes::kAlways) dds::check(dds_waitset_attach(always_wait_set_.get(), reader, 0), "dds_waitset_attach");
   takers_.push_back(std::move(take));
   triggered_.resize(takers_.size());
 }

@@ -14,7 +14,8 @@ dds_sequence_octet borrow(std::string& block) {
   return sequence;
 }
 
-std::string bytes_of(const dds_sequence_octet& sequence) {
+/// Valid as long as the message.
+std::string_view bytes_of(const dds_sequence_octet& sequence) {
   return {reinterpret_cast<const char*>(sequence._buffer), sequence._length};
 }
 
