@@ -18,10 +18,9 @@ class PixelNoise {
   void add(std::vector<std::uint8_t>& rgb, std::int64_t tick) const;
 
  private:
-  static constexpr int kFractionBits = 8;
   bool on_;
   std::uint64_t seed_;
-  std::vector<std::int16_t> table_;  // 65536 deviates in 1/256 grey level
+  std::vector<std::int8_t> table_;  // 65536 deviates in grey levels
 };
 
 }  // namespace constrictor

@@ -3,10 +3,41 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/render/splitmix64.hpp"
 
 namespace constrictor {
 namespace {
+
+/// The noise byte by byte, with fixed-point deviates in 1/256 grey level.
+std::vector<std::uint8_t> noisy_byte_by_byte(std::vector<std::uint8_t> rgb, double sd, std::uint64_t seed,
+                                             std::int64_t tick) {
+  std::uint64_t random = 0;
+  std::uint64_t counter = splitmix64(splitmix64(seed) ^ static_cast<std::uint64_t>(tick));
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    random = i % 4 == 0 ? splitmix64(counter++) : random >> 16;
+    double sum = -6.0;
+    for (std::uint64_t j = 0; j < 12; ++j)
+      sum += static_cast<double>(splitmix64(12 * (random & 0xFFFFU) + j) >> 11) * 0x1p-53;
+    const auto deviate = static_cast<std::int16_t>(std::clamp(sum * sd * 255.0 * 256.0, -32000.0, 32000.0));
+    rgb[i] = static_cast<std::uint8_t>(std::clamp((rgb[i] * 256 + deviate + 128) >> 8, 0, 255));
+  }
+  return rgb;
+}
+
+TEST(PixelNoise, IsTheSameAsByteByByte) {
+  for (const double sd : {0.004, 0.02, 0.3}) {
+    for (const std::size_t size : {0U, 1U, 63U, 64U, 66U, 5000U}) {
+      std::vector<std::uint8_t> rgb(size);
+      for (std::size_t i = 0; i < size; ++i) rgb[i] = static_cast<std::uint8_t>(splitmix64(i));
+      const std::vector<std::uint8_t> expected = noisy_byte_by_byte(rgb, sd, 9, 40);
+      PixelNoise(sd, 9).add(rgb, 40);
+      EXPECT_EQ(rgb, expected) << sd << ' ' << size;
+    }
+  }
+}
 
 constexpr std::size_t kSize = 320 * 240 * 3;
 
