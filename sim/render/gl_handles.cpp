@@ -12,7 +12,7 @@ namespace {
 /// cache: Mesa 22.3 reuses cached machine code that was compiled for another vector width, which corrupts memory.
 const bool environment_is_set = [] {
   ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
-  ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 0);
+  ::setenv("LP_NATIVE_VECTOR_WIDTH", "256", 0);
   ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);  // without FMA, which changes the last bits
   ::setenv("LP_NUM_THREADS", "0", 0);  // draw in the thread of the caller: the same bytes with the least CPU time
   return true;

@@ -1,6 +1,7 @@
 #include "sim/render/render_targets.hpp"
 
 #include <array>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -77,9 +78,10 @@ const std::vector<std::uint8_t>& ImageTarget::read() {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, resolve_framebuffer_.get());
   }
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba_.data());
-  for (std::size_t pixel = 0, count = rgb_.size() / 3; pixel < count; ++pixel) {
-    for (std::size_t channel = 0; channel < 3; ++channel) rgb_[3 * pixel + channel] = rgba_[4 * pixel + channel];
-  }
+  // Copies of four bytes are much faster than copies of three. The next pixel overwrites the fourth byte.
+  const std::size_t last = rgb_.size() / 3 - 1;
+  for (std::size_t pixel = 0; pixel < last; ++pixel) std::memcpy(&rgb_[3 * pixel], &rgba_[4 * pixel], 4);
+  std::memcpy(&rgb_[3 * last], &rgba_[4 * last], 3);
   return rgb_;
 }
 

@@ -2,16 +2,19 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
+#include "sim/render/bodies.hpp"
 #include "sim/render/gl_handles.hpp"
-#include "sim/render/gpu_mesh.hpp"
+#include "sim/render/gl_uniforms.hpp"
 #include "sim/render/ground_texture.hpp"
 #include "sim/render/meshes.hpp"
 #include "sim/render/projection.hpp"
 #include "sim/render/render_targets.hpp"
 #include "sim/render/shaders.hpp"
+#include "sim/render/visibility.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,33 +22,11 @@ namespace {
 constexpr double kNear_m = 0.008;
 constexpr double kFar_m = 250.0;
 constexpr double kGroundHalfExtent_m = 200.0;
+constexpr double kNormalOffset_m = 0.006;  // by which the look-up of a solid's shadow is moved off its surface
 constexpr Rgb kHorizon{0.80F, 0.79F, 0.77F};
 constexpr Rgb kHead{0.50F, 0.50F, 0.49F};
 constexpr Rgb kDarkModule{0.045F, 0.045F, 0.048F};
 constexpr Rgb kGreyModule{0.24F, 0.24F, 0.245F};
-
-/// A coloured flat surface.
-struct Flat {
-  GpuMesh mesh;
-  Rgb colour;
-  float pattern_strength;
-};
-
-void set_uniform(const GlProgram& program, const char* name, const Eigen::Matrix4f& value) {
-  glUniformMatrix4fv(glGetUniformLocation(program.get(), name), 1, GL_FALSE, value.data());
-}
-void set_uniform(const GlProgram& program, const char* name, const Eigen::Vector3f& value) {
-  glUniform3fv(glGetUniformLocation(program.get(), name), 1, value.data());
-}
-void set_uniform(const GlProgram& program, const char* name, const Rgb& value) {
-  glUniform3f(glGetUniformLocation(program.get(), name), value.r, value.g, value.b);
-}
-void set_uniform(const GlProgram& program, const char* name, float value) {
-  glUniform1f(glGetUniformLocation(program.get(), name), value);
-}
-void set_uniform(const GlProgram& program, const char* name, int value) {
-  glUniform1i(glGetUniformLocation(program.get(), name), value);
-}
 
 /// Draws into this framebuffer from now on, with a depth test.
 void begin_pass(const GlFramebuffer& framebuffer, int width, int height) {
@@ -54,6 +35,12 @@ void begin_pass(const GlFramebuffer& framebuffer, int width, int height) {
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
 }
+
+/// The finished shadow map, and the pixels at which bodies may throw shadows on the ground.
+struct Shadows {
+  const GlTexture& map;
+  PixelBox on_ground;
+};
 
 }  // namespace
 
@@ -71,22 +58,27 @@ class Renderer::Implementation {
   void build_meshes();
   void build_textures();
   void place(const ScenePoses& poses);
-  void draw_shadow_map(const Eigen::Matrix4f& shadow);
-  void draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow);
-  void draw_solids();
+  /// Chooses the solids for the next draw_solids(). Returns whether there is one.
+  bool choose_solids(const Needed& needed);
+  void draw_solids() const;
+  Shadows draw_shadow_map(const PinholeCamera& camera, const ViewVolume& view, const Eigen::Matrix4f& shadow);
+  void draw_image(const PinholeCamera& camera, const ViewVolume& view, const Eigen::Matrix4f& shadow,
+                  const Shadows& shadows);
+  /// `use` begins to draw with a program.
+  void draw_flats(const std::function<void(const GlProgram&)>& use, const Needed& visible, const PixelBox& image,
+                  const PixelBox& shadowed);
 
   Scene scene_;
   RenderOptions options_;
   GlContext context_;
   // The order of the members matters: the scope is destroyed after the OpenGL objects below it and before the context.
   std::optional<ContextScope> last_scope_;
-  GlProgram solid_program_, flat_program_, depth_program_;
-  GpuMesh head_, modules_, cylinders_, boxes_;
+  GlProgram solid_program_, flat_program_, lit_flat_program_, depth_program_;
+  Solids head_, modules_, cylinders_, boxes_;
   std::vector<Flat> flats_;  // painted in this order
   GlTexture pattern_;
-  ShadowMap shadow_map_;
+  ShadowMap shadow_map_, no_shadows_;
   ImageTarget target_;
-  std::vector<Instance> head_instances_, module_instances_, cylinder_instances_, box_instances_;
 };
 
 Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options)
@@ -101,24 +93,26 @@ Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions
   const std::string lighting = shaders::lighting(options.shadow_taps);
   solid_program_ = build_program(shaders::kSolidVertex, (lighting + shaders::kSolidFragment).c_str());
   flat_program_ = build_program(shaders::kFlatVertex, (lighting + shaders::kFlatFragment).c_str());
+  lit_flat_program_ = build_program(shaders::kFlatVertex, (shaders::lighting(0) + shaders::kFlatFragment).c_str());
   depth_program_ = build_program(shaders::kSolidVertex, shaders::kDepthFragment);
   build_meshes();
   build_textures();
   shadow_map_.build(options.shadow_map_size);
+  no_shadows_.build(0);
   check_gl("building the scene");
 }
 
 void Renderer::Implementation::build_meshes() {
   const int segments = options_.module_segments;
-  head_ = upload(make_head(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4), true);
-  modules_ = upload(make_module(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4), true);
-  cylinders_ = upload(make_cylinder(48), true);
-  boxes_ = upload(make_box(), true);
-  flats_.push_back({upload(make_square(kGroundHalfExtent_m), false), scene_.ground_colour, 1.0F});
+  head_.build(make_head(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4));
+  modules_.build(make_module(scene_.module_length_m, scene_.module_radius_m, segments, segments / 4));
+  cylinders_.build(make_cylinder(48));
+  boxes_.build(make_box());
+  flats_.emplace_back(make_square(kGroundHalfExtent_m), scene_.ground_colour, 1.0F);
   for (const Disc& zone : scene_.zones)
-    flats_.push_back({upload(make_disc(zone.centre_m, zone.radius_m, 64), false), zone.colour, 0.5F});
+    flats_.emplace_back(make_disc(zone.centre_m, zone.radius_m, 64), zone.colour, 0.5F);
   const Mesh ribbon = make_ribbon(scene_.line_m, scene_.line_width_m);
-  if (!ribbon.indices.empty()) flats_.push_back({upload(ribbon, false), scene_.line_colour, 0.3F});
+  if (!ribbon.indices.empty()) flats_.emplace_back(ribbon, scene_.line_colour, 0.3F);
 }
 
 void Renderer::Implementation::build_textures() {
@@ -133,45 +127,51 @@ void Renderer::Implementation::build_textures() {
 }
 
 void Renderer::Implementation::place(const ScenePoses& poses) {
-  head_instances_.clear();
-  module_instances_.clear();
-  cylinder_instances_.clear();
-  box_instances_.clear();
+  for (Solids* solids : {&head_, &modules_, &cylinders_, &boxes_}) solids->clear();
   for (std::size_t i = 0; i < poses.X_WModule.size(); ++i) {
     const Rgb& colour = i == 0 ? kHead : i % 2 == 1 ? kDarkModule : kGreyModule;
-    (i == 0 ? head_instances_ : module_instances_)
-        .push_back(make_instance(poses.X_WModule[i], Eigen::Vector3d::Ones(), colour, 0.15));
+    (i == 0 ? head_ : modules_).add(poses.X_WModule[i], Eigen::Vector3d::Ones(), colour, 0.15);
   }
   if (options_.head_camera_m && !poses.X_WModule.empty()) {
     const Eigen::Isometry3d X_WBox = poses.X_WModule[0] * Eigen::Translation3d(*options_.head_camera_m);
-    box_instances_.push_back(make_instance(X_WBox, {0.03, 0.045, 0.03}, kDarkModule, 0.2));
+    boxes_.add(X_WBox, {0.03, 0.045, 0.03}, kDarkModule, 0.2);
     const Eigen::Isometry3d X_WLens = X_WBox * Eigen::Translation3d(0.016, 0.0, 0.0) *
                                       Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitY());
-    cylinder_instances_.push_back(make_instance(X_WLens, {0.010, 0.010, 0.008}, kGreyModule, 0.5));
+    cylinders_.add(X_WLens, {0.010, 0.010, 0.008}, kGreyModule, 0.5);
   }
   const auto place_solid = [this](const Solid& solid, const Eigen::Isometry3d& X_W) {
-    auto& instances = solid.shape == SolidShape::kBox ? box_instances_ : cylinder_instances_;
-    instances.push_back(make_instance(X_W, solid.size_m, solid.colour, 0.05));
+    (solid.shape == SolidShape::kBox ? boxes_ : cylinders_).add(X_W, solid.size_m, solid.colour, 0.05);
   };
   for (std::size_t i = 0; i < scene_.objects.size() && i < poses.X_WObject.size(); ++i)
     place_solid(scene_.objects[i], poses.X_WObject[i]);
   for (std::size_t i = 0; i < scene_.obstacles.size(); ++i) place_solid(scene_.obstacles[i], scene_.X_WObstacle[i]);
-  set_instances(head_, head_instances_);
-  set_instances(modules_, module_instances_);
-  set_instances(cylinders_, cylinder_instances_);
-  set_instances(boxes_, box_instances_);
 }
 
-void Renderer::Implementation::draw_solids() {
-  for (const GpuMesh* mesh : {&head_, &modules_, &cylinders_, &boxes_}) {
-    if (mesh->instance_count == 0) continue;
-    glBindVertexArray(mesh->array.get());
-    glDrawElementsInstanced(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, nullptr, mesh->instance_count);
-  }
+bool Renderer::Implementation::choose_solids(const Needed& needed) {
+  bool any = false;
+  for (Solids* solids : {&head_, &modules_, &cylinders_, &boxes_}) any |= solids->choose(needed);
+  return any;
 }
 
-void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
-  if (options_.shadow_map_size == 0) return;
+void Renderer::Implementation::draw_solids() const {
+  for (const Solids* solids : {&head_, &modules_, &cylinders_, &boxes_}) solids->draw();
+}
+
+Shadows Renderer::Implementation::draw_shadow_map(const PinholeCamera& camera, const ViewVolume& view,
+                                                  const Eigen::Matrix4f& shadow) {
+  const Shadows none{no_shadows_.texture(), {}};
+  if (options_.shadow_map_size == 0) return none;
+  // A surface looks up to kNormalOffset_m and some texels beside its own place.
+  const double texel_m = 2.0 / (options_.shadow_map_size * shadow.cast<double>().row(0).head<3>().norm());
+  const double slack_m = kNormalOffset_m + (options_.shadow_taps > 1 ? 4.0 : 2.0) * texel_m;
+  const ShadowVolume volume(shadow, scene_.light.direction, slack_m);
+  ShadowedGround ground(camera, kNear_m, shadow, slack_m);
+  const Needed needed = [&](const Eigen::Vector3d& centre, double radius_m) {
+    if (!options_.draw_everything && !volume.may_shade(view, centre, radius_m)) return false;
+    ground.add(centre, radius_m);
+    return true;
+  };
+  if (!choose_solids(needed) && !options_.draw_everything) return none;
   begin_pass(shadow_map_.framebuffer(), options_.shadow_map_size, options_.shadow_map_size);
   glEnable(GL_DEPTH_CLAMP);
   glDisable(GL_CULL_FACE);
@@ -183,9 +183,11 @@ void Renderer::Implementation::draw_shadow_map(const Eigen::Matrix4f& shadow) {
   draw_solids();
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_CLAMP);
+  return {shadow_map_.texture(), options_.draw_everything ? whole_image(camera) : ground.pixels()};
 }
 
-void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eigen::Matrix4f& shadow) {
+void Renderer::Implementation::draw_image(const PinholeCamera& camera, const ViewVolume& view,
+                                          const Eigen::Matrix4f& shadow, const Shadows& shadows) {
   begin_pass(target_.framebuffer(), camera.width, camera.height);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
@@ -195,7 +197,7 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eig
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, pattern_.get());
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture().get());
+  glBindTexture(GL_TEXTURE_2D, shadows.map.get());
 
   const Eigen::Matrix4f clip = clip_from_world(camera, kNear_m, kFar_m);
   const auto use = [&](const GlProgram& program) {
@@ -212,21 +214,42 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Eig
       set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(options_.shadow_map_size));
   };
   use(solid_program_);
-  set_uniform(solid_program_, "normal_offset", 0.006F);
+  set_uniform(solid_program_, "normal_offset", static_cast<float>(kNormalOffset_m));
+  const Needed visible = [&](const Eigen::Vector3d& centre, double radius_m) {
+    return options_.draw_everything || view.may_contain(centre, radius_m);
+  };
+  (void)choose_solids(visible);
   draw_solids();
+  draw_flats(use, visible, whole_image(camera), shadows.on_ground);
+}
 
+void Renderer::Implementation::draw_flats(const std::function<void(const GlProgram&)>& use, const Needed& visible,
+                                          const PixelBox& image, const PixelBox& shadowed) {
   // The flat surfaces lie on the ground, and nothing lies below it. They are painted in order behind the solids and do
   // not write depths, so that surfaces at the same height do not flicker.
-  use(flat_program_);
-  set_uniform(flat_program_, "pattern", 0);
-  set_uniform(flat_program_, "texture_scale", static_cast<float>(1.0 / kGroundTextureExtent_m));
   glDepthMask(GL_FALSE);
-  for (const Flat& flat : flats_) {
-    set_uniform(flat_program_, "colour", flat.colour);
-    set_uniform(flat_program_, "pattern_strength", flat.pattern_strength);
-    glBindVertexArray(flat.mesh.array.get());
-    glDrawElements(GL_TRIANGLES, flat.mesh.index_count, GL_UNSIGNED_INT, nullptr);
-  }
+  const auto begin = [&](const GlProgram& program) {
+    use(program);
+    set_uniform(program, "pattern", 0);
+    set_uniform(program, "texture_scale", static_cast<float>(1.0 / kGroundTextureExtent_m));
+  };
+  const auto paint = [&](const GlProgram& program, const Flat& flat, const PixelBox& box) {
+    if (box.empty()) return;
+    glScissor(box.left, box.top, box.right - box.left, box.bottom - box.top);  // row 0 is the top row of the image
+    set_uniform(program, "colour", flat.colour());
+    set_uniform(program, "pattern_strength", flat.pattern_strength());
+    flat.draw(visible);
+  };
+  // The ground fills most of the image. Where no body can shade it, shadows are not looked up.
+  const Flat& ground = flats_.front();
+  const GlProgram& other_program = shadowed.empty() ? lit_flat_program_ : flat_program_;
+  glEnable(GL_SCISSOR_TEST);
+  begin(lit_flat_program_);
+  for (const PixelBox& box : around(shadowed, image)) paint(lit_flat_program_, ground, box);
+  if (!shadowed.empty()) begin(flat_program_);
+  paint(flat_program_, ground, shadowed);
+  for (std::size_t i = 1; i < flats_.size(); ++i) paint(other_program, flats_[i], image);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses& poses, const PinholeCamera& camera,
@@ -236,8 +259,8 @@ const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses
   place(poses);
   const Eigen::Matrix4f shadow =
       shadow_from_world(scene_.light.direction, region, options_.shadow_map_size > 0 ? options_.shadow_map_size : 1);
-  draw_shadow_map(shadow);
-  draw_image(camera, shadow);
+  const ViewVolume view(camera, kNear_m);
+  draw_image(camera, view, shadow, draw_shadow_map(camera, view, shadow));
   const std::vector<std::uint8_t>& rgb = target_.read();
   check_gl("drawing");
   return rgb;

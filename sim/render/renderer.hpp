@@ -18,7 +18,8 @@ struct RenderOptions {
   int shadow_taps = 1;        ///< 1, or 3 for softer edges of shadows (3 x 3 lookups)
   int module_segments = 16;   ///< facets around a module
   std::optional<Eigen::Vector3d>
-      head_camera_m;  ///< [m] p_HC: if given, a small camera is drawn at this point of the head
+      head_camera_m;             ///< [m] p_HC: if given, a small camera is drawn at this point of the head
+  bool draw_everything = false;  ///< also what cannot change the image: the same bytes in more time; for tests
 };
 
 /// The disc on the ground that the shadow map covers. Points outside it are fully lit.

@@ -56,7 +56,8 @@ inline constexpr const char* kDepthFragment = R"(#version 330 core
 void main() {}
 )";
 
-/// Code for both kinds of surface. `shadow_taps` is 1 (one bilinear comparison) or 3 (3 x 3 comparisons).
+/// Code for both kinds of surface. `shadow_taps` is 1 (one bilinear comparison), 3 (3 x 3 comparisons), or 0 for places
+/// where no body is drawn into the shadow map: it has its greatest depth there, so that the comparison needs no map.
 inline std::string lighting(int shadow_taps) {
   return "#version 330 core\n#define TAPS " + std::to_string(shadow_taps) + R"(
 uniform sampler2DShadow shadow_map;
@@ -70,7 +71,9 @@ in vec3 world;
 in vec3 shadow_position;
 out vec4 pixel;
 float lit() {
-#if TAPS == 1
+#if TAPS == 0
+  return shadow_position.z > 1.0 ? 0.0 : 1.0;
+#elif TAPS == 1
   return texture(shadow_map, shadow_position);
 #else
   float sum = 0.0;

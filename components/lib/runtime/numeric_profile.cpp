@@ -60,7 +60,7 @@ const std::vector<std::pair<std::string, std::string>>& numeric_environment() {
       {"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"},
       {"OPENCV_CPU_DISABLE", opencv_list(true)},
       {"OPENCV_OPENCL_RUNTIME", "disabled"},
-      {"LP_NATIVE_VECTOR_WIDTH", "128"},
+      {"LP_NATIVE_VECTOR_WIDTH", "256"},
       {"GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1"},
   };
   return variables;
