@@ -1,6 +1,7 @@
 #include "perception/colour_classifier.hpp"
 
 #include <algorithm>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace constrictor::perception {
 namespace {
@@ -26,6 +27,7 @@ bool within(double hue, const HueRange& range) {
 }  // namespace
 
 ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 * 64 * 64, msg::kColourUnknown) {
+  int least_spread = 64;  // between the indices of a coloured cell
   for (int ri = 0; ri < 64; ++ri) {
     for (int gi = 0; gi < 64; ++gi) {
       for (int bi = 0; bi < 64; ++bi) {
@@ -38,20 +40,47 @@ ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 *
         for (std::size_t colour = 1; colour < config.hues.size(); ++colour) {
           if (within(hue, config.hues[colour])) {
             table_[static_cast<std::size_t>(ri << 12 | gi << 6 | bi)] = static_cast<std::uint8_t>(colour);
+            least_spread = std::min(least_spread, std::max({ri, gi, bi}) - std::min({ri, gi, bi}));
             break;
           }
         }
       }
     }
   }
+  // The indices of two channels that differ by d are at most (d + 3) / 4 apart.
+  grey_spread_ = static_cast<std::uint8_t>(4 * std::max(least_spread - 1, 0));
 }
 
-void ColourClassifier::classify(const cv::Mat& rgb, cv::Mat& labels) const {
-  labels.create(rgb.rows, rgb.cols, CV_8UC1);
+bool ColourClassifier::block_is_grey(const std::uint8_t* rgb) const {
+  // Three successive bytes are compared at every byte and not only where a pixel begins, because that needs no
+  // shuffles. Triples that belong to two pixels make the test stricter, never wrong. The last 16 places overlap with
+  // those before, because a triple must not reach beyond the block.
+  static_assert(kBlock == 16, "the places below cover 16 pixels");
+  cv::v_uint8x16 spread = cv::v_setzero_u8();
+  for (const int first : {0, 16, 3 * kBlock - 18}) {
+    const cv::v_uint8x16 a = cv::v_load(rgb + first), b = cv::v_load(rgb + first + 1), c = cv::v_load(rgb + first + 2);
+    spread = cv::v_max(spread, cv::v_max(cv::v_max(a, b), c) - cv::v_min(cv::v_min(a, b), c));
+  }
+  return !cv::v_check_any(spread > cv::v_setall_u8(grey_spread_));
+}
+
+void ColourClassifier::classify(const cv::Mat& rgb, Labels& labels) const {
+  labels.image.create(rgb.rows, rgb.cols, CV_8UC1);
+  labels.extents = {};
   for (int v = 0; v < rgb.rows; ++v) {
     const std::uint8_t* in = rgb.ptr<std::uint8_t>(v);
-    std::uint8_t* out = labels.ptr<std::uint8_t>(v);
-    for (int u = 0; u < rgb.cols; ++u, in += 3) out[u] = table_[index(in[0], in[1], in[2])];
+    std::uint8_t* out = labels.image.ptr<std::uint8_t>(v);
+    for (int u = 0; u < rgb.cols;) {
+      if (u + kBlock <= rgb.cols && block_is_grey(in + 3 * u)) {
+        std::fill_n(out + u, kBlock, msg::kColourUnknown);
+        u += kBlock;
+        continue;
+      }
+      for (const int end = std::min(u + kBlock, rgb.cols); u < end; ++u) {
+        out[u] = colour_of(in[3 * u], in[3 * u + 1], in[3 * u + 2]);
+        if (out[u] != msg::kColourUnknown) labels.extents[out[u]].add(u, v);
+      }
+    }
   }
 }
 

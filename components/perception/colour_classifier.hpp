@@ -1,6 +1,8 @@
 // Assigns one of the known colours to each pixel, independently of the strength of the light.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -9,14 +11,34 @@
 
 namespace constrictor::perception {
 
+/// Number of the pixels of one colour, and the inclusive bounds around them; u_min > u_max: there are none.
+struct ColourExtent {
+  int pixels = 0;
+  int u_min = 1 << 30, v_min = 1 << 30, u_max = -1, v_max = -1;
+
+  void add(int u, int v) {
+    ++pixels;
+    u_min = std::min(u_min, u);
+    u_max = std::max(u_max, u);
+    v_min = std::min(v_min, v);
+    v_max = std::max(v_max, v);
+  }
+};
+
+/// The label image and where its colours are.
+struct Labels {
+  cv::Mat image;                                          ///< CV_8UC1, kColour... of each pixel, 0: none
+  std::array<ColourExtent, msg::kColourCount> extents{};  ///< by colour; not of pixels without a colour
+};
+
 /// Labels pixels by their hue if they are coloured enough. Hue and saturation change neither with the strength of
 /// neutral light nor in a shadow. A minimum chroma excludes the noise of dark pixels.
 class ColourClassifier {
  public:
   explicit ColourClassifier(const PerceptionConfig& config);
 
-  /// Label image (CV_8UC1, kColour… of each pixel, 0: none) of an RGB image (CV_8UC3), which should be smoothed.
-  void classify(const cv::Mat& rgb, cv::Mat& labels) const;
+  /// Labels of an RGB image (CV_8UC3), which should be smoothed. The memory of `labels` is used again.
+  void classify(const cv::Mat& rgb, Labels& labels) const;
 
   /// Colour of one pixel, 0: none.
   [[nodiscard]] std::uint8_t colour_of(std::uint8_t r, std::uint8_t g, std::uint8_t b) const {
@@ -27,6 +49,11 @@ class ColourClassifier {
   static std::size_t index(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
     return (std::size_t{r} >> 2) << 12 | (std::size_t{g} >> 2) << 6 | std::size_t{b} >> 2;
   }
+  /// Whether none of kBlock successive pixels can have a colour, because their channels hardly differ.
+  static constexpr int kBlock = 16;
+  [[nodiscard]] bool block_is_grey(const std::uint8_t* rgb) const;
+
+  std::uint8_t grey_spread_ = 0;     ///< a pixel whose channels do not differ by more has no colour
   std::vector<std::uint8_t> table_;  ///< indexed by the upper 6 bits of red, green and blue
 };
 

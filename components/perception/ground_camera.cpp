@@ -29,19 +29,45 @@ GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& o
   R_GC_ = R_GH * R_HC_;
   p_GC_ = R_GH * p_HC_ + Eigen::Vector3d(0, 0, head_height_m);
   p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the head lies on its side
+  find_clear_side();
+}
+
+void GroundCamera::find_clear_side() {
+  // The head lies behind a plane through the camera that touches one end of it and has the other end behind it, too. A
+  // ray towards the front of such a plane cannot come near the head. The plane with most of the view before it is
+  // taken.
+  const double reach_m = head_reach_m() + 1e-6;
+  const Eigen::Vector3d view = R_HC_.col(2);
+  double best = -2.0;
+  for (const double end : {-head_.half_length_m, head_.half_length_m}) {
+    const Eigen::Vector3d from_end = p_HC_ - Eigen::Vector3d(end, 0.0, 0.0);
+    const Eigen::Vector3d from_other = p_HC_ + Eigen::Vector3d(end, 0.0, 0.0);
+    const double distance_m = from_end.norm();
+    if (!(distance_m > reach_m)) continue;
+    const Eigen::Vector3d away = from_end / distance_m;
+    Eigen::Vector3d along = view - view.dot(away) * away;
+    if (along.norm() < 1e-6) continue;
+    along.normalize();
+    const double cosine = reach_m / distance_m;
+    const Eigen::Vector3d normal = cosine * away + std::sqrt(1.0 - cosine * cosine) * along;
+    if (normal.dot(from_other) < reach_m - 1e-9 || normal.dot(view) <= best) continue;
+    best = normal.dot(view);
+    clear_ = R_HC_.transpose() * normal;
+  }
 }
 
 bool GroundCamera::own_head(double u, double v) const {
   if (head_.radius_m <= 0.0) return false;
-  const Eigen::Vector3d d = (R_HC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0)).normalized();
-  // Least distance between the ray and the axis of the capsule. The margin is two pixels at a distance of 0.1 m.
-  const double margin_m = 0.2 / fx_;
+  const Eigen::Vector3d ray_C((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
+  if (clear_.dot(ray_C) > 1e-9) return false;
+  const Eigen::Vector3d d = (R_HC_ * ray_C).normalized();
+  // Least distance between the ray and the axis of the capsule.
   double s = std::clamp(p_HC_.x(), -head_.half_length_m, head_.half_length_m), t = 0.0;
   for (int i = 0; i < 4; ++i) {  // projects onto the segment and the ray in turn
     t = std::max(0.0, (Eigen::Vector3d(s, 0.0, 0.0) - p_HC_).dot(d));
     s = std::clamp(p_HC_.x() + t * d.x(), -head_.half_length_m, head_.half_length_m);
   }
-  return (p_HC_ + t * d - Eigen::Vector3d(s, 0.0, 0.0)).norm() < head_.radius_m + margin_m;
+  return (p_HC_ + t * d - Eigen::Vector3d(s, 0.0, 0.0)).norm() < head_reach_m();
 }
 
 std::optional<Eigen::Vector2d> GroundCamera::ground(double u, double v, double max_range_m) const {

@@ -62,6 +62,10 @@ class GroundCamera {
   }
 
  private:
+  void find_clear_side();
+  /// [m] a ray that passes the axis of the head at this distance or farther misses the head.
+  [[nodiscard]] double head_reach_m() const { return head_.radius_m + 0.2 / fx_; }  // two pixels at 0.1 m
+
   int width_;
   int height_;
   double fx_;
@@ -73,6 +77,9 @@ class GroundCamera {
   Eigen::Matrix3d R_HC_;
   Eigen::Vector3d p_HC_;
   HeadShape head_;
+  /// A pixel (u, v) with clear_·((u - cx) / fx, (v - cy) / fy, 1) > 0 does not show the head. Zero: there is no such
+  /// test.
+  Eigen::Vector3d clear_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace constrictor::perception

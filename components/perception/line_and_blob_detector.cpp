@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 
 #include "constrictor/image.hpp"
 #include "perception/blobs.hpp"
@@ -68,20 +67,19 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
   cv::setNumThreads(1);
 }
 
-Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) const {
-  cv::Mat smooth, labels;
-  // Distant regions on the ground are flat in the image. Smoothing along the rows harms them less than across the rows.
-  cv::GaussianBlur(rgb, smooth, {7, 3}, 1.5, 0.7);
-  classifier_.classify(smooth, labels);
-  const Regions regions = find_regions(labels, camera, config_, line_colour);
-  const LineTrace trace = trace_line(labels, regions, camera, config_, line_colour);
-  const std::vector<msg::Blob> blobs = find_blobs(smooth, regions, camera, config_, line_colour);
+Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) {
+  smoother_.smooth(rgb, smooth_);
+  classifier_.classify(smooth_, labels_);
+  find_regions(labels_, camera, config_, line_colour, region_buffers_, regions_);
+  const LineTrace trace = trace_line(labels_, regions_, camera, config_, line_colour);
+  const std::vector<msg::Blob> blobs = find_blobs(smooth_, regions_, camera, config_, line_colour);
 
   Percepts percepts;
   percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
   percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
   std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);
-  percepts.picture = draw_percepts(rgb, labels, camera, percepts.line, percepts.objects);
+  draw_percepts(rgb, labels_.image, camera, percepts.line, percepts.objects, picture_);
+  percepts.picture = picture_;
   return percepts;
 }
 

@@ -8,6 +8,8 @@
 #include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
 #include "perception/perception_config.hpp"
+#include "perception/regions.hpp"
+#include "perception/smoothing.hpp"
 
 namespace constrictor::perception {
 
@@ -17,23 +19,29 @@ namespace constrictor::perception {
 struct Percepts {
   msg::LinePercept line{};
   msg::ObjectPercepts objects{};
-  cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it
+  cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it; valid until the next call of `detect`
 };
 
-/// Finds the line, the objects and the zones in an image, by the camera's model. It keeps tables only: the result
-/// depends on the arguments of `detect` alone.
+/// Finds the line, the objects and the zones in an image, by the camera's model. It keeps tables, and memory that it
+/// uses again: the result depends on the arguments of `detect` alone.
 class LineAndBlobDetector {
  public:
   explicit LineAndBlobDetector(const PerceptionConfig& config);
 
   /// `rgb`: CV_8UC3 of the camera's size. The caller fills in exposure_tick and the headers of the percepts.
-  [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) const;
+  [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour);
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 
  private:
   PerceptionConfig config_;
   ColourClassifier classifier_;
+  // Overwritten by each call of `detect`.
+  Smoother smoother_;
+  cv::Mat smooth_, picture_;
+  Labels labels_;
+  RegionBuffers region_buffers_;
+  Regions regions_;
 };
 
 }  // namespace constrictor::perception

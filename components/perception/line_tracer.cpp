@@ -15,7 +15,7 @@ constexpr double kMinLength_m = 0.06;
 
 class Tracer {
  public:
-  Tracer(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera, const PerceptionConfig& config,
+  Tracer(const Labels& labels, const Regions& regions, const GroundCamera& camera, const PerceptionConfig& config,
          std::uint8_t colour)
       : view_(labels, regions, camera, colour), camera_(camera), config_(config), width_m_(config.line_width_m) {}
 
@@ -200,7 +200,7 @@ class Tracer {
 
 }  // namespace
 
-LineTrace trace_line(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera,
+LineTrace trace_line(const Labels& labels, const Regions& regions, const GroundCamera& camera,
                      const PerceptionConfig& config, std::uint8_t colour) {
   return Tracer(labels, regions, camera, config, colour).run();
 }

@@ -23,7 +23,7 @@ struct LineTrace {
 /// the course so far. Where an upright object hides one edge, the other edge and the width of the line give the centre;
 /// where it hides both edges, the course is continued. So an object on the line does not bend the trace. The result has
 /// no points if there is no line.
-LineTrace trace_line(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera,
+LineTrace trace_line(const Labels& labels, const Regions& regions, const GroundCamera& camera,
                      const PerceptionConfig& config, std::uint8_t colour);
 
 }  // namespace constrictor::perception

@@ -6,18 +6,32 @@
 namespace constrictor::perception {
 
 std::vector<Eigen::Vector2d> LineView::line_points(double max_range_m) const {
+  struct Found {
+    double distance2_m2;
+    std::size_t index;  // the order in which they were found decides between points of the same distance
+  };
+  std::vector<Found> found;
   std::vector<Eigen::Vector2d> points;
-  for (int v = labels_.rows - 1; v >= 0; --v) {
-    const std::uint8_t* row = labels_.ptr<std::uint8_t>(v);
-    const int stride = 2;
-    for (int u = v % stride; u < labels_.cols; u += stride) {
+  if (colour_ >= labels_.extents.size()) return {};
+  const ColourExtent& extent = labels_.extents[colour_];
+  for (int v = extent.v_max; v >= extent.v_min; --v) {
+    const std::uint8_t* row = labels_.image.ptr<std::uint8_t>(v);
+    constexpr int kStride = 2;
+    for (int u = extent.u_min + (extent.u_min + v) % kStride; u <= extent.u_max; u += kStride) {
       if (row[u] != colour_ || is_standing(u, v)) continue;
-      if (const auto p = camera_.ground(u + 0.5, v + 0.5, max_range_m)) points.push_back(*p);
+      if (const auto p = camera_.ground(u + 0.5, v + 0.5, max_range_m)) {
+        found.push_back({p->squaredNorm(), found.size()});
+        points.push_back(*p);
+      }
     }
   }
-  std::stable_sort(points.begin(), points.end(),
-                   [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
-  return points;
+  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+    return a.distance2_m2 != b.distance2_m2 ? a.distance2_m2 < b.distance2_m2 : a.index < b.index;
+  });
+  std::vector<Eigen::Vector2d> sorted;
+  sorted.reserve(found.size());
+  for (const Found& f : found) sorted.push_back(points[f.index]);
+  return sorted;
 }
 
 bool LineView::is_standing(int u, int v) const {
@@ -36,7 +50,7 @@ Seen LineView::look(const Eigen::Vector2d& p) const {
   if (!pixel || !camera_.inside(*pixel)) return Seen::kOutside;
   const int u = static_cast<int>(pixel->x()), v = static_cast<int>(pixel->y());
   if (is_standing(u, v) || camera_.own_head(pixel->x(), pixel->y())) return Seen::kStanding;
-  return labels_.at<std::uint8_t>(v, u) == colour_ ? Seen::kLine : Seen::kGround;
+  return labels_.image.at<std::uint8_t>(v, u) == colour_ ? Seen::kLine : Seen::kGround;
 }
 
 double LineView::pixel_size_m(const Eigen::Vector2d& p, const Eigen::Vector2d& direction) const {

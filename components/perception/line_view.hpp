@@ -35,7 +35,7 @@ struct CrossSection {
 /// of the constructor must outlive the object.
 class LineView {
  public:
-  LineView(const cv::Mat& labels, const Regions& regions, const GroundCamera& camera, std::uint8_t colour)
+  LineView(const Labels& labels, const Regions& regions, const GroundCamera& camera, std::uint8_t colour)
       : labels_(labels), regions_(regions), camera_(camera), colour_(colour) {}
 
   /// Points of the line's colour that lie on the ground, up to `max_range_m`, the nearest first.
@@ -55,7 +55,7 @@ class LineView {
   /// Whether bare ground lies beyond an edge, rather than the border of the image or an object that hides the line.
   [[nodiscard]] bool edge_is_open(int index, int step, int fringe) const;
 
-  const cv::Mat& labels_;
+  const Labels& labels_;
   const Regions& regions_;
   const GroundCamera& camera_;
   std::uint8_t colour_;

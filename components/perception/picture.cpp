@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -13,6 +14,27 @@ namespace {
 
 const std::array<cv::Vec3b, msg::kColourCount> kPaint{
     {{128, 128, 128}, {60, 200, 60}, {220, 60, 60}, {60, 110, 230}, {220, 200, 60}}};
+
+void dim_row(const std::uint8_t* in, std::uint8_t* out, int bytes) {
+  // With numbers of 16 bits the compiler can use vector instructions.
+  for (int i = 0; i < bytes; ++i) {
+    out[i] = static_cast<std::uint8_t>(static_cast<std::uint16_t>(2 * in[i]) / std::uint16_t{5});
+  }
+}
+
+/// Paints the pixels that have a colour.
+void paint_row(const cv::Vec3b* in, const std::uint8_t* labels, cv::Vec3b* out, int pixels) {
+  for (int u = 0; u < pixels; ++u) {
+    std::uint64_t eight = 1;  // labels; most are 0
+    if (u + 8 <= pixels) std::memcpy(&eight, labels + u, sizeof eight);
+    if (eight == 0) {
+      u += 7;
+      continue;
+    }
+    if (labels[u] == msg::kColourUnknown) continue;
+    for (int c = 0; c < 3; ++c) out[u][c] = static_cast<std::uint8_t>((in[u][c] + 2 * kPaint[labels[u]][c]) / 4);
+  }
+}
 
 cv::Point rounded(const Eigen::Vector2d& p) {
   return {static_cast<int>(std::lround(p.x() - 0.5)), static_cast<int>(std::lround(p.y() - 0.5))};
@@ -51,19 +73,12 @@ void draw_blob(cv::Mat& picture, const msg::Blob& blob) {
 
 }  // namespace
 
-cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera,
-                      const msg::LinePercept& line, const msg::ObjectPercepts& objects) {
-  cv::Mat picture(rgb.size(), CV_8UC3);
+void draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera, const msg::LinePercept& line,
+                   const msg::ObjectPercepts& objects, cv::Mat& picture) {
+  picture.create(rgb.size(), CV_8UC3);
   for (int v = 0; v < rgb.rows; ++v) {
-    const cv::Vec3b* in = rgb.ptr<cv::Vec3b>(v);
-    const std::uint8_t* label = labels.ptr<std::uint8_t>(v);
-    cv::Vec3b* out = picture.ptr<cv::Vec3b>(v);
-    for (int u = 0; u < rgb.cols; ++u) {
-      for (int c = 0; c < 3; ++c) {
-        out[u][c] =
-            static_cast<std::uint8_t>(label[u] == 0 ? in[u][c] * 2 / 5 : (in[u][c] + 2 * kPaint[label[u]][c]) / 4);
-      }
-    }
+    dim_row(rgb.ptr<std::uint8_t>(v), picture.ptr<std::uint8_t>(v), 3 * rgb.cols);
+    paint_row(rgb.ptr<cv::Vec3b>(v), labels.ptr<std::uint8_t>(v), picture.ptr<cv::Vec3b>(v), rgb.cols);
   }
   const double left = camera.horizon_row(0.0), right = camera.horizon_row(rgb.cols);
   if (std::abs(left) < 1e4 && std::abs(right) < 1e4) {
@@ -72,7 +87,6 @@ cv::Mat draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCam
   }
   for (int i = 0; i < objects.blob_count; ++i) draw_blob(picture, objects.blobs[i]);
   draw_line(picture, camera, line);
-  return picture;
 }
 
 }  // namespace constrictor::perception

@@ -34,23 +34,38 @@ void merge_into(Region& a, const Region& b) {
   a.v_max = std::max(a.v_max, b.v_max);
 }
 
+/// The part of the image that has all pixels of a colour and a border around them that filling holes does not change.
+/// It begins at even indices: OpenCV numbers components in the order of blocks of 2 x 2 pixels, so the numbers are the
+/// same as in the whole image.
+cv::Rect window_of(const ColourExtent& extent, const cv::Size& size) {
+  constexpr int kBorder = 2;
+  const int left = std::max(extent.u_min - kBorder, 0) & ~1, top = std::max(extent.v_min - kBorder, 0) & ~1;
+  const int right = std::min(extent.u_max + 1 + kBorder, size.width);
+  const int bottom = std::min(extent.v_max + 1 + kBorder, size.height);
+  return {left, top, right - left, bottom - top};
+}
+
 /// Adds the regions of one colour to `out`.
-void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Regions& out) {
-  cv::Mat mask, components, stats, centroids;
-  cv::compare(labels, colour, mask, cv::CMP_EQ);
-  // Fills the small holes that noise makes.
-  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-  const int count = cv::connectedComponentsWithStats(mask, components, stats, centroids, 8, CV_16U);
+void add_colour(const Labels& labels, std::uint8_t colour, int min_area, RegionBuffers& buffers, Regions& out) {
+  static const cv::Mat kSquare = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+  const cv::Rect window = window_of(labels.extents[colour], labels.image.size());
+  buffers.mask.create(labels.image.size(), CV_8UC1);
+  buffers.components.create(labels.image.size(), CV_16UC1);
+  cv::Mat mask = buffers.mask(window), components = buffers.components(window);
+  cv::compare(labels.image(window), colour, mask, cv::CMP_EQ);
+  // Fills the small holes that noise makes. The rest of the buffer has nothing to do with this image.
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, kSquare, {-1, -1}, 1, cv::BORDER_CONSTANT | cv::BORDER_ISOLATED);
+  const int count = cv::connectedComponentsWithStats(mask, components, buffers.stats, buffers.centroids, 8, CV_16U);
 
   std::vector<Fragment> fragments;
   for (int i = 1; i < count; ++i) {
-    const int* s = stats.ptr<int>(i);
+    const int* s = buffers.stats.ptr<int>(i);
     if (s[cv::CC_STAT_AREA] < kSpeckPixels) continue;
     Region region;
     region.colour = colour;
     region.area = s[cv::CC_STAT_AREA];
-    region.u_min = s[cv::CC_STAT_LEFT];
-    region.v_min = s[cv::CC_STAT_TOP];
+    region.u_min = window.x + s[cv::CC_STAT_LEFT];
+    region.v_min = window.y + s[cv::CC_STAT_TOP];
     region.u_max = region.u_min + s[cv::CC_STAT_WIDTH] - 1;
     region.v_max = region.v_min + s[cv::CC_STAT_HEIGHT] - 1;
     fragments.push_back({region, i});
@@ -86,10 +101,10 @@ void add_colour(const cv::Mat& labels, std::uint8_t colour, int min_area, Region
     }
     id_of_component[static_cast<std::size_t>(fragments[i].component)] = id_of_group[g];
   }
-  for (int v = 0; v < labels.rows; ++v) {
+  for (int v = 0; v < window.height; ++v) {
     const std::uint16_t* in = components.ptr<std::uint16_t>(v);
-    std::uint8_t* ids = out.ids.ptr<std::uint8_t>(v);
-    for (int u = 0; u < labels.cols; ++u) {
+    std::uint8_t* ids = out.ids.ptr<std::uint8_t>(window.y + v) + window.x;
+    for (int u = 0; u < window.width; ++u) {
       if (in[u] != 0 && id_of_component[in[u]] != 0) ids[u] = id_of_component[in[u]];
     }
   }
@@ -188,17 +203,14 @@ bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camer
 
 }  // namespace
 
-Regions find_regions(const cv::Mat& labels, const GroundCamera& camera, const PerceptionConfig& config,
-                     std::uint8_t line_colour) {
-  Regions out;
-  out.ids = cv::Mat::zeros(labels.size(), CV_8UC1);
-  std::array<int, 256> histogram{};
-  for (int v = 0; v < labels.rows; ++v) {
-    const std::uint8_t* row = labels.ptr<std::uint8_t>(v);
-    for (int u = 0; u < labels.cols; ++u) ++histogram[row[u]];
-  }
+void find_regions(const Labels& labels, const GroundCamera& camera, const PerceptionConfig& config,
+                  std::uint8_t line_colour, RegionBuffers& buffers, Regions& out) {
+  out.regions.clear();
+  out.ids.create(labels.image.size(), CV_8UC1);
+  out.ids.setTo(0);
   for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
-    if (histogram[colour] >= config.min_area_pixels) add_colour(labels, colour, config.min_area_pixels, out);
+    if (labels.extents[colour].pixels >= config.min_area_pixels)
+      add_colour(labels, colour, config.min_area_pixels, buffers, out);
   }
 
   for (std::size_t i = 0; i < out.regions.size(); ++i) {
@@ -212,7 +224,6 @@ Regions find_regions(const cv::Mat& labels, const GroundCamera& camera, const Pe
     region.line = region.colour == line_colour && !region.standing() &&
                   is_elongated(out.ids, id, camera, region, config.line_width_m);
   }
-  return out;
 }
 
 }  // namespace constrictor::perception

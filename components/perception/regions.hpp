@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
 #include "perception/perception_config.hpp"
 
@@ -29,9 +30,14 @@ struct Regions {
   cv::Mat ids;  ///< CV_8UC1: 1 + index of the pixel's region, 0: none
 };
 
-/// Finds the regions of a label image: joins fragments of one colour, drops specks and the fringes of mixed colour
-/// between two others.
-Regions find_regions(const cv::Mat& labels, const GroundCamera& camera, const PerceptionConfig& config,
-                     std::uint8_t line_colour);
+/// Images that find_regions() uses again, so that it need not allocate them for each image.
+struct RegionBuffers {
+  cv::Mat mask, components, stats, centroids;
+};
+
+/// Finds the regions of labels: joins fragments of one colour, drops specks and the fringes of mixed colour
+/// between two others. The memory of `out` and `buffers` is used again.
+void find_regions(const Labels& labels, const GroundCamera& camera, const PerceptionConfig& config,
+                  std::uint8_t line_colour, RegionBuffers& buffers, Regions& out);
 
 }  // namespace constrictor::perception

@@ -37,7 +37,7 @@ const Conditions kConditions[] = {
 };
 
 Percepts look(Scene scene, const Conditions& c, std::uint64_t seed = 1) {
-  static const LineAndBlobDetector detector{PerceptionConfig{}};
+  static LineAndBlobDetector detector{PerceptionConfig{}};
   scene.light_intensity = c.intensity;
   scene.ambient = c.ambient;
   scene.noise_sd = c.noise_sd;

@@ -31,7 +31,7 @@ const Light kLights[] = {
 };
 
 perception::Percepts look(test::Scene scene, const Light& light) {
-  static const perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
+  static perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
   scene.light = light.direction;
   scene.light_intensity = light.intensity;
   scene.ambient = light.ambient;
