@@ -18,6 +18,12 @@ const bool environment_is_set = [] {
   return true;
 }();
 
+/// Held by the thread that uses Mesa.
+std::mutex& mesa_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 GLuint compile(GLenum kind, const char* source) {
   const GLuint shader = glCreateShader(kind);
   glShaderSource(shader, 1, &source, nullptr);
@@ -50,13 +56,19 @@ GlContext::GlContext() {
                                                    0,
                                                    0,
                                                    0};
+  const std::lock_guard turn(mesa_mutex());
   context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
   if (context_ == nullptr)
     throw std::runtime_error(
         "renderer: OSMesa offers no OpenGL 3.3 core context (is the package libosmesa6 installed?)");
 }
 
-ContextScope::ContextScope(GlContext& context) {
+GlContext::~GlContext() {
+  const std::lock_guard turn(mesa_mutex());
+  OSMesaDestroyContext(context_);
+}
+
+ContextScope::ContextScope(GlContext& context) : turn_(mesa_mutex()) {
   if (OSMesaMakeCurrent(context.context_, context.window_.data(), GL_UNSIGNED_BYTE, 4, 4) != GL_TRUE) {
     throw std::runtime_error("renderer: OSMesa cannot make its context current");
   }

@@ -9,18 +9,20 @@
 #include <GL/glext.h>
 
 #include <array>
+#include <mutex>
 #include <utility>
 
 namespace constrictor {
 
 /// An OSMesa context of OpenGL 3.3 core. It is current in the calling thread only while a ContextScope exists, so a
-/// renderer may be used from several threads, one at a time.
+/// renderer may be used from several threads, one at a time. Several renderers may be used from several threads: they
+/// take turns, because contexts share state of Mesa.
 class GlContext {
  public:
   GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
-  ~GlContext() { OSMesaDestroyContext(context_); }
+  ~GlContext();
 
  private:
   friend class ContextScope;
@@ -29,12 +31,16 @@ class GlContext {
   std::array<unsigned char, 4 * 4 * 4> window_{};
 };
 
+/// A thread must not have two of them at a time.
 class ContextScope {
  public:
   explicit ContextScope(GlContext& context);
   ContextScope(const ContextScope&) = delete;
   ContextScope& operator=(const ContextScope&) = delete;
   ~ContextScope() { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
+
+ private:
+  std::unique_lock<std::mutex> turn_;
 };
 
 /// One OpenGL name. `Traits` has create() and destroy(GLuint).
