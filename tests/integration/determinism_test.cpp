@@ -125,6 +125,19 @@ TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsANewRunWithThatSeed) {
   EXPECT_EQ(diff.wait(20s), 0) << diff.output();
 }
 
+// The camera is rendering in a thread of its own at almost any moment of a run in one process.
+TEST_F(Determinism, AResetOfARunInOneProcessGivesANewRunWithThatSeed) {
+  const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};
+  const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
+  Process launcher = start("reset", {"--in-process", "--pace", "2x", "--seed", "3"}, registry);
+  ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
+  for (const auto& [word, value] : {std::pair{"reset", "4"}, {"reset", "5"}, {"pace", "lockstep"}}) {
+    Process command({program("constrictor"), word, value}, registry);
+    ASSERT_EQ(command.wait(30s), exit_status::kOk) << command.output() << command.errors();
+  }
+  EXPECT_EQ(hash_of("reset", launcher), expected);
+}
+
 // Members take no step in the final tick. Therefore the launcher's limit must be one tick later than the report's
 // limit, so that both end the run after the same step.
 TEST_F(Determinism, TheLaunchersTimeLimitGivesTheSameReportAsTheReportsOwnLimit) {

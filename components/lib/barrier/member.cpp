@@ -26,7 +26,7 @@ class Member::MemberWiring : public Wiring {
  public:
   explicit MemberWiring(Member& member) : member_(member) {}
   void request_end_of_run() override { member_.end_requested_ = true; }
-  void count_refusal(const std::string& reason) override { member_.refuse(reason); }
+  void count_refusal(const std::string& reason) override { member_.refuse_from_component(reason); }
   std::shared_ptr<ClientRequests> client_requests() override {
     if (!member_.client_requests_) member_.client_requests_ = std::make_shared<ClientRequests>();
     return member_.client_requests_;
@@ -91,6 +91,12 @@ void Member::refuse(const std::string& reason) {
   counters_.last_refusal = reason;
 }
 
+void Member::refuse_from_component(const std::string& reason) {
+  // During a step the owner may count refusals in another thread.
+  if (step_) step_->refusals.push_back(reason);
+  else refuse(reason);
+}
+
 void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   if (epoch_ == epoch) return;
   if (!epoch_ && incarnation_ > 1) {
@@ -100,6 +106,8 @@ void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   if (epoch_ && (epoch.run_id != epoch_->run_id || epoch.epoch < epoch_->epoch)) {
     return refuse("epoch: of another run, or older than the present one");
   }
+  step_.reset();  // its outputs belong to the previous epoch
+  written_.clear();
   build(seed);
   epoch_ = epoch;
   ticks_.clear();
@@ -124,7 +132,10 @@ void Member::on_tick(const msg::Tick& tick) {
     return refuse(fmt::format("tick: found index {} and period_ns {}, accepted an index from 0 and a period above 0",
                               tick.index, tick.period_ns));
   if (tick.index <= last_done_ && !tick.final_tick) return;  // from history, after a restart
-  if (tick.final_tick && !ended_) conclude(tick);
+  if (tick.final_tick && !ended_) {
+    if (step_) step_->final_tick = tick;
+    else conclude(tick);
+  }
   newest_tick_ = std::max(newest_tick_, tick.index);
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
 }
@@ -173,6 +184,14 @@ void Member::skip_to_newest() {
 }
 
 bool Member::try_step() {
+  if (!begin_step()) return false;
+  run_step();
+  finish_step();
+  return true;
+}
+
+bool Member::begin_step() {
+  if (step_) return false;
   skip_to_newest();
   const msg::Tick* tick = due();
   if (!tick) return false;
@@ -184,9 +203,13 @@ bool Member::try_step() {
   for (auto& port : outputs_) port->in_this_step = 0;
   const std::int64_t elapsed = last_done_ < 0 ? timing_.period : tick->index - last_done_;
   fresh_component_ = false;
-  component_->step(Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch});
-  finish_step(*tick);
+  step_ = Step{Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch}};
   return true;
+}
+
+void Member::run_step() {
+  if (!step_) bug(name(), "ran a step that had not begun");
+  component_->step(step_->tick);
 }
 
 void Member::sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns) {
@@ -207,14 +230,16 @@ void Member::write(OutputPort& port, const void* message) {
   const TopicInfo& topic = *port.slot.topic;
   const auto& ops = topic_ops(topic.id);
   if (port.in_this_step == topic.max_per_tick) {
-    return refuse(fmt::format("{}: more than {} in one step", topic.name, topic.max_per_tick));
+    return refuse_from_component(fmt::format("{}: more than {} in one step", topic.name, topic.max_per_tick));
   }
-  if (const auto violation = ops.validate(message)) return refuse(std::string(topic.name) + "." + *violation);
+  if (const auto violation = ops.validate(message))
+    return refuse_from_component(std::string(topic.name) + "." + *violation);
   ++port.in_this_step;
   msg::Header header = stamp_;
   header.sequence_number = ++port.count;
   const Sample sample = ops.stamp(message, header, setup_.robot_id);
-  sink_.publish(topic, sample);
+  if (step_) step_->outputs.emplace_back(&topic, sample);
+  else sink_.publish(topic, sample);
   std::string bytes;
   bytes.reserve(ops.max_size);
   ops.append_bytes(sample.message.get(), bytes);
@@ -229,21 +254,26 @@ void Member::write(OutputPort& port, const void* message) {
   if (checkpoints_) written_.push_back({topic.id, std::move(bytes)});
 }
 
-void Member::finish_step(const msg::Tick& tick) {
-  last_done_ = tick.index;
+void Member::finish_step() {
+  if (!step_) bug(name(), "finished a step that had not begun");
+  const Step step = *std::exchange(step_, std::nullopt);
+  for (const auto& [topic, sample] : step.outputs) sink_.publish(*topic, sample);
+  for (const auto& reason : step.refusals) refuse(reason);
+  last_done_ = step.tick.index;
   TickDone done;
   done.component = name();
   done.epoch = *epoch_;
   done.incarnation = incarnation_;
-  done.index = tick.index;
+  done.index = step.tick.index;
   done.published = published();
   for (const auto& input : inputs_) done.consumed.push_back({input->topic().id, input->consumed()});
   done.output_hash = output_hash_;
   done.end_of_run = end_requested_;
   if (checkpoints_) done.state = state_bytes();
   done.written = std::exchange(written_, {});
-  ticks_.erase(tick.index);  // invalidates `tick`
+  ticks_.erase(step.tick.index);
   sink_.done(done);
+  if (step.final_tick) conclude(*step.final_tick);
 }
 
 MissingInput Member::missing() const {

@@ -74,9 +74,19 @@ class Member {
 
   /// Does one step if a tick is due and all of its inputs have arrived. Returns whether it did.
   bool try_step();
-  /// Whether a tick is due whose step is not finished, because inputs are missing.
-  [[nodiscard]] bool has_due_tick() const { return due() != nullptr; }
-  /// True after the run's final tick.
+  /// The three parts of try_step(), for an owner that wants to call the component in another thread. Begins a step if
+  /// none is in progress, a tick is due and all of its inputs have arrived; returns whether it did.
+  bool begin_step();
+  /// Calls the component once after begin_step(). Any thread may call it. Meanwhile messages may be delivered (on_tick,
+  /// on_sample) and const functions may be called, published() excepted.
+  void run_step();
+  /// Publishes the outputs and reports the step, after run_step() has returned.
+  void finish_step();
+  /// Whether a step has begun that is not finished. on_epoch() drops it; run_step() must have returned by then.
+  [[nodiscard]] bool stepping() const { return step_.has_value(); }
+  /// Whether a tick is due whose step has not begun, because inputs are missing.
+  [[nodiscard]] bool has_due_tick() const { return !stepping() && due() != nullptr; }
+  /// True after the run's final tick and the last step.
   [[nodiscard]] bool ended() const { return ended_; }
   /// Tick of the last finished step; -1 before the first.
   [[nodiscard]] std::int64_t last_done() const { return last_done_; }
@@ -101,14 +111,21 @@ class Member {
     std::uint64_t count = 0;  ///< samples since the epoch began
     int in_this_step = 0;
   };
+  /// What a step in progress needs and leaves. Only run_step() uses it until finish_step().
+  struct Step {
+    Tick tick;
+    std::vector<std::pair<const TopicInfo*, Sample>> outputs{};
+    std::vector<std::string> refusals{};
+    std::optional<msg::Tick> final_tick{};  ///< arrived during the step
+  };
   class MemberWiring;
+  void refuse_from_component(const std::string& reason);
   void build(std::uint64_t seed);
   void replay_early();
   void conclude(const msg::Tick& final_tick);
   [[nodiscard]] const msg::Tick* due() const;
   void skip_to_newest();
   void write(OutputPort& port, const void* message);
-  void finish_step(const msg::Tick& tick);
   [[nodiscard]] std::string state_bytes() const;
   void restore(const std::string& state);
 
@@ -135,6 +152,7 @@ class Member {
   std::int64_t newest_tick_ = -1;
   bool ended_ = false;
   bool end_requested_ = false;
+  std::optional<Step> step_;
   msg::Header stamp_{};  ///< header of the step in progress, sequence aside
   std::array<std::uint8_t, 32> output_hash_{};
   Sha256 hash_;

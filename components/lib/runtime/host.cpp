@@ -81,7 +81,7 @@ class Host::Impl {
 
   /// Reports what this process waits for, and ends it when it has waited too long.
   void check_patience() {
-    if (conductor_ && conductor_->held()) context_.note_progress();
+    if (members_.stepping() || (conductor_ && conductor_->held())) context_.note_progress();
     const double waited_s = context_.waited_s();
     const auto now = HostContext::Clock::now();
     if (waited_s < kWaitingReportAfter_s || now - last_report_ < kWaitingReportInterval) return;

@@ -7,13 +7,26 @@ namespace constrictor {
 Links::Links(std::uint32_t domain)
     : domain_(domain),
       wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
-      always_wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset") {}
+      always_wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
+      woken_(dds_create_guardcondition(domain_.participant()), "dds_create_guardcondition") {
+  const auto reset = [this] {
+    bool woken = false;
+    dds::check(dds_take_guardcondition(woken_.get(), &woken), "dds_take_guardcondition");
+  };
+  attach_to_wait_sets(woken_.get(), reset, Wakes::kAlways);
+}
+
+void Links::wake() { dds::check(dds_set_guardcondition(woken_.get(), true), "dds_set_guardcondition"); }
 
 void Links::attach(dds_entity_t reader, std::function<void()> take, Wakes wakes) {
   dds::check(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
-  dds::check(dds_waitset_attach(wait_set_.get(), reader, static_cast<dds_attach_t>(takers_.size())),
+  attach_to_wait_sets(reader, std::move(take), wakes);
+}
+
+void Links::attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes) {
+  dds::check(dds_waitset_attach(wait_set_.get(), entity, static_cast<dds_attach_t>(takers_.size())),
              "dds_waitset_attach");
-  if (wakes == Wakes::kAlways) dds::check(dds_waitset_attach(always_wait_set_.get(), reader, 0), "dds_waitset_attach");
+  if (wakes == Wakes::kAlways) dds::check(dds_waitset_attach(always_wait_set_.get(), entity, 0), "dds_waitset_attach");
   takers_.push_back(std::move(take));
   triggered_.resize(takers_.size());
 }

@@ -43,16 +43,21 @@ class Links {
     });
   }
 
+  /// Ends the present or else the next wait(). Any thread may call it.
+  void wake();
   /// Takes everything that has arrived.
   void take_all();
-  /// Waits until a message arrives, for at most `bound_ns`, and takes everything that has arrived. `wanted`: whether
-  /// readers with Wakes::kIfWanted end the wait.
+  /// Waits until a message arrives or wake() is called, for at most `bound_ns`, and takes everything that has arrived.
+  /// `wanted`: whether readers with Wakes::kIfWanted end the wait.
   void wait(dds_duration_t bound_ns, bool wanted);
 
  private:
+  void attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes);
+
   dds::Domain domain_;
   dds::Entity wait_set_;         // of all readers
   dds::Entity always_wait_set_;  // of the readers with Wakes::kAlways
+  dds::Entity woken_;            // a guard condition in both wait sets
   Reject reject_;
   std::vector<std::function<void()>> takers_;  ///< index: the number under which the reader is attached
   std::vector<dds_attach_t> triggered_;

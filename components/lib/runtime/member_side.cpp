@@ -35,15 +35,25 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
                                            static_cast<MemberSink&>(*this));
     if (member->name() == options.plant) plant_ = member.get();
     const std::string config_hash = component_config_hash(member->setup().config_file, member->setup().scenario_file);
-    members_.push_back({std::move(member), {}, false, config_hash});
+    members_.push_back({std::move(member), {}, false, config_hash, nullptr});
   }
   if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
     throw std::runtime_error(fmt::format("--plant: found '{}', accepted a component that is a plant", options.plant));
   }
   make_endpoints();
+  make_threads();
 }
 
 MemberSide::~MemberSide() = default;
+
+void MemberSide::make_threads() {
+  // The conductor waits for the outputs of a step when they become visible. If that is not at the next tick, the other
+  // members of the process can go on, as if the slow one were in another process.
+  if (members_.size() == 1) return;
+  for (auto& local : members_) {
+    if (local.member->timing().latency > 1) local.thread = std::make_unique<StepThread>([this] { links_.wake(); });
+  }
+}
 
 void MemberSide::connect(ConductorSide& conductor) { conductor_ = &conductor; }
 
@@ -80,7 +90,11 @@ void MemberSide::send_hello() {
 
 void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   for (auto& local : members_) {
+    const bool stepping = local.member->stepping();
+    if (stepping) local.thread->wait();
     local.member->on_epoch(epoch, seed);
+    // The step of the previous epoch has been dropped. An epoch that is known already changes nothing.
+    if (stepping && !local.member->stepping()) local.thread->collect();
     local.ready_sent = false;
   }
 }
@@ -126,16 +140,41 @@ void MemberSide::send_ready() {
 
 bool MemberSide::step() {
   bool any = false;
+  // Threads first, so that they have something to do while this thread steps the other members.
   for (auto& local : members_) {
+    if (local.thread) any |= step_in_thread(local);
+  }
+  for (auto& local : members_) {
+    if (local.thread) continue;
     for (;;) {
       const auto start = HostContext::Clock::now();
       if (!local.member->try_step()) break;
-      local.meter.add(HostContext::Clock::now() - start);
+      note_step(local, HostContext::Clock::now() - start);
       any = true;
-      if (local.meter.due(local.member->last_done())) publish_status(local, msg::kComponentRunning);
     }
   }
   return any;
+}
+
+bool MemberSide::step_in_thread(LocalMember& local) {
+  Member& member = *local.member;
+  const bool finished = member.stepping() && local.thread->finished();
+  if (finished) {
+    const auto duration = local.thread->collect();
+    member.finish_step();
+    note_step(local, duration);
+  }
+  if (member.begin_step()) local.thread->start([&member] { member.run_step(); });
+  return finished;
+}
+
+void MemberSide::note_step(LocalMember& local, std::chrono::nanoseconds duration) {
+  local.meter.add(duration);
+  if (local.meter.due(local.member->last_done())) publish_status(local, msg::kComponentRunning);
+}
+
+bool MemberSide::stepping() const {
+  return std::any_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->stepping(); });
 }
 
 bool MemberSide::all_ended() const {
@@ -191,6 +230,7 @@ void MemberSide::publish_status(LocalMember& local, std::uint8_t state) {
 void MemberSide::report_waiting() {
   if (!unmatched_.empty()) context_.log.warning("{}", bus_->explain(unmatched_));
   for (auto& local : members_) {
+    if (local.member->stepping()) continue;
     const MissingInput missing = local.member->missing();
     if (missing.topic) {
       report_waiting(*local.member, std::string(missing.topic->name), std::string(missing.topic->writer), missing.tick,

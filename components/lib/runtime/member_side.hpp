@@ -1,6 +1,7 @@
 // The members of one process: they announce themselves, get ready, step, and exchange messages with the other members.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "runtime/links.hpp"
 #include "runtime/member_bus.hpp"
 #include "runtime/status_meter.hpp"
+#include "runtime/step_thread.hpp"
 #include "runtime/wire.hpp"
 
 namespace constrictor {
@@ -34,8 +36,10 @@ class MemberSide : private MemberSink {
   void send_hello();
   /// Sends Ready for each member that is in an epoch and whose endpoints have all met their counterparts.
   void send_ready();
-  /// Does every step that is due. Returns whether there was one.
+  /// Does every step that is due. Returns whether one was finished.
   bool step();
+  /// Whether a member is stepping in a thread of its own.
+  [[nodiscard]] bool stepping() const;
   [[nodiscard]] bool all_ended() const;
   /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
   /// samples can wait for the next tick, too.
@@ -64,8 +68,9 @@ class MemberSide : private MemberSink {
   struct LocalMember {
     std::unique_ptr<Member> member;
     StatusMeter meter;
-    bool ready_sent = false;  ///< in the present epoch
-    std::string config_hash;  ///< of its configuration and scenario file
+    bool ready_sent = false;               ///< in the present epoch
+    std::string config_hash;               ///< of its configuration and scenario file
+    std::unique_ptr<StepThread> thread{};  ///< null: it steps in the thread of the process
   };
 
   // MemberSink
@@ -85,6 +90,10 @@ class MemberSide : private MemberSink {
   [[nodiscard]] bool hosts(const std::string& component) const;
   /// The run of this process: the launcher's, else the one that has begun; 0: none yet.
   [[nodiscard]] std::uint64_t run_id() const;
+  void make_threads();
+  /// Finishes the step that the member's thread has done, if any, and starts the next one.
+  bool step_in_thread(LocalMember& local);
+  void note_step(LocalMember& local, std::chrono::nanoseconds duration);
   void publish_status(LocalMember& local, std::uint8_t state);
 
   HostContext& context_;
