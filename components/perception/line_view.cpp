@@ -10,10 +10,12 @@ std::vector<Eigen::Vector2d> LineView::line_points(double max_range_m) const {
     double distance2_m2;
     std::size_t index;  // the order in which they were found decides between points of the same distance
   };
-  std::vector<Found> found;
-  std::vector<Eigen::Vector2d> points;
   if (colour_ >= labels_.extents.size()) return {};
   const ColourExtent& extent = labels_.extents[colour_];
+  std::vector<Found> found;
+  std::vector<Eigen::Vector2d> points;
+  found.reserve(static_cast<std::size_t>(extent.pixels) / 2 + 1);  // of the squares of a checkerboard; rarely more
+  points.reserve(found.capacity());
   for (int v = extent.v_max; v >= extent.v_min; --v) {
     const std::uint8_t* row = labels_.image.ptr<std::uint8_t>(v);
     constexpr int kStride = 2;
