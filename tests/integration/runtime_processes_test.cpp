@@ -122,9 +122,11 @@ TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
   const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, bool> ended;
+  std::uint64_t ticks = 0;  // on a busy machine the report asks for the end a few ticks late
   const auto listen = [&] {
     statuses.take([&](const msg::ComponentStatus& status) {
       skipped[status.component] = status.overruns;
+      if (std::string_view(status.component) == "physics") ticks = static_cast<std::uint64_t>(status.tick + 1);
       ended[status.component] = status.state == msg::kComponentEnded;
     });
   };
@@ -140,12 +142,12 @@ TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
   EXPECT_LE(elapsed, 8s);
   ASSERT_TRUE(eventually([&] {
     listen();
-    return ended["planner"];
+    return ended["planner"] && ended["physics"];
   }));
   // The planner was stopped after its first few steps, and then did only the last tick. The others skip a tick only
   // where the machine was too busy for their process, so always fewer than the process that stood still.
   EXPECT_GT(skipped["planner"], 75u);
-  EXPECT_LE(skipped["planner"], 150u);
+  EXPECT_LT(skipped["planner"], ticks);
   for (const std::string other : {"physics", "navigation", "control", "report"}) {
     ASSERT_TRUE(skipped.contains(other)) << other;
     EXPECT_LT(skipped[other], skipped["planner"]) << other;
