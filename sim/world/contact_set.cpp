@@ -32,12 +32,29 @@ Vector3d to_body(dBodyID body, const Vector3d& v) {
           R[2] * v.x() + R[6] * v.y() + R[10] * v.z()};
 }
 
+/// Velocity in W of the point `p` of a body.
+Vector3d velocity_at(dBodyID body, const Vector3d& p) {
+  return vector_of(dBodyGetLinearVel(body)) +
+         vector_of(dBodyGetAngularVel(body)).cross(p - vector_of(dBodyGetPosition(body)));
+}
+
+/// The same at the end of the step, if nothing but the external forces acts on the body. A null body is at rest.
+Vector3d free_velocity(dBodyID body, const Vector3d& p, double step_s) {
+  if (body == nullptr) return Vector3d::Zero();
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  return velocity_at(body, p) + step_s / mass.mass * vector_of(dBodyGetForce(body));
+}
+
 }  // namespace
 
-ContactSet::ContactSet(dWorldID world, const SolverSettings& settings) : world_(world), group_(dJointGroupCreate(0)) {
+ContactSet::ContactSet(dWorldID world, const SolverSettings& settings)
+    : world_(world), step_s_(settings.step_s), group_(dJointGroupCreate(0)) {
   surface_.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
-  surface_.soft_erp = settings.contact_erp;
-  surface_.soft_cfm = settings.contact_cfm;
+  // ODE's softness of a spring and a damper in parallel. Unlike fixed numbers, it gives the same contact at each step.
+  const double spring = settings.step_s * settings.contact_stiffness_n_m;
+  surface_.soft_erp = spring / (spring + settings.contact_damping_n_s_m);
+  surface_.soft_cfm = 1.0 / (spring + settings.contact_damping_n_s_m);
   feedback_.resize(kMostFelt);
   records_.reserve(kMostFelt);
   sums_.reserve(kMostFelt);
@@ -53,14 +70,29 @@ void ContactSet::begin_step() {
   records_.clear();
 }
 
+// ODE bounds each of two friction forces separately, so that the bound on their sum is a square: up to sqrt 2 times the
+// friction along its diagonals. With one of the two forces along the direction of sliding, the sum is right in each
+// direction.
+Vector3d ContactSet::sliding_direction(const TouchPoint& touch, dBodyID first, dBodyID second) const {
+  constexpr double kStill_m_s = 1e-9;
+  const Vector3d& p = touch.position_m;
+  Vector3d sliding = free_velocity(first, p, step_s_) - free_velocity(second, p, step_s_);
+  sliding -= touch.normal.dot(sliding) * touch.normal;
+  if (sliding.norm() < kStill_m_s) sliding = touch.normal.unitOrthogonal();
+  return sliding.normalized();
+}
+
 dJointID ContactSet::make(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second) {
   dContact contact{};
   contact.surface = surface_;
   contact.surface.mu = friction.along;
+  contact.surface.mode |= dContactFDir1;
   if (friction.direction != nullptr) {
-    contact.surface.mode |= dContactMu2 | dContactFDir1;
+    contact.surface.mode |= dContactMu2;
     contact.surface.mu2 = friction.across;
     copy(*friction.direction, contact.fdir1);
+  } else {
+    copy(sliding_direction(touch, first, second), contact.fdir1);
   }
   copy(touch.position_m, contact.geom.pos);
   copy(touch.normal, contact.geom.normal);
@@ -114,6 +146,17 @@ void ContactSet::collect() {
     sum_up(key_of(other, Touched::kSelf, module, static_cast<std::uint8_t>(record.key)), record.second,
            record.touch.position_m, -record.touch.normal, feedback.f2);
   }
+}
+
+double ContactSet::felt_power_w() const {
+  double power_w = 0.0;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const Record& record = records_[i];
+    power_w += vector_of(feedback_[i].f1).dot(velocity_at(record.first, record.touch.position_m));
+    if (record.second != nullptr)
+      power_w += vector_of(feedback_[i].f2).dot(velocity_at(record.second, record.touch.position_m));
+  }
+  return power_w;
 }
 
 std::vector<ModuleContact> ContactSet::felt() const {

@@ -48,6 +48,8 @@ class ContactSet {
                 Touched touched, std::uint8_t index, std::uint8_t feature);
   /// Call after the solver: adds the forces of the step to the sums of the tick.
   void collect();
+  /// [W] power that the felt contacts of the last step give to the bodies; negative, because friction takes energy.
+  [[nodiscard]] double felt_power_w() const;
   /// Mean contacts of the tick so far, in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> felt() const;
 
@@ -66,11 +68,13 @@ class ContactSet {
     double weight = 0.0;
   };
 
+  [[nodiscard]] Eigen::Vector3d sliding_direction(const TouchPoint& touch, dBodyID first, dBodyID second) const;
   dJointID make(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second);
   void sum_up(std::uint32_t key, dBodyID body, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
               const dReal* force);
 
   dWorldID world_;
+  double step_s_;
   OdeJointGroup group_;
   dSurfaceParameters surface_{};
   std::vector<Record> records_;

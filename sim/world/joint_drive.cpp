@@ -6,43 +6,25 @@ namespace constrictor {
 
 JointDrive::JointDrive(dWorldID world, const JointModel& model, dBodyID ahead, dBodyID behind, const dVector3 anchor,
                        const dVector3 axis)
-    : model_(model), joint_(dJointCreateHinge(world, nullptr)), ahead_(ahead) {
+    : servo_(model), joint_(dJointCreateHinge(world, nullptr)), ahead_(ahead) {
   dJointAttach(joint_, ahead, behind);
   dJointSetHingeAnchor(joint_, anchor[0], anchor[1], anchor[2]);
   dJointSetHingeAxis(joint_, axis[0], axis[1], axis[2]);
-  dJointSetHingeParam(joint_, dParamLoStop, model_.min_rad);
-  dJointSetHingeParam(joint_, dParamHiStop, model_.max_rad);
+  dJointSetHingeParam(joint_, dParamLoStop, model.min_rad);
+  dJointSetHingeParam(joint_, dParamHiStop, model.max_rad);
   dJointSetFeedback(joint_, &feedback_);
 }
 
-double JointDrive::motor_angle_rad() const { return elastic() ? motor_angle_rad_ : angle_rad(); }
-
-void JointDrive::drive(double step_s) {
-  const double angle = angle_rad();
-  const double limit_nm = setpoint_.torque_limit_nm;
-  const double servo_angle = elastic() ? motor_angle_rad_ : angle;
-  double velocity =
-      std::clamp(model_.servo_gain_1_s * (setpoint_.position_rad - servo_angle) + setpoint_.velocity_rad_s,
-                 -model_.max_speed_rad_s, model_.max_speed_rad_s);
-  if (elastic()) {
-    // The torque of the motor limits how far it can stretch the spring.
-    const double k = model_.stiffness_nm_rad;
-    const double d = model_.damping_nm_s_rad;
-    const double stretch = limit_nm / k;
-    const double moved = std::clamp(motor_angle_rad_ + step_s * velocity, angle - stretch, angle + stretch);
-    velocity = limit_nm > 0.0 ? (moved - motor_angle_rad_) / step_s : 0.0;
-    motor_angle_rad_ = moved;
-    // The torque is k (motor - joint) + d (difference of their rates) at the end of the step. A velocity target with
-    // this softness gives exactly that.
-    const double softness = 1.0 / (step_s * k + d);
-    velocity = (k * (motor_angle_rad_ - angle) + d * velocity) * softness;
-    dJointSetHingeParam(joint_, dParamCFM, softness);
-  }
-  dJointSetHingeParam(joint_, dParamVel, velocity);
-  dJointSetHingeParam(joint_, dParamFMax, limit_nm);
+void JointDrive::drive() {
+  angle_before_rad_ = angle_rad();
+  row_ = servo_.row(angle_before_rad_, rate_rad_s());
+  dJointSetHingeParam(joint_, dParamVel, row_.velocity_rad_s);
+  dJointSetHingeParam(joint_, dParamCFM, row_.softness);
+  dJointSetHingeParam(joint_, dParamFMax, row_.torque_limit_nm);
 }
 
 void JointDrive::measure(double step_s, double filter_s) {
+  servo_.advance(row_, angle_before_rad_, rate_rad_s());
   // The joint's wrench on the module ahead acts at the centre of that module; move it to the anchor and project it on
   // the axis.
   dVector3 anchor;

@@ -1,11 +1,12 @@
-// The servo of one joint and its hinge. ODE's velocity motor acts as a position servo, either stiff or through a series
-// elastic element.
+// The servo of one joint and its hinge. The hinge's velocity motor with softness (CFM) is the
+// servo's row of the solver.
 #pragma once
 
 #include <ode/ode.h>
 
 #include "robot/joint_limits.hpp"
 #include "robot/robot_model.hpp"
+#include "sim/world/servo.hpp"
 
 namespace constrictor {
 
@@ -16,9 +17,10 @@ class JointDrive {
   JointDrive(dWorldID world, const JointModel& model, dBodyID ahead, dBodyID behind, const dVector3 anchor,
              const dVector3 axis);
 
-  void set(const JointSetpoint& setpoint) { setpoint_ = clamp_to_limits(model_, setpoint); }
+  void set(const JointSetpoint& setpoint) { servo_.set(setpoint); }
+  void begin_tick(int steps, double step_s) { servo_.begin_tick(steps, step_s); }
   /// Call before each step: sets velocity, torque and softness of the motor.
-  void drive(double step_s);
+  void drive();
   /// Call after each step: reads the torque of the hinge about its axis. `filter_s` is the time constant of the low
   /// pass.
   void measure(double step_s, double filter_s);
@@ -27,7 +29,9 @@ class JointDrive {
   [[nodiscard]] double rate_rad_s() const { return dJointGetHingeAngleRate(joint_); }
   [[nodiscard]] double torque_nm() const { return torque_nm_; }            ///< low-pass filtered
   [[nodiscard]] double step_torque_nm() const { return step_torque_nm_; }  ///< of the last step
-  [[nodiscard]] double motor_angle_rad() const;  ///< differs from the joint's angle if the joint is elastic
+  /// Differs from the joint's angle if the joint is elastic.
+  [[nodiscard]] double motor_angle_rad() const { return servo_.elastic() ? servo_.motor_angle_rad() : angle_rad(); }
+  [[nodiscard]] const Servo& servo() const { return servo_; }
 
   // ODE keeps a pointer to feedback_.
   JointDrive(const JointDrive&) = delete;
@@ -35,14 +39,12 @@ class JointDrive {
   ~JointDrive() = default;
 
  private:
-  [[nodiscard]] bool elastic() const { return model_.stiffness_nm_rad > 0.0; }
-
-  JointModel model_;
+  Servo servo_;
+  ServoRow row_;
+  double angle_before_rad_ = 0.0;
   dJointID joint_;
   dBodyID ahead_;
   dJointFeedback feedback_{};
-  JointSetpoint setpoint_;
-  double motor_angle_rad_ = 0.0;  ///< of the elastic element's motor side
   double torque_nm_ = 0.0;
   double step_torque_nm_ = 0.0;
 };

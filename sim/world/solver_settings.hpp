@@ -6,17 +6,17 @@
 namespace constrictor {
 
 struct SolverSettings {
-  double step_s = 0.002;
+  double step_s = 0.004;
   int iterations = 50;
-  double over_relaxation = 1.3;    ///< W of QuickStep, no unit
-  double erp = 0.2;                ///< fraction of a joint's position error that a step corrects
-  double cfm = 1e-5;               ///< [m/(N s) or rad/(Nm s)] softness of joints
-  double contact_erp = 0.2;        ///< fraction of a contact's depth that a step corrects
-  double contact_cfm = 1e-5;       ///< [m/(N s)] softness of contacts
+  double over_relaxation = 1.7;  ///< W of QuickStep, no unit
+  double erp = 0.2;              ///< fraction of a joint's position error that a step corrects
+  double cfm = 1e-5;             ///< [m/(N s) or rad/(Nm s)] softness of joints
+  double contact_stiffness_n_m = 20000.0;
+  double contact_damping_n_s_m = 50.0;
   double surface_layer_m = 0.001;  ///< [m] depth at which contacts may rest without correction
   double max_correcting_velocity_m_s = 1.0;
   /// The caps of two neighbouring modules coincide at their joint. If true, only the cap of the front module touches
-  /// the ground there; the solver is then a third faster.
+  /// the ground there; that is a fifth faster, but a module then turns without friction and odometry is less exact.
   bool one_ground_contact_a_joint = false;
   std::uint32_t reorder_seed = 1;  ///< seed of QuickStep's random order of constraints
 };

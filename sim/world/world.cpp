@@ -139,11 +139,15 @@ void World::set_servo(std::span<const double> position_rad, std::span<const doub
 
 void World::apply_force(std::size_t object, const Vector3d& force_n) { forces_n_.at(object) += force_n; }
 
-void World::advance(double duration_s) {
+void World::advance(double duration_s, const std::function<void()>& after_step) {
   const auto count = std::max<std::int64_t>(1, std::llround(duration_s / settings_.step_s));
   const Vector3d velocity_before = module_velocity_m_s(0);
   contacts_.begin_tick();
-  for (std::int64_t i = 0; i < count; ++i) step();
+  for (const auto& drive : drives_) drive->begin_tick(static_cast<int>(count), settings_.step_s);
+  for (std::int64_t i = 0; i < count; ++i) {
+    step();
+    if (after_step) after_step();
+  }
   acceleration_m_s2_ = (module_velocity_m_s(0) - velocity_before) / (static_cast<double>(count) * settings_.step_s);
   std::fill(forces_n_.begin(), forces_n_.end(), Vector3d::Zero());
   extend_hash();
@@ -170,7 +174,7 @@ void World::stand_on_bellies() {
 }
 
 void World::step() {
-  for (const auto& drive : drives_) drive->drive(settings_.step_s);
+  for (const auto& drive : drives_) drive->drive();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     dBodyAddForce(objects_[i], forces_n_[i].x(), forces_n_[i].y(), forces_n_[i].z());
   }

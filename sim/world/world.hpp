@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -42,8 +43,8 @@ class World {
                  std::span<const double> torque_limit_nm);
   /// Applies a force (in W) to the centre of an object during the next advance() only. Several forces add up.
   void apply_force(std::size_t object, const Eigen::Vector3d& force_n);
-  /// Integrates round(duration / step) steps, at least one.
-  void advance(double duration_s);
+  /// Integrates round(duration / step) steps, at least one. `after_step`, if it is given, is called after each of them.
+  void advance(double duration_s, const std::function<void()>& after_step = {});
 
   [[nodiscard]] std::size_t joint_count() const { return drives_.size(); }
   [[nodiscard]] std::size_t module_count() const { return modules_.size(); }
@@ -65,6 +66,8 @@ class World {
   [[nodiscard]] Eigen::Vector3d object_angular_velocity_rad_s(std::size_t object) const;  ///< in W
   /// Contacts that the modules felt in the last advance(), in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> contacts() const { return contacts_.felt(); }
+  /// [W] power that the contacts of the last step give to the robot and to the objects that it touches.
+  [[nodiscard]] double contact_power_w() const { return contacts_.felt_power_w(); }
   [[nodiscard]] ImuTruth imu() const;
 
   /// SHA-256 chain. Each advance() appends position, quaternion (w x y z), linear and angular velocity of each module

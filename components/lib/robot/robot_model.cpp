@@ -18,7 +18,11 @@ JointModel read_joint(Configuration& joints) {
   joint.max_rad = joints.number("max_rad", {0.0, 3.0});
   joint.max_speed_rad_s = joints.number("max_speed_rad_s", {0.01, 50.0});
   joint.max_torque_nm = joints.number("max_torque_nm", {0.01, 100.0});
-  joint.servo_gain_1_s = joints.number("servo_gain_1_s", {0.1, 200.0});
+  joint.position_gain_nm_rad = joints.number("position_gain_nm_rad", {0.1, 100000.0});
+  joint.velocity_gain_nm_s_rad = joints.number("velocity_gain_nm_s_rad", {0.0, 1000.0});
+  joint.rotor_inertia_kg_m2 = joints.number("rotor_inertia_kg_m2", {0.0, 10.0}, 0.0);
+  joint.gear_friction_nm = joints.number("gear_friction_nm", {0.0, 100.0}, 0.0);
+  joint.no_load_speed_rad_s = joints.number("no_load_speed_rad_s", {0.0, 100.0}, 0.0);
   joint.stiffness_nm_rad = joints.number("stiffness_nm_rad", {0.0, 10000.0}, 0.0);
   joint.damping_nm_s_rad = joints.number("damping_nm_s_rad", {0.0, 100.0}, 0.0);
   if (joint.stiffness_nm_rad == 0.0 && joint.damping_nm_s_rad > 0.0) {

@@ -18,9 +18,14 @@ struct JointModel {
   double max_rad = 1.57;
   double max_speed_rad_s = 4.0;
   double max_torque_nm = 6.0;
-  double servo_gain_1_s = 20.0;   ///< motor velocity = clamp(gain (reference - angle) + feed-forward)
-  double stiffness_nm_rad = 0.0;  ///< stiffness of the series elastic element; 0: the joint has none and is rigid
-  double damping_nm_s_rad = 0.0;  ///< damping of the series elastic element
+  // The servo: sim/world/servo.hpp has its equations. All values hold at the output of the gear.
+  double position_gain_nm_rad = 300.0;  ///< torque for an error of the angle
+  double velocity_gain_nm_s_rad = 4.0;  ///< torque for an error of the rate
+  double rotor_inertia_kg_m2 = 0.01;    ///< of motor and gear
+  double gear_friction_nm = 0.0;        ///< resists the motion of a relaxed joint
+  double no_load_speed_rad_s = 0.0;     ///< at which the motor has no torque left; 0: the torque does not fall
+  double stiffness_nm_rad = 0.0;        ///< stiffness of the series elastic element; 0: the joint has none and is rigid
+  double damping_nm_s_rad = 0.0;        ///< damping of the series elastic element
 };
 
 /// A pin-hole camera in the head module.

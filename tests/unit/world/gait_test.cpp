@@ -73,5 +73,65 @@ TEST(OpenLoopGait, RotatesAlmostOnTheSpotWithStrongCurvature) {
   EXPECT_LT(course.radius_m, 0.3);
 }
 
+/// How well the servos of the yaw joints do their work in a steady gait.
+struct Servos {
+  double tracking_rad;  ///< rms of setpoint minus angle at the end of each tick
+  double ripple_nm;     ///< rms of the torque about its mean in each tick
+  double work_j;        ///< of all joints
+  double friction_j;    ///< taken by all contacts
+};
+
+Servos run_servos(const OpenLoopGait& gait, const RobotModel& robot, double period_s) {
+  World world(robot, Scenario{});
+  Servos servos{};
+  double error = 0.0;
+  double ripple = 0.0;
+  int ticks = 0;
+  int steps = 0;
+  for (double time_s = 0.0; time_s < 3.0 + 4.0 / gait.frequency_hz; time_s += period_s) {
+    const bool measured = time_s > 3.0;
+    std::vector<std::vector<double>> torques(world.joint_count());
+    std::vector<double> rates(world.joint_count());
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = world.joint_rate_rad_s(i);
+    gait.drive(world, time_s, period_s, [&] {
+      if (!measured) return;
+      for (std::size_t i = 0; i < rates.size(); ++i) {
+        torques[i].push_back(world.joint(i).step_torque_nm());
+        const double rate = 0.5 * (rates[i] + world.joint_rate_rad_s(i));  // the work of a step is exact with the mean
+        servos.work_j += SolverSettings{}.step_s * world.joint(i).step_torque_nm() * rate;
+        rates[i] = world.joint_rate_rad_s(i);
+      }
+      servos.friction_j -= SolverSettings{}.step_s * world.contact_power_w();
+    });
+    if (!measured) continue;
+    const std::vector<double> setpoint = gait.angles(robot, time_s + period_s);
+    for (const std::size_t joint : robot.yaw_joints()) {
+      double mean = 0.0;
+      for (const double torque : torques[joint]) mean += torque / static_cast<double>(torques[joint].size());
+      for (const double torque : torques[joint]) ripple += (torque - mean) * (torque - mean);
+      steps += static_cast<int>(torques[joint].size());
+      error += std::pow(setpoint[joint] - world.joint_angle_rad(joint), 2);
+      ++ticks;
+    }
+  }
+  servos.tracking_rad = std::sqrt(error / ticks);
+  servos.ripple_nm = std::sqrt(ripple / steps);
+  return servos;
+}
+
+TEST(Servos, FollowTheGaitWithoutRipple) {
+  for (const double period_s : {0.02, 0.04}) {  // the ripple must not grow with the jump of the setpoint
+    const Servos servos = run_servos({}, mamba(), period_s);
+    EXPECT_LT(servos.tracking_rad, 0.005) << period_s;
+    EXPECT_LT(servos.ripple_nm, 0.3) << period_s;
+  }
+}
+
+TEST(Servos, DoTheWorkThatFrictionTakes) {
+  const Servos servos = run_servos({}, mamba(), kPeriod_s);
+  EXPECT_GT(servos.work_j, 1.0);
+  EXPECT_NEAR(servos.work_j, servos.friction_j, 0.01 * servos.work_j);
+}
+
 }  // namespace
 }  // namespace constrictor

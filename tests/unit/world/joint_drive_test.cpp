@@ -19,21 +19,17 @@ TEST(JointDrive, AnElasticJointSwingsAtItsNaturalFrequency) {
   const double w = 15.0;
   robot.joints[0].stiffness_nm_rad = w * w * inertia / 2;
   robot.joints[0].max_torque_nm = 1.0;
-  World world(robot, in_the_air(8.0), [] {
-    SolverSettings fine;
-    fine.step_s = 0.0002;
-    return fine;
-  }());
+  World world(robot, in_the_air(8.0));
   // The motor jumps to 0.2 rad; the joint then swings about that angle.
   const double motor = 0.2;
   std::vector<double> crossings;
   double before = 0.0;
   world.set_servo(std::vector{motor}, std::vector{0.0}, std::vector{1.0});
   double reached = 0.0;
-  for (int i = 0; i < 500; ++i) {
-    world.advance(0.002);
+  for (int i = 0; i < 250; ++i) {
+    world.advance(SolverSettings{}.step_s);
     const double now = world.joint_angle_rad(0) - motor;
-    if (i > 150 && before * now < 0.0) crossings.push_back(0.002 * (i + before / (before - now)));
+    if (i > 75 && before * now < 0.0) crossings.push_back(SolverSettings{}.step_s * (i + before / (before - now)));
     before = now;
     reached = std::max(reached, world.joint_angle_rad(0));
   }
@@ -64,7 +60,7 @@ TEST(JointDrive, AStiffJointMeasuresTheWeightItLifts) {
   World world(robot, {});
   lift_head(world, 6.0, 150);
   EXPECT_NEAR(world.joint_angle_rad(0), -0.6, 0.02);
-  EXPECT_NEAR(world.joint_torque_nm(0), lifted_head_torque(world), 0.02);
+  EXPECT_NEAR(world.joint_torque_nm(0), lifted_head_torque(world), 0.03 * std::abs(lifted_head_torque(world)));
 }
 
 TEST(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {

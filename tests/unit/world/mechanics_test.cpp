@@ -16,7 +16,8 @@ TEST(Mechanics, AFallingRobotFollowsTheParabola) {
   const double start = world.module_pose(5).translation().z();
   hold(world, 0.0, 6.0, 0.6);
   // The integration in steps of h adds g t h / 2 to the fall.
-  EXPECT_NEAR(start - world.module_pose(5).translation().z(), 0.5 * kG * 0.36 + 0.5 * kG * 0.6 * 0.002, 1e-6);
+  const double h = SolverSettings{}.step_s;
+  EXPECT_NEAR(start - world.module_pose(5).translation().z(), 0.5 * kG * 0.36 + 0.5 * kG * 0.6 * h, 1e-6);
   EXPECT_NEAR(world.imu().proper_acceleration_m_s2.norm(), 0.0, 1e-6);  // weightless
 }
 
@@ -67,6 +68,35 @@ TEST(Mechanics, ASlidingBlockStopsAfterItsKineticEnergyIsSpent) {
     hold(world, 0.0, 6.0, 2.0);
     EXPECT_NEAR(world.object_pose(0).translation().x() - from, speed * speed / (2 * mu * kG), 0.01) << "mu " << mu;
     EXPECT_NEAR(world.object_velocity_m_s(0).norm(), 0.0, 1e-3);
+  }
+}
+
+/// [m] how far a block slides that a force has pushed for one tick in this direction, seen from above.
+Eigen::Vector2d slide(double direction_rad, BodyShape shape) {
+  Scenario scenario = with_object({0.1, 0.1, 0.06}, 0.5);
+  scenario.objects[0].shape = shape;
+  scenario.objects[0].yaw_rad = direction_rad;  // the block turns with the push: only the world's axes differ
+  World world(chain(2, JointAxis::kYaw), scenario);
+  hold(world, 0.0, 6.0, 0.2);
+  const Vector3d from = world.object_pose(0).translation();
+  world.apply_force(0, 40.0 * Vector3d(std::cos(direction_rad), std::sin(direction_rad), 0.0));
+  world.advance(kPeriod_s);
+  hold(world, 0.0, 6.0, 1.5);
+  return (world.object_pose(0).translation() - from).head<2>();
+}
+
+TEST(Mechanics, FrictionIsTheSameInEachDirectionOfTheWorld) {
+  const double mu = Scenario{}.friction.object_ground;
+  const double speed = (40.0 / 0.5 - mu * kG) * kPeriod_s;
+  const double coasted_m = speed * speed / (2 * mu * kG) + 0.5 * speed * kPeriod_s;
+  for (const BodyShape shape : {BodyShape::kCylinder, BodyShape::kBox}) {
+    for (const double degrees : {0.0, 17.0, 30.0, 45.0, 72.0, 90.0, 135.0, -45.0, 180.0}) {
+      const double direction = degrees * std::numbers::pi / 180.0;
+      const Eigen::Vector2d moved = slide(direction, shape);
+      EXPECT_NEAR(moved.norm(), coasted_m, 0.02 * coasted_m) << degrees;
+      EXPECT_NEAR(std::remainder(std::atan2(moved.y(), moved.x()) - direction, 2.0 * std::numbers::pi), 0.0, 0.02)
+          << degrees;
+    }
   }
 }
 

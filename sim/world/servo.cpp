@@ -1,0 +1,75 @@
+#include "sim/world/servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace constrictor {
+
+double ServoRow::torque_nm(double rate_rad_s) const {
+  return std::clamp((velocity_rad_s - rate_rad_s) / softness, -torque_limit_nm, torque_limit_nm);
+}
+
+void Servo::set(const JointSetpoint& setpoint) { to_ = clamp_to_limits(model_, setpoint); }
+
+void Servo::begin_tick(int steps, double step_s) {
+  step_ = 0;
+  steps_ = steps;
+  step_s_ = step_s;
+}
+
+double Servo::torque_limit_nm(double rate_rad_s, double driving) const {
+  double limit = to_.torque_limit_nm;
+  const double speed = std::abs(rate_rad_s);
+  // A motor that drives loses torque with speed; a motor that brakes does not.
+  if (driving * rate_rad_s > 0.0 && model_.no_load_speed_rad_s > 0.0)
+    limit = std::min(limit, model_.max_torque_nm * std::max(0.0, 1.0 - speed / model_.no_load_speed_rad_s));
+  return limit;
+}
+
+ServoRow Servo::row(double angle_rad, double rate_rad_s) {
+  const double h = step_s_;
+  const double duration = h * steps_;
+  const double u = static_cast<double>(++step_) / steps_;
+  // Cubic Hermite curve from from_ to to_.
+  const double d = to_.position_rad - from_.position_rad;
+  const double a = from_.velocity_rad_s * duration;
+  const double b = to_.velocity_rad_s * duration;
+  reference_rad_ = from_.position_rad + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)));
+  reference_rate_rad_s_ = (a + u * (2.0 * (3.0 * d - 2.0 * a - b) + u * 3.0 * (a + b - 2.0 * d))) / duration;
+  if (step_ == steps_) from_ = to_;
+
+  ServoRow row;
+  if (to_.torque_limit_nm <= 0.0) {  // relaxed: only the friction of the gear resists
+    row.softness = h / std::max(model_.rotor_inertia_kg_m2, 1e-9);
+    row.velocity_rad_s = 0.0;
+    row.torque_limit_nm = model_.gear_friction_nm;
+    return row;
+  }
+  const double kp = model_.position_gain_nm_rad;
+  const double kd = model_.velocity_gain_nm_s_rad;
+  const double inertia = model_.rotor_inertia_kg_m2 / h;
+  const double angle = elastic() ? motor_angle_rad_ : angle_rad;
+  const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
+  const double sum = inertia + h * kp + kd;
+  const double wanted_rate = std::clamp(reference_rate_rad_s_, -model_.max_speed_rad_s, model_.max_speed_rad_s);
+  row.softness = 1.0 / sum;
+  row.velocity_rad_s = (inertia * rate + kp * (reference_rad_ - angle) + kd * wanted_rate) / sum;
+  if (elastic()) {
+    const double spring = h * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
+    row.softness += 1.0 / spring;
+    row.velocity_rad_s += model_.stiffness_nm_rad * (motor_angle_rad_ - angle_rad) / spring;
+  }
+  row.torque_limit_nm = torque_limit_nm(rate_rad_s, row.velocity_rad_s - rate_rad_s);
+  return row;
+}
+
+void Servo::advance(const ServoRow& row, double angle_before_rad, double rate_rad_s) {
+  if (!elastic()) return;
+  // The law of the spring gives the rate of the motor, also while the torque is at its limit.
+  const double spring = step_s_ * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
+  const double stretched = model_.stiffness_nm_rad * (motor_angle_rad_ - angle_before_rad);
+  motor_rate_rad_s_ = rate_rad_s + (row.torque_nm(rate_rad_s) - stretched) / spring;
+  motor_angle_rad_ += step_s_ * motor_rate_rad_s_;
+}
+
+}  // namespace constrictor

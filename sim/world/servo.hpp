@@ -1,0 +1,58 @@
+// The servo of one joint: position controller, rotor, gear and, in some robots, a spring between gear and joint. It
+// knows nothing of ODE: it gives the solver one row for each step.
+#pragma once
+
+#include "robot/joint_limits.hpp"
+#include "robot/robot_model.hpp"
+
+namespace constrictor {
+
+/// One row of the solver: the torque on the joint is (velocity_rad_s - w) / softness, where w is the rate of the joint
+/// at the end of the step, but at most torque_limit_nm in either direction.
+struct ServoRow {
+  double velocity_rad_s = 0.0;
+  double softness = 1.0;  ///< [rad/(s Nm)] > 0
+  double torque_limit_nm = 0.0;
+
+  [[nodiscard]] double torque_nm(double rate_rad_s) const;
+};
+
+/// Equations, with the setpoint r, the motor's angle m (at the output of the gear) and the joint's angle q:
+///   motor:    J m" = kp (r - m) + kd (r' - m') - t
+///   spring:   t = k (m - q) + d (m' - q'), with k of the series elastic element; without one, m = q
+///   limit:    |t| <= the smallest of the commanded limit and the speed-torque curve, minus the friction of the gear
+/// Both equations are integrated by the implicit Euler method together with the bodies, so that every step is stable.
+class Servo {
+ public:
+  explicit Servo(const JointModel& model) : model_(model) {}
+
+  /// Sets where the setpoint is at the end of the next tick. The setpoint moves there during the tick on a cubic curve
+  /// whose first derivative is continuous from tick to tick.
+  void set(const JointSetpoint& setpoint);
+  /// Call at the beginning of a tick of `steps` steps of `step_s`.
+  void begin_tick(int steps, double step_s);
+  /// The row for the next step of a joint with this angle and rate.
+  [[nodiscard]] ServoRow row(double angle_rad, double rate_rad_s);
+  /// Call after the step with the row that was used and the joint's rate at the end of the step.
+  void advance(const ServoRow& row, double angle_before_rad, double rate_rad_s);
+
+  [[nodiscard]] bool elastic() const { return model_.stiffness_nm_rad > 0.0; }
+  [[nodiscard]] double motor_angle_rad() const { return motor_angle_rad_; }  ///< of an elastic joint
+  [[nodiscard]] double setpoint_rad() const { return reference_rad_; }       ///< at the end of the last step
+
+ private:
+  [[nodiscard]] double torque_limit_nm(double rate_rad_s, double driving) const;
+
+  JointModel model_;
+  JointSetpoint from_;  ///< where the curve of this tick begins; a joint begins at rest at the angle 0
+  JointSetpoint to_;    ///< where it ends
+  int step_ = 0;
+  int steps_ = 1;
+  double step_s_ = 0.0;
+  double reference_rad_ = 0.0;
+  double reference_rate_rad_s_ = 0.0;
+  double motor_angle_rad_ = 0.0;
+  double motor_rate_rad_s_ = 0.0;
+};
+
+}  // namespace constrictor

@@ -1,0 +1,190 @@
+// The servo compared with closed forms: a joint of one inertia instead of a robot.
+#include "sim/world/servo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "sim/world/solver_settings.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr int kSteps = 5;
+constexpr double kStep_s = SolverSettings{}.step_s;
+constexpr double kTick_s = kSteps * kStep_s;
+
+/// A body that turns about one fixed axis, moved by a servo.
+struct Joint {
+  explicit Joint(const JointModel& model, double inertia = 0.02) : servo(model), inertia_kg_m2(inertia) {}
+
+  void step() {
+    const ServoRow row = servo.row(angle_rad, rate_rad_s);
+    // The row is implicit: w = w0 + h (velocity - w) / (softness I) + h load / I, unless the torque is at its limit.
+    const double free = rate_rad_s + kStep_s * load_nm / inertia_kg_m2;
+    const double share = kStep_s / (row.softness * inertia_kg_m2);
+    double after = (free + share * row.velocity_rad_s) / (1.0 + share);
+    torque_nm = (after - free) * inertia_kg_m2 / kStep_s;
+    if (std::abs(torque_nm) > row.torque_limit_nm) {
+      torque_nm = std::copysign(row.torque_limit_nm, torque_nm);
+      after = free + kStep_s * torque_nm / inertia_kg_m2;
+      if (row.velocity_rad_s == 0.0 && free * after < 0.0) after = 0.0;
+    }
+    const double before = angle_rad;
+    rate_rad_s = after;
+    angle_rad += kStep_s * rate_rad_s;
+    servo.advance(row, before, rate_rad_s);
+  }
+  void tick(const JointSetpoint& setpoint) {
+    servo.set(setpoint);
+    servo.begin_tick(kSteps, kStep_s);
+    for (int i = 0; i < kSteps; ++i) step();
+  }
+
+  Servo servo;
+  double inertia_kg_m2;
+  double load_nm = 0.0;
+  double angle_rad = 0.0;
+  double rate_rad_s = 0.0;
+  double torque_nm = 0.0;
+};
+
+JointModel model() {
+  JointModel model;
+  model.max_torque_nm = 100.0;
+  model.max_speed_rad_s = 50.0;
+  return model;
+}
+
+TEST(Servo, SagsByTheLoadOverThePositionGain) {
+  Joint joint(model());
+  joint.load_nm = 2.0;
+  for (int i = 0; i < 100; ++i) joint.tick({0.0, 0.0, 6.0});
+  EXPECT_NEAR(joint.angle_rad, 2.0 / model().position_gain_nm_rad, 1e-9);
+  EXPECT_NEAR(joint.torque_nm, -2.0, 1e-9);
+}
+
+TEST(Servo, TheRotorAddsToTheInertiaOfTheJoint) {
+  // Without gains only a constant load accelerates rotor and joint together.
+  JointModel free = model();
+  free.position_gain_nm_rad = 1e-6;
+  free.velocity_gain_nm_s_rad = 0.0;
+  free.rotor_inertia_kg_m2 = 0.03;
+  Joint joint(free, 0.02);
+  joint.load_nm = 0.5;
+  for (int i = 0; i < 20; ++i) joint.tick({0.0, 0.0, 6.0});
+  EXPECT_NEAR(joint.rate_rad_s, 0.5 / (0.02 + 0.03) * 20 * kTick_s, 1e-3);
+}
+
+TEST(Servo, SwingsAsASecondOrderSystem) {
+  // A soft servo, so that its period is long against the step: w = sqrt(kp / I), damping kd / (2 sqrt(kp I)).
+  JointModel soft = model();
+  soft.position_gain_nm_rad = 2.0;
+  soft.velocity_gain_nm_s_rad = 0.02;
+  soft.rotor_inertia_kg_m2 = 0.01;
+  Joint joint(soft, 0.01);
+  joint.angle_rad = 0.3;
+  std::vector<double> crossings_s;
+  for (int i = 0; i < 500; ++i) {
+    if (i % kSteps == 0) {
+      joint.servo.set({0.0, 0.0, 6.0});
+      joint.servo.begin_tick(kSteps, kStep_s);
+    }
+    const double before = joint.angle_rad;
+    joint.step();
+    if (before * joint.angle_rad < 0.0) crossings_s.push_back(kStep_s * (i + before / (before - joint.angle_rad)));
+  }
+  ASSERT_GE(crossings_s.size(), 4U);
+  const double half_s = (crossings_s[3] - crossings_s[0]) / 3.0;
+  EXPECT_NEAR(std::numbers::pi / half_s, std::sqrt(2.0 / 0.02), 0.03 * std::sqrt(2.0 / 0.02));
+}
+
+TEST(Servo, FollowsASineWithTheErrorThatInertiaDemands) {
+  // With the true rate as feed-forward, the error is the torque of the inertia over the gain.
+  Joint joint(model(), 0.02);
+  const double w = 2.0 * std::numbers::pi * 0.7;
+  double worst_rad = 0.0;
+  for (int i = 1; i < 200; ++i) {
+    const double t = i * kTick_s;
+    joint.tick({0.5 * std::sin(w * t), 0.5 * w * std::cos(w * t), 6.0});
+    if (i > 20) worst_rad = std::max(worst_rad, std::abs(0.5 * std::sin(w * t) - joint.angle_rad));
+  }
+  const double inertia = 0.02 + model().rotor_inertia_kg_m2;
+  EXPECT_LT(worst_rad, 1.5 * inertia * 0.5 * w * w / model().position_gain_nm_rad + 0.5 * w * kStep_s * 0.1);
+}
+
+TEST(Servo, TheSetpointMovesWithoutJumpsAndReachesTheCommandAtTheEndOfTheTick) {
+  JointModel limits = model();
+  Servo servo(limits);
+  double before_rad = 0.0;
+  double before_rate = 0.0;
+  for (int tick = 1; tick <= 20; ++tick) {
+    const double t = tick * kTick_s;
+    servo.set({0.4 * std::sin(4.0 * t), 1.6 * std::cos(4.0 * t), 6.0});
+    servo.begin_tick(kSteps, kStep_s);
+    for (int i = 0; i < kSteps; ++i) {
+      (void)servo.row(0.0, 0.0);
+      const double rate = (servo.setpoint_rad() - before_rad) / kStep_s;
+      // The true acceleration is at most 6.4 rad/s²; only the first tick jumps, from rest to the rate of the sine.
+      if (tick > 2) {
+        EXPECT_LT(std::abs(rate - before_rate), 1.5 * 6.4 * kStep_s);
+      }
+      before_rad = servo.setpoint_rad();
+      before_rate = rate;
+    }
+    EXPECT_NEAR(servo.setpoint_rad(), 0.4 * std::sin(4.0 * t), 1e-12);
+  }
+}
+
+TEST(Servo, ADrivingMotorLosesTorqueWithSpeedAndABrakingOneDoesNot) {
+  JointModel weak = model();
+  weak.max_torque_nm = 6.0;
+  weak.no_load_speed_rad_s = 8.0;
+  Servo servo(weak);
+  servo.set({3.0, 4.0, 6.0});
+  servo.begin_tick(kSteps, kStep_s);
+  EXPECT_NEAR(servo.row(0.0, 2.0).torque_limit_nm, 6.0 * (1.0 - 2.0 / 8.0), 1e-12);
+  EXPECT_NEAR(servo.row(0.0, -2.0).torque_limit_nm, 6.0, 1e-12);
+  EXPECT_NEAR(servo.row(-9.0, 9.0).torque_limit_nm, 0.0, 1e-12);
+}
+
+TEST(Servo, ARelaxedJointIsStoppedByTheFrictionOfItsGear) {
+  JointModel rough = model();
+  rough.gear_friction_nm = 0.1;
+  Joint joint(rough, 0.02);
+  joint.rate_rad_s = 1.0;
+  for (int i = 0; i < 5; ++i) joint.tick({0.0, 0.0, 0.0});
+  EXPECT_NEAR(joint.rate_rad_s, 1.0 - 0.1 / 0.02 * 5 * kTick_s, 1e-9);
+  for (int i = 0; i < 10; ++i) joint.tick({0.0, 0.0, 0.0});
+  EXPECT_NEAR(joint.rate_rad_s, 0.0, 1e-5);
+  EXPECT_NEAR(joint.angle_rad, 0.5 * 1.0 * 0.02 / 0.1, 0.01);
+}
+
+TEST(Servo, ASeriesSpringStretchesByTheLoadAndTheMotorStaysAtTheSetpoint) {
+  JointModel elastic = model();
+  elastic.stiffness_nm_rad = 60.0;
+  elastic.damping_nm_s_rad = 0.5;
+  Joint joint(elastic);
+  joint.load_nm = 3.0;
+  for (int i = 0; i < 200; ++i) joint.tick({0.2, 0.0, 6.0});
+  EXPECT_NEAR(joint.servo.motor_angle_rad(), 0.2 + 3.0 / elastic.position_gain_nm_rad, 1e-6);
+  EXPECT_NEAR(joint.angle_rad - joint.servo.motor_angle_rad(), 3.0 / 60.0, 1e-6);
+}
+
+TEST(Servo, ASpringNeverTransmitsMoreThanTheTorqueLimit) {
+  JointModel elastic = model();
+  elastic.stiffness_nm_rad = 60.0;
+  elastic.damping_nm_s_rad = 0.5;
+  Joint joint(elastic);
+  joint.load_nm = 1.2;
+  for (int i = 0; i < 50; ++i) {
+    joint.tick({0.0, 0.0, 1.0});
+    EXPECT_LE(std::abs(joint.torque_nm), 1.0 + 1e-9);
+  }
+  EXPECT_GT(joint.angle_rad, 0.5);  // the load wins
+}
+
+}  // namespace
+}  // namespace constrictor
