@@ -125,12 +125,14 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
 }
 
 void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick) {
-  // The blob is too near for a range. It belongs to a landmark of its colour that is nearby and in the same direction.
+  // The blob has no range, or its centre is out of view. It belongs to a landmark of its colour that is nearby and in
+  // the same direction.
+  const double farthest_m = std::isfinite(blob.range_m) ? config_.max_range_m : 0.7;
   for (Landmark& landmark : state_.landmarks) {
     if (landmark.colour != blob.colour || landmark.kind != blob.kind || landmark.carried) continue;
     const Eigen::Vector2d p = exposure.to_local(filter_.pose().to_local(position(landmark)));
     const double bearing = std::atan2(p.y(), p.x());
-    if (p.norm() < 0.7 && std::abs(wrap_angle_by_shift(bearing - blob.bearing_rad)) < 0.5)
+    if (p.norm() < farthest_m && std::abs(wrap_angle_by_shift(bearing - blob.bearing_rad)) < 0.5)
       landmark.last_seen_tick = tick;
   }
 }
@@ -141,7 +143,9 @@ void FieldMapper::objects(const msg::ObjectPercepts& percepts, const PlanarPose&
   for (int i = 0; i < count; ++i) {
     const msg::Blob& blob = percepts.blobs[i];
     if (blob.kind == msg::kBlobUndecided || !std::isfinite(blob.bearing_rad)) continue;
-    if (!std::isfinite(blob.range_m)) {
+    // The visible part of a zone that the image's border cuts says little of where the zone's centre is.
+    const bool part = blob.kind == msg::kBlobZone && (blob.cut_left || blob.cut_right);
+    if (!std::isfinite(blob.range_m) || part) {
       glimpse(blob, exposure, tick);
     } else if (blob.range_m < config_.max_range_m) {
       place(blob, exposure, tick, used);

@@ -39,7 +39,7 @@ class FieldMapper {
   /// Updates, moves or creates the landmark of a blob with a range. `used` marks the landmarks that already have a blob
   /// in this image.
   void place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used);
-  /// Refreshes the time at which the landmark of a blob without a range was seen.
+  /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
   void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);

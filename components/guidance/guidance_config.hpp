@@ -8,12 +8,20 @@ namespace constrictor::guidance {
 
 struct GuidanceConfig : ParameterSet {
   OdometryConfig odometry{
-      add(odometry.friction_along_share, "odometry.friction_along_share", 0.85, "", {0.0, 2.0}, kWhileRunning,
-          "Factor on the robot file's friction along the modules; fitted to the simulator"),
-      add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.01, "m/s", {1e-4, 1.0}, kWhileRunning,
+      add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.005, "m/s", {1e-4, 1.0}, kWhileRunning,
           "Sliding speed from which the skin's friction is fully developed"),
       add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, kWhileRunning,
-          "Share of a joint's measured angle; the rest is its integrated rate")};
+          "Share of a joint's measured angle; the rest is its integrated rate"),
+      add(odometry.friction_along, "odometry.friction_along", 0.06, "", {0.0, 5.0}, kAtStart,
+          "First guess of the coefficient of friction along the body, until it has been measured"),
+      add(odometry.friction_across, "odometry.friction_across", 0.6, "", {0.01, 5.0}, kAtStart,
+          "First guess of the coefficient of friction across the body, until it has been measured"),
+      add(odometry.friction_rate_1_s, "odometry.friction_rate_1_s", 0.6, "1/s", {0.0, 100.0}, kWhileRunning,
+          "Speed at which the estimated coefficients follow the measured forces of the ground"),
+      add(odometry.stick_below, "odometry.stick_below", 0.8, "", {0.0, 1.0}, kWhileRunning,
+          "A module sticks if its sideways force is below this share of its friction"),
+      add(odometry.stick_factor, "odometry.stick_factor", 4.0, "", {1.0, 1000.0}, kWhileRunning,
+          "Factor on the resistance of such a module against sliding sideways")};
   double speed_sd = add(speed_sd, "odometry.speed_sd", 0.08, "", {0.0, 1.0}, kWhileRunning,
                         "Standard deviation of the estimated velocity, as a share of the speed");
   double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, kAtStart,

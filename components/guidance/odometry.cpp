@@ -17,14 +17,49 @@ constexpr int kIterations = 15;
 /// Friction of one module in one of its two directions.
 struct Slider {
   Eigen::Vector2d direction;
-  double own_m_s;  ///< speed in that direction relative to the centre of mass
-  double limit_n;  ///< Coulomb friction force at which the module slides
+  double own_m_s;                ///< speed in that direction relative to the centre of mass
+  double limit_n;                ///< Coulomb friction force at which the module slides
+  double sideways_load_n = 0.0;  ///< load, if the direction is across the module
 };
 
 Eigen::Vector2d centre_of(const std::vector<PlanarPose>& poses) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const PlanarPose& pose : poses) sum += pose.p;
   return sum / static_cast<double>(poses.size());
+}
+
+/// Moves the estimate of a quantile towards a sample: up by `quantile` and down by 1 - `quantile`, times `step`. In the
+/// long run, the share `quantile` of the samples lies below the estimate.
+double follow_quantile(double estimate, double sample, double quantile, double step) {
+  return estimate + (sample > estimate ? quantile : quantile - 1.0) * step;
+}
+
+/// Whether the force is known and great enough for a ratio of friction to load.
+bool measurable(const GroundForce& force, const RobotModel& model) {
+  return force.normal_n > 0.5 * model.module_mass_kg * kGravity_m_s2 && std::isfinite(force.along_n) &&
+         std::isfinite(force.across_n);
+}
+
+void estimate_friction(OdometryState& state, const RobotModel& model, const OdometryConfig& config,
+                       const OdometryInput& input) {
+  constexpr double kDriving_m_s = 0.1;
+  constexpr double kUpperQuartile = 0.75;
+  if (std::hypot(state.vx_m_s, state.vy_m_s) < kDriving_m_s) return;
+  // At first the estimates move fast, because the first guess may be far away.
+  constexpr double kFast = 10.0;
+  constexpr double kFast_s = 1.0;
+  state.driven_s += input.dt_s;
+  const double rate_1_s = config.friction_rate_1_s * (state.driven_s < kFast_s ? kFast : 1.0);
+  const double step = rate_1_s * input.dt_s / static_cast<double>(model.module_count);
+  for (const GroundForce& force : input.ground) {
+    if (!measurable(force, model)) continue;
+    // Friction along is several times smaller, and so are the steps of its estimate.
+    const double along = std::abs(force.along_n) / force.normal_n, across = std::abs(force.across_n) / force.normal_n;
+    state.friction_along = follow_quantile(state.friction_along, along, 0.5, 0.1 * step);
+    state.friction_across = follow_quantile(state.friction_across, across, kUpperQuartile, step);
+  }
+  state.friction_across = std::clamp(state.friction_across, 0.01, 5.0);
+  state.friction_along = std::clamp(state.friction_along, 0.0, state.friction_across);
 }
 
 }  // namespace
@@ -38,6 +73,8 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     state.joint_rad_s.assign(input.joint_rad_s, input.joint_rad_s + joints);
     state.yaw_rad = input.yaw_rad;
     state.vx_m_s = state.vy_m_s = 0.0;
+    state.friction_along = config.friction_along;
+    state.friction_across = config.friction_across;
     state.started = true;
     return result;
   }
@@ -60,11 +97,12 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
   const auto after = planar_module_poses(model, state.joint_rad, {{0.0, 0.0}, half_turn});
   const Eigen::Vector2d centre_before = centre_of(before), centre_after = centre_of(after);
 
+  estimate_friction(state, model, config, input);
   const std::size_t modules = model.module_count;
   const double mass_kg = model.module_mass_kg * static_cast<double>(modules);
   const bool measured = input.load_n.size() == modules;
   std::vector<Slider> sliders;
-  sliders.reserve(2 * modules);
+  sliders.reserve(3 * modules);
   double total_n = 0.0;
   for (std::size_t i = 0; i < modules; ++i) {
     double load_n = model.module_mass_kg * kGravity_m_s2;
@@ -73,8 +111,15 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     const Eigen::Vector2d moved = (after[i].p - before[i].p) - (centre_after - centre_before);
     const double heading = 0.5 * (before[i].yaw_rad + after[i].yaw_rad);
     const Eigen::Vector2d own = moved / input.dt_s, l = left(heading), a = along(heading);
-    sliders.push_back({l, own.dot(l), load_n * model.friction_across});
-    sliders.push_back({a, own.dot(a), load_n * model.friction_along * config.friction_along_share});
+    double across_n = load_n * state.friction_across;
+    if (i < input.ground.size() && measurable(input.ground[i], model) &&
+        std::abs(input.ground[i].across_n) < config.stick_below * state.friction_across * input.ground[i].normal_n)
+      across_n *= config.stick_factor;
+    // A module rests on its two ends.
+    const double swing_m_s = 0.5 * model.module_length_m * (after[i].yaw_rad - before[i].yaw_rad) / input.dt_s;
+    sliders.push_back({l, own.dot(l) + swing_m_s, 0.5 * across_n, 0.5 * load_n});
+    sliders.push_back({l, own.dot(l) - swing_m_s, 0.5 * across_n, 0.5 * load_n});
+    sliders.push_back({a, own.dot(a), load_n * state.friction_along});
   }
 
   // First compute the velocity without friction, then the velocity with friction.
@@ -96,10 +141,8 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     if (change < 1e-6) break;
   }
   if (!velocity.allFinite()) velocity = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < sliders.size(); i += 2) {
-    const double share = total_n > 0.0 ? sliders[i].limit_n / (model.friction_across * total_n) : 0.0;
-    if (std::isfinite(share))
-      result.slip_m_s += share * std::abs(sliders[i].direction.dot(velocity) + sliders[i].own_m_s);
+  for (const Slider& s : sliders) {
+    if (total_n > 0.0) result.slip_m_s += s.sideways_load_n / total_n * std::abs(s.direction.dot(velocity) + s.own_m_s);
   }
   // The shape gives the offset of the head from the centre of mass.
   result.step_m = velocity * input.dt_s - (centre_after - centre_before);

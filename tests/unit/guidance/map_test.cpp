@@ -166,6 +166,22 @@ TEST(Map, TouchConfirmsTheObjectAndIgnoresGroundAndSelf) {
   EXPECT_EQ(m.map().touch_count, 0);  // forgotten
 }
 
+TEST(Map, APartOfAZoneAtTheImagesBorderMovesNeitherTheZoneNorThePose) {
+  Mapping m;
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobZone, 1.2, 0.0, 0.4)}, 20);
+  m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.05, 0.05, 0.001).asDiagonal());
+  // The head turns to the right, so that the image shows only the right half of the zone.
+  auto part = Mapping::blob(msg::kColourGreen, msg::kBlobZone, 1.2, -0.2, 0.2);
+  part.cut_left = true;
+  m.see({part}, 20);
+  const msg::FieldMap map = m.map();
+  ASSERT_EQ(map.object_count, 1);
+  EXPECT_NEAR(map.objects[0].x_m, 1.2, 1e-6);
+  EXPECT_NEAR(map.objects[0].y_m, 0.0, 1e-6);
+  EXPECT_EQ(map.objects[0].last_seen_tick, m.tick);
+  EXPECT_LT(m.filter.pose().p.norm(), 1e-6);
+}
+
 TEST(Map, PushedObjectDoesNotMoveThePose) {
   Mapping m;
   m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());

@@ -20,6 +20,14 @@ using testing::snake;
 
 const OdometryConfig kConfig = GuidanceConfig{}.odometry;
 
+/// The same with other guesses of the coefficients of friction. Without measured forces of the ground they stay.
+OdometryConfig with_friction(double along, double across) {
+  OdometryConfig config = kConfig;
+  config.friction_along = along;
+  config.friction_across = across;
+  return config;
+}
+
 constexpr double kPi = std::numbers::pi;
 
 /// A body whose links are so short that it is nearly a curve.
@@ -28,7 +36,6 @@ RobotModel fine_snake() {
   model.module_count = 48;
   model.module_length_m = 0.0445;
   model.module_mass_kg = 1e-3;  // almost no inertia
-  model.friction_along = 0.0;   // the ideal skin, on which a body slides along its own track
   model.joints.resize(47);
   return model;
 }
@@ -98,6 +105,7 @@ struct Travel {
 /// Slides the body by `length_m` at `speed_m_s` and dead-reckons with the filter's prediction.
 Travel travel(const SlidingBody& body, double from, double length_m, double speed_m_s) {
   const RobotModel model = fine_snake();
+  const OdometryConfig config = with_friction(0.0, 0.5);  // the ideal skin, on which a body slides along its own track
   const double dt = 0.02, h = 1e-3;
   PoseFilterState filter_state;
   PoseFilter filter(filter_state);
@@ -115,7 +123,7 @@ Travel travel(const SlidingBody& body, double from, double length_m, double spee
     input.joint_rad = now.q.data();
     input.joint_rad_s = rate.data();
     input.yaw_rad = now.head.yaw_rad;
-    const HeadStep step = advance_odometry(state, model, kConfig, input);
+    const HeadStep step = advance_odometry(state, model, config, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
   }
   const Eigen::Vector2d truth = start.head.to_local(now.head.p);
@@ -127,7 +135,8 @@ Travel travel(const SlidingBody& body, double from, double length_m, double spee
 /// Runs the odometry over the shapes q(t) of a snake that is at rest at first. Returns the final pose of the head in
 /// its first frame.
 PlanarPose run_shapes(const RobotModel& model, int ticks, const std::function<double(std::size_t, double)>& joint,
-                      const std::function<double(double)>& yaw, std::vector<double> load_n = {}) {
+                      const std::function<double(double)>& yaw, std::vector<double> load_n = {},
+                      const OdometryConfig& config = with_friction(0.05, 0.5)) {
   PoseFilterState filter_state;
   PoseFilter filter(filter_state);
   OdometryState state;
@@ -143,7 +152,7 @@ PlanarPose run_shapes(const RobotModel& model, int ticks, const std::function<do
     input.joint_rad_s = rate.data();
     input.yaw_rad = yaw(k * dt);
     input.load_n = load_n;
-    const HeadStep step = advance_odometry(state, model, kConfig, input);
+    const HeadStep step = advance_odometry(state, model, config, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
   }
   return filter.pose();
@@ -192,14 +201,13 @@ TEST(Odometry, ModulesWithoutLoadHaveNoFriction) {
 
 TEST(Odometry, CentreOfMassStaysWithoutFriction) {
   // Momentum is conserved, whatever the joints do.
-  RobotModel ice = snake();
-  ice.friction_along = ice.friction_across = 0.0;
+  const RobotModel ice = snake();
   const auto joint = [](std::size_t i, double t) {
     return i % 2 == 0 ? 0.4 * std::min(t, 1.0) * std::sin(4.0 * t - 0.6 * static_cast<double>(i)) : 0.0;
   };
   const auto yaw = [](double t) { return 0.3 * std::sin(2.0 * t); };
   const int ticks = 300;
-  const PlanarPose end = run_shapes(ice, ticks, joint, yaw);
+  const PlanarPose end = run_shapes(ice, ticks, joint, yaw, {}, with_friction(0.0, 0.0));
   const auto centre = [&](const PlanarPose& head, double t) {
     std::array<double, 23> q{};
     for (std::size_t i = 0; i < 23; ++i) q[i] = joint(i, t);
@@ -210,6 +218,44 @@ TEST(Odometry, CentreOfMassStaysWithoutFriction) {
     return sum;
   };
   EXPECT_LT((centre(end, 0.02 * ticks) - centre({}, 0.0)).norm(), 0.003);
+}
+
+TEST(Odometry, MeasuresTheFrictionOfTheGround) {
+  // A driving body whose modules show a friction of 0.2 along themselves, and sideways 0 to 0.8 evenly spread, so that
+  // the upper quartile is 0.6.
+  const RobotModel model = snake();
+  OdometryState state;
+  std::array<double, 23> q{}, rate{};
+  for (int k = 0; k < 3000; ++k) {
+    OdometryInput input;
+    input.joint_rad = q.data();
+    input.joint_rad_s = rate.data();
+    input.push_n = {12.0, 0.0};  // keeps the body driving, although it does not undulate
+    for (int i = 0; i < 24; ++i) {
+      const double sideways = 0.8 * ((7 * i + 5 * k) % 24 + 0.5) / 24.0;
+      input.ground.push_back({i % 2 == 0 ? -0.6 : 0.6, 3.0 * sideways, 3.0});
+    }
+    input.ground[3].normal_n = std::nan("");  // something else touches this module, too
+    input.ground[3].along_n = 100.0;
+    advance_odometry(state, model, with_friction(0.05, 0.3), input);
+  }
+  EXPECT_NEAR(state.friction_along, 0.2, 0.01);
+  EXPECT_NEAR(state.friction_across, 0.6, 0.05);
+}
+
+TEST(Odometry, ARobotAtRestMeasuresNoFriction) {
+  const RobotModel model = snake();
+  OdometryState state;
+  std::array<double, 23> q{}, rate{};
+  for (int k = 0; k < 500; ++k) {
+    OdometryInput input;
+    input.joint_rad = q.data();
+    input.joint_rad_s = rate.data();
+    input.ground.assign(24, {0.01, 0.02, 3.0});
+    advance_odometry(state, model, with_friction(0.05, 0.3), input);
+  }
+  EXPECT_EQ(state.friction_along, 0.05);
+  EXPECT_EQ(state.friction_across, 0.3);
 }
 
 TEST(PoseFilter, LandmarksSeenAgainCorrectTheDrift) {

@@ -1,4 +1,5 @@
-// Dead reckoning compared with the simulated physics: inertia, slip, compliant joints, sensor noise.
+// Dead reckoning compared with the simulated physics: inertia, slip, sensor noise, and grounds that the robot does not
+// know.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,19 +23,23 @@ const OdometryConfig kConfig = GuidanceConfig{}.odometry;
 struct Case {
   const char* name;
   OpenLoopGait gait;
-  double ground_scale;  // factor on the friction of the ground, which the robot does not know
+  double friction_along = 0.05, friction_across = 0.5;
 };
 
 double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
 
 class DeadReckoning : public testing::TestWithParam<Case> {};
 
-TEST_P(DeadReckoning, StaysWithinFivePercentOfTheDistance) {
+TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
   const Case& c = GetParam();
   const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   Scenario scenario;
-  scenario.friction.ground_scale = c.ground_scale;
-  World world(robot, scenario);
+  RobotModel on_ground = robot;
+  on_ground.friction_along = c.friction_along;
+  on_ground.friction_across = c.friction_across;
+  World world(on_ground, scenario);
+  RobotModel blind = robot;  // guidance must not read the friction of the robot file
+  blind.friction_along = blind.friction_across = std::nan("");
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
 
@@ -56,12 +61,16 @@ TEST_P(DeadReckoning, StaysWithinFivePercentOfTheDistance) {
     input.joint_rad = q.data();
     input.joint_rad_s = rate.data();
     input.yaw_rad = wrap_angle(yaw_of(world.module_pose(0)) - yaw_of(start) + drift_rad);
-    input.load_n.assign(robot.module_count, 0.0);
+    input.ground.assign(robot.module_count, {0.0, 0.0, 0.0});
     for (const ModuleContact& contact : world.contacts()) {
-      input.load_n[contact.module_index] += contact.force_n.z() + robot.contact_force_noise_n * normal(random);
+      Eigen::Vector3d force = contact.force_n;
+      for (double& each : force) each += robot.contact_force_noise_n * normal(random);
+      GroundForce& ground = input.ground[contact.module_index];
+      ground = {ground.along_n + force.x(), ground.across_n + force.y(), ground.normal_n + force.z()};
     }
+    for (const GroundForce& ground : input.ground) input.load_n.push_back(ground.normal_n);
     if (k == 0) input.load_n.clear();  // no contact has been measured yet
-    const HeadStep step = advance_odometry(state, robot, kConfig, input);
+    const HeadStep step = advance_odometry(state, blind, kConfig, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
     path_m += (world.module_pose(0).translation() - last).norm();
     last = world.module_pose(0).translation();
@@ -74,14 +83,21 @@ TEST_P(DeadReckoning, StaysWithinFivePercentOfTheDistance) {
   const double error_m = (filter.pose().p - truth).norm();
   std::printf("%s: %.2f m, error %.3f m (%.1f %%), yaw drift %.2f degrees\n", c.name, path_m, error_m,
               100.0 * error_m / path_m, std::abs(drift_rad) * 180.0 / std::numbers::pi);
-  EXPECT_LT(error_m, 0.05 * path_m);
+  std::printf("  friction along %.3f (true %.3f), across %.3f (true %.3f)\n", state.friction_along, c.friction_along,
+              state.friction_across, c.friction_across);
+  EXPECT_NEAR(state.friction_along, c.friction_along, 0.2 * c.friction_along + 0.005);
+  EXPECT_NEAR(state.friction_across, c.friction_across, 0.2 * c.friction_across);
+  EXPECT_LT(error_m, 0.06 * path_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gaits, DeadReckoning,
-                         testing::Values(Case{"straight", {}, 1.0},
-                                         Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.8},
-                                         Case{"backwards", {0.5, -0.7, 1.07, 0.0}, 1.0},
-                                         Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 1.2}),
+                         testing::Values(Case{"straight", {}},
+                                         Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.04, 0.4},
+                                         Case{"backwards", {0.5, -0.7, 1.07, 0.0}},
+                                         Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 0.06, 0.6},
+                                         Case{"creeping", {0.35, 0.4, 1.07, 0.0}}, Case{"half the ratio", {}, 0.1, 0.5},
+                                         Case{"twice the ratio", {}, 0.025, 0.5},
+                                         Case{"twice the friction", {}, 0.1, 1.0}),
                          [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });
 
 }  // namespace
