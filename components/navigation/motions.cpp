@@ -61,12 +61,17 @@ void undulate_on(const Gait& gait, double curvature_1_m, double direction,
 }
 
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output) {
-  constexpr std::uint16_t kHeadJoints = 3;
+  bend_joints(0, each_rad, rate_rad_s, grip, output);
+}
+
+void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output) {
+  constexpr std::size_t kBentJoints = 3;
   begin("bend", output);
   set_posture(grip, output);
   output.desired.shape_rate_rad_s = rate_rad_s;
-  if (output.desired.shape_count < kHeadJoints) output.desired.shape_count = kHeadJoints;
-  for (std::size_t k = 0; k < kHeadJoints; ++k) output.desired.shape_rad[k] += each_rad;
+  const std::size_t end = first + kBentJoints;
+  output.desired.shape_count = std::max(output.desired.shape_count, static_cast<std::uint16_t>(end));
+  for (std::size_t k = first; k < end; ++k) output.desired.shape_rad[k] += each_rad;
 }
 
 void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,

@@ -16,6 +16,8 @@ void undulate_on(const Gait& gait, double curvature_1_m, double direction,
 /// Bends the three yaw joints next to the head by `each_rad` each, positive left. The other joints are straight, or
 /// hold the object.
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
+/// The same with three neighbouring yaw joints, of which `first` is the one next to the head (0: the foremost).
+void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
 /// Wraps the body round the object on `side` (+1 left, -1 right): the arc slides along the body at `speed_m_s`.
 void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,
                 const Grip& grip, TaskOutput& output);

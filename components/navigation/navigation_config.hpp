@@ -131,8 +131,10 @@ struct TrackConfig : NavigationSection {
                             "The body, too, must point to a reached object within this angle");
   double too_near_m = add(too_near_m, "too_near_m", 0.45, "m", bounds::kLength, kAtStart,
                           "The body moves away from an object that is nearer than this");
-  double away_m = add(away_m, "away_m", 1.3, "m", bounds::kLength, kAtStart,
-                      "It moves away until the object is this far from the head");
+  double turn_radius_m = add(turn_radius_m, "turn_radius_m", 0.55, "m", {0.05, 10.0}, kAtStart,
+                             "Radius of the head's path in turns on the spot: the body moves away until the turn fits");
+  double leave_timeout_s = add(leave_timeout_s, "leave_timeout_s", 20.0, "s", bounds::kTime, kAtStart,
+                               "The body moves away for at most this time");
   double turn_rad = add(turn_rad, "turn_rad", 1.0, "rad", bounds::kAngle, kAtStart,
                         "The body turns on the spot towards an object with a larger bearing");
   double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature, kAtStart,
@@ -204,12 +206,12 @@ struct GraspConfig : NavigationSection {
       add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
   double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
                                    "Time constant of the low-pass on the body's speed");
-  Gait wrap = add(wrap, "wrap", {0.4, 0.35, 1.07}, kAtStart, "Gait of the wrap");
-  Gait seat = add(seat, "seat", {0.7, 0.4, 1.07}, kAtStart, "Gait that drives the base to the object");
+  Gait wrap = add(wrap, "wrap", {0.5, 0.4, 1.07}, kAtStart, "Gait of the wrap");
+  Gait seat = add(seat, "seat", {1.0, 0.5, 1.07}, kAtStart, "Gait that drives the base to the object");
   Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, kAtStart, "Gait of the squeeze");
   double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, kAtStart,
                               "A touch counts for this time, because the gait interrupts touches");
-  double seat_force_n = add(seat_force_n, "seat_force_n", 1.0, "N", bounds::kForce, kWhileRunning,
+  double seat_force_n = add(seat_force_n, "seat_force_n", 0.4, "N", bounds::kForce, kWhileRunning,
                             "Force in the middle of the base that shows that the object touches it");
   double seat_time_s = add(seat_time_s, "seat_time_s", 1.0, "s", bounds::kTime, kAtStart,
                            "Duration of this force after which the squeeze begins");

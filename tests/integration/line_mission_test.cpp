@@ -25,7 +25,7 @@ TEST_F(MissionRun, FindsTheLineAgainAfterLosingItBehindASharpBend) {
       "name: sharp_bend\nmission: {sequence: [], line_colour: blue}\nline:\n  colour: blue\n  width_m: 0.05\n  "
       "begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: "
       "2.0}\n"
-      "    - {length_m: 0.38, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
+      "    - {length_m: 0.42, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
       "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n");
   ASSERT_NO_FATAL_FAILURE(succeeds(bend, 40.0));
   const double lost_s = event_s("line_lost");

@@ -1,6 +1,7 @@
 // Pregrasp (Tables VII, VIII): the snake bends away until the object leaves the view and passes beside it in forward
-// steps. After each step it bends the part of the body next to the head until that part touches the object. The task
-// ends when the object lies beside the body where the body can be wrapped round it.
+// steps. After each step it bends the joints behind the object, so that the part of the body in front of them swings
+// against the object and touches it. The task ends when the object lies beside the body where the body can be wrapped
+// round it.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,9 @@
 
 namespace constrictor {
 namespace {
+
+constexpr double kStep_m = 0.12;       // of the head, after a touch movement that did not touch the object
+constexpr std::size_t kSwinging = 12;  // modules that the touch movement can move
 
 enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
 
@@ -24,12 +28,13 @@ struct PregraspState : PhaseState {
   bool felt = false;    ///< the present attempt touched the object
   bool deep = false;    ///< the object lies between deep_min_m and deep_max_m along the body
   PlanarPose rest;      ///< the head before the touch movement
+  int bend_joint = 0;   ///< first of the yaw joints that bend in the touch movement
   SteeringState steering;
   double unseen_s = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, misses, felt, deep, rest,
-            steering, unseen_s);
+            bend_joint, steering, unseen_s);
   }
 };
 
@@ -146,12 +151,25 @@ class Pregrasp : public StatefulTask<PregraspState> {
     if (state_.phase_s > 15.0) enter(kSettle);
   }
 
+  /// The first yaw joint that lies at least kLever_m behind a place of the straight body, `behind_m` behind the head's
+  /// centre. When it bends, the place moves sideways.
+  static int first_joint_behind(const TaskInput& input, double behind_m) {
+    constexpr double kLever_m = 0.05;
+    constexpr std::size_t kLast = 4;  // the joints behind are needed for the base of the U
+    const std::vector<std::size_t> yaw_joints = input.robot.yaw_joints();
+    std::size_t k = 0;
+    while (k < kLast && (static_cast<double>(yaw_joints[k]) + 0.5) * input.robot.module_length_m < behind_m + kLever_m)
+      ++k;
+    return static_cast<int>(k);
+  }
+
   void settle(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
     output.phase = "settle";
     bend_head(0.0, config.touch_rate_rad_s, grip, output);
     if (state_.phase_s < config.settle_s || !input.motion_done) return;
     state_.rest = input.X_MH;
+    state_.bend_joint = first_joint_behind(input, -state_.rest.to_local(state_.p_MO).x());
     state_.felt = false;
     state_.deep = false;
     enter(kTouch);
@@ -162,12 +180,14 @@ class Pregrasp : public StatefulTask<PregraspState> {
     output.phase = "touch";
     // An object that was not touched is farther away than it looked: each attempt reaches farther.
     const double limit_rad = config.touch_limit_rad + config.touch_further_rad * state_.misses;
-    bend_head(state_.side * limit_rad, config.touch_rate_rad_s, grip, output);
+    bend_joints(static_cast<std::size_t>(state_.bend_joint), state_.side * limit_rad, config.touch_rate_rad_s, grip,
+                output);
     const Touch* best = nullptr;
     for (const Touch& t : input.touches) {
       const PlanarPose& module = input.body[t.module];
       const bool inner_side = state_.side * t.normal_H.dot(module.left()) < 0.3;
-      if (t.module < 9 && inner_side && t.force_n >= config.touch_force_n && (!best || t.force_n > best->force_n))
+      if (t.module < kSwinging && inner_side && t.force_n >= config.touch_force_n &&
+          (!best || t.force_n > best->force_n))
         best = &t;
     }
     if (best) {
@@ -202,10 +222,12 @@ class Pregrasp : public StatefulTask<PregraspState> {
       lose(input, grip, output, "the object was not touched");
       return;
     }
-    // The touch was too near to the head, or there was none: take another step, a little farther than the last.
+    // The touch was too near to the head, or there was none: take another step, a little farther than the last. An
+    // object that lies beside the body already, and was not touched, is farther aside than it looked.
     if (!state_.felt) {
       ++state_.misses;
-      state_.past_m = std::max(state_.past_m, past_m(input)) + 0.12;
+      if (past_m(input) < -config.deep_min_m - kStep_m)
+        state_.past_m = std::max(state_.past_m, past_m(input)) + kStep_m;
     }
     enter(kAdvance);
   }

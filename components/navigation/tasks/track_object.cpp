@@ -1,12 +1,13 @@
 // Track object (Tables V, VI): a PID on the object's bearing steers the undulation at constant speed until the object
-// is directly in front of a straight body. If the object is too near for that, the body first moves away and then turns
-// towards the object on the spot.
+// is directly in front of a straight body. If the room does not suffice to turn towards the object and to straighten
+// the body, the body first moves away as far as the turn needs, and then turns.
 #include <algorithm>
 #include <cmath>
 
 #include "navigation/motions.hpp"
 #include "navigation/object_handles.hpp"
 #include "navigation/steering.hpp"
+#include "navigation/turn_geometry.hpp"
 
 namespace constrictor {
 namespace {
@@ -77,7 +78,9 @@ class TrackObject : public StatefulTask<TrackState> {
       return;
     }
     double curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
-    state_.turning = std::abs(turn_rad) > (state_.turning ? 0.3 : config.turn_rad);
+    const bool was_turning = state_.turning;
+    state_.turning = std::abs(turn_rad) > (was_turning ? 0.3 : config.turn_rad);
+    const bool cramped = state_.turning && !was_turning && missing_room_m(input, object) > 0.0;
     if (state_.turning) curvature_1_m = std::copysign(config.turn_curvature_1_m, turn_rad);
     undulate(gait, curvature_1_m, 1.0, grip, output);
     output.phase = in_view && !state_.turning ? "track" : "turn to";
@@ -87,7 +90,7 @@ class TrackObject : public StatefulTask<TrackState> {
     if (reached && straight && range_m > config.too_near_m) {
       output.emit(msg::kEventObjectReached, colour, seen_handle(input, colour));
       output.succeed();
-    } else if (range_m <= config.too_near_m || (range_m <= config.reach_m && state_.turning)) {
+    } else if (range_m <= config.too_near_m || cramped || (range_m <= config.reach_m && state_.turning)) {
       state_.leaving = true;
       state_.leaving_s = 0.0;
       ++state_.leaves;
@@ -95,21 +98,34 @@ class TrackObject : public StatefulTask<TrackState> {
   }
 
  private:
-  /// Moves away, each time farther: a body that turns towards an object too near beside it only circles it.
+  /// [m] By how much the way to the object is too short for the body to turn towards the object and to straighten.
+  /// Negative if there is room to spare. The whole body bends into an arc of the turn's curvature. Its centre moves
+  /// along this arc, and when the body straightens, the head is half a length ahead of the centre.
+  static double missing_room_m(const TaskInput& input, const Sighting& object) {
+    const TrackConfig& config = input.config.track;
+    Eigen::Vector2d centre_H(0.0, 0.0);
+    for (const PlanarPose& module : input.body) centre_H += module.p / static_cast<double>(input.body.size());
+    const PlanarPose X_MC{input.X_MH.to_parent(centre_H), body_course_rad(input)};
+    const double half_length_m = 0.5 * input.robot.module_length_m * static_cast<double>(input.robot.module_count);
+    const TurnTowards turn = turn_towards(X_MC.to_local(object.p_M()), config.turn_radius_m);
+    return half_length_m + config.too_near_m + object.radius_m - turn.straight_m;
+  }
+
+  /// Moves away until the turn towards the object has the room that it needs. If this was not enough the last time, the
+  /// body moves farther, because it does not follow the computed circle exactly.
   void leave(const TaskInput& input, Grip& grip, const Sighting& object, double turn_rad, TaskOutput& output) {
-    constexpr double kLeave_s = 12.0;
     constexpr double kFarther_m = 0.35;
-    constexpr double kLonger_s = 4.0;
     constexpr int kMostFarther = 3;
-    const int farther = std::min(state_.leaves - 1, kMostFarther);
+    const double margin_m = kFarther_m * std::min(state_.leaves, kMostFarther);
     state_.leaving_s += input.tick.dt_s();
     const bool backwards = std::cos(turn_rad) > 0.0;
     undulate(input.config.travel, 0.0, backwards ? -1.0 : 1.0, grip, output);
     output.phase = backwards ? "back off" : "leave";
-    const bool away = (object.p_M() - input.X_MH.p).norm() >= input.config.track.away_m + kFarther_m * farther &&
+    const bool away = missing_room_m(input, object) + margin_m <= 0.0 &&
                       nearest_module_m(input, object.p_M()) >= input.config.search.near_m;
-    if (!away && state_.leaving_s < kLeave_s + kLonger_s * farther) return;
+    if (!away && state_.leaving_s < input.config.track.leave_timeout_s) return;
     state_.leaving = false;
+    state_.turning = true;
     state_.steering = {};
   }
 };
