@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "runtime/host.hpp"
+#include "support/command_lines.hpp"
 #include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
@@ -82,14 +83,10 @@ class DeterminismRun : public ::testing::Test {
   /// Pid of the process of this test's run whose program or whose list of hosted components is `name`; -1 if there is
   /// none.
   [[nodiscard]] pid_t pid_of(const std::string& name) const {
-    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      const std::string pid = entry.path().filename();
-      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::ifstream file(entry.path() / "cmdline");
-      const std::string line{std::istreambuf_iterator<char>(file), {}};
+    for (const auto& [pid, line] : command_lines()) {
       const std::string executable = std::filesystem::path(line.substr(0, line.find('\0'))).filename();
       const bool hosts = executable == "constrictor_host" && line.find('\0' + name + '\0') != std::string::npos;
-      if ((executable == name || hosts) && line.find(dir_.string()) != std::string::npos) return std::stoi(pid);
+      if ((executable == name || hosts) && line.find(dir_.string()) != std::string::npos) return pid;
     }
     return -1;
   }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "runtime/host.hpp"
+#include "support/command_lines.hpp"
 #include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
@@ -76,14 +77,10 @@ class RunCommand : public ::testing::Test {
   /// The processes of this test's runs: the pid for each list of hosted components.
   [[nodiscard]] std::map<std::string, pid_t> members() const {
     std::map<std::string, pid_t> found;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string pid = entry.path().filename();
-      if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::ifstream file(entry.path() / "cmdline");
-      const std::string line{std::istreambuf_iterator<char>(file), {}};
+    for (const auto& [pid, line] : command_lines()) {
       const auto name = line.find('\0');
       if (line.find(dir_.string()) == std::string::npos || line.find("--incarnation") == std::string::npos) continue;
-      found[line.substr(name + 1).c_str()] = std::stoi(pid);
+      found[line.substr(name + 1).c_str()] = pid;
     }
     return found;
   }

@@ -1,0 +1,29 @@
+// The processes of this host and their command lines.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+namespace constrictor::testing {
+
+/// The command line of each process: its arguments, each with a final '\0'. It is empty for a process that ends
+/// meanwhile.
+inline std::map<pid_t, std::string> command_lines() {
+  std::map<pid_t, std::string> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string pid = entry.path().filename();
+    if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::ifstream file(entry.path() / "cmdline");
+    std::ostringstream text;
+    text << file.rdbuf();  // unlike an iterator, this does not throw when the process has just ended
+    found[std::stoi(pid)] = text.str();
+  }
+  return found;
+}
+
+}  // namespace constrictor::testing
