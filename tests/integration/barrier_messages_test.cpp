@@ -123,6 +123,14 @@ TEST(BarrierMessages, ImpossibleMessagesAreRejectedAndCountedAndTheRunGoesOn) {
   ASSERT_TRUE(eventually(newest_state)) << processes.front().errors();
   stranger.learn(*state);
   ASSERT_TRUE(eventually([&] { return stranger.matched(); }));
+  // A process that has heard nothing of its run yet would believe the refusal of any run.
+  bool planner_knows_its_run = false;
+  ASSERT_TRUE(eventually([&] {
+    statuses.take([&](const msg::ComponentStatus& status) {
+      planner_knows_its_run |= status.component == std::string("planner") && status.tick >= 0;
+    });
+    return planner_knows_its_run;
+  }));
   stranger.send_all();
   stranger.refuse("planner", processes.at(2).pid());
   stranger.refuse("physics", processes.back().pid());
