@@ -244,7 +244,10 @@ struct DropConfig : NavigationSection {
   double back_m =
       add(back_m, "back_m", 1.3, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =
-      add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of backing off");
+      add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of each backing off");
+  double clear_m =
+      add(clear_m, "clear_m", 0.6, "m", bounds::kLength, kAtStart,
+          "Distance by which the straight robot backs off then, so that its turns do not reach the object");
   double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.3, "rad/s", bounds::kSpeed,
                                      kAtStart, "Speed of each joint when the body straightens");
   double approach_timeout_s =

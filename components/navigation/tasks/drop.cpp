@@ -1,5 +1,6 @@
 // Drop (Tables XI, XII): the robot drives over the drop zone of a colour until the zone has left the view, continues
-// until the held object is over the zone's centre, stops, opens the U, backs off and straightens.
+// until the held object is over the zone's centre, stops, opens the U, backs off, straightens, and backs off farther.
+// The body sweeps the ground when it turns later; what was dropped must be out of its reach.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +10,7 @@
 namespace constrictor {
 namespace {
 
-enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten };
+enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten, kClear };
 
 struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
@@ -39,9 +40,10 @@ class Drop : public StatefulTask<DropState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     state_.phase_s += input.tick.dt_s();
-    output.progress = state_.phase / 6.0;
-    run_phase<Drop, 6>(*this, {&Drop::drive, &Drop::drive, &Drop::stop, &Drop::open, &Drop::back, &Drop::straighten},
-                       state_.phase, input, grip, output);
+    output.progress = state_.phase / 7.0;
+    run_phase<Drop, 7>(
+        *this, {&Drop::drive, &Drop::drive, &Drop::stop, &Drop::open, &Drop::back, &Drop::straighten, &Drop::clear},
+        state_.phase, input, grip, output);
   }
 
  private:
@@ -130,6 +132,14 @@ class Drop : public StatefulTask<DropState> {
     output.phase = "straighten";
     bend_head(0.0, input.config.drop.straighten_rate_rad_s, grip, output);
     if (!input.motion_done || state_.phase_s < 0.2) return;
+    enter(input, kClear);
+  }
+
+  void clear(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const DropConfig& config = input.config.drop;
+    output.phase = "back off straight";
+    undulate(input.config.travel, 0.0, -1.0, grip, output);
+    if ((input.X_MH.p - state_.from.p).norm() < config.clear_m && state_.phase_s < config.back_timeout_s) return;
     output.emit(msg::kEventDroppingDone, input.parameters.drop_zone_colour, grip.handle);
     output.succeed();
   }
