@@ -4,6 +4,7 @@
 #   core    (the default) what is needed to build and run the programs
 #   tests   what the tests and benchmarks need in addition, Fast DDS with its Java runtime included
 #   tools   what formatting, static analysis and the documentation need in addition
+#   bench   MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
 # Example: scripts/setup.sh core tests
 set -euo pipefail
 
@@ -26,6 +27,7 @@ tests=(
   libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
 )
 tools=(clang-format clang-tidy doxygen graphviz shellcheck)
+bench=(libmujoco-dev)
 
 packages=()
 for group in "${@:-core}"; do
@@ -33,8 +35,9 @@ for group in "${@:-core}"; do
     core) packages+=("${core[@]}") ;;
     tests) packages+=("${tests[@]}") ;;
     tools) packages+=("${tools[@]}") ;;
-    --help) sed -n '2,7s/^# //p' "$0"; exit 0 ;;
-    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools" >&2; exit 2 ;;
+    bench) packages+=("${bench[@]}") ;;
+    --help) sed -n '2,8s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench" >&2; exit 2 ;;
   esac
 done
 

@@ -72,6 +72,8 @@ TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
                                    {{"list", ""}, "robots", "fish"},
                                    {{"run", ""}, "case_study", "fish"},
                                    {{"check", "--robot", ""}, "serpens", "--seed"},
+                                   {{"robot", ""}, "export", "list"},
+                                   {{"robot", "export", "--robot", ""}, "serpens", "--mjcf"},
                                    {{"node", "info", "n"}, "navigation", "list"}};
   std::vector<Words> lines;
   for (const auto& c : cases) lines.push_back(c.typed);

@@ -19,15 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file with this path. If there is no such file: the file of the project with this name.
-fs::path find_file(const std::string& text, const NamedFiles& files) {
-  if (fs::is_regular_file(text)) return fs::absolute(text);
-  const auto names = names_of(files);
-  if (std::find(names.begin(), names.end(), text) != names.end()) return data_path(files.folder / (text + ".yaml"));
-  throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", files.kind, text,
-                                       fmt::join(names, ", "), did_you_mean(text, names)));
-}
-
 void require_file(const std::string& what, const fs::path& file) {
   if (fs::is_regular_file(file)) return;
   throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
@@ -81,6 +72,14 @@ std::vector<std::string> names_of(const NamedFiles& files) {
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+fs::path find_file(const std::string& text, const NamedFiles& files) {
+  if (fs::is_regular_file(text)) return fs::absolute(text);
+  const auto names = names_of(files);
+  if (std::find(names.begin(), names.end(), text) != names.end()) return data_path(files.folder / (text + ".yaml"));
+  throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", files.kind, text,
+                                       fmt::join(names, ", "), did_you_mean(text, names)));
 }
 
 fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }

@@ -39,6 +39,10 @@ inline const NamedFiles kRobots{"robot", "components/lib/robot", "robots"};
 /// The names that users may choose, sorted.
 [[nodiscard]] std::vector<std::string> names_of(const NamedFiles& files);
 
+/// The file with this path. If there is no such file: the file of the project with this name. Throws ConfigurationError
+/// if there is neither.
+[[nodiscard]] std::filesystem::path find_file(const std::string& text, const NamedFiles& files);
+
 struct LaunchPlan {
   LaunchManifest manifest;          ///< components as --in-process and --group distribute them
   std::vector<std::string> roster;  ///< in the manifest's order, which does not depend on the distribution

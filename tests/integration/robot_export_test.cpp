@@ -1,0 +1,78 @@
+// `constrictor robot export`: the examples of its help, what it writes, and what it refuses.
+#include <sstream>
+
+#include "integration/run_command_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+class RobotExport : public RunCommand {
+ protected:
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream file(dir_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+};
+
+TEST_F(RobotExport, TheExamplesOfItsHelpWork) {
+  Process help = command({"robot", "export", "--help"});
+  ASSERT_EQ(help.wait(20s), exit_status::kOk) << help.errors();
+  std::istringstream text(help.output());
+  std::string line;
+  while (std::getline(text, line) && line != "EXAMPLES") {}
+  int examples = 0;
+  for (; std::getline(text, line) && line.starts_with("  constrictor "); ++examples) {
+    auto environment = environment_;
+    environment["PATH"] = fs::path(program("constrictor")).parent_path().string() + ":/usr/bin:/bin";
+    Process example({"/bin/sh", "-c", "cd " + dir_.string() + " && " + line}, environment);
+    EXPECT_EQ(example.wait(20s), exit_status::kOk) << line << example.errors();
+  }
+  EXPECT_EQ(examples, 2);
+  EXPECT_NE(read("mamba.xml").find("<mujoco model=\"mamba\">"), std::string::npos);
+  EXPECT_NE(read("serpens.xml").find("<mujoco model=\"serpens\">"), std::string::npos);
+}
+
+TEST_F(RobotExport, WritesTheSameToAFileAsToTheStandardOutput) {
+  Process printed = command({"robot", "export", "--mjcf", "--robot", "serpens"});
+  EXPECT_EQ(printed.wait(20s), exit_status::kOk) << printed.errors();
+  write("old.xml", std::string(100'000, 'x'));
+  Process written =
+      command({"robot", "export", "--mjcf", "--robot", "serpens", "--output", (dir_ / "old.xml").string()});
+  EXPECT_EQ(written.wait(20s), exit_status::kOk) << written.errors();
+  EXPECT_EQ(written.output(), "");
+  EXPECT_EQ(read("old.xml"), printed.output()) << "an existing file is replaced";
+}
+
+TEST_F(RobotExport, RefusesWrongOptionsRobotsAndFiles) {
+  struct Case {
+    std::vector<std::string> options;
+    int status;
+    std::string said;
+  };
+  write("robot.yaml", "name: none\n");
+  const std::string missing = (dir_ / "no_such_folder" / "robot.xml").string();
+  const std::vector<Case> cases = {
+      {{}, exit_status::kUsage, "--mjcf is required"},
+      {{"--mjfc"}, exit_status::kUsage, "--mjcf"},
+      {{"--mjcf", "mamba"}, exit_status::kUsage, "mamba"},
+      {{"--mjcf", "--robot", "mambo"}, exit_status::kConfiguration, "robot: found 'mambo'"},
+      {{"--mjcf", "--robot", (dir_ / "robot.yaml").string()}, exit_status::kConfiguration, "robot.yaml:1: module: "},
+      {{"--mjcf", "--output", missing}, exit_status::kSoftware, missing + ": No such file or directory"},
+      {{"--mjcf", "--output", dir_.string()}, exit_status::kSoftware, dir_.string() + ": Is a directory"},
+      {{"--mjcf", "--output", "/dev/full"}, exit_status::kSoftware, "/dev/full: No space left on device"},
+  };
+  for (const auto& [options, status, said] : cases) {
+    std::vector<std::string> arguments = {"robot", "export"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    Process refused = command(arguments);
+    EXPECT_EQ(refused.wait(20s), status) << said << refused.output() << refused.errors();
+    EXPECT_NE(refused.errors().find(said), std::string::npos) << said << " in: " << refused.errors();
+    EXPECT_EQ(refused.output(), "") << said;
+  }
+  Process full({"/bin/sh", "-c", program("constrictor") + " robot export --mjcf > /dev/full"}, environment_);
+  EXPECT_EQ(full.wait(20s), exit_status::kSoftware);
+  EXPECT_NE(full.errors().find("the standard output: No space left on device"), std::string::npos) << full.errors();
+}
+
+}  // namespace
+}  // namespace constrictor::testing
