@@ -13,7 +13,7 @@ constexpr double kLeastRotorInertia_kg_m2 = 1e-6;
 // Modules that are nearer to each other along the body than this overlap at their joint, or touch at its limits. They
 // make no contacts, as in sim/world.
 constexpr std::size_t kNearestSelfContact = 3;
-// The friction of modules on each other and on objects; a scenario of the simulator has these defaults, too.
+// The friction of modules on each other: the default of a scenario of the simulator.
 constexpr double kModuleFriction = 0.2;
 
 std::string escaped(const std::string& text) {
@@ -37,7 +37,7 @@ class Writer {
     line(1, R"(<compiler angle="radian"/>)");
     line(1, R"(<size nconmax="500" njmax="2000"/>)");  // the default has no room for long robots
     // implicit: the servos' feedback of the rate would be unstable otherwise. An elliptic cone, because a pyramid has
-    // less friction along its diagonals. Conjugate gradients need half of the time of Newton's method here.
+    // less friction along its diagonals. With conjugate gradients a step takes less time than with Newton's method.
     line(1, R"(<option timestep="0.002" gravity="0 0 -9.81" integrator="implicit" cone="elliptic" impratio="10")");
     line(1, R"(        solver="CG" iterations="20" tolerance="1e-4"/>)");
     line(1, "<worldbody>");

@@ -7,7 +7,7 @@
 
 namespace constrictor {
 
-/// The text of an MJCF file for MuJoCo 2.2 or newer. The robot lies straight on a ground plane at z = 0. The head has
+/// The text of an MJCF file for MuJoCo 2.2. The robot lies straight on a ground plane at z = 0. The head has
 /// the origin of the world below its centre, and the body lies along -x.
 ///
 /// Names: body and geom `module_0` (the head) to the tail; joint and actuator `joint_0`, ... as in RobotModel, with the

@@ -47,7 +47,7 @@ void add_robot(CLI::App& app, Action& action) {
   auto* robot = add_group(app, "robot", "write the robot as a model of another simulator");
   auto* sub = add_subcommand(*robot, "export", "write the robot as a model of another simulator", action, options,
                              export_robot);
-  sub->add_flag("--mjcf", options->mjcf, "XML file of the simulator MuJoCo, version 2.2 or newer")->required();
+  sub->add_flag("--mjcf", options->mjcf, "XML file for the simulator MuJoCo (tested with version 2.2.2)")->required();
   sub->add_option("--robot", options->robot, "robot: a name (see `constrictor list robots`) or a file")
       ->capture_default_str();
   sub->add_option("--output", options->output,

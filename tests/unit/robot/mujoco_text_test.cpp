@@ -23,7 +23,7 @@ std::vector<Element> elements_of(const std::string& xml) {
   static const std::regex kAttribute(R"_((\w+)="([^"]*)")_");
   std::vector<Element> elements;
   std::vector<std::string> open;
-  std::string between = std::regex_replace(xml, kTag, "");
+  const std::string between = std::regex_replace(xml, kTag, "");
   EXPECT_EQ(between.find_first_not_of(" \n"), std::string::npos) << "not XML: " << between;
   for (std::sregex_iterator at(xml.begin(), xml.end(), kTag), end; at != end; ++at) {
     const std::string name = (*at)[2];
