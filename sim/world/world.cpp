@@ -37,10 +37,10 @@ double bound_of(BodyShape shape, const Vector3d& size_m) {
   return shape == BodyShape::kCylinder ? std::hypot(size_m.x(), 0.5 * size_m.z()) : 0.5 * size_m.norm();
 }
 
-OdeWorld make_world(const SolverSettings& settings) {
+OdeWorld make_world(const SolverSettings& settings, const Vector3d& gravity_m_s2) {
   ensure_ode();
   OdeWorld world(dWorldCreate());
-  dWorldSetGravity(world.get(), 0.0, 0.0, -World::kGravity_m_s2);
+  dWorldSetGravity(world.get(), gravity_m_s2.x(), gravity_m_s2.y(), gravity_m_s2.z());
   dWorldSetERP(world.get(), settings.erp);
   dWorldSetCFM(world.get(), settings.cfm);
   dWorldSetQuickStepNumIterations(world.get(), settings.iterations);
@@ -56,7 +56,7 @@ World::World(const RobotModel& robot, const Scenario& scenario, const SolverSett
     : robot_(robot),
       scenario_(scenario),
       settings_(settings),
-      world_(make_world(settings)),
+      world_(make_world(settings, scenario.gravity_m_s2)),
       contacts_(world_.get(), settings),
       reorder_state_(settings.reorder_seed) {
   build_robot();
@@ -161,8 +161,8 @@ void World::stand_on_bellies() {
   constexpr double kTipped_rad = 0.8;
   constexpr double kDamping_s = 0.01;
   constexpr double kNear_m = 0.01;
-  const double most_nm = robot_.module_mass_kg * kGravity_m_s2 * robot_.module_belly_half_width_m;
-  if (most_nm == 0.0) return;
+  const double most_nm = robot_.module_mass_kg * -scenario_.gravity_m_s2.z() * robot_.module_belly_half_width_m;
+  if (most_nm <= 0.0) return;
   for (const dBodyID body : modules_) {
     const dReal* R = dBodyGetRotation(body);
     const double roll_rad = std::atan2(R[9], R[10]);
@@ -208,7 +208,7 @@ ImuTruth World::imu() const {
   imu.q_WHead = quaternion_of(modules_[0]);
   const Eigen::Matrix3d R_HeadW = module_pose(0).linear().transpose();
   imu.angular_velocity_rad_s = R_HeadW * module_angular_velocity_rad_s(0);
-  imu.proper_acceleration_m_s2 = R_HeadW * (acceleration_m_s2_ + Vector3d(0.0, 0.0, kGravity_m_s2));
+  imu.proper_acceleration_m_s2 = R_HeadW * (acceleration_m_s2_ + (Vector3d::Zero() - scenario_.gravity_m_s2));
   return imu;
 }
 

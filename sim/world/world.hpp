@@ -31,8 +31,6 @@ struct ImuTruth {
 
 class World {
  public:
-  static constexpr double kGravity_m_s2 = 9.81;
-
   /// Copies its arguments. Does not throw for arguments that load_robot and load_scenario accept.
   World(const RobotModel& robot, const Scenario& scenario, const SolverSettings& settings = {});
 

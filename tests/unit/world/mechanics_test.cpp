@@ -136,5 +136,32 @@ TEST(Mechanics, ATallObjectPushedAtItsTopFallsOver) {
   EXPECT_LT(world.object_pose(0).linear()(2, 2), 0.3);
 }
 
+/// [m/s²] acceleration of a straight robot along x or y on a slope that falls in this direction.
+double slide_robot(double slope_rad, const Vector3d& downhill) {
+  Scenario scenario;
+  scenario.gravity_m_s2 = kG * (std::sin(slope_rad) * downhill - std::cos(slope_rad) * Vector3d::UnitZ());
+  World world(chain(4, JointAxis::kYaw), scenario);
+  hold(world, 0.0, 6.0, 0.4);
+  const double before = world.module_velocity_m_s(1).dot(downhill);
+  hold(world, 0.0, 6.0, 0.4);
+  // The inertial unit feels what the ground does: gravity is what it does not feel.
+  const double acceleration = (world.module_velocity_m_s(1).dot(downhill) - before) / 0.4;
+  const Vector3d felt = world.module_pose(0).linear() * world.imu().proper_acceleration_m_s2;
+  EXPECT_NEAR((felt - acceleration * downhill + scenario.gravity_m_s2).norm(), 0.0, 0.05);
+  return acceleration;
+}
+
+TEST(Mechanics, ARobotOnASlopeHoldsUpToItsFrictionAngleAndThenAccelerates) {
+  const RobotModel robot = mamba();
+  for (const auto& [downhill, mu] : {std::pair<Vector3d, double>(Vector3d::UnitX(), robot.friction_along),
+                                     std::pair<Vector3d, double>(Vector3d::UnitY(), robot.friction_across)}) {
+    const double angle = std::atan(mu);
+    EXPECT_NEAR(slide_robot(0.95 * angle, downhill), 0.0, 0.002);
+    const double beyond = 1.2 * angle;
+    const double expected = kG * (std::sin(beyond) - mu * std::cos(beyond));
+    EXPECT_NEAR(slide_robot(beyond, downhill), expected, 0.01 * expected);
+  }
+}
+
 }  // namespace
 }  // namespace constrictor
