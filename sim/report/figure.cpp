@@ -4,75 +4,27 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
 
+#include "sim/report/drawing.hpp"
 #include "sim/report/png.hpp"
 
 namespace constrictor::report {
 namespace {
 
-// The figure is drawn at twice its size and then reduced, which smooths the stroke fonts of OpenCV.
-constexpr int kScale = 2;
 constexpr int kMargin = 24;
 constexpr int kGap = 10;
 constexpr int kPanelHeight = 180;
 constexpr std::array<int, 5> kColumnWidths{150, 320, 240, 240, 362};  // caption, scene, camera, processed, torque
 constexpr int kHeaderHeight = 104;
 constexpr int kFailureHeight = 24;  // height of the text line that says why the mission did not succeed
-const cv::Scalar kInk(45, 40, 38);
-const cv::Scalar kGreyInk(125, 120, 118);
-const cv::Scalar kRedInk(40, 40, 190);
-const cv::Scalar kFaint(228, 226, 225);
-const cv::Scalar kFrame(196, 192, 190);
 
 cv::Scalar display_colour(std::uint8_t colour) {
   static const std::array<cv::Scalar, 5> kColours{cv::Scalar(150, 150, 150), cv::Scalar(72, 160, 44),
                                                   cv::Scalar(48, 48, 205), cv::Scalar(200, 96, 40),
                                                   cv::Scalar(30, 175, 225)};
   return kColours[colour < kColours.size() ? colour : 0];
-}
-
-cv::Point scaled(double x, double y) {
-  return {static_cast<int>(std::lround(x * kScale)), static_cast<int>(std::lround(y * kScale))};
-}
-cv::Rect scaled_rect(int x, int y, int width, int height) {
-  return {x * kScale, y * kScale, width * kScale, height * kScale};
-}
-
-enum class Align { kLeft, kCentre, kRight };
-
-/// Text with its baseline at y. `size` 1 gives capitals of about 11 pixels in the final figure.
-void text(cv::Mat& canvas, const std::string& words, double x, double y, double size, const cv::Scalar& colour,
-          bool bold = false, Align align = Align::kLeft) {
-  const double font_scale = 0.5 * size * kScale;
-  const int thickness = std::max(1, static_cast<int>(std::lround((bold ? 1.6 : 1.0) * size * kScale * 0.75)));
-  int baseline = 0;
-  const int font = bold ? cv::FONT_HERSHEY_DUPLEX : cv::FONT_HERSHEY_SIMPLEX;
-  const cv::Size extent = cv::getTextSize(words, font, font_scale, thickness, &baseline);
-  cv::Point origin = scaled(x, y);
-  if (align == Align::kCentre) origin.x -= extent.width / 2;
-  if (align == Align::kRight) origin.x -= extent.width;
-  cv::putText(canvas, words, origin, font, font_scale, colour, thickness, cv::LINE_AA);
-}
-
-/// `words`, cut at the end and marked with "..." if they are wider than `width` pixels of the final figure.
-std::string fitted(std::string words, double size, double width) {
-  const auto too_wide = [&](const std::string& candidate) {
-    int baseline = 0;
-    const cv::Size extent = cv::getTextSize(candidate, cv::FONT_HERSHEY_SIMPLEX, 0.5 * size * kScale, 1, &baseline);
-    return extent.width > width * kScale;
-  };
-  if (!too_wide(words)) return words;
-  while (!words.empty() && too_wide(words + "...")) words.pop_back();
-  return words + "...";
-}
-
-std::string number(double value, int decimals) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-  return buffer;
 }
 
 void picture(cv::Mat& canvas, const std::filesystem::path& file, int x, int y, int width) {
@@ -216,7 +168,7 @@ cv::Mat draw_figure(const FigureHeading& heading, const std::vector<FigureRow>& 
   const int row_height = kPanelHeight + 14;
   const int header_height = kHeaderHeight + (heading.failure.empty() ? 0 : kFailureHeight);
   const int height = header_height + static_cast<int>(rows.size()) * row_height + kMargin - 8;
-  cv::Mat canvas(height * kScale, width * kScale, CV_8UC3, cv::Scalar(255, 255, 255));
+  cv::Mat canvas = make_canvas(width, height);
 
   std::array<int, kColumnWidths.size()> left{};
   left[0] = kMargin;
@@ -253,9 +205,7 @@ cv::Mat draw_figure(const FigureHeading& heading, const std::vector<FigureRow>& 
     torque_plot(canvas, torques, limit_nm, row.time_s, window_s, left[4], top, kColumnWidths[4]);
     top += row_height;
   }
-  cv::Mat figure;
-  cv::resize(canvas, figure, {width, height}, 0, 0, cv::INTER_AREA);
-  return figure;
+  return reduced(canvas);
 }
 
 }  // namespace constrictor::report
