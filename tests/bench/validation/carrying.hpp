@@ -1,0 +1,22 @@
+// A robot that carries an object in a bend of its body, without the components that do this in a run: the load under
+// which the solver converges least.
+#pragma once
+
+#include "bench/validation/gait_run.hpp"
+
+namespace constrictor::validation {
+
+struct CarryingMeasurement {
+  double speed_m_s = 0.0;       ///< way of the robot's centre, second by second, divided by the time
+  double torque_rms_nm = 0.0;   ///< filtered torques of the yaw joints
+  double base_torque_nm = 0.0;  ///< mean of the joints that press on the object
+  double object_force_n = 0.0;  ///< mean sum of the forces on the object
+  double joint_gap_m = 0.0;     ///< largest
+  double slip_m = 0.0;          ///< how far the object has moved in the frame of the middle of the bend
+};
+
+/// Closes a bend of three yaw joints around a cylinder of 0.4 kg on the robot's left, squeezes it, and undulates with
+/// the gait of the task "carry" of navigation for ten seconds. Takes 28 s of simulated time.
+[[nodiscard]] CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettings& settings);
+
+}  // namespace constrictor::validation
