@@ -26,6 +26,8 @@ double Servo::torque_limit_nm(double rate_rad_s, double driving) const {
   return limit;
 }
 
+double Servo::stretch_rad(double angle_rad) const { return motor_angle_rad_ - angle_rad - play_rad_; }
+
 ServoRow Servo::row(double angle_rad, double rate_rad_s) {
   const double h = step_s_;
   const double duration = h * steps_;
@@ -43,21 +45,27 @@ ServoRow Servo::row(double angle_rad, double rate_rad_s) {
     row.softness = h / std::max(model_.rotor_inertia_kg_m2, 1e-9);
     row.velocity_rad_s = 0.0;
     row.torque_limit_nm = model_.gear_friction_nm;
+    loose_ = false;
     return row;
   }
   const double kp = model_.position_gain_nm_rad;
   const double kd = model_.velocity_gain_nm_s_rad;
   const double inertia = model_.rotor_inertia_kg_m2 / h;
-  const double angle = elastic() ? motor_angle_rad_ : angle_rad;
+  const double angle = model_.measured_rad(elastic() ? motor_angle_rad_ : angle_rad);
   const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
   const double sum = inertia + h * kp + kd;
   const double wanted_rate = std::clamp(reference_rate_rad_s_, -model_.max_speed_rad_s, model_.max_speed_rad_s);
   row.softness = 1.0 / sum;
   row.velocity_rad_s = (inertia * rate + kp * (reference_rad_ - angle) + kd * wanted_rate) / sum;
   if (elastic()) {
+    loose_motor_rad_s_ = row.velocity_rad_s;
+    const double apart_rad = motor_angle_rad_ - angle_rad + h * (loose_motor_rad_s_ - rate_rad_s);
+    play_rad_ = std::copysign(0.5 * model_.backlash_rad, apart_rad);
+    loose_ = std::abs(apart_rad) < std::abs(play_rad_);
+    if (loose_) return {};  // no torque
     const double spring = h * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
     row.softness += 1.0 / spring;
-    row.velocity_rad_s += model_.stiffness_nm_rad * (motor_angle_rad_ - angle_rad) / spring;
+    row.velocity_rad_s += model_.stiffness_nm_rad * stretch_rad(angle_rad) / spring;
   }
   row.torque_limit_nm = torque_limit_nm(rate_rad_s, row.velocity_rad_s - rate_rad_s);
   return row;
@@ -67,8 +75,8 @@ void Servo::advance(const ServoRow& row, double angle_before_rad, double rate_ra
   if (!elastic()) return;
   // The law of the spring gives the rate of the motor, also while the torque is at its limit.
   const double spring = step_s_ * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
-  const double stretched = model_.stiffness_nm_rad * (motor_angle_rad_ - angle_before_rad);
-  motor_rate_rad_s_ = rate_rad_s + (row.torque_nm(rate_rad_s) - stretched) / spring;
+  const double stretched = model_.stiffness_nm_rad * stretch_rad(angle_before_rad);
+  motor_rate_rad_s_ = loose_ ? loose_motor_rad_s_ : rate_rad_s + (row.torque_nm(rate_rad_s) - stretched) / spring;
   motor_angle_rad_ += step_s_ * motor_rate_rad_s_;
 }
 

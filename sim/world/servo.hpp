@@ -19,7 +19,9 @@ struct ServoRow {
 
 /// Equations, with the setpoint r, the motor's angle m (at the output of the gear) and the joint's angle q:
 ///   motor:    J m" = kp (r - m) + kd (r' - m') - t
-///   spring:   t = k (m - q) + d (m' - q'), with k of the series elastic element; without one, m = q
+///   spring:   t = k e + d e', where e = m - q, less half of the backlash towards 0, is the stretch of the series
+///             elastic element; t = 0 while m - q is within the backlash; without an elastic element, m = q
+///   encoder:  the controller reads m (q without an elastic element) with the encoder's resolution
 ///   limit:    |t| <= the smallest of the commanded limit and the speed-torque curve, minus the friction of the gear
 /// Both equations are integrated by the implicit Euler method together with the bodies, so that every step is stable.
 class Servo {
@@ -42,6 +44,8 @@ class Servo {
 
  private:
   [[nodiscard]] double torque_limit_nm(double rate_rad_s, double driving) const;
+  /// Stretch of the elastic element on the side of the backlash on which the gear will touch at the end of the step.
+  [[nodiscard]] double stretch_rad(double angle_rad) const;
 
   JointModel model_;
   JointSetpoint from_;  ///< where the curve of this tick begins; a joint begins at rest at the angle 0
@@ -53,6 +57,9 @@ class Servo {
   double reference_rate_rad_s_ = 0.0;
   double motor_angle_rad_ = 0.0;
   double motor_rate_rad_s_ = 0.0;
+  double play_rad_ = 0.0;           ///< half of the backlash, with the sign of the side on which the gear touches
+  bool loose_ = false;              ///< the gear will not touch in this step
+  double loose_motor_rad_s_ = 0.0;  ///< rate of the motor then
 };
 
 }  // namespace constrictor

@@ -28,6 +28,11 @@ JointModel read_joint(Configuration& joints) {
   if (joint.stiffness_nm_rad == 0.0 && joint.damping_nm_s_rad > 0.0) {
     throw joints.error("damping_nm_s_rad", "found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
   }
+  joint.backlash_rad = joints.number("backlash_rad", {0.0, 0.5}, 0.0);
+  if (joint.stiffness_nm_rad == 0.0 && joint.backlash_rad > 0.0) {
+    throw joints.error("backlash_rad", "found backlash without stiffness_nm_rad, which is the stiffness of the gear");
+  }
+  joint.encoder_step_rad = joints.number("encoder_step_rad", {0.0, 0.5}, 0.0);
   return joint;
 }
 

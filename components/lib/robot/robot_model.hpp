@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -26,6 +27,13 @@ struct JointModel {
   double no_load_speed_rad_s = 0.0;     ///< at which the motor has no torque left; 0: the torque does not fall
   double stiffness_nm_rad = 0.0;        ///< stiffness of the series elastic element; 0: the joint has none and is rigid
   double damping_nm_s_rad = 0.0;        ///< damping of the series elastic element
+  double backlash_rad = 0.0;            ///< play of the gear, in series with the elastic element; 0: none
+  double encoder_step_rad = 0.0;        ///< resolution of measured angles; 0: exact
+
+  /// The angle as the encoder measures it.
+  [[nodiscard]] double measured_rad(double angle_rad) const {
+    return encoder_step_rad > 0.0 ? encoder_step_rad * std::round(angle_rad / encoder_step_rad) : angle_rad;
+  }
 };
 
 /// A pin-hole camera in the head module.

@@ -186,5 +186,50 @@ TEST(Servo, ASpringNeverTransmitsMoreThanTheTorqueLimit) {
   EXPECT_GT(joint.angle_rad, 0.5);  // the load wins
 }
 
+TEST(Servo, BacklashLagsByHalfOfThePlayInTheDirectionOfMotion) {
+  JointModel loose = model();
+  loose.stiffness_nm_rad = 400.0;
+  loose.damping_nm_s_rad = 0.5;
+  loose.backlash_rad = 0.02;
+  Joint joint(loose);
+  const auto move_to = [&](double from_rad, double to_rad) {
+    for (int i = 1; i <= 250; ++i) {
+      // Friction of the joint keeps it in place while the gear does not touch.
+      joint.load_nm = -2.0 * joint.rate_rad_s;
+      joint.tick({from_rad + (to_rad - from_rad) * std::min(i / 200.0, 1.0), 0.0, 6.0});
+    }
+  };
+  move_to(0.0, 0.2);
+  EXPECT_NEAR(joint.angle_rad, 0.2 - 0.01, 5e-4);
+  move_to(0.2, 0.185);  // less than the play: the joint stays
+  EXPECT_NEAR(joint.angle_rad, 0.2 - 0.01, 5e-4);
+  move_to(0.185, 0.0);
+  EXPECT_NEAR(joint.angle_rad, 0.0 + 0.01, 5e-4);
+}
+
+TEST(Servo, BacklashTransmitsNoTorqueUntilTheGearTouches) {
+  JointModel loose = model();
+  loose.stiffness_nm_rad = 400.0;
+  loose.backlash_rad = 0.1;
+  Joint joint(loose);
+  joint.rate_rad_s = 1.0;  // pushed by hand through the play of 0.05 rad on this side
+  joint.tick({0.0, 0.0, 6.0});
+  EXPECT_EQ(joint.torque_nm, 0.0);
+  EXPECT_NEAR(joint.angle_rad, kTick_s, 1e-12);
+  for (int i = 0; i < 5; ++i) joint.tick({0.0, 0.0, 6.0});
+  EXPECT_LT(joint.rate_rad_s, 0.0);  // thrown back
+}
+
+TEST(Servo, AnEncoderOfCoarseStepsHoldsWithinOneStep) {
+  JointModel coarse = model();
+  coarse.encoder_step_rad = 0.01;
+  Joint joint(coarse);
+  for (int i = 0; i < 200; ++i) joint.tick({0.123, 0.0, 6.0});
+  EXPECT_NEAR(joint.angle_rad, 0.123, 0.01);
+  EXPECT_DOUBLE_EQ(coarse.measured_rad(0.123), 0.12);
+  EXPECT_DOUBLE_EQ(coarse.measured_rad(-0.126), -0.13);
+  EXPECT_EQ(model().measured_rad(0.123), 0.123);
+}
+
 }  // namespace
 }  // namespace constrictor
