@@ -25,9 +25,12 @@ class MidMission : public CliFixture {
 };
 
 TEST_F(MidMission, TheMissionSucceedsAlthoughAnOperatorDrivesOnTheLineAndWithTheObject) {
-  Process launcher = start({"run", "short", "--report", (dir_ / "r").string()});
+  // The robot is on the line for ten seconds of simulated time. As fast as possible, they would pass before the
+  // operator's client has started.
+  Process launcher = start({"run", "short", "--pace", "1x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", std::chrono::seconds(60))) << launcher.output() << launcher.errors();
   drive("0.3,0.4");
+  ASSERT_EQ(command({"pace", "lockstep"}), exit_status::kOk) << output_;
   wait_for_event("object grasped");
   const nlohmann::json before = status();
   drive("0.15,0.0");
