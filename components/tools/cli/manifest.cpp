@@ -18,6 +18,7 @@ std::string ProcessPlan::name() const {
 }
 
 std::vector<std::string> LaunchManifest::roster() const {
+  if (!order.empty()) return order;
   std::vector<std::string> names;
   for (const auto& process : processes) names.insert(names.end(), process.components.begin(), process.components.end());
   return names;
@@ -51,6 +52,12 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
   }
   if (!known.contains(manifest.plant))
     throw root.error("plant", "found " + manifest.plant + ", accepted a component of processes");
+  if (root.has("roster")) {
+    manifest.order = root.texts("roster");
+    if (manifest.order.size() != known.size() || std::set(manifest.order.begin(), manifest.order.end()) != known)
+      throw root.error("roster", fmt::format("found {}, accepted each of {} once", fmt::join(manifest.order, ", "),
+                                             fmt::join(known, ", ")));
+  }
   root.finish();
   return manifest;
 }

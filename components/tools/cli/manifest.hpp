@@ -30,14 +30,15 @@ struct LaunchManifest {
   std::filesystem::path scenario_file;
   double patience_s = 60.0;  ///< [s] wall time that a process waits for another one before it gives up
   std::vector<ProcessPlan> processes;
+  std::vector<std::string> order;                             ///< of the roster; empty: that of the processes
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: the default file
 
-  /// Every component, in the order of the file.
+  /// Every component, in the order that is part of the run's identity.
   [[nodiscard]] std::vector<std::string> roster() const;
 };
 
 /// Reads a manifest; paths in it are relative to the project's root. Throws ConfigurationError, also if a component is
-/// named twice or the plant is not among the components.
+/// named twice, the plant is not among the components, or `roster` does not name each of them once.
 LaunchManifest load_manifest(const std::filesystem::path& file);
 
 /// Puts each group of components into one process of its own; other components stay where they are. Call roster()

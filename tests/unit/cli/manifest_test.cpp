@@ -53,6 +53,23 @@ TEST(Manifest, TheLiveCaseStudyAddsOnlyTheOverview) {
   EXPECT_EQ(roster, load_manifest(data_path("deploy/case_study.yaml")).roster());
 }
 
+TEST(Manifest, TheFastCaseStudyHasTheSameRosterInFewerProcesses) {
+  const LaunchManifest fast = load_manifest(data_path("deploy/case_study_fast.yaml"));
+  EXPECT_EQ(fast.roster(), load_manifest(data_path("deploy/case_study.yaml")).roster());
+  EXPECT_LT(fast.processes.size(), 4u);
+}
+
+TEST(Manifest, ARosterGivesTheOrderAndNamesEachComponentOnce) {
+  const std::string processes = "  - components: [physics, b]\n  - components: [a]\n";
+  EXPECT_EQ(load_manifest(File(kHead + processes + "roster: [a, physics, b]\n").path()).roster(),
+            (std::vector<std::string>{"a", "physics", "b"}));
+  for (const char* wrong : {"[a, physics]", "[a, physics, c]", "[a, physics, b, b]"}) {
+    EXPECT_NE(File(kHead + processes + "roster: " + wrong + "\n").error().find("accepted each of a, b, physics once"),
+              std::string::npos)
+        << wrong;
+  }
+}
+
 TEST(Manifest, ReadsProcesses) {
   const File file(std::string(kHead) +
                   "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    "
