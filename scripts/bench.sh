@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Measures the parts and the whole: writes DIR/bench.json and the table DIR/bench.md, and prints the table.
+# Usage: scripts/bench.sh [--output DIR] [--no-peers] [--no-mission]
+#   --output DIR   folder of the results (default: build/bench)
+#   --no-peers     without the comparison with MuJoCo, which takes some minutes
+#   --no-mission   without a run of the case study
+# Example: scripts/bench.sh --no-peers
+# Run it on a quiet machine. The exit status is 1 if something is above its budget.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+output=build/bench
+peers=1
+mission=1
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --help) sed -n '2,8s/^# //p' "$0"; exit 0 ;;
+    --output)
+      if [ $# -lt 2 ]; then echo "bench: --output needs a folder" >&2; exit 2; fi
+      output=$2; shift ;;
+    --no-peers) peers=0 ;;
+    --no-mission) mission=0 ;;
+    *) echo "bench: there is no option \"$1\"; accepted: --output DIR, --no-peers, --no-mission" >&2; exit 2 ;;
+  esac
+  shift
+done
+
+groups=(core tests)
+targets=(bench_world bench_physics bench_camera bench_perception bench_growth bench_table)
+if [ $peers = 1 ]; then groups+=(bench); targets+=(bench_engines); fi
+if [ $mission = 1 ]; then targets+=(programs); fi
+./scripts/setup.sh "${groups[@]}"
+./scripts/build.sh --tests "${targets[@]}"
+mkdir -p "$output"
+rm -rf "$output"/*.json "$output/case_study"
+
+for part in world physics camera perception growth; do
+  echo "bench: $part"
+  "build/release/bin/bench_$part" --benchmark_out="$output/$part.json" --benchmark_out_format=json >"$output/$part.txt"
+done
+if [ $peers = 1 ]; then
+  echo "bench: MuJoCo"
+  build/release/bin/bench_engines >"$output/engines.json"
+fi
+if [ $mission = 1 ]; then
+  echo "bench: the case study"
+  build/release/bin/constrictor run --seed 1 --report "$output/case_study" >"$output/case_study.txt" 2>&1 || {
+    tail -5 "$output/case_study.txt" >&2
+    echo "bench: the case study failed" >&2
+    exit 1
+  }
+fi
+build/release/bin/bench_table "$output"
