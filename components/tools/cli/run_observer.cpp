@@ -114,6 +114,10 @@ void RunView::take(const msg::RunState& message) {
   tick = std::max(tick, message.tick - 1);  // RunState.tick is the next one
 }
 
+bool RunView::mission_done() const {
+  return mission && mission->object_count > 0 && mission->object_index == mission->object_count;
+}
+
 RunObserver::RunObserver(std::uint32_t domain, std::uint64_t run_id)
     : readers_(std::make_unique<Readers>(domain)), view_(run_id) {}
 RunObserver::~RunObserver() = default;
@@ -146,6 +150,10 @@ std::vector<std::string> RunObserver::poll() {
         reported_waits_.emplace(std::string(message.component) + message.topic + message.writer, -1).first;
     if (reported->second == message.tick + 1) continue;
     reported->second = message.tick + 1;
+    if (view_.mission_done() && std::string_view(message.writer) == "report") {
+      waiting.emplace_back("the mission is done; report draws its figure");
+      continue;
+    }
     auto& list = std::string_view(message.topic) == "Tick" ? waiting_for_tick : waiting;
     list.push_back(fmt::format("{} waits for {} of {} at tick {}, for {:.0f} s so far", message.component,
                                message.topic, message.writer, message.tick, message.waited_s));
@@ -174,7 +182,9 @@ std::string progress_line(const RunView& view, double real_time_factor) {
       line += fmt::format(", {} next", words_of(constants::kColour, view.mission->colour));
     line += " | ";
   }
-  return line + fmt::format("{:.1f} s simulated, {:.1f}x real time", view.sim_time_s(), real_time_factor);
+  line += fmt::format("{:.1f} s simulated", view.sim_time_s());
+  // A run that stands still, for example at its end, has no speed.
+  return real_time_factor > 0.0 ? line + fmt::format(", {:.1f}x real time", real_time_factor) : line;
 }
 
 }  // namespace constrictor::cli

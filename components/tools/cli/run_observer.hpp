@@ -46,6 +46,8 @@ struct RunView {
   /// True if all members have finished the newest tick: only the pace or a pause delays the next one.
   [[nodiscard]] bool held() const { return run_state && run_state->ready_for_tick; }
   [[nodiscard]] double sim_time_s() const { return tick < 0 ? 0.0 : static_cast<double>(tick) * period_s; }
+  /// True once every object of the mission has been delivered or given up.
+  [[nodiscard]] bool mission_done() const;
   /// The seed in force, which a reset changes; `begun_with` before the first RunState.
   [[nodiscard]] std::uint64_t seed(std::uint64_t begun_with) const { return run_state ? run_state->seed : begun_with; }
 

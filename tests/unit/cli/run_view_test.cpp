@@ -141,5 +141,30 @@ TEST(RunView, CountsOverrunsOfAllIncarnations) {
   EXPECT_EQ(view.overruns["control"], 7u);
 }
 
+TEST(RunView, TheMissionIsDoneAfterItsLastObject) {
+  RunView view;
+  EXPECT_FALSE(view.mission_done());
+  view.take(state(1, 100, 1));
+  msg::MissionStatus mission{};
+  mission.header.run_id = kRun;
+  mission.header.epoch = 1;
+  view.take(mission);
+  EXPECT_FALSE(view.mission_done()) << "a mission without objects ends otherwise";
+  mission.object_count = 2;
+  mission.object_index = 1;
+  view.take(mission);
+  EXPECT_FALSE(view.mission_done());
+  mission.object_index = 2;
+  view.take(mission);
+  EXPECT_TRUE(view.mission_done());
+}
+
+TEST(RunView, ARunThatStandsStillShowsNoSpeed) {
+  RunView view;
+  view.take(state(1, 101, 1));
+  EXPECT_EQ(progress_line(view, 3.0), "2.0 s simulated, 3.0x real time");
+  EXPECT_EQ(progress_line(view, 0.0), "2.0 s simulated");
+}
+
 }  // namespace
 }  // namespace constrictor::cli
