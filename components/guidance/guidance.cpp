@@ -15,23 +15,6 @@ double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }
 
-/// The forces of the ground on the modules, without those of modules that something else touches, too.
-std::vector<guidance::GroundForce> ground_forces(const msg::ContactState& contacts, std::size_t modules,
-                                                 double most_normal_z) {
-  std::vector<guidance::GroundForce> forces;
-  for (std::size_t i = 0; i < modules; ++i) {
-    const msg::Vector3& f = contacts.force_n[i];
-    forces.push_back({f.x, f.y, f.z});
-  }
-  const int count = std::min<int>(contacts.contact_count, msg::kMaxContacts);
-  for (int i = 0; i < count; ++i) {
-    const msg::Contact& contact = contacts.contacts[i];
-    if (contact.module_index < modules && std::abs(contact.normal.z) < most_normal_z)
-      forces[contact.module_index].normal_n = std::nan("");
-  }
-  return forces;
-}
-
 }  // namespace
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
@@ -49,14 +32,17 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&
       body_.contacts->module_count >= model_.module_count) {
-    input.load_n.resize(model_.module_count);
-    for (std::size_t i = 0; i < input.load_n.size(); ++i) input.load_n[i] = body_.contacts->force_n[i].z;
-    input.ground = ground_forces(*body_.contacts, model_.module_count, config_.touch_max_normal_z);
+    for (std::size_t i = 0; i < model_.module_count; ++i) {
+      const msg::Vector3& f = body_.contacts->force_n[i];
+      input.load_n.push_back(f.z);
+      input.ground.push_back({f.x, f.y, f.z});
+    }
     // Sum of the sideways pushes. Forces between the robot's own modules cancel in the sum.
     const int count = std::min<int>(body_.contacts->contact_count, msg::kMaxContacts);
     for (int i = 0; i < count; ++i) {
       const msg::Contact& contact = body_.contacts->contacts[i];
       if (contact.module_index >= chain.size() || !(std::abs(contact.normal.z) < config_.touch_max_normal_z)) continue;
+      input.ground[contact.module_index].normal_n = std::nan("");  // not only the ground touches this module
       input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
   }

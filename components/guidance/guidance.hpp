@@ -29,10 +29,10 @@ struct GuidanceState {
   }
 };
 
-/// Estimates the pose of the head in M from the motion of the body (odometry), the
-/// yaw of the IMU, and recognised landmarks; keeps the map. Publishes the pose in every tick. Before the first joint
-/// and IMU samples it is the start pose with zero covariance. Without new plausible joint and IMU samples the pose does
-/// not change; the next samples then give the motion over the whole time since the last ones.
+/// Estimates the pose of the head in M from the motion of the body (odometry), the yaw of the IMU, and recognised
+/// landmarks; keeps the map. Publishes the pose in every tick. Before the first joint and IMU samples it is the start
+/// pose with zero covariance. Without new plausible joint and IMU samples the pose does not change; the next samples
+/// then give the motion over the whole time since the last ones.
 class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);

@@ -53,9 +53,11 @@ msg::JointState Sensors::joints(const World& world) {
     state.position_rad[i] = world.joint_angle_rad(i);
     state.velocity_rad_s[i] = world.joint_rate_rad_s(i);
     state.torque_nm[i] = world.joint_torque_nm(i);
-    if (noise_) state.position_rad[i] += robot_.joint_position_noise_rad * joint_random_.normal();
+    if (noise_) {
+      state.position_rad[i] += robot_.joint_position_noise_rad * joint_random_.normal();
+      state.torque_nm[i] += robot_.joint_torque_noise_nm * joint_random_.normal();
+    }
     state.position_rad[i] = robot_.joints[i].measured_rad(state.position_rad[i]);
-    if (noise_) state.torque_nm[i] += robot_.joint_torque_noise_nm * joint_random_.normal();
   }
   return state;
 }

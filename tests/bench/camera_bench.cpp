@@ -5,7 +5,6 @@
 
 #include "barrier/local_run.hpp"
 #include "component/data_path.hpp"
-#include "runtime/numeric_profile.hpp"
 #include "sim/camera/camera.hpp"
 #include "sim/render/pixel_noise.hpp"
 #include "sim/render/renderer.hpp"
@@ -105,9 +104,3 @@ BENCHMARK(component_period)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace constrictor
-
-int main(int argc, char** argv) {
-  constrictor::ensure_numeric_environment(argv);  // as in a run
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-}

@@ -3,7 +3,6 @@
 
 #include "barrier/local_run.hpp"
 #include "component/data_path.hpp"
-#include "runtime/numeric_profile.hpp"
 #include "sim/camera/camera.hpp"
 #include "sim/render/renderer.hpp"
 #include "support/scripted_members.hpp"
@@ -85,9 +84,3 @@ BENCHMARK(columns)->Arg(160)->Arg(320)->Arg(640)->Arg(1280)->Unit(benchmark::kMi
 
 }  // namespace
 }  // namespace constrictor
-
-int main(int argc, char** argv) {
-  constrictor::ensure_numeric_environment(argv);  // as in a run
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-}

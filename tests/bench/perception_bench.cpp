@@ -6,7 +6,6 @@
 #include "perception/line_tracer.hpp"
 #include "perception/picture.hpp"
 #include "perception/smoothing.hpp"
-#include "runtime/numeric_profile.hpp"
 #include "unit/perception/rendered_scene.hpp"
 
 namespace constrictor {
@@ -97,9 +96,3 @@ BENCHMARK(picture)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace constrictor
-
-int main(int argc, char** argv) {
-  constrictor::ensure_numeric_environment(argv);  // as in a run
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-}

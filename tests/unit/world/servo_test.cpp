@@ -58,6 +58,13 @@ JointModel model() {
   return model;
 }
 
+JointModel elastic_model() {
+  JointModel elastic = model();
+  elastic.stiffness_nm_rad = 60.0;
+  elastic.damping_nm_s_rad = 0.5;
+  return elastic;
+}
+
 TEST(Servo, SagsByTheLoadOverThePositionGain) {
   Joint joint(model());
   joint.load_nm = 2.0;
@@ -163,21 +170,15 @@ TEST(Servo, ARelaxedJointIsStoppedByTheFrictionOfItsGear) {
 }
 
 TEST(Servo, ASeriesSpringStretchesByTheLoadAndTheMotorStaysAtTheSetpoint) {
-  JointModel elastic = model();
-  elastic.stiffness_nm_rad = 60.0;
-  elastic.damping_nm_s_rad = 0.5;
-  Joint joint(elastic);
+  Joint joint(elastic_model());
   joint.load_nm = 3.0;
   for (int i = 0; i < 200; ++i) joint.tick({0.2, 0.0, 6.0});
-  EXPECT_NEAR(joint.servo.motor_angle_rad(), 0.2 + 3.0 / elastic.position_gain_nm_rad, 1e-6);
+  EXPECT_NEAR(joint.servo.motor_angle_rad(), 0.2 + 3.0 / model().position_gain_nm_rad, 1e-6);
   EXPECT_NEAR(joint.angle_rad - joint.servo.motor_angle_rad(), 3.0 / 60.0, 1e-6);
 }
 
 TEST(Servo, ASpringNeverTransmitsMoreThanTheTorqueLimit) {
-  JointModel elastic = model();
-  elastic.stiffness_nm_rad = 60.0;
-  elastic.damping_nm_s_rad = 0.5;
-  Joint joint(elastic);
+  Joint joint(elastic_model());
   joint.load_nm = 1.2;
   for (int i = 0; i < 50; ++i) {
     joint.tick({0.0, 0.0, 1.0});
