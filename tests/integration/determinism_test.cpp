@@ -38,6 +38,27 @@ TEST_F(Determinism, SameHashForAnyGroupingAndPace) {
   EXPECT_EQ(run("masked", {"--manifest", (dir_ / "masked.yaml").string()}), expected);
 }
 
+// As if perception, planner and report were on another host.
+TEST_F(Determinism, LatenciesOfAManifestBelongToTheRunAndNotToItsProcesses) {
+  const std::string line = "    latency_ticks: 5\n";
+  write_manifest("far.yaml", {{"perception", line}, {"planner", line}, {"report", line}});
+  const std::vector<std::string> far = {"--manifest", (dir_ / "far.yaml").string()};
+  const auto with = [&far](std::vector<std::string> more) {
+    more.insert(more.begin(), far.begin(), far.end());
+    return more;
+  };
+  const std::string expected = run("one", with({"--in-process"}));
+  EXPECT_NE(run("near", {"--in-process"}), expected) << "percepts that come later must change the run";
+  Process process = start("many", with({"--pace", "2x"}));
+  for (const std::string victim : {"perception", "planner", "report", "guidance"}) {
+    const pid_t pid = running(victim);
+    ASSERT_GT(pid, 0) << process.output();
+    std::this_thread::sleep_for(300ms);
+    ::kill(pid, SIGKILL);
+  }
+  EXPECT_EQ(hash_of("many", process), expected);
+}
+
 TEST_F(Determinism, AnotherSeedGivesAnotherHashAndDiffNamesTheFirstDifference) {
   EXPECT_NE(run("one", {"--in-process", "--seed", "1"}), run("two", {"--in-process", "--seed", "2"}));
   Process diff({program("constrictor"), "diff", (dir_ / "one").string(), (dir_ / "two").string()});

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "barrier/history_depth.hpp"
+
 namespace constrictor {
 
 Conductor::Conductor(ConductorOptions options, ConductorSink& sink)
@@ -28,11 +30,14 @@ void Conductor::on_hello(const Hello& hello) {
   }
   if (hello.component == options_.plant && member.hello_received)
     return refuse("the plant cannot be replaced in a run");
+  // A process that belongs to this run may still have to come back and conclude it.
+  if (ended_ && hello.run_id == 0) return refuse("the run is over");
   Hello ours;
   ours.idl_hash = options_.idl_hash;
   ours.config_hash = options_.config_hash;
   ours.numeric_profile = options_.numeric_profile;
   if (const auto what = difference(hello, ours)) return refuse(*what);
+  if (const auto why = latency_violation(hello)) return refuse(*why);
   if (member.hello_received && hello.component_hash != member.hello.component_hash) {
     return refuse(
         fmt::format("its configuration or scenario file differs from the one that the run began with: found "
@@ -57,6 +62,16 @@ void Conductor::on_hello(const Hello& hello) {
       if (other.hello.incarnation > 1) send_resume(other);
     }
   }
+}
+
+std::optional<std::string> Conductor::latency_violation(const Hello& hello) const {
+  std::vector<Hello> all{hello};
+  for (const auto& [name, other] : members_) {
+    if (name == hello.component) continue;
+    if (!other.hello_received) return {};  // the last Hello is compared with all others
+    all.push_back(other.hello);
+  }
+  return depth_violation(all, options_.plant);
 }
 
 void Conductor::send_resume(const MemberState& member) {

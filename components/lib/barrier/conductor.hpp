@@ -107,6 +107,8 @@ class Conductor {
     std::map<std::uint8_t, std::deque<std::string>> history;  ///< newest outputs by topic
   };
   [[nodiscard]] std::int64_t newest_due(const MemberState& member, std::int64_t tick) const;
+  /// Why the latencies do not suit the depths of the topics; empty if they do, or if another member has not joined yet.
+  [[nodiscard]] std::optional<std::string> latency_violation(const Hello& hello) const;
   void clear_epoch_state();
   void send_resume(const MemberState& member);
 

@@ -77,6 +77,7 @@ void Member::build(std::uint64_t seed) {
   wiring_ = std::make_unique<MemberWiring>(*this);
   component_ = factory_.create(*wiring_, setup_);
   timing_ = component_->timing();
+  timing_.latency = std::max(timing_.latency, setup_.latency_ticks);
   fresh_component_ = true;
   if (timing_.period < 1 || timing_.latency < 1) bug(name(), "period and latency must be at least 1 tick");
 }

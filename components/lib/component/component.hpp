@@ -30,6 +30,8 @@ struct Tick {
   [[nodiscard]] double period_s() const { return static_cast<double>(period_ns) * 1e-9; }
 };
 
+inline constexpr std::uint16_t kLargestLatency_ticks = 100;
+
 /// How often a component steps and when its outputs become visible, in ticks.
 struct Timing {
   std::uint16_t period = 1;
@@ -48,6 +50,7 @@ struct Setup {
   double max_sim_time_s = 0.0;       ///< [s] simulated time at which the plant ends the run; 0: never
   std::uint64_t seed = 1;            ///< of the epoch
   std::uint16_t robot_id = 1;        ///< key of every message of this robot
+  std::uint16_t latency_ticks = 1;   ///< least latency of the component; one with a longer latency of its own keeps it
 
   /// Seed of this component's own generator: a fixed mix of `seed` and `component`.
   [[nodiscard]] std::uint64_t component_seed() const;

@@ -45,7 +45,7 @@ CameraModel read_camera(Configuration camera) {
   model.p_HC = {position[0], position[1], position[2]};
   model.tilt_rad = camera.number("tilt_rad", {-1.5, 1.5});
   model.period_ticks = static_cast<int>(camera.integer("period_ticks", 1, 1000));
-  model.latency_ticks = static_cast<int>(camera.integer("latency_ticks", 0, 100));
+  model.latency_ticks = static_cast<int>(camera.integer("latency_ticks", 1, 100));
   camera.finish();
   return model;
 }

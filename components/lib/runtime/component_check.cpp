@@ -1,9 +1,11 @@
 #include "runtime/component_check.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <exception>
 #include <set>
 
+#include "barrier/history_depth.hpp"
 #include "component/data_path.hpp"
 
 namespace constrictor {
@@ -14,14 +16,18 @@ class UnconnectedWiring : public Wiring {
  public:
   void request_end_of_run() override {}
   const InputSlot* input(const TopicInfo& topic, bool events) override {
+    hello.reads.insert(topic.id);
     InputSlot& slot = inputs_.emplace_back();
     slot.topic = &topic;
     slot.events = events;
     return &slot;
   }
   const OutputSlot* output_slot(const TopicInfo& topic) override {
+    hello.writes.insert(topic.id);
     return &outputs_.emplace_back(OutputSlot{&topic, [](const void*) {}});
   }
+
+  Hello hello;  ///< what the component would announce: name, timing and topics
 
  private:
   std::deque<InputSlot> inputs_;  // a deque, because its elements keep the addresses that components store
@@ -33,6 +39,7 @@ class UnconnectedWiring : public Wiring {
 std::vector<std::string> check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories) {
   std::vector<std::string> errors;
   std::set<std::string> reported;
+  std::vector<Hello> hellos;
   for (const auto& factory : factories) {
     Setup setup = options.setup;
     setup.component = factory.name;
@@ -42,11 +49,18 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
     else if (!factory.default_config.empty()) setup.config_file = data_path(factory.default_config);
     try {
       UnconnectedWiring wiring;
-      static_cast<void>(factory.create(wiring, setup));
+      const auto component = factory.create(wiring, setup);
+      const auto latency = options.latency_ticks.find(factory.name);
+      wiring.hello.component = factory.name;
+      wiring.hello.timing = component->timing();
+      if (latency != options.latency_ticks.end())
+        wiring.hello.timing.latency = std::max(wiring.hello.timing.latency, latency->second);
+      hellos.push_back(wiring.hello);
     } catch (const std::exception& error) {
       if (reported.insert(error.what()).second) errors.push_back(factory.name + ": " + error.what());
     }
   }
+  if (auto why = depth_violation(hellos, options.plant)) errors.push_back(std::move(*why));
   return errors;
 }
 

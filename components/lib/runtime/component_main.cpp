@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <cstdlib>
 
 #include "component/data_path.hpp"
@@ -27,6 +29,28 @@ const CLI::Validator kPace(
     },
     "");
 
+/// Reads NAME=TICKS. Throws ConfigurationError.
+std::pair<std::string, std::uint16_t> parse_latency(const std::string& text, const HostOptions& options) {
+  const auto equals = std::min(text.find('='), text.size());
+  const std::string name = text.substr(0, equals);
+  const std::string_view number = std::string_view(text).substr(std::min(equals + 1, text.size()));
+  std::uint16_t ticks = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), ticks);
+  const bool is_number = error == std::errc() && end == number.data() + number.size();
+  if (!is_number || ticks < 1 || ticks > kLargestLatency_ticks) {
+    throw ConfigurationError(
+        fmt::format("--latency: found '{}', accepted NAME=TICKS with 1 to {} ticks", text, kLargestLatency_ticks));
+  }
+  if (name == options.plant) {
+    throw ConfigurationError(fmt::format(
+        "--latency: found the plant '{}', accepted other members, because the plant's outputs are visible at once",
+        name));
+  }
+  if (std::find(options.roster.begin(), options.roster.end(), name) == options.roster.end())
+    throw ConfigurationError(fmt::format("--latency: found '{}', accepted a member of the roster", name));
+  return {name, ticks};
+}
+
 }  // namespace
 
 int component_main(int argc, char** argv, ComponentFactory factory) {
@@ -40,6 +64,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   for (const auto& factory : factories) names += (names.empty() ? "" : ",") + factory.name;
   HostOptions options;
   std::vector<std::string> config_files;
+  std::vector<std::string> latencies;
   options.setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
 
@@ -60,6 +85,9 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--output", options.setup.output_dir, "folder for the files that this process writes");
   app.add_option("--config", config_files,
                  "NAME=FILE: configuration file of a component, instead of its default; may be repeated");
+  app.add_option("--latency", latencies,
+                 "NAME=TICKS: the outputs of this member of the roster become visible this many ticks after its step "
+                 "began, or later if its own latency is longer; equal in all processes of the run; may be repeated");
   app.add_option("--incarnation", options.incarnation,
                  "1 at the first start of the process in the run, and one more at each restart")
       ->check(CLI::Range(1u, 1'000'000u));
@@ -102,6 +130,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
                                  "', accepted a list that names every component of this process");
       }
     }
+    for (const auto& text : latencies) options.latency_ticks.insert(parse_latency(text, options));
     options.setup.max_sim_time_s = options.max_sim_time_s;
     if (check) {
       const std::vector<std::string> errors = check_components(options, factories);

@@ -1,5 +1,7 @@
 #include "runtime/config_hash.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <sstream>
 
@@ -24,11 +26,15 @@ std::string hash_of(const std::string& bytes) {
 }  // namespace
 
 std::string run_config_hash(const std::filesystem::path& robot_file, const std::vector<std::string>& roster,
-                            const std::string& plant) {
+                            const std::string& plant, const std::map<std::string, std::uint16_t>& latency_ticks) {
   std::string bytes = bytes_of(robot_file) + '\0' + plant;
   for (const auto& name : roster) {
     bytes += '\0';
     bytes += name;
+  }
+  for (const auto& [name, ticks] : latency_ticks) {
+    bytes += '\0';
+    bytes += fmt::format("{}={}", name, ticks);
   }
   return hash_of(bytes);
 }

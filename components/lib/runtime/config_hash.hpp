@@ -2,16 +2,18 @@
 // restart.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace constrictor {
 
-/// SHA-256 in hexadecimal over the robot file's bytes, the roster and the plant's name. An empty path counts as an
-/// empty file.
+/// SHA-256 in hexadecimal over the robot file's bytes, the roster, the plant's name and the latencies that the
+/// manifest sets [ticks, by member]. An empty path counts as an empty file.
 std::string run_config_hash(const std::filesystem::path& robot_file, const std::vector<std::string>& roster,
-                            const std::string& plant);
+                            const std::string& plant, const std::map<std::string, std::uint16_t>& latency_ticks = {});
 
 /// SHA-256 in hexadecimal over the bytes of a component's own configuration file and of the scenario file. A file that
 /// does not exist counts as empty.

@@ -35,7 +35,8 @@ std::string names_of(const std::vector<ComponentFactory>& factories) {
 
 HostContext make_context(HostOptions options, const std::vector<ComponentFactory>& factories) {
   const std::string identity = names_of(factories);
-  const std::string config_hash = run_config_hash(options.setup.robot_file, options.roster, options.plant);
+  const std::string config_hash =
+      run_config_hash(options.setup.robot_file, options.roster, options.plant, options.latency_ticks);
   return {std::move(options), identity, config_hash, this_host()};
 }
 

@@ -30,6 +30,8 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
     Setup setup = options.setup;
     const auto config = options.config_files.find(factory.name);
     if (config != options.config_files.end()) setup.config_file = config->second;
+    const auto latency = options.latency_ticks.find(factory.name);
+    if (latency != options.latency_ticks.end()) setup.latency_ticks = latency->second;
     const bool checkpoints = !conducts || options.record;
     auto member = std::make_unique<Member>(std::move(factory), std::move(setup), options.incarnation, checkpoints,
                                            static_cast<MemberSink&>(*this));

@@ -80,6 +80,10 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
                                         std::to_string(options.seed)};
   const auto mission = mission_arguments(plan.manifest);
   arguments.insert(arguments.end(), mission.begin(), mission.end());
+  arguments.insert(arguments.end(),
+                   {"--plant", plan.manifest.plant, "--roster", fmt::format("{}", fmt::join(plan.roster, ","))});
+  const auto latencies = latency_arguments(plan.manifest);
+  arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
   arguments.insert(arguments.end(), configs.begin(), configs.end());
   const HostOutput output = run_host(std::move(arguments));

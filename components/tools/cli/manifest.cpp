@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "component/component.hpp"
 #include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
@@ -39,11 +40,20 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
     process.program = entry.text("program", {}, "");
     process.restarts = static_cast<int>(entry.integer("restarts", 0, 1'000'000, process.restarts));
     if (entry.has("environment")) process.environment = entry.texts("environment");
+    const bool has_latency = entry.has("latency_ticks");
+    const auto latency = static_cast<std::uint16_t>(entry.integer("latency_ticks", 1, kLargestLatency_ticks, 1));
     Configuration configs = entry.section("config", false);
     for (const auto& component : process.components) {
       if (!known.insert(component).second)
         throw entry.error("components", "found " + component + " twice, accepted once");
       if (configs.has(component)) manifest.config_files[component] = data_path(configs.text(component));
+      if (has_latency) {
+        if (component == manifest.plant)
+          throw entry.error("latency_ticks",
+                            "found it at the process of the plant, accepted at other processes, "
+                            "because the plant's outputs are visible at once");
+        manifest.latency_ticks[component] = latency;
+      }
       if (component == manifest.plant) process.restarts = 0;
     }
     configs.finish();
@@ -90,6 +100,13 @@ void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string
     if (!rest.components.empty()) processes.push_back(std::move(rest));
   }
   manifest.processes = std::move(processes);
+}
+
+std::vector<std::string> latency_arguments(const LaunchManifest& manifest) {
+  std::vector<std::string> arguments;
+  for (const auto& [name, ticks] : manifest.latency_ticks)
+    arguments.insert(arguments.end(), {"--latency", fmt::format("{}={}", name, ticks)});
+  return arguments;
 }
 
 std::vector<std::string> config_arguments(const LaunchManifest& manifest, const std::vector<std::string>& components) {

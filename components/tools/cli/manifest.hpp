@@ -30,6 +30,7 @@ struct LaunchManifest {
   std::filesystem::path scenario_file;
   double patience_s = 60.0;  ///< [s] wall time that a process waits for another one before it gives up
   std::vector<ProcessPlan> processes;
+  std::map<std::string, std::uint16_t> latency_ticks;         ///< least latency by component; absent: its own
   std::vector<std::string> order;                             ///< of the roster; empty: that of the processes
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: the default file
 
@@ -48,5 +49,8 @@ void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string
 
 /// The options "--config NAME=FILE" for those of `components` that do not use their default configuration.
 std::vector<std::string> config_arguments(const LaunchManifest& manifest, const std::vector<std::string>& components);
+
+/// The options "--latency NAME=TICKS". They are the same for all processes of a run.
+std::vector<std::string> latency_arguments(const LaunchManifest& manifest);
 
 }  // namespace constrictor::cli

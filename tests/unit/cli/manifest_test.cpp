@@ -70,6 +70,26 @@ TEST(Manifest, ARosterGivesTheOrderAndNamesEachComponentOnce) {
   }
 }
 
+TEST(Manifest, TheLatencyOfAProcessIsThatOfEachOfItsComponentsAlsoAfterRegrouping) {
+  const File file(std::string(kHead) +
+                  "  - components: [physics]\n  - components: [a, b]\n    latency_ticks: 5\n  - components: [c]\n");
+  LaunchManifest manifest = load_manifest(file.path());
+  regroup(manifest, {{"a", "c"}});
+  EXPECT_EQ(latency_arguments(manifest), (std::vector<std::string>{"--latency", "a=5", "--latency", "b=5"}));
+}
+
+TEST(Manifest, RefusesALatencyThatCannotBe) {
+  const auto error = [](const std::string& plant, const std::string& other) {
+    return File(kHead + ("  - components: [physics]\n" + plant) + "  - components: [a]\n" + other).error();
+  };
+  EXPECT_EQ(
+      error("    latency_ticks: 2\n", ""),
+      ":6: processes[0].latency_ticks: found it at the process of the plant, accepted at other processes, because "
+      "the plant's outputs are visible at once");
+  EXPECT_EQ(error("", "    latency_ticks: 0\n"),
+            ":7: processes[1].latency_ticks: found 0, accepted a whole number 1 to 100");
+}
+
 TEST(Manifest, ReadsProcesses) {
   const File file(std::string(kHead) +
                   "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    "

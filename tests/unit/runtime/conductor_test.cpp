@@ -146,6 +146,34 @@ TEST_F(ConductorTest, ProcessesThatAreNoMembersOfTheRunAreRefusedWithTheReason) 
           "has own");
 }
 
+TEST_F(ConductorTest, ALatencyForWhichTheTopicsKeepTooLittleIsRefusedBeforeTheRunBegins) {
+  conductor_.on_hello(hello("physics"));
+  Hello slow = hello("navigation");
+  slow.reads = TopicSet::of(topics::kJointState);
+  slow.timing.latency = 17;
+  conductor_.on_hello(slow);
+  EXPECT_TRUE(last_refusal().starts_with("latency_ticks of navigation: found 17, accepted at most 16"));
+  EXPECT_TRUE(record_.epochs.empty());
+  slow.timing.latency = 16;
+  conductor_.on_hello(slow);
+  EXPECT_EQ(record_.epochs.size(), 1u);
+}
+
+TEST_F(ConductorTest, ARunThatIsOverTakesBackItsOwnProcessesAndNoOthers) {
+  begin();
+  run_to(3);
+  conductor_.end_run();
+  tick();
+  ASSERT_TRUE(conductor_.ended());
+  conductor_.on_hello(hello("navigation", 2));
+  EXPECT_EQ(last_refusal(), "the run is over");
+  Hello own = hello("navigation", 2);
+  own.run_id = kEpoch.run_id;
+  conductor_.on_hello(own);
+  ASSERT_EQ(record_.resumes.size(), 1u);
+  EXPECT_EQ(record_.resumes[0].index, 3);
+}
+
 TEST_F(ConductorTest, ImpossibleReportsAreRecognisedWithTheReason) {
   begin();
   run_to(3);

@@ -146,6 +146,9 @@ TEST(ConfigHash, DependsOnRosterAndPlant) {
   EXPECT_NE(run_config_hash("", {"physics", "control"}, "physics"), hash);
   EXPECT_NE(run_config_hash("", {"physics", "controlplanner"}, "physics"), hash);
   EXPECT_NE(run_config_hash("", {"physics", "control", "planner"}, "control"), hash);
+  EXPECT_NE(run_config_hash("", {"physics", "control", "planner"}, "physics", {{"control", 5}}), hash);
+  EXPECT_NE(run_config_hash("", {"physics", "control", "planner"}, "physics", {{"control", 5}}),
+            run_config_hash("", {"physics", "control", "planner"}, "physics", {{"planner", 5}}));
 }
 
 }  // namespace
