@@ -21,7 +21,7 @@ void undulate(benchmark::State& state) {
   for (; tick < 100; ++tick) gait.drive(world, tick * kPeriod_s, kPeriod_s);
   const double from = centre_x();
   const int first = tick;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     gait.drive(world, tick * kPeriod_s, kPeriod_s);
     ++tick;
   }

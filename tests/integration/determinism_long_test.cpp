@@ -20,7 +20,7 @@ class WholeCaseStudy : public DeterminismRun {
   const std::string& reference() {
     static const std::string hash = [this] {
       Process process = start("reference");
-      const std::string found = hash_of("reference", process);
+      std::string found = hash_of("reference", process);
       EXPECT_TRUE(report("reference")["success"]) << report("reference")["objects"];
       std::printf("reference: %s, %d ticks, %.1f s of wall time\n", found.c_str(),
                   report("reference")["ticks"].get<int>(), report("reference")["wall_time_s"].get<double>());

@@ -12,7 +12,6 @@ namespace constrictor::testing {
 namespace {
 
 using namespace std::chrono_literals;
-namespace fs = std::filesystem;
 
 class Teleoperation : public CliFixture {
  protected:

@@ -1,6 +1,7 @@
 // The component in an in-process run, with ideal servos as the plant and a scripted trajectory.
 #include "control/control.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -165,7 +166,8 @@ TEST(Control, EachMethodHasTheNameOfItsFileAndARowInTheReadme) {
   EXPECT_GE(names.size(), 6u);
   for (const std::string_view method : names) {
     const std::string name(method);
-    EXPECT_NE(text_of(folder + "methods/" + name + ".cpp").find("make_" + name + "()"), std::string::npos) << name;
+    EXPECT_NE(text_of(folder + "methods/" + name + ".cpp").find(fmt::format("make_{}()", name)), std::string::npos)
+        << name;
     EXPECT_NE(readme.find("\n| `" + name + "` | "), std::string::npos)
         << "the table of methods in components/control/README.md has no row for " << name;
   }

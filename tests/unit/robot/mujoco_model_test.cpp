@@ -69,7 +69,9 @@ TEST_P(MujocoModelTest, HasTheMassAndTheInertiaOfSolidCapsules) {
   std::vector<mjtNum> full(static_cast<std::size_t>(model_->nv * model_->nv));
   mj_fullM(model_.get(), full.data(), data_->qM);
   const double x = -centre.x();  // the head rotates about the centre
-  const auto entry = [&](int i, int j) { return full[static_cast<std::size_t>(i * model_->nv + j)]; };
+  const auto entry = [&](int i, int j) {
+    return full[static_cast<std::size_t>(i) * static_cast<std::size_t>(model_->nv) + static_cast<std::size_t>(j)];
+  };
   EXPECT_NEAR(entry(5, 5) + 2.0 * x * entry(5, 1) + x * x * entry(1, 1), about_vertical, 1e-6 * about_vertical);
 }
 
