@@ -4,17 +4,31 @@
 
 namespace constrictor {
 
-std::filesystem::path data_path(const std::filesystem::path& relative) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+std::vector<fs::path> data_folders() {
   std::error_code error;
-  if (const char* folder = std::getenv("CONSTRICTOR_DATA")) {
-    const fs::path candidate = fs::path(folder) / relative;
-    if (fs::exists(candidate, error)) return candidate;
-  }
+  std::vector<fs::path> folders;
+  const auto add = [&](const fs::path& folder) {
+    if (fs::is_directory(folder, error)) folders.push_back(folder);
+  };
+  if (const char* folder = std::getenv("CONSTRICTOR_DATA")) add(folder);
   // An installed program (PREFIX/libexec/constrictor/NAME) uses its own prefix, also if the source tree still exists.
   const fs::path prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path().parent_path();
-  const fs::path installed = prefix / "share/constrictor" / relative;
-  if (fs::exists(installed, error)) return installed;
+  if (fs::is_directory(prefix / "share/constrictor", error)) {
+    add((prefix.filename() == "usr" ? prefix.parent_path() : prefix) / "etc/constrictor");
+    add(prefix / "share/constrictor");
+  } else {
+    add(CONSTRICTOR_SOURCE_DIR);
+  }
+  return folders;
+}
+
+fs::path data_path(const fs::path& relative) {
+  std::error_code error;
+  for (const auto& folder : data_folders()) {
+    if (fs::exists(folder / relative, error)) return folder / relative;
+  }
   return fs::path(CONSTRICTOR_SOURCE_DIR) / relative;
 }
 

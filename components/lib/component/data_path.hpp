@@ -2,12 +2,18 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace constrictor {
 
+/// The folders in which data files are searched, the first one first: $CONSTRICTOR_DATA; for an installed program the
+/// files that belong to this host (/etc/constrictor for the prefix /usr, etc/constrictor of any other prefix) and
+/// share/constrictor of its prefix; for another program the source tree. Only folders that exist.
+[[nodiscard]] std::vector<std::filesystem::path> data_folders();
+
 /// Absolute path of a file that is given relative to the project's root, for example
-/// "components/control/control.yaml". Looks in $CONSTRICTOR_DATA, then in share/constrictor of the prefix that the
-/// program is installed in. Returns a path in the source tree if neither has the file, also if it does not exist there.
-std::filesystem::path data_path(const std::filesystem::path& relative);
+/// "components/control/control.yaml": that of the first of data_folders() that has it. Returns a path in the source
+/// tree if none has it.
+[[nodiscard]] std::filesystem::path data_path(const std::filesystem::path& relative);
 
 }  // namespace constrictor

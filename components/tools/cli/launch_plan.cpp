@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <set>
 
 #include "cli/usage.hpp"
 #include "component/data_path.hpp"
@@ -65,13 +66,14 @@ std::vector<std::string> pace_arguments(const std::string& pace) {
 }  // namespace
 
 std::vector<std::string> names_of(const NamedFiles& files) {
-  std::vector<std::string> names;
+  std::set<std::string> names;
   std::error_code no_folder;
-  for (const auto& entry : fs::directory_iterator(data_path(files.folder), no_folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
+  for (const auto& folder : data_folders()) {
+    for (const auto& entry : fs::directory_iterator(folder / files.folder, no_folder)) {
+      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
+    }
   }
-  std::sort(names.begin(), names.end());
-  return names;
+  return {names.begin(), names.end()};
 }
 
 fs::path find_file(const std::string& text, const NamedFiles& files) {
@@ -121,6 +123,8 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
                                      "--run-id",   std::to_string(run_id)};
   const auto mission = mission_arguments(manifest);
   common.insert(common.end(), mission.begin(), mission.end());
+  const auto latencies = latency_arguments(manifest);
+  common.insert(common.end(), latencies.begin(), latencies.end());
   if (options.max_sim_time_s > 0)
     common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
   std::vector<std::string> of_plant = pace_arguments(options.pace);
@@ -149,6 +153,16 @@ std::vector<std::string> run_environment() {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable; ++variable) variables.emplace_back(*variable);
   return variables;
+}
+
+std::vector<std::string> with_variables(std::vector<std::string> environment,
+                                        const std::vector<std::string>& variables) {
+  for (const auto& variable : variables) {
+    const std::string name = variable.substr(0, variable.find('=') + 1);
+    std::erase_if(environment, [&](const std::string& other) { return other.starts_with(name); });
+    environment.push_back(variable);
+  }
+  return environment;
 }
 
 }  // namespace constrictor::cli

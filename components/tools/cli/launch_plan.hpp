@@ -71,6 +71,10 @@ void check_components(const RunOptions& options, const LaunchPlan& plan);
 /// The complete environment for a new process: that of this process with the settings of the numeric profile.
 [[nodiscard]] std::vector<std::string> run_environment();
 
+/// `environment` ("NAME=VALUE") in which `variables` replace those of the same name.
+[[nodiscard]] std::vector<std::string> with_variables(std::vector<std::string> environment,
+                                                      const std::vector<std::string>& variables);
+
 /// The folder of this program and of all component programs.
 [[nodiscard]] std::filesystem::path program_folder();
 

@@ -12,10 +12,14 @@
 namespace constrictor::cli {
 namespace {
 
-/// The options that `run` and `check` share: those that name files, and the seed.
-void add_file_options(CLI::App& app, RunOptions& options) {
+void add_scenario(CLI::App& app, RunOptions& options) {
   app.add_option("SCENARIO", options.scenario,
                  "a name (see `constrictor list scenarios`) or a file (default: the manifest's)");
+}
+
+}  // namespace
+
+void add_file_options(CLI::App& app, RunOptions& options) {
   app.add_option("--seed", options.seed, "seed of scene, masses, friction, light, noise and start pose")
       ->capture_default_str()
       ->check(whole_number());
@@ -28,9 +32,12 @@ void add_file_options(CLI::App& app, RunOptions& options) {
       ->allow_extra_args(false);
 }
 
+namespace {
+
 void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Action& action) {
   auto* run = add_subcommand(app, "run", "run a scenario, each component in a process of its own, and write a report",
                              action, options, run_command);
+  add_scenario(*run, *options);
   add_file_options(*run, *options);
   run->add_option("--pace", options->pace,
                   "speed of simulated time: lockstep (as fast as possible), realtime (on the wall clock, late "
@@ -94,6 +101,7 @@ int check_command(const RunOptions& options) {
 void add_check_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Action& action) {
   auto* check = add_subcommand(app, "check", "check manifest, scenario, robot and all configurations; start no run",
                                action, options, check_command);
+  add_scenario(*check, *options);
   add_file_options(*check, *options);
   check->footer(help_footer(
       "Every component reads its own files, as it does at the start of a run. `constrictor run` makes the same check\n"

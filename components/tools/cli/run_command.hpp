@@ -5,11 +5,18 @@
 
 #include "cli/launch_plan.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace constrictor::cli {
 
 /// Makes a new directory and returns its path: `wanted`, or `wanted` with -2, -3 ... appended if it exists already. Two
 /// processes that call this at the same time get different directories. Throws std::filesystem::filesystem_error.
 std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
+
+/// Adds the options that `run`, `check` and `serve` share: those that name files, and the seed.
+void add_file_options(CLI::App& app, RunOptions& options);
 
 /// Carries out a run. Throws UsageError or ConfigurationError for faults that are found before a process is started.
 /// Returns the exit status: 0 only after a successful mission.

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <thread>
 
+#include "cli/launch_plan.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -66,12 +67,7 @@ void Supervisor::start() {
 }
 
 void Supervisor::spawn(Supervised& process) {
-  std::vector<std::string> environment = environment_;
-  for (const auto& variable : process.plan.environment) {
-    const std::string name = variable.substr(0, variable.find('=') + 1);
-    std::erase_if(environment, [&](const std::string& other) { return other.starts_with(name); });
-    environment.push_back(variable);
-  }
+  const auto environment = with_variables(environment_, process.plan.environment);
   std::error_code no_log_yet;
   const auto size = std::filesystem::file_size(log_of(process), no_log_yet);
   process.log_offset = no_log_yet ? 0 : size;
@@ -121,7 +117,7 @@ void Supervisor::handle_exit(Supervised& process, const ChildExit& exit) {
   }
   const std::string& name = process.record.name;
   for (const auto& line : last_lines(log_of(process), process.log_offset, kLastLines))
-    print_(line.starts_with(name + ": ") ? line : name + ": " + line);
+    print_(line.starts_with(name + ": ") ? line : fmt::format("{}: {}", name, line));
   const std::string how = exit.describe();
   const int code = exit.code().value_or(0);
   if (is_plant(process)) {

@@ -1,0 +1,31 @@
+# `cpack --config build/release/CPackConfig.cmake`: two Debian packages, below /usr.
+#   constrictor       what a run needs
+#   constrictor-dev   headers, libraries and examples for programs of one's own
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR Constrictor)
+set(CPACK_PACKAGE_CONTACT "The Constrictor developers <constrictor@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Framework for snake robots as components on Cyclone DDS")
+set(CPACK_INSTALL_PREFIX /usr)
+set(CPACK_SET_DESTDIR ON)  # for /etc, which is not below the prefix
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL runtime dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME constrictor)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/conffiles)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "tmux, openssh-client")
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+    "Physics, camera, perception, guidance, navigation, control and planner of a snake robot
+ that follows a line and carries objects with its body, each in a process of its own.")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME constrictor-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "constrictor (= ${PROJECT_VERSION}), cyclonedds-dev, libcli11-dev, libeigen3-dev, \
+libfmt-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+    "Headers, libraries, IDL files and examples for components, planners and clients
+ of one's own: find_package(Constrictor).")
+include(CPack)
