@@ -19,12 +19,12 @@ std::optional<std::string> unheard_steps(const Hello& member) {
                      barrier_topics::kTickDone.name, barrier_topics::kTickDone.depth);
 }
 
-/// [ticks] between two images of the camera; 1 if there is no camera.
-int image_period(const std::vector<Hello>& members) {
+/// [ticks] between two images of the camera; empty if no member is a camera.
+std::optional<int> image_period(const std::vector<Hello>& members) {
   for (const auto& member : members) {
     if (member.writes.contains(topics::kCameraImage.id)) return member.timing.period;
   }
-  return 1;
+  return {};
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ int needed_history(int writer_latency, int interval, int reader_latency) {
 }
 
 std::optional<std::string> depth_violation(const std::vector<Hello>& members, const std::string& plant) {
-  const int images = image_period(members);
+  const std::optional<int> images = image_period(members);
   for (const auto& reader : members) {
     if (auto why = unheard_steps(reader)) return why;
     for (const auto& writer : members) {
@@ -43,7 +43,9 @@ std::optional<std::string> depth_violation(const std::vector<Hello>& members, co
         if (!writer.writes.contains(topic.id) || !reader.reads.contains(topic.id)) continue;
         if (topic.rate == "once an epoch") continue;  // its only sample stays
         // A component that steps at every tick, but writes only after an image, is as fast as the camera.
-        const int interval = std::max<int>(writer.timing.period, topic.rate == "every image" ? images : 1);
+        const bool after_images = topic.rate == "every image";
+        if (after_images && !images) continue;
+        const int interval = std::max<int>(writer.timing.period, after_images ? *images : 1);
         const int needed = needed_history(writer_latency, interval, reader.timing.latency);
         const int kept = topic.depth / topic.max_per_tick;
         if (needed <= kept) continue;

@@ -53,7 +53,7 @@ Hello member(const std::string& name, int latency, TopicSet reads, TopicSet writ
   return hello;
 }
 
-const TopicSet kJoints = TopicSet::of(topics::kJointState), kLine = TopicSet::of(topics::kLinePercept);
+const TopicSet kJoints = TopicSet::of(topics::kJointState), kPose = TopicSet::of(topics::kRobotPose);
 constexpr int kKept = topics::kJointState.depth / topics::kJointState.max_per_tick;
 
 TEST(HistoryDepth, TheLongestLatencyThatATopicAllowsIsAcceptedAndOneMoreIsNot) {
@@ -66,11 +66,11 @@ TEST(HistoryDepth, TheLongestLatencyThatATopicAllowsIsAcceptedAndOneMoreIsNot) {
       "latency_ticks of control: found 17, accepted at most 16, because barrier/tick_done keeps the reports of 16 "
       "steps");
   const auto pair = [](int writer, int reader) {
-    return depth_violation({member("perception", writer, {}, kLine), member("guidance", reader, kLine, {})}, "physics");
+    return depth_violation({member("guidance", writer, {}, kPose), member("navigation", reader, kPose, {})}, "physics");
   };
   EXPECT_EQ(pair(kKept / 2, kKept / 2), std::nullopt);
   EXPECT_EQ(pair(kKept / 2, kKept / 2 + 1).value_or(""),
-            "latency_ticks: found 8 of perception, which writes perception/line, and 9 of guidance, which reads it: a "
+            "latency_ticks: found 8 of guidance, which writes guidance/pose, and 9 of navigation, which reads it: a "
             "restarted reader would need the samples of 17 steps, but the topic keeps 16");
 }
 
@@ -82,6 +82,9 @@ TEST(HistoryDepth, ATopicThatIsWrittenAfterImagesNeedsFewerSamples) {
                            "physics");
   };
   EXPECT_EQ(violation(5), std::nullopt);
+  EXPECT_EQ(depth_violation({member("perception", 5, image, drawn), member("report", 5, drawn, {})}, "physics"),
+            std::nullopt)
+      << "without a camera, nobody knows how often it is written";
   EXPECT_NE(violation(1).value_or("").find("latency_ticks: found 2 of camera, which writes camera/image"),
             std::string::npos);
 }
