@@ -1,6 +1,7 @@
 // The scripted forces of a scenario on objects.
 #pragma once
 
+#include <cereal/types/vector.hpp>
 #include <limits>
 #include <vector>
 
@@ -14,6 +15,12 @@ class PerturbationScript {
 
   /// Applies the forces that act at this time. Call it once a tick, before World::advance.
   void apply(World& world, double time_s);
+
+  /// The memory of the script: when each perturbation began.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(began_s_);
+  }
 
  private:
   std::vector<ScenarioPerturbation> perturbations_;

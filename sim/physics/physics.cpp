@@ -1,7 +1,9 @@
 #include "sim/physics/physics.hpp"
 
 #include <algorithm>
+#include <cereal/types/string.hpp>
 #include <span>
+#include <sstream>
 #include <string>
 
 #include "component/data_path.hpp"
@@ -74,6 +76,21 @@ void Physics::step(const Tick& tick) {
   obey(tick);
   perturbations_.apply(world_, tick.time_s());
   world_.advance(config_.period_s());
+}
+
+std::string Physics::save() const {
+  std::ostringstream stream;
+  cereal::PortableBinaryOutputArchive archive(stream);
+  archive(world_.save(), sensors_, perturbations_, gate_state_, scene_written_);
+  return std::move(stream).str();
+}
+
+void Physics::load(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  cereal::PortableBinaryInputArchive archive(stream);
+  std::string world;
+  archive(world, sensors_, perturbations_, gate_state_, scene_written_);
+  world_.load(world);
 }
 
 ComponentFactory make_physics_factory() {

@@ -20,6 +20,9 @@ class Physics final : public Plant {
   /// has authority.
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
+  /// World, sensors, perturbations and gate: about 10 kB for the case study.
+  [[nodiscard]] std::string save() const override;
+  void load(const std::string& bytes) override;
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_state_; }

@@ -23,6 +23,12 @@ class Sensors {
   /// square root. The yaw is relative to the first reading.
   [[nodiscard]] msg::ImuState imu(const World& world, double elapsed_s);
 
+  /// The memory of the sensors: random streams, and the drift of the yaw.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(joint_random_, contact_random_, imu_random_, started_, start_yaw_rad_, yaw_drift_rad_);
+  }
+
  private:
   [[nodiscard]] Eigen::Vector3d noisy(const Eigen::Vector3d& value, double sd, Random& random) const;
 

@@ -40,6 +40,11 @@ class Random {
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(state_);
+  }
+
  private:
   std::uint64_t state_;
 };

@@ -5,6 +5,7 @@
 #include <ode/ode.h>
 
 #include <Eigen/Core>
+#include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,12 @@ class ContactSet {
   /// Mean contacts of the tick so far, in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> felt() const;
 
+  /// The sums of the last tick. The joints of the last step are not part of it: begin_step() removes them.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(sums_, steps_);
+  }
+
  private:
   struct Record {  // a felt contact joint of the present step
     dBodyID first;
@@ -66,6 +73,11 @@ class ContactSet {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     double weight = 0.0;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(key, weight);
+      for (Eigen::Vector3d* v : {&position, &normal, &force}) archive(v->x(), v->y(), v->z());
+    }
   };
 
   [[nodiscard]] Eigen::Vector3d sliding_direction(const TouchPoint& touch, dBodyID first, dBodyID second) const;

@@ -33,6 +33,12 @@ class JointDrive {
   [[nodiscard]] double motor_angle_rad() const { return servo_.elastic() ? servo_.motor_angle_rad() : angle_rad(); }
   [[nodiscard]] const Servo& servo() const { return servo_; }
 
+  /// The memory of the drive between two ticks. The bodies, from which the angle follows, are not part of it.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(servo_, torque_nm_, step_torque_nm_);
+  }
+
   // ODE keeps a pointer to feedback_.
   JointDrive(const JointDrive&) = delete;
   JointDrive& operator=(const JointDrive&) = delete;

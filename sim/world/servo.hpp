@@ -42,6 +42,13 @@ class Servo {
   [[nodiscard]] double motor_angle_rad() const { return motor_angle_rad_; }  ///< of an elastic joint
   [[nodiscard]] double setpoint_rad() const { return reference_rad_; }       ///< at the end of the last step
 
+  /// The whole memory of the servo; the model of the joint is not part of it.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(from_, to_, step_, steps_, step_s_, reference_rad_, reference_rate_rad_s_, motor_angle_rad_,
+            motor_rate_rad_s_, play_rad_, loose_, loose_motor_rad_s_);
+  }
+
  private:
   [[nodiscard]] double torque_limit_nm(double rate_rad_s, double driving) const;
   /// Stretch of the elastic element on the side of the backlash on which the gear will touch at the end of the step.

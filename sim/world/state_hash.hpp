@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cereal/types/array.hpp>
 #include <cstdint>
 #include <span>
 
@@ -14,6 +15,11 @@ class StateHash {
   /// chain := SHA-256(chain, raw bytes of the values in this order).
   void extend(std::span<const double> values);
   [[nodiscard]] const Digest& digest() const { return digest_; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(digest_);
+  }
 
  private:
   Digest digest_{};

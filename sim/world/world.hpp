@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "robot/robot_model.hpp"
@@ -72,6 +73,13 @@ class World {
   /// and of each object, then angle and rate of each joint.
   [[nodiscard]] const StateHash::Digest& state_hash() const { return hash_.digest(); }
 
+  /// The whole memory of the world between two advance(), as bytes. A world that is built from equal arguments and
+  /// loads them continues equally, bit for bit. contact_power_w() is 0 until the next advance().
+  [[nodiscard]] std::string save() const;
+  /// Throws std::runtime_error if the bytes do not belong to a world with this number of bodies and joints, or
+  /// cereal::Exception if they end too early.
+  void load(const std::string& bytes);
+
   [[nodiscard]] const RobotModel& robot() const { return robot_; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
 
@@ -93,6 +101,8 @@ class World {
   void step();
   void stand_on_bellies();
   void extend_hash();
+  template <class Archive>
+  void serialize_rest(Archive& archive);
 
   RobotModel robot_;
   Scenario scenario_;

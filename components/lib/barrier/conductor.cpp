@@ -20,7 +20,9 @@ void Conductor::on_hello(const Hello& hello) {
   MemberState& member = found->second;
   if (member.hello_received && hello.pid == member.hello.pid && hello.host == member.hello.host &&
       hello.incarnation == member.hello.incarnation) {
-    return;  // a repeated Hello
+    // A repeated Hello. The predecessor of this conductor may have died before its Resume arrived.
+    if (successor_ && epoch_ && !member.ready && hello.incarnation > 1) send_resume(member);
+    return;
   }
   if (member.hello_received && hello.incarnation <= member.hello.incarnation) {
     return refuse(
@@ -28,8 +30,8 @@ void Conductor::on_hello(const Hello& hello) {
                     "higher --incarnation",
                     member.hello.incarnation, member.hello.pid, member.hello.host));
   }
-  if (hello.component == options_.plant && member.hello_received)
-    return refuse("the plant cannot be replaced in a run");
+  const bool is_plant = hello.component == options_.plant;
+  if (is_plant && member.hello_received && !awaits_plant_) return refuse("the plant cannot be replaced in a run");
   // A process that belongs to this run may still have to come back and conclude it.
   if (ended_ && hello.run_id == 0) return refuse("the run is over");
   Hello ours;
@@ -44,9 +46,10 @@ void Conductor::on_hello(const Hello& hello) {
                     "hash {}, the run has {}",
                     hello.component_hash, member.hello.component_hash));
   }
-  if (epoch_ && member.last_done >= 0 && member.state.empty()) {
+  if (epoch_ && member.last_done >= 0 && !member.state) {
     return refuse("it cannot be resumed: its TickDone carried no checkpoint");
   }
+  if (is_plant) awaits_plant_ = false;
   member.hello = hello;
   member.hello_received = true;
   member.ready = false;
@@ -75,9 +78,15 @@ std::optional<std::string> Conductor::latency_violation(const Hello& hello) cons
 }
 
 void Conductor::send_resume(const MemberState& member) {
-  Resume resume{member.hello.component, *epoch_, member.hello.incarnation, member.last_done, seed_, member.state, {}};
+  Resume resume{member.hello.component,
+                *epoch_,
+                member.hello.incarnation,
+                member.last_done,
+                seed_,
+                member.state ? *member.state : "",
+                {}};
   for (const auto& [topic, samples] : member.history) {
-    for (const auto& bytes : samples) resume.outputs.push_back({topic, bytes});
+    for (const auto& bytes : samples) resume.outputs.push_back({topic, *bytes});
   }
   sink_.resume(resume);
 }
@@ -131,6 +140,10 @@ std::optional<std::string> Conductor::implausible(const TickDone& done) const {
   return {};
 }
 
+bool Conductor::is_early(const TickDone& done) const {
+  return successor_ && done.index == next_index_ && done.incarnation == members_.at(done.component).hello.incarnation;
+}
+
 bool Conductor::on_done(const TickDone& done) {
   const auto found = members_.find(done.component);
   if (found == members_.end() || epoch_ != done.epoch) return false;
@@ -139,19 +152,24 @@ bool Conductor::on_done(const TickDone& done) {
   if (done.incarnation != member.hello.incarnation || done.index <= member.last_done || done.index >= next_index_)
     return false;
   member.last_done = done.index;
-  member.state = done.state;
+  if (done.component != options_.plant) {
+    member.state = done.state.empty() ? nullptr : std::make_shared<const std::string>(done.state);
+    member.state_index = done.index;
+  }
   for (const auto& [topic, count] : done.published) member.published[topic] = count;
   member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
-  for (const auto& written : done.written) {
-    auto& history = member.history[written.topic];
-    history.push_back(written.bytes);
-    if (history.size() > topics::kInfos[written.topic].depth) history.pop_front();
-  }
+  for (const auto& written : done.written) keep(member, written);
   if (done.end_of_run) {
     const std::int64_t at = done.index + member.hello.timing.latency;
     end_requested_at_ = std::min(end_requested_at_.value_or(at), at);
   }
   return true;
+}
+
+void Conductor::keep(MemberState& member, TickDone::Written written) {
+  auto& history = member.history[written.topic];
+  history.push_back(std::make_shared<const std::string>(std::move(written.bytes)));
+  if (history.size() > topics::kInfos[written.topic].depth) history.pop_front();
 }
 
 bool Conductor::may_tick() const {
@@ -176,7 +194,7 @@ std::vector<Conductor::Owed> Conductor::owed() const {
   return owed;
 }
 
-void Conductor::tick(const std::vector<TickDone::Count>& plant) {
+void Conductor::tick(const std::vector<TickDone::Count>& plant, PlantCheckpoint checkpoint) {
   for (auto& [name, member] : members_) {
     for (; !member.pending.empty(); member.pending.pop_front()) {
       const Pending& step = member.pending.front();
@@ -188,11 +206,16 @@ void Conductor::tick(const std::vector<TickDone::Count>& plant) {
       member.output_hash = step.output_hash;
     }
   }
-  const std::uint32_t plant_incarnation = incarnation(options_.plant);
+  MemberState& owner = members_.at(options_.plant);
   for (const auto& [topic, count] : plant) {
+    if (count > visible_[topic]) incarnations_[topic] = owner.hello.incarnation;
     visible_[topic] = count;
-    incarnations_[topic] = plant_incarnation;
   }
+  if (!checkpoint.state.empty()) {
+    owner.state = std::make_shared<const std::string>(std::move(checkpoint.state));
+    owner.state_index = owner.last_done;
+  }
+  for (auto& written : checkpoint.written) keep(owner, std::move(written));
   msg::Tick tick{};
   tick.run_id = epoch_->run_id;
   tick.epoch = epoch_->epoch;
@@ -205,6 +228,10 @@ void Conductor::tick(const std::vector<TickDone::Count>& plant) {
   std::copy(incarnations_.begin(), incarnations_.end(), tick.incarnations);
   ended_ = tick.final_tick;
   ++next_index_;
+  std::size_t most_late = 1;
+  for (const auto& [name, member] : members_) most_late = std::max<std::size_t>(most_late, member.hello.timing.latency);
+  ticks_.push_back(tick);
+  while (ticks_.size() > most_late + 1) ticks_.pop_front();
   sink_.tick(tick);
 }
 
@@ -217,6 +244,7 @@ void Conductor::clear_epoch_state() {
   }
   next_index_ = 0;
   ended_ = false;
+  ticks_.clear();
   end_requested_at_.reset();
   visible_ = {};
   incarnations_ = {};

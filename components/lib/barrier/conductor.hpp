@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "barrier/checkpoint.hpp"
 #include "barrier/protocol.hpp"
 
 namespace constrictor {
@@ -18,6 +19,10 @@ class ConductorSink {
  public:
   virtual ~ConductorSink() = default;
   virtual void start_epoch(const EpochId& epoch, std::uint64_t seed) = 0;
+  /// A successor sends what its predecessor has sent and what died with it: the present epoch and its last ticks.
+  virtual void continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) {
+    static_cast<void>(epoch), static_cast<void>(seed), static_cast<void>(ticks);
+  }
   virtual void tick(const msg::Tick& tick) = 0;
   virtual void resume(const Resume& resume) = 0;
   virtual void refuse(const Hello& hello, const std::string& reason) = 0;
@@ -39,6 +44,17 @@ struct ConductorOptions {
 class Conductor {
  public:
   Conductor(ConductorOptions options, ConductorSink& sink);
+  /// The successor of a conductor that has died: it continues from save(). Throws std::runtime_error if the checkpoint
+  /// belongs to another run, release or configuration; the message names both values.
+  Conductor(ConductorOptions options, ConductorSink& sink, const Checkpoint& checkpoint);
+  /// To be called once by a successor, when the members of its process have sent Hello: lets the sink send again what
+  /// died with the predecessor.
+  void continue_epoch();
+
+  /// Everything that a successor needs. A conductor that is to be continued is saved before each call of the sink is
+  /// carried out, so that no process has ever received something from it that the checkpoint does not contain. What
+  /// the conductor received since then, the successor receives again from the histories of the writers.
+  [[nodiscard]] Checkpoint save() const;
 
   /// A member announces itself: it joins, it comes back with a newer incarnation, or it is refused with a reason.
   void on_hello(const Hello& hello);
@@ -50,6 +66,9 @@ class Conductor {
   /// The reason why a TickDone of another process cannot be true; empty if it is plausible. An implausible message must
   /// not be passed to on_done(). The component of the message must be in the roster.
   [[nodiscard]] std::optional<std::string> implausible(const TickDone& done) const;
+  /// Whether this is the report of the very next tick, which this conductor has not sent. Its predecessor has sent it
+  /// if its newest checkpoint was damaged. The message must be kept until the tick is sent.
+  [[nodiscard]] bool is_early(const TickDone& done) const;
   /// Returns whether the step counts: false for an older incarnation, another epoch, or a step that was done before.
   bool on_done(const TickDone& done);
   /// Ends this epoch and begins the next: every member builds its component anew and sends Ready again.
@@ -62,8 +81,8 @@ class Conductor {
   /// Index and time of the tick that comes next.
   [[nodiscard]] std::int64_t next_index() const { return next_index_; }
   [[nodiscard]] std::int64_t next_time_ns() const { return next_index_ * options_.period_ns; }
-  /// Sends the next tick. `plant`: the plant's counts after it has sampled for this tick.
-  void tick(const std::vector<TickDone::Count>& plant);
+  /// Sends the next tick. `plant`: the plant's counts after it has measured for this tick, and its checkpoint.
+  void tick(const std::vector<TickDone::Count>& plant, PlantCheckpoint checkpoint = {});
   [[nodiscard]] bool next_is_final() const {
     return (end_requested_at_ && *end_requested_at_ <= next_index_) ||
            (options_.last_index >= 0 && options_.last_index <= next_index_);
@@ -101,11 +120,14 @@ class Conductor {
     bool ready = false;
     std::int64_t last_done = -1;
     std::deque<Pending> pending;
-    std::array<std::uint64_t, msg::kMaxTopics> published{};   ///< counts by topic after last_done
-    std::array<std::uint8_t, 32> output_hash{};               ///< of what is visible
-    std::string state;                                        ///< checkpoint after last_done
-    std::map<std::uint8_t, std::deque<std::string>> history;  ///< newest outputs by topic
+    std::array<std::uint64_t, msg::kMaxTopics> published{};  ///< counts by topic after last_done
+    std::array<std::uint8_t, 32> output_hash{};              ///< of what is visible
+    Blob state;                                              ///< checkpoint; null: none
+    std::int64_t state_index = -1;                           ///< last step that `state` contains
+    std::map<std::uint8_t, std::deque<Blob>> history;        ///< newest outputs by topic
   };
+  struct Archived;
+  static void keep(MemberState& member, TickDone::Written written);
   [[nodiscard]] std::int64_t newest_due(const MemberState& member, std::int64_t tick) const;
   /// Why the latencies do not suit the depths of the topics; empty if they do, or if another member has not joined yet.
   [[nodiscard]] std::optional<std::string> latency_violation(const Hello& hello) const;
@@ -119,6 +141,9 @@ class Conductor {
   std::uint64_t seed_;
   std::int64_t next_index_ = 0;
   bool ended_ = false;
+  bool successor_ = false;       ///< it continues from a checkpoint
+  bool awaits_plant_ = false;    ///< likewise, and the plant has not sent its Hello
+  std::deque<msg::Tick> ticks_;  ///< the newest ones: those that a member may not have stepped at
   std::optional<std::int64_t> end_requested_at_;
   std::array<std::uint64_t, msg::kMaxTopics> visible_{};
   std::array<std::uint32_t, msg::kMaxTopics> incarnations_{};

@@ -11,7 +11,7 @@ InputBuffer::InputBuffer(const TopicInfo& topic, bool events) {
 
 InputBuffer::Arrival InputBuffer::classify(const msg::Header& header) const {
   if (header.sequence_number < std::max<std::uint64_t>(last_valid_, 1)) return Arrival::kDuplicate;
-  if (header.sequence_number > consumed_ + kFarthestAhead) return Arrival::kTooFarAhead;
+  if (header.sequence_number > farthest()) return Arrival::kTooFarAhead;
   const auto known = samples_.find(header.sequence_number);
   if (known == samples_.end()) return Arrival::kNew;
   const bool seen = header.sequence_number <= consumed_;

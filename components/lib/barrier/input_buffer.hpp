@@ -1,6 +1,7 @@
 // The samples of one topic that have arrived for a member, and what its steps may see of them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 
@@ -20,7 +21,8 @@ class InputBuffer {
     kDuplicate,    ///< drop it: it is known already, which is normal after a restart
     kTooFarAhead,  ///< reject it: no writer can be so many samples ahead
   };
-  static constexpr std::uint64_t kFarthestAhead = 4096;  ///< sequence numbers beyond the newest one that was consumed
+  /// Sequence numbers beyond the newest one that was consumed or announced.
+  static constexpr std::uint64_t kFarthestAhead = 4096;
 
   /// `events`: the component wants every sample, not only the newest.
   InputBuffer(const TopicInfo& topic, bool events);
@@ -35,9 +37,13 @@ class InputBuffer {
   void keep(const Sample& sample, bool valid);
   /// Whether every sample that a step at `tick` must see has arrived. At real-time pace nothing is waited for.
   [[nodiscard]] bool complete(const msg::Tick& tick) const;
+  /// A tick has said that the topic has this many samples. At real-time pace a reader may have missed any number.
+  void announce(std::uint64_t count) { announced_ = std::max(announced_, count); }
   /// Fills slot() for a step at `tick`; at real-time pace with everything that has arrived.
   void present(const msg::Tick& tick);
 
+  /// The newest sequence number that a sample may have.
+  [[nodiscard]] std::uint64_t farthest() const { return std::max(consumed_, announced_) + kFarthestAhead; }
   /// Newest sequence number that a step has seen; 0 before the first.
   [[nodiscard]] std::uint64_t consumed() const { return consumed_; }
   /// Newest sequence number that has arrived; 0 before the first.
@@ -60,6 +66,7 @@ class InputBuffer {
   InputSlot slot_;
   std::map<std::uint64_t, Entry> samples_;  ///< by sequence number
   std::uint64_t consumed_ = 0;
+  std::uint64_t announced_ = 0;
   std::uint64_t last_valid_ = 0;  ///< newest valid sequence number up to consumed_
 };
 

@@ -10,15 +10,14 @@ constexpr std::size_t kTickHistory = 128;
 LocalRun::LocalRun(std::vector<ComponentFactory> factories, Setup setup,
                    std::map<std::string, std::filesystem::path> config_files)
     : factories_(std::move(factories)), setup_(std::move(setup)), config_files_(std::move(config_files)) {
-  ConductorOptions options;
-  options.seed = setup_.seed;
-  for (const auto& factory : factories_) options.roster.push_back(factory.name);
-  options.plant = options.roster.at(0);
+  options_.seed = setup_.seed;
+  for (const auto& factory : factories_) options_.roster.push_back(factory.name);
+  options_.plant = options_.roster.at(0);
   for (std::size_t i = 0; i < factories_.size(); ++i) members_.push_back(make(i, 1));
   auto* plant = dynamic_cast<Plant*>(&members_[0]->component());
-  if (!plant) throw std::invalid_argument("LocalRun: " + options.plant + " is not a plant");
-  options.period_ns = plant->period_ns();
-  conductor_ = std::make_unique<Conductor>(options, static_cast<ConductorSink&>(*this));
+  if (!plant) throw std::invalid_argument("LocalRun: " + options_.plant + " is not a plant");
+  options_.period_ns = plant->period_ns();
+  conductor_ = std::make_unique<Conductor>(options_, static_cast<ConductorSink&>(*this));
   for (const auto& member : members_) send_hello(*member);
 }
 
@@ -28,7 +27,7 @@ std::unique_ptr<Member> LocalRun::make(std::size_t index, std::uint32_t incarnat
   Setup setup = setup_;
   const auto config = config_files_.find(factories_[index].name);
   if (config != config_files_.end()) setup.config_file = config->second;
-  return std::make_unique<Member>(factories_[index], setup, incarnation, /*checkpoints=*/index != 0,
+  return std::make_unique<Member>(factories_[index], setup, incarnation, /*checkpoints=*/true,
                                   static_cast<MemberSink&>(*this));
 }
 
@@ -53,9 +52,9 @@ std::int64_t LocalRun::advance(std::int64_t ticks) {
   std::int64_t advanced = 0;
   for (; advanced < ticks && !ended(); ++advanced) {
     if (!conductor_->may_tick()) throw std::logic_error("LocalRun: a member did not finish its step");
-    members_[0]->sample_plant(conductor_->next_index(), conductor_->next_time_ns(),
-                              static_cast<Plant&>(members_[0]->component()).period_ns());
-    conductor_->tick(members_[0]->published());
+    auto checkpoint = members_[0]->measure(conductor_->next_index(), conductor_->next_time_ns(),
+                                           static_cast<Plant&>(members_[0]->component()).period_ns());
+    conductor_->tick(members_[0]->published(), std::move(checkpoint));
     for (auto& member : members_) {
       while (member->try_step()) {}
     }
@@ -63,7 +62,25 @@ std::int64_t LocalRun::advance(std::int64_t ticks) {
   return advanced;
 }
 
+void LocalRun::restart_plant() {
+  const Checkpoint checkpoint = conductor_->save();
+  const std::uint32_t incarnation = members_[0]->incarnation() + 1;
+  members_[0].reset();
+  conductor_ = std::make_unique<Conductor>(options_, static_cast<ConductorSink&>(*this), checkpoint);
+  members_[0] = make(0, incarnation);
+  for (std::size_t topic = 0; topic < topics::kCount; ++topic) {
+    if (!members_[0]->reads().contains(topic)) continue;
+    for (const auto& sample : history_[topic]) members_[0]->on_sample(topic, sample);
+  }
+  send_hello(*members_[0]);
+  conductor_->continue_epoch();
+  for (auto& member : members_) {
+    while (member->try_step()) {}
+  }
+}
+
 void LocalRun::restart(const std::string& name) {
+  if (name == options_.plant) return restart_plant();
   for (std::size_t i = 1; i < members_.size(); ++i) {
     if (members_[i]->name() != name) continue;
     const std::uint32_t incarnation = members_[i]->incarnation() + 1;
@@ -104,7 +121,15 @@ void LocalRun::start_epoch(const EpochId& epoch, std::uint64_t seed) {
   for (auto& member : members_) conductor_->on_ready(member->name(), epoch, member->incarnation());
 }
 
+void LocalRun::continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) {
+  for (auto& member : members_) {
+    member->on_epoch(epoch, seed);
+    for (const auto& tick : ticks) member->on_tick(tick);
+  }
+}
+
 void LocalRun::tick(const msg::Tick& tick) {
+  members_[0]->publish_sample();
   ticks_.push_back(tick);
   if (ticks_.size() > kTickHistory) ticks_.pop_front();
   for (auto& member : members_) member->on_tick(tick);

@@ -45,7 +45,8 @@ class LocalRun : private MemberSink, private ConductorSink {
 
   [[nodiscard]] Component& component(const std::string& name) { return member(name).component(); }
   [[nodiscard]] Member& member(const std::string& name);
-  /// Destroys the member, as a crash would, and resumes a new incarnation from the last checkpoint.
+  /// Destroys the member, as a crash would, and resumes a new incarnation from the last checkpoint. The plant dies
+  /// together with the conductor; both continue from the conductor's checkpoint.
   void restart(const std::string& name);
   /// Makes the next tick the final one.
   void end_run() { conductor_->end_run(); }
@@ -60,14 +61,17 @@ class LocalRun : private MemberSink, private ConductorSink {
   void publish(const TopicInfo& topic, const Sample& sample) override;
   void done(const TickDone& done) override;
   void start_epoch(const EpochId& epoch, std::uint64_t seed) override;
+  void continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) override;
   void tick(const msg::Tick& tick) override;
   void resume(const Resume& resume) override;
   void refuse(const Hello& hello, const std::string& reason) override;
   [[nodiscard]] std::unique_ptr<Member> make(std::size_t index, std::uint32_t incarnation);
   void send_hello(const Member& member);
+  void restart_plant();
 
   std::vector<ComponentFactory> factories_;
   Setup setup_;
+  ConductorOptions options_;
   std::map<std::string, std::filesystem::path> config_files_;
   std::vector<std::unique_ptr<Member>> members_;  ///< plant first
   std::unique_ptr<Conductor> conductor_;

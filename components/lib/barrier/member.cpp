@@ -76,6 +76,7 @@ void Member::build(std::uint64_t seed) {
   setup_.seed = seed;
   wiring_ = std::make_unique<MemberWiring>(*this);
   component_ = factory_.create(*wiring_, setup_);
+  is_plant_ = dynamic_cast<Plant*>(component_.get()) != nullptr;
   timing_ = component_->timing();
   timing_.latency = std::max(timing_.latency, setup_.latency_ticks);
   fresh_component_ = true;
@@ -109,6 +110,7 @@ void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   }
   step_.reset();  // its outputs belong to the previous epoch
   written_.clear();
+  sample_.clear();
   build(seed);
   epoch_ = epoch;
   ticks_.clear();
@@ -138,6 +140,7 @@ void Member::on_tick(const msg::Tick& tick) {
     else conclude(tick);
   }
   newest_tick_ = std::max(newest_tick_, tick.index);
+  for (auto& input : inputs_) input->announce(tick.visible[input->topic().id]);
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
 }
 
@@ -164,7 +167,8 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   const InputBuffer::Arrival arrival = (*found)->classify(header);
   if (arrival == InputBuffer::Arrival::kTooFarAhead) {
     return refuse(fmt::format("{}.sequence_number: found {}, accepted at most {} more than {}", topic,
-                              header.sequence_number, InputBuffer::kFarthestAhead, (*found)->consumed()));
+                              header.sequence_number, InputBuffer::kFarthestAhead,
+                              (*found)->farthest() - InputBuffer::kFarthestAhead));
   }
   if (arrival != InputBuffer::Arrival::kNew) ++counters_.duplicates;
   if (arrival == InputBuffer::Arrival::kDuplicate) return;
@@ -213,14 +217,6 @@ void Member::run_step() {
   component_->step(step_->tick);
 }
 
-void Member::sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns) {
-  if (!epoch_) bug(name(), "sampled before the epoch");
-  stamp_ = {epoch_->run_id, epoch_->epoch, incarnation_, index, time_ns, 0};
-  for (auto& port : outputs_) port->in_this_step = 0;
-  fresh_component_ = false;
-  static_cast<Plant&>(*component_).sample(Tick{index, time_ns, period_ns, 1, epoch_->run_id, epoch_->epoch});
-}
-
 std::vector<TickDone::Count> Member::published() const {
   std::vector<TickDone::Count> counts;
   for (const auto& port : outputs_) counts.push_back({port->slot.topic->id, port->count});
@@ -240,6 +236,7 @@ void Member::write(OutputPort& port, const void* message) {
   header.sequence_number = ++port.count;
   const Sample sample = ops.stamp(message, header, setup_.robot_id);
   if (step_) step_->outputs.emplace_back(&topic, sample);
+  else if (measuring_) sample_.emplace_back(&topic, sample);
   else sink_.publish(topic, sample);
   std::string bytes;
   bytes.reserve(ops.max_size);
@@ -270,8 +267,9 @@ void Member::finish_step() {
   for (const auto& input : inputs_) done.consumed.push_back({input->topic().id, input->consumed()});
   done.output_hash = output_hash_;
   done.end_of_run = end_requested_;
-  if (checkpoints_) done.state = state_bytes();
-  done.written = std::exchange(written_, {});
+  // The plant's checkpoint is made by measure(), just before the next tick.
+  if (checkpoints_ && !is_plant_) done.state = state_bytes();
+  if (!is_plant_) done.written = std::exchange(written_, {});
   ticks_.erase(step.tick.index);
   sink_.done(done);
   if (step.final_tick) conclude(*step.final_tick);

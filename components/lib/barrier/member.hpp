@@ -67,7 +67,12 @@ class Member {
   /// Validates the sample. A rejected sample keeps its place in the sequence, so that no step waits for it.
   void on_sample(std::size_t topic_id, const Sample& sample);
 
-  /// Plant only: publishes what is measured at the instant of the next tick. published() then has the counts.
+  /// Plant only: lets the component measure at the instant of the next tick. published() then has the counts. The
+  /// samples are kept until publish_sample(), so that the checkpoint can be stored before anybody sees them.
+  PlantCheckpoint measure(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns);
+  /// Plant only: publishes what measure() has kept.
+  void publish_sample();
+  /// Plant only: measure() and publish_sample().
   void sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns);
   /// Samples of each topic that it writes, since the epoch began.
   [[nodiscard]] std::vector<TickDone::Count> published() const;
@@ -137,6 +142,7 @@ class Member {
   std::unique_ptr<MemberWiring> wiring_;
   std::unique_ptr<Component> component_;
   bool fresh_component_ = true;  ///< it has not stepped since it was built
+  bool is_plant_ = false;
   Timing timing_;
   TopicSet reads_;
   TopicSet writes_;
@@ -153,7 +159,9 @@ class Member {
   bool ended_ = false;
   bool end_requested_ = false;
   std::optional<Step> step_;
-  msg::Header stamp_{};  ///< header of the step in progress, sequence aside
+  bool measuring_ = false;
+  std::vector<std::pair<const TopicInfo*, Sample>> sample_;  ///< measured by the plant, and not published
+  msg::Header stamp_{};                                      ///< header of the step in progress, sequence aside
   std::array<std::uint8_t, 32> output_hash_{};
   Sha256 hash_;
   std::vector<TickDone::Written> written_;  ///< by the step in progress

@@ -27,7 +27,8 @@ void Member::on_resume(const Resume& resume) {
   build(resume.seed);
   epoch_ = resume.epoch;
   last_done_ = newest_tick_ = resume.index;
-  if (resume.index >= 0) restore(resume.state);
+  // The plant has measured before its first step, so that its state is older than its last step but not empty.
+  if (resume.index >= 0 || !resume.state.empty()) restore(resume.state);
   // The dead process's writers are gone, and with them their history. Readers that have not received it, or that start
   // later, receive it from the new writers.
   for (const auto& [topic, sample] : outputs) sink_.publish(*topic, sample);

@@ -18,9 +18,11 @@ namespace {
 #ifdef CONSTRICTOR_EXPLORE_LONG
 constexpr std::int64_t kTicksWithCrash = 2;
 constexpr std::int64_t kTicksWithCrashOfControl = 3;
+constexpr std::int64_t kTicksWithCrashOfPlant = 3;
 #else
 constexpr std::int64_t kTicksWithCrash = 1;
 constexpr std::int64_t kTicksWithCrashOfControl = 1;
+constexpr std::int64_t kTicksWithCrashOfPlant = 1;
 #endif
 
 struct Case {
@@ -68,7 +70,7 @@ class Explorer {
   }
 
   void explore() {
-    QueueWorld world(case_.factories, case_.ticks);
+    QueueWorld world(case_.factories, case_.ticks, case_.mortal.contains("physics"));
     if (!case_.from_start) world.settle();
     int crashes = 0;
     int resets = 0;
@@ -155,6 +157,33 @@ TEST(BarrierExploration, ACrashOfASlowerMemberAnywhereGivesTheSameResult) {
 TEST(BarrierExploration, ACrashOfTheOnlyMemberWithinThreeTicksGivesTheSameResult) {
   explore({{plant(), control()}, 3, {"control"}, 1, 0, false});
 }
+
+// The plant's process dies with the conductor, at every point of the protocol.
+TEST(BarrierExploration, ACrashOfThePlantAnywhereGivesTheSameResult) {
+  explore({{plant(), control()}, kTicksWithCrashOfPlant, {"physics"}, 1, 0, false});
+}
+
+TEST(BarrierExploration, ACrashOfThePlantDuringTheStartGivesTheSameResult) {
+  explore({{plant(), control()}, 1, {"physics"}, 1, 0});
+}
+
+#ifdef CONSTRICTOR_EXPLORE_LONG
+TEST(BarrierExploration, ACrashOfThePlantWhileTheRunIsResetGivesTheResultOfANewRun) {
+  explore({{plant(), control()}, 1, {"physics"}, 1, 1, false});
+}
+
+TEST(BarrierExploration, ACrashOfThePlantAmongSlowerMembersGivesTheSameResult) {
+  explore({{plant(), navigation({2, 2}), control()}, 1, {"physics"}, 1, 0, false});
+}
+
+TEST(BarrierExploration, TwoCrashesOfThePlantGiveTheSameResult) {
+  explore({{plant(), control()}, 1, {"physics"}, 2, 0, false});
+}
+
+TEST(BarrierExploration, ACrashOfThePlantAndOneOfControlGiveTheSameResult) {
+  explore({{plant(), control()}, 1, {"physics", "control"}, 2, 0, false});
+}
+#endif
 
 TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
   explore({{plant(), control()}, 1, {"control"}, 1, 0});

@@ -1,6 +1,8 @@
 // A run on queues in which each delivery, step, tick, crash and restart is an explicit action, so that a test can try
-// all orders. There is a channel for each combination of writer incarnation, topic and reader. As in DDS, messages keep
-// their order within a channel, and the order of messages of different channels is arbitrary.
+// all orders. The plant's process, in which the conductor is, may crash as well: it continues from the checkpoint that
+// it saved last, and receives again what the living members have kept for late readers. There is a channel for each
+// combination of writer incarnation, topic and reader. As in DDS, messages keep their order within a channel, and the
+// order of messages of different channels is arbitrary.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,12 +29,12 @@ class QueueWorld : private ConductorSink {
  public:
   using Action = QueueAction;
 
-  QueueWorld(std::vector<ComponentFactory> factories, std::int64_t final_tick)
-      : factories_(std::move(factories)), final_tick_(final_tick) {
-    ConductorOptions options;
-    for (const auto& factory : factories_) options.roster.push_back(factory.name);
-    options.plant = options.roster.front();
-    conductor_ = std::make_unique<Conductor>(options, static_cast<ConductorSink&>(*this));
+  /// `checkpoints`: the plant may crash.
+  QueueWorld(std::vector<ComponentFactory> factories, std::int64_t final_tick, bool checkpoints)
+      : factories_(std::move(factories)), final_tick_(final_tick), checkpoints_(checkpoints) {
+    for (const auto& factory : factories_) options_.roster.push_back(factory.name);
+    options_.plant = options_.roster.front();
+    conductor_ = std::make_unique<Conductor>(options_, static_cast<ConductorSink&>(*this));
     for (std::size_t i = 0; i < factories_.size(); ++i) start(i, 1);
   }
 
@@ -51,10 +53,10 @@ class QueueWorld : private ConductorSink {
     }
     for (const auto& node : nodes_) {
       if (can_step(*node->member)) list.push_back({Action::kStep, node->member->name(), 0});
-      if (!mortal.contains(node->member->name()) || node->member->ended()) continue;
+      if (!mortal.contains(node->member->name()) || (node->member->ended() && node->index != 0)) continue;
       int most = 0;
       for (const auto& [name, queue] : channels_) {
-        if (name.starts_with(node->member->name() + ".")) most = std::max(most, static_cast<int>(queue.size()));
+        if (sent_by(name, *node)) most = std::max(most, static_cast<int>(queue.size()));
       }
       for (int lost = 0; lost <= most; ++lost) list.push_back({Action::kCrash, node->member->name(), lost});
     }
@@ -78,12 +80,13 @@ class QueueWorld : private ConductorSink {
       case Action::kTick: {
         Member& plant = *nodes_.front()->member;
         if (conductor_->next_index() == final_tick_) conductor_->end_run();
-        plant.sample_plant(conductor_->next_index(), conductor_->next_time_ns(), 20'000'000);
-        conductor_->tick(plant.published());
+        PlantCheckpoint checkpoint = plant.measure(conductor_->next_index(), conductor_->next_time_ns(), 20'000'000);
+        conductor_->tick(plant.published(), std::move(checkpoint));
         break;
       }
       case Action::kCrash:
-        crash(action.what, action.lost);
+        if (action.what == options_.plant) crash_plant(action.lost);
+        else crash(action.what, action.lost);
         break;
       case Action::kReset:
         conductor_->reset(5);
@@ -105,30 +108,9 @@ class QueueWorld : private ConductorSink {
   }
 
   /// The whole state as text: equal fingerprints mean that the same actions have the same results from here on.
-  [[nodiscard]] std::string fingerprint() const {
-    std::string text = std::to_string(conductor_->next_index()) + (conductor_->may_tick() ? "m" : "-") +
-                       (conductor_->epoch() ? std::to_string(conductor_->epoch()->epoch) : "?");
-    for (const auto& node : nodes_) text += "," + conductor_->known_of(node->member->name());
-    for (const auto& node : nodes_) {
-      const Member& member = *node->member;
-      const MissingInput missing = member.missing();
-      text += "|" + member.name() + std::to_string(member.incarnation()) + "," + std::to_string(member.last_done()) +
-              "," + std::to_string(member.newest_tick()) + (member.ended() ? "e" : "") +
-              (member.in_epoch() ? std::to_string(member.epoch().epoch) : "?") + "," + std::to_string(missing.tick) +
-              (missing.topic ? std::string(missing.topic->name) : "-") + std::to_string(missing.have) +
-              node->member->component().save();
-    }
-    for (const auto& [name, queue] : channels_) {
-      if (!queue.empty()) text += "|" + name + ":";
-      for (const auto& message : queue) text += message.what + ";";
-    }
-    for (const auto& [name, count] : delivered_) text += "," + name + std::to_string(count);
-    return text;
-  }
+  [[nodiscard]] std::string fingerprint() const;  // defined in queue_world_parts.hpp
 
-  [[nodiscard]] double plant_value() const {
-    return static_cast<const ToyPlant&>(nodes_.front()->member->component()).value();
-  }
+  [[nodiscard]] double plant_value() const { return dynamic_cast<ToyPlant&>(nodes_[0]->member->component()).value(); }
   [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const {
     return conductor_->output_hashes();
   }
@@ -145,6 +127,8 @@ class QueueWorld : private ConductorSink {
     std::unique_ptr<Member> member;
     std::optional<EpochId> ready_in;                     ///< the epoch for which it has sent Ready
     std::map<std::uint8_t, std::deque<Sample>> history;  ///< kept for late readers, lost when the process dies
+    Hello hello;                                         ///< likewise
+    std::deque<TickDone> steps;                          ///< likewise
     void publish(const TopicInfo& topic, const Sample& sample) override {
       auto& kept = history[topic.id];
       kept.push_back(sample);
@@ -155,10 +139,27 @@ class QueueWorld : private ConductorSink {
       }
     }
     void done(const TickDone& step) override {
-      world->push(key(*this, "done", "conductor"), fmt::format("d{},{}", step.epoch.epoch, step.index),
-                  [w = world, step] { w->conductor_->on_done(step); });
+      steps.push_back(step);
+      if (steps.size() > kStepsKept) steps.pop_front();
+      world->push_done(*this, step);
     }
   };
+  static constexpr std::size_t kStepsKept = 16;  // the depth of barrier/tick_done
+
+  void push_done(const Node& from, const TickDone& step) {
+    push(key(from, "done", "conductor"), fmt::format("d{},{}", step.epoch.epoch, step.index),
+         [this, step] { conductor_->on_done(step); });
+  }
+  void push_ready(const Node& from) {
+    push(key(from, "ready", "conductor"), fmt::format("r{}", from.ready_in->epoch),
+         [this, name = from.member->name(), incarnation = from.member->incarnation(), epoch = *from.ready_in] {
+           conductor_->on_ready(name, epoch, incarnation);
+         });
+  }
+  /// Whether the process of `from` has sent the messages in a channel.
+  static bool sent_by(const std::string& channel, const Node& from) {
+    return channel.starts_with(from.member->name() + ".") || (from.index == 0 && channel.starts_with("conductor>"));
+  }
 
   /// A message that has not arrived: its text in the fingerprint, and the action of its arrival.
   struct Message {
@@ -177,9 +178,8 @@ class QueueWorld : private ConductorSink {
            missing.tick <= member.newest_tick();
   }
   Node& find(const std::string& name) {
-    for (auto& node : nodes_) {
+    for (auto& node : nodes_)
       if (node->member->name() == name) return *node;
-    }
     throw std::logic_error("no " + name);
   }
 
@@ -201,10 +201,10 @@ class QueueWorld : private ConductorSink {
     node->index = index;
     Setup setup;
     node->member =
-        std::make_unique<Member>(factories_[index], setup, incarnation, index != 0, static_cast<MemberSink&>(*node));
+        std::make_unique<Member>(factories_[index], setup, incarnation, true, static_cast<MemberSink&>(*node));
     nodes_.resize(std::max(nodes_.size(), index + 1));
     nodes_[index] = std::move(node);
-    Hello hello;
+    Hello& hello = nodes_[index]->hello;
     hello.component = nodes_[index]->member->name();
     hello.incarnation = incarnation;
     hello.pid = static_cast<int>(incarnation);
@@ -214,32 +214,12 @@ class QueueWorld : private ConductorSink {
     conductor_->on_hello(hello);
   }
 
-  void crash(const std::string& name, int lost) {
-    Node& dead = find(name);
-    const std::size_t index = dead.index;
-    const std::uint32_t incarnation = dead.member->incarnation() + 1;
-    for (auto& [channel, queue] : channels_) {
-      if (channel.starts_with(name + ".")) {
-        for (int i = 0; i < lost && !queue.empty(); ++i) queue.pop_back();
-      }
-      if (channel.ends_with(">" + name)) queue.clear();
-    }
-    std::erase_if(delivered_, [&](const auto& entry) {
-      return entry.first.ends_with(">" + name);
-    });  // the buffers of the dead member are lost
-    nodes_[index]->member.reset();
-    start(index, incarnation);
-    Node& reborn = *nodes_[index];
-    for (const auto& node : nodes_) {
-      if (node->index == index) continue;
-      for (const auto& [topic, kept] : node->history) {
-        if (!reborn.member->reads().contains(topic)) continue;
-        for (const auto& sample : kept) send(*node, topic, reborn, sample);
-      }
-    }
-    for (const auto& tick : ticks_) send_tick(tick, reborn);
-    if (conductor_->epoch()) send_epoch(reborn, *conductor_->epoch(), conductor_->seed());
-  }
+  // Defined in queue_world_parts.hpp.
+  void crash(const std::string& name, int lost);
+  void crash_plant(int lost);
+  /// Loses the newest messages that the process of `dead` has sent, and all that are on their way to it.
+  void lose(const Node& dead, int lost);
+  void send_histories_to(Node& reborn);
 
   void send_tick(const msg::Tick& tick, Node& to) {
     if (to.index == 0) return to.member->on_tick(tick);
@@ -250,13 +230,26 @@ class QueueWorld : private ConductorSink {
       reader->member->on_tick(tick);
     });
   }
+  void save() {
+    if (checkpoints_) saved_ = conductor_->save();
+  }
   void tick(const msg::Tick& tick) override {
+    save();
+    nodes_.front()->member->publish_sample();
     ticks_.push_back(tick);
     for (auto& node : nodes_) send_tick(tick, *node);
   }
   void start_epoch(const EpochId& epoch, std::uint64_t seed) override {
+    save();
     ticks_.clear();
     for (auto& node : nodes_) send_epoch(*node, epoch, seed);
+  }
+  void continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) override {
+    ticks_ = ticks;
+    for (auto& node : nodes_) {
+      send_epoch(*node, epoch, seed);
+      for (const auto& each : ticks) send_tick(each, *node);
+    }
   }
   void send_epoch(Node& to, const EpochId& epoch, std::uint64_t seed) {
     Node* reader = &to;
@@ -272,13 +265,15 @@ class QueueWorld : private ConductorSink {
     const Member& member = *from.member;
     if (!member.in_epoch() || from.ready_in == member.epoch()) return;
     from.ready_in = member.epoch();
-    push(key(from, "ready", "conductor"), fmt::format("r{}", member.epoch().epoch),
-         [this, name = member.name(), incarnation = member.incarnation(), epoch = member.epoch()] {
-           conductor_->on_ready(name, epoch, incarnation);
-         });
+    push_ready(from);
   }
   void resume(const Resume& resume) override {
+    save();
     Node* reader = &find(resume.component);
+    if (reader->index == 0) {  // in the conductor's own process
+      reader->member->on_resume(resume);
+      return send_ready(*reader);
+    }
     const std::string what = fmt::format("R{},{}", resume.epoch.epoch, resume.index);
     push("conductor>resume>" + resume.component, what, [this, reader, resume] {
       reader->member->on_resume(resume);
@@ -290,6 +285,9 @@ class QueueWorld : private ConductorSink {
   }
   std::vector<ComponentFactory> factories_;
   std::int64_t final_tick_;
+  bool checkpoints_;
+  ConductorOptions options_;
+  std::optional<Checkpoint> saved_;
   std::unique_ptr<Conductor> conductor_;
   std::vector<std::unique_ptr<Node>> nodes_;
   std::map<std::string, std::deque<Message>> channels_;
@@ -298,3 +296,5 @@ class QueueWorld : private ConductorSink {
 };
 
 }  // namespace constrictor::toys
+
+#include "queue_world_parts.hpp"

@@ -27,33 +27,32 @@ struct Mixer {
 };
 
 /// Reads JointCommand, and writes a JointState that depends on it in every tick.
-class ToyPlant : public Plant {
+class ToyPlant : public Stateful<Plant, Mixer> {
  public:
   ToyPlant(Wiring& wiring, const Setup& setup)
       : command_(wiring.latest(topics::kJointCommand)), state_out_(wiring.output(topics::kJointState)) {
-    mixer_.mix(setup.seed);
+    state_.mix(setup.seed);
   }
   void sample(const Tick& tick) override {
     msg::JointState state{};
     state.joint_count = 1;
-    state.position_rad[0] = mixer_.unit();
+    state.position_rad[0] = state_.unit();
     state.velocity_rad_s[0] = tick.time_s();
     state_out_.write(state);
   }
   void step(const Tick&) override {
     if (command_) {
-      mixer_.mix(command_->position_rad[0]);
-      mixer_.mix(static_cast<std::uint64_t>(command_.age_ticks()));
+      state_.mix(command_->position_rad[0]);
+      state_.mix(static_cast<std::uint64_t>(command_.age_ticks()));
     }
-    mixer_.mix(std::uint64_t{1});
+    state_.mix(std::uint64_t{1});
   }
   [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
-  [[nodiscard]] double value() const { return mixer_.unit(); }
+  [[nodiscard]] double value() const { return state_.unit(); }
 
  private:
   Latest<msg::JointCommand> command_;
   Output<msg::JointState> state_out_;
-  Mixer mixer_;
 };
 
 /// A component whose state begins with its seed.
