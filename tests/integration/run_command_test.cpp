@@ -91,8 +91,9 @@ TEST_F(RunCommand, AMemberKilledTenTimesDoesNotEndTheRunWhileTicksAdvance) {
   EXPECT_EQ(report("r")["processes"][2]["restarts"], 10);
 }
 
-TEST_F(RunCommand, TheDeathOfThePlantEndsTheRunWithAnError) {
-  Process launcher = run(100'000, "r", {"--pace", "1x"});
+TEST_F(RunCommand, TheDeathOfThePlantEndsTheRunWithAnErrorIfTheManifestAllowsNoRestart) {
+  write("once.yaml", replaced(kManifest, "program: toy_host}", "program: toy_host, restarts: 0}"));
+  Process launcher = run(100'000, "r", {"--pace", "1x"}, "once.yaml");
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   kill_member("physics", SIGKILL);
   EXPECT_EQ(launcher.wait(15s), exit_status::kSoftware);
@@ -140,9 +141,7 @@ TEST_F(RunCommand, TheSecondCtrlCKillsARunThatDoesNotEnd) {
 }
 
 TEST_F(RunCommand, ProcessesAreKilledIfTheConductorDoesNotAnswerAndTheReportNamesTheReason) {
-  // The members must be more patient than the launcher, which waits 5 s for the conductor's answer.
-  write("patient.yaml", replaced(kManifest, "patience_s: 4", "patience_s: 60"));
-  Process launcher = run(100'000, "r", {"--pace", "2x"}, "patient.yaml");
+  Process launcher = run(100'000, "r", {"--pace", "2x"});
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output();
   kill_member("physics", SIGSTOP);
   launcher.signal(SIGTERM);

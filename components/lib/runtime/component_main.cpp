@@ -109,6 +109,9 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   bool check = false;
   app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
   app.add_flag("--record", options.record, "plant only: record every message except images, for `constrictor diff`");
+  bool no_checkpoints = false;
+  app.add_flag("--no-checkpoints", no_checkpoints,
+               "plant only: keep no checkpoints in --output; the process can then not be restarted");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -132,6 +135,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
     }
     for (const auto& text : latencies) options.latency_ticks.insert(parse_latency(text, options));
     options.setup.max_sim_time_s = options.max_sim_time_s;
+    options.checkpoints = !no_checkpoints;
     if (check) {
       const std::vector<std::string> errors = check_components(options, factories);
       for (const auto& error : errors) std::fprintf(stderr, "%s\n", error.c_str());

@@ -24,7 +24,7 @@ ConductorSide::ConductorSide(HostContext& context, Links& links, MemberSide& mem
   make_endpoints();
 }
 
-void ConductorSide::make_conductor() {
+ConductorOptions ConductorSide::conductor_options() const {
   const HostOptions& options = context_.options;
   std::random_device entropy;  // for the run id, on which no result depends
   ConductorOptions conductor;
@@ -41,10 +41,19 @@ void ConductorSide::make_conductor() {
   if (options.max_sim_time_s > 0) {
     conductor.last_index = std::llround(options.max_sim_time_s * 1e9 / static_cast<double>(conductor.period_ns));
   }
+  return conductor;
+}
+
+void ConductorSide::make_conductor() {
+  open_store();
+  const HostOptions& options = context_.options;
+  if (store_ && options.incarnation > 1) {
+    if (const auto found = store_->read()) return make_successor(conductor_options(), *found);
+  }
   if (options.hash_log && !options.setup.output_dir.empty()) {
     hash_log_ = std::make_unique<HashLog>(options.setup.output_dir, options.record);
   }
-  conductor_ = std::make_unique<Conductor>(conductor, static_cast<ConductorSink&>(*this));
+  conductor_ = std::make_unique<Conductor>(conductor_options(), static_cast<ConductorSink&>(*this));
 }
 
 void ConductorSide::make_endpoints() {
@@ -60,6 +69,8 @@ void ConductorSide::make_endpoints() {
   control_reader_ = dds::Reader<msg::RunControl>::member(participant, wire::kRunControl);
   links_.attach(done_reader_, wire::kTickDone, [this](const msg::TickDone& m) { take_done(m); });
   links_.attach(ready_reader_, wire::kReady, [this](const msg::Ready& m) { take_ready(m); });
+  status_reader_ = dds::Reader<msg::ComponentStatus>::member(participant, wire::kStatus);
+  links_.attach(status_reader_, wire::kStatus, [this](const msg::ComponentStatus& m) { take_status(m); });
   // Commands are not validated here, because a command that violates its IDL must be answered, too.
   links_.attach(control_reader_.get(),
                 [this] { control_reader_.take([this](const msg::RunControl& m) { take_control(m); }); });
@@ -80,23 +91,60 @@ void ConductorSide::take_done(const msg::TickDone& message) {
     return reject(*why);
   const auto step = dds::from_wire(message);
   if (!step) return reject("checkpoint: damaged");
-  if (const auto why = conductor_->implausible(*step)) return reject(*why);
-  if (!conductor_->on_done(*step)) return;
+  if (conductor_->is_early(*step)) early_.push_back(*step);
+  else if (const auto why = conductor_->implausible(*step)) reject(*why);
+  else use_done(*step);
+}
+
+void ConductorSide::use_done(const TickDone& step) {
+  if (!conductor_->on_done(step)) return;
   context_.note_progress();
   if (!hash_log_) return;
-  for (const auto& written : step->written) hash_log_->add(written.topic, written.bytes);
+  for (const auto& written : step.written) hash_log_->add(written.topic, written.bytes);
+}
+
+void ConductorSide::on_done(const TickDone& step) {
+  if (store_) use_done(step);
+  else conductor_->on_done(step);  // record() has seen what it wrote
 }
 
 bool ConductorSide::tick() {
   if (!conductor_->may_tick() || !pacer_.may_tick(conductor_->next_time_ns())) return false;
-  plant_.sample_plant(conductor_->next_index(), conductor_->next_time_ns(), period_ns());
-  conductor_->tick(plant_.published());
+  PlantCheckpoint checkpoint = plant_.measure(conductor_->next_index(), conductor_->next_time_ns(), period_ns());
+  if (store_ && hash_log_) {
+    for (const auto& written : checkpoint.written) hash_log_->add(written.topic, written.bytes);
+  }
   pacer_.ticked();
+  conductor_->tick(plant_.published(), std::move(checkpoint));
+  if (!store_) flush_hash_log();
+  for (const auto& step : std::exchange(early_, {})) {
+    if (!conductor_->implausible(step)) use_done(step);
+  }
   if (pacer_.holding()) publish_run_state(true);  // this was the last tick that `step` asked for
   return true;
 }
 
 void ConductorSide::start_epoch(const EpochId& epoch, std::uint64_t seed) {
+  if (hash_log_) hash_log_->restart();
+  early_.clear();
+  ended_.clear();
+  save();
+  send_epoch(epoch, seed);
+  pacer_.restart();
+  pacer_.operator_holds(false);
+}
+
+void ConductorSide::continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) {
+  context_.log.warning("incarnation {} of the plant's process continues the run at tick {}",
+                       context_.options.incarnation, conductor_->next_index());
+  send_epoch(epoch, seed);
+  for (const auto& tick : ticks) {
+    tick_writer_.write(tick);
+    members_.on_tick(tick);
+  }
+}
+
+void ConductorSide::send_epoch(const EpochId& epoch, std::uint64_t seed) {
   msg::EpochStart start{};
   start.run_id = epoch.run_id;
   start.epoch = epoch.epoch;
@@ -105,17 +153,19 @@ void ConductorSide::start_epoch(const EpochId& epoch, std::uint64_t seed) {
   dds::set_text(start.config_hash, context_.config_hash);
   epoch_writer_.write(start);
   members_.on_epoch(epoch, seed);
-  pacer_.restart();
-  pacer_.operator_holds(false);
-  if (hash_log_) hash_log_->restart();
 }
 
 void ConductorSide::tick(const msg::Tick& message) {
+  save();
+  plant_.publish_sample();
   tick_writer_.write(message);
   members_.on_tick(message);
 }
 
 void ConductorSide::resume(const Resume& resume) {
+  save();
+  if (members_.on_resume(resume)) return;
+  if (stays_until_) stay_longer();
   std::string block;
   resume_writer_.write(dds::to_wire(resume, block));
 }
@@ -133,7 +183,7 @@ void ConductorSide::refuse(const Hello& hello, const std::string& reason) {
 }
 
 void ConductorSide::record(const TopicInfo& topic, const Sample& sample) {
-  if (hash_log_) hash_log_->add(topic, sample);
+  if (hash_log_ && !store_) hash_log_->add(topic, sample);  // with a store, on_done() and tick() do
 }
 
 void ConductorSide::report_waiting() {
@@ -148,7 +198,7 @@ void ConductorSide::finish(bool wait_for_final_tick) {
   // The final tick must reach every member before its writer is deleted. The wait is bounded, because a stopped process
   // (SIGSTOP) must not prevent the end of the run.
   if (wait_for_final_tick) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
-  if (hash_log_) hash_log_->close();
+  flush_hash_log();
 }
 
 }  // namespace constrictor

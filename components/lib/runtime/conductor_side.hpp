@@ -3,7 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "barrier/conductor.hpp"
 #include "barrier/member.hpp"
@@ -12,6 +15,7 @@
 #include "runtime/links.hpp"
 #include "runtime/pacer.hpp"
 #include "runtime/run_control_answers.hpp"
+#include "runtime/run_store.hpp"
 #include "runtime/wire.hpp"
 
 namespace constrictor {
@@ -37,12 +41,18 @@ class ConductorSide : private ConductorSink {
   // Reports of the members of this process.
   void on_hello(const Hello& hello) { conductor_->on_hello(hello); }
   void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
-  void on_done(const TickDone& step) { conductor_->on_done(step); }
+  void on_done(const TickDone& step);
+  /// To be called when the members of this process have sent Hello. The successor of a process that died lets them
+  /// continue, and publishes again what died with its predecessor.
+  void continue_epoch() { conductor_->continue_epoch(); }
 
   /// Adapts the pace to the source that has authority. Samples of other topics and runs are ignored.
   void note_authority(const TopicInfo& topic, const Sample& sample);
   /// A member of this process has written `sample`: adds it to the hash log, if this run has a hash log.
   void record(const TopicInfo& topic, const Sample& sample);
+  /// True after the final tick while the process has to stay for other members: one that is restarted now, such as a
+  /// report that was killed while it drew, needs its checkpoint and the final tick. At most kStay.
+  [[nodiscard]] bool stays();
   /// Reports the members that delay the next tick.
   void report_waiting();
   /// Closes the hash log. If `wait_for_final_tick` is true, first waits a limited time until all members have received
@@ -52,14 +62,26 @@ class ConductorSide : private ConductorSink {
  private:
   // ConductorSink
   void start_epoch(const EpochId& epoch, std::uint64_t seed) override;
+  void continue_epoch(const EpochId& epoch, std::uint64_t seed, const std::vector<msg::Tick>& ticks) override;
   void tick(const msg::Tick& tick) override;
   void resume(const Resume& resume) override;
   void refuse(const Hello& hello, const std::string& reason) override;
 
   void make_endpoints();
   void make_conductor();
+  [[nodiscard]] ConductorOptions conductor_options() const;
+  // Defined in conductor_store.cpp.
+  void open_store();
+  void make_successor(ConductorOptions options, const Checkpoint& found);
+  /// Stores a checkpoint. To be called before anything is sent that a successor must know.
+  void save();
+  void flush_hash_log();
+  void send_epoch(const EpochId& epoch, std::uint64_t seed);
+  void use_done(const TickDone& step);
   void take_done(const msg::TickDone& message);
   void take_ready(const msg::Ready& message);
+  void stay_longer();
+  void take_status(const msg::ComponentStatus& status);
   void take_control(const msg::RunControl& control);
   /// Returns why the command is refused; empty if it was obeyed.
   [[nodiscard]] std::string obey(const msg::RunControl& control);
@@ -71,14 +93,20 @@ class ConductorSide : private ConductorSink {
   MemberSide& members_;
   Member& plant_;
   Pacer pacer_;
+  std::unique_ptr<RunStore> store_;  ///< null: this run keeps no checkpoints
+  Blob control_answers_bytes_;       ///< of control_answers_; null: to be made anew
+  std::vector<TickDone> early_;      ///< of a tick that the predecessor of this conductor has sent, and it not yet
   std::unique_ptr<HashLog> hash_log_;
   std::unique_ptr<Conductor> conductor_;
   RunControlAnswers control_answers_;
+  std::set<std::string> ended_;  ///< members whose last status has arrived
+  std::optional<HostContext::Clock::time_point> stays_until_;
   msg::RunState run_state_{};  ///< tick and real-time factor of the last second
   HostContext::Clock::time_point last_run_state_{};
   dds::Reader<msg::TickDone> done_reader_;
   dds::Reader<msg::Ready> ready_reader_;
   dds::Reader<msg::RunControl> control_reader_;
+  dds::Reader<msg::ComponentStatus> status_reader_;
   dds::Writer<msg::Tick> tick_writer_;
   dds::Writer<msg::EpochStart> epoch_writer_;
   dds::Writer<msg::Resume> resume_writer_;

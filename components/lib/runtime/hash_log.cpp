@@ -1,7 +1,13 @@
 #include "runtime/hash_log.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <tuple>
 
@@ -10,8 +16,13 @@
 namespace constrictor {
 namespace {
 
-constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '1'};
+constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '2'};
 constexpr std::size_t kLargest = 20'000;  // [byte] messages above this (images) are never recorded whole
+
+struct Header {
+  char magic[sizeof kMagic];
+  std::int64_t incomplete_from;  // tick from which on entries are missing because the disk was full; -1: none
+};
 
 struct Fixed {
   std::int64_t tick;
@@ -21,19 +32,82 @@ struct Fixed {
   std::uint32_t topic;
 };
 
+Header read_header(std::ifstream& file, const std::filesystem::path& directory) {
+  Header header{};
+  if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
+      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+    throw std::runtime_error((directory / "hashes.bin").string() + ": missing, or not a hash log of this release");
+  }
+  return header;
+}
+
 }  // namespace
 
-HashLog::HashLog(const std::filesystem::path& directory, bool record)
+HashLog::HashLog(const std::filesystem::path& directory, bool record, std::optional<std::uint64_t> length)
     : path_(directory / "hashes.bin"), record_(record) {
   std::filesystem::create_directories(directory);
-  restart();
-  if (!file_) throw std::runtime_error("cannot write " + path_.string());
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
+  if (!length) {
+    restart();
+    return;
+  }
+  const auto found = static_cast<std::uint64_t>(::lseek(descriptor_, 0, SEEK_END));
+  if (found < *length) {
+    ::close(descriptor_);
+    throw std::runtime_error(fmt::format("{}: found {} bytes, but at the checkpoint it had {} (was it cut or removed?)",
+                                         path_.string(), found, *length));
+  }
+  full_ = full_disk_at(directory).has_value();
+  length_ = *length;
+  static_cast<void>(!::ftruncate(descriptor_, static_cast<off_t>(length_)));  // entries beyond it are written again
+}
+
+HashLog::~HashLog() {
+  flush();
+  ::close(descriptor_);
+}
+
+void HashLog::write_header(std::int64_t incomplete_from) const {
+  Header header{{}, incomplete_from};
+  std::memcpy(header.magic, kMagic, sizeof kMagic);
+  if (::pwrite(descriptor_, &header, sizeof header, 0) != sizeof header)
+    throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
 }
 
 void HashLog::restart() {
-  file_.close();
-  file_.open(path_, std::ios::binary | std::ios::trunc);
-  file_.write(kMagic, sizeof(kMagic));
+  buffer_.clear();
+  full_ = false;
+  if (::ftruncate(descriptor_, 0) != 0) throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
+  write_header(-1);
+  length_ = sizeof(Header);
+}
+
+std::string HashLog::flush() {
+  if (full_) buffer_.clear();
+  std::size_t done = 0;
+  while (done < buffer_.size()) {
+    const ssize_t written =
+        ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(length_ + done));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const std::string reason = std::strerror(written < 0 ? errno : ENOSPC);
+      full_ = true;
+      buffer_.clear();
+      write_header(newest_tick_);  // these bytes have their place on the disk already
+      return fmt::format("{}: {}", path_.string(), reason);
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  length_ += buffer_.size();
+  buffer_.clear();
+  return {};
+}
+
+std::optional<std::int64_t> HashLog::full_disk_at(const std::filesystem::path& directory) {
+  std::ifstream file(directory / "hashes.bin", std::ios::binary);
+  const Header header = read_header(file, directory);
+  return header.incomplete_from < 0 ? std::nullopt : std::optional(header.incomplete_from);
 }
 
 void HashLog::add(const TopicInfo& topic, const Sample& sample) {
@@ -58,18 +132,15 @@ void HashLog::add(std::uint8_t topic, const std::string& bytes) {
   std::memcpy(&fixed.hash, digest.data(), sizeof(fixed.hash));
   const bool whole = record_ && bytes.size() <= kLargest;
   if (whole) fixed.size = static_cast<std::uint32_t>(bytes.size());
-  file_.write(reinterpret_cast<const char*>(&fixed), sizeof(fixed));
+  newest_tick_ = std::max(newest_tick_, fixed.tick);
+  buffer_.append(reinterpret_cast<const char*>(&fixed), sizeof(fixed));
   if (!whole) return;
-  for (const auto& piece : pieces)
-    file_.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+  for (const auto& piece : pieces) buffer_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
 }
 
 std::vector<HashLog::Entry> HashLog::read(const std::filesystem::path& directory) {
   std::ifstream file(directory / "hashes.bin", std::ios::binary);
-  char magic[sizeof(kMagic)];
-  if (!file.read(magic, sizeof(magic)) || std::memcmp(magic, kMagic, sizeof(magic)) != 0) {
-    throw std::runtime_error((directory / "hashes.bin").string() + ": missing, or not a hash log");
-  }
+  read_header(file, directory);
   std::vector<Entry> entries;
   Fixed fixed{};
   while (file.read(reinterpret_cast<char*>(&fixed), sizeof(fixed))) {

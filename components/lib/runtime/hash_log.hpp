@@ -4,7 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "component/ports.hpp"
@@ -22,22 +23,37 @@ class HashLog {
     std::string bytes;   ///< canonical bytes of the message; empty if they were not recorded
   };
 
-  /// Creates `directory`/hashes.bin. Throws std::runtime_error if that fails.
-  HashLog(const std::filesystem::path& directory, bool record);
+  /// Creates `directory`/hashes.bin. `length`: a successor continues the file of its predecessor after this many bytes.
+  /// Throws std::runtime_error if that fails.
+  HashLog(const std::filesystem::path& directory, bool record, std::optional<std::uint64_t> length = {});
+  ~HashLog();
+  HashLog(const HashLog&) = delete;
+  HashLog& operator=(const HashLog&) = delete;
   /// A new epoch begins: empties the log.
   void restart();
   void add(const TopicInfo& topic, const Sample& sample);
   /// Adds a message that is given as canonical bytes; one that is too short for its header is ignored.
   void add(std::uint8_t topic, const std::string& bytes);
-  void close() { file_.close(); }
+  /// Writes to the file what was added. If the disk is full, the log ends here, and the file says so. Returns the
+  /// error, once; empty: none.
+  std::string flush();
+  /// [byte] length of the file after flush().
+  [[nodiscard]] std::uint64_t length() const { return length_; }
 
   /// Reads a log, ordered by tick, topic and sequence number. An incomplete last entry is skipped. Throws
   /// std::runtime_error if the file is missing or damaged.
   static std::vector<Entry> read(const std::filesystem::path& directory);
+  /// The tick at which the disk was full, after which the log has no entries; nothing if the log is complete.
+  static std::optional<std::int64_t> full_disk_at(const std::filesystem::path& directory);
 
  private:
+  void write_header(std::int64_t incomplete_from) const;
   std::filesystem::path path_;
-  std::ofstream file_;
+  int descriptor_ = -1;
+  std::string buffer_;  ///< not yet in the file
+  std::uint64_t length_ = 0;
+  std::int64_t newest_tick_ = 0;
+  bool full_ = false;
   bool record_;
   Sha256 hash_;
 };

@@ -56,6 +56,7 @@ class Host::Impl {
 
   int run() {
     if (!g_stop) members_.send_hello();
+    if (conductor_) conductor_->continue_epoch();
     links_.take_all();
     while (!context_.exit_status && !g_stop) {
       members_.send_ready();
@@ -64,7 +65,7 @@ class Host::Impl {
       const bool ticked = conductor_ && conductor_->tick();
       if (stepped || ticked) context_.note_progress();
       if (conductor_) conductor_->publish_run_state(false);
-      if (members_.all_ended()) break;
+      if (members_.all_ended() && !(conductor_ && conductor_->stays())) break;
       links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());
       if (!stepped && !ticked) check_patience();
     }
@@ -83,6 +84,7 @@ class Host::Impl {
   /// Reports what this process waits for, and ends it when it has waited too long.
   void check_patience() {
     if (members_.stepping() || (conductor_ && conductor_->held())) context_.note_progress();
+    context_.note_waiting();
     const double waited_s = context_.waited_s();
     const auto now = HostContext::Clock::now();
     if (waited_s < kWaitingReportAfter_s || now - last_report_ < kWaitingReportInterval) return;

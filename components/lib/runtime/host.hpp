@@ -36,6 +36,7 @@ struct HostOptions {
   double patience_s = 60.0;  ///< [s] wall time that the process waits for another one before it gives up; 0: for ever
   bool hash_log = true;      ///< plant only: writes output_dir/hashes.bin, which `constrictor diff` compares
   bool record = false;       ///< plant only: the hash log also has the messages themselves, except images
+  bool checkpoints = true;   ///< plant only: stores checkpoints in output_dir, so that its process can be restarted
   Setup setup;               ///< of every component; its name is set by the host
   std::map<std::string, std::uint16_t> latency_ticks;  ///< by member of the roster; absent: that of the component
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; a component without one has its default

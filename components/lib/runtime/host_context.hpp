@@ -1,6 +1,7 @@
 // The state that the member side and the conductor side of a process share.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -30,12 +31,25 @@ class HostContext {
   std::optional<int> exit_status;  ///< set as soon as the process has to end
 
   /// To be called when the run makes progress: the patience of this process starts again.
-  void note_progress() { last_progress_ = Clock::now(); }
-  /// [s] since the last progress.
-  [[nodiscard]] double waited_s() const { return std::chrono::duration<double>(Clock::now() - last_progress_).count(); }
+  void note_progress() {
+    waited_ = {};
+    last_look_ = Clock::now();
+  }
+  /// To be called several times a second while this process waits. If it was not called for longer, the process did not
+  /// run (SIGSTOP, a stopped virtual machine), and neither did perhaps those for which it waits: of that time, at most
+  /// kMostOfAFreeze counts as waiting.
+  void note_waiting() {
+    const auto now = Clock::now();
+    waited_ += std::min<Clock::duration>(now - last_look_, kMostOfAFreeze);
+    last_look_ = now;
+  }
+  /// [s] of waiting since the last progress, at the last note_waiting().
+  [[nodiscard]] double waited_s() const { return std::chrono::duration<double>(waited_).count(); }
 
  private:
-  Clock::time_point last_progress_ = Clock::now();
+  static constexpr std::chrono::seconds kMostOfAFreeze{1};
+  Clock::duration waited_{};
+  Clock::time_point last_look_ = Clock::now();
 };
 
 }  // namespace constrictor

@@ -32,7 +32,7 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
     if (config != options.config_files.end()) setup.config_file = config->second;
     const auto latency = options.latency_ticks.find(factory.name);
     if (latency != options.latency_ticks.end()) setup.latency_ticks = latency->second;
-    const bool checkpoints = !conducts || options.record;
+    const bool checkpoints = !conducts || (options.checkpoints && !options.setup.output_dir.empty());
     auto member = std::make_unique<Member>(std::move(factory), std::move(setup), options.incarnation, checkpoints,
                                            static_cast<MemberSink&>(*this));
     if (member->name() == options.plant) plant_ = member.get();
@@ -92,6 +92,8 @@ void MemberSide::send_hello() {
 
 void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   for (auto& local : members_) {
+    // The successor of a conductor announces the present epoch again.
+    if (local.member->in_epoch() && local.member->epoch() == epoch) continue;
     const bool stepping = local.member->stepping();
     if (stepping) local.thread->wait();
     local.member->on_epoch(epoch, seed);
@@ -99,6 +101,15 @@ void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
     if (stepping && !local.member->stepping()) local.thread->collect();
     local.ready_sent = false;
   }
+}
+
+bool MemberSide::on_resume(const Resume& resume) {
+  if (!hosts(resume.component)) return false;
+  for (auto& local : members_) {
+    if (local.member->name() == resume.component && local.member->incarnation() == resume.incarnation)
+      local.member->on_resume(resume);
+  }
+  return true;
 }
 
 void MemberSide::on_tick(const msg::Tick& tick) {
@@ -263,10 +274,14 @@ void MemberSide::report_waiting(const Member& waiter, const std::string& topic, 
   waiting_writer_.write(message);
 }
 
-void MemberSide::finish() {
+void MemberSide::publish_last_statuses() {
   // Only the final tick ends a run. A process that a signal ends earlier reports that its members are running.
   for (auto& local : members_)
     publish_status(local, local.member->ended() ? msg::kComponentEnded : msg::kComponentRunning);
+}
+
+void MemberSide::finish() {
+  publish_last_statuses();
   // By the plant's last status the launcher knows that the run has ended.
   if (plant_ && plant_->ended()) dds_wait_for_acks(status_writer_.get(), DDS_SECS(1));
 }

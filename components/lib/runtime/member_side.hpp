@@ -50,6 +50,8 @@ class MemberSide : private MemberSink {
   // Messages of the conductor of this process.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);
   void on_tick(const msg::Tick& tick);
+  /// Returns whether the member is in this process.
+  bool on_resume(const Resume& resume);
 
   /// Counts a rejected message in the ComponentStatus of a member of this process.
   void reject(const std::string& topic, const std::string& reason);
@@ -61,8 +63,11 @@ class MemberSide : private MemberSink {
   /// Logs and publishes that `waiter`, a member of this process, waits for a message of `writer`.
   void report_waiting(const Member& waiter, const std::string& topic, const std::string& writer, std::int64_t tick,
                       std::uint64_t have, std::uint64_t want);
+  void publish_last_statuses();
   /// Sends the last status of each member; at the end of the run also waits until it is received, with a bound.
   void finish();
+  /// Whether the component is in this process.
+  [[nodiscard]] bool hosts(const std::string& component) const;
 
  private:
   struct LocalMember {
@@ -87,7 +92,6 @@ class MemberSide : private MemberSink {
   void take_hello(const msg::Hello& message);
   void take_run_state(const msg::RunState& state);
   [[nodiscard]] Hello hello_of(const LocalMember& local) const;
-  [[nodiscard]] bool hosts(const std::string& component) const;
   /// The run of this process: the launcher's, else the one that has begun; 0: none yet.
   [[nodiscard]] std::uint64_t run_id() const;
   void make_threads();

@@ -37,6 +37,11 @@ class Pacer {
   [[nodiscard]] bool capped() const {
     return operator_ && !overruled_ && operator_pace_ > 0.0 && (pace_ <= 0.0 || pace_ > operator_pace_);
   }
+  /// What a successor of this process must know: pace, pause, steps left.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(pace_, operator_, overruled_, paused_, steps_);
+  }
   /// A new epoch begins: simulated time starts again.
   void restart() { started_ = false; }
   /// True while the run is paused and no step is left.

@@ -36,6 +36,8 @@ void ConductorSide::take_control(const msg::RunControl& control) {
   dds::set_text(answer.refusal, refusal);
   if (conductor_->epoch()) answer.state = current_run_state();
   control_answers_.keep(answer);
+  control_answers_bytes_.reset();
+  save();  // a successor must neither forget the command nor obey it again
   control_answer_writer_.write(answer);
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cereal/cereal.hpp>
+#include <cereal/types/map.hpp>
+#include <cereal/types/string.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -35,10 +38,21 @@ class RunControlAnswers {
     sources_[answer.source] = {answer, ++answers_};
   }
 
+  /// The answers and their order. Answers are plain structs: only the same release can read them.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(sources_, answers_);
+  }
+
  private:
   struct Source {
     msg::RunControlAnswer answer{};
     std::uint64_t order = 0;  ///< position of its newest answer among all answers
+    template <class Archive>
+    void serialize(Archive& archive) {
+      auto bytes = cereal::binary_data(&answer, sizeof answer);
+      archive(bytes, order);
+    }
   };
   void remove_oldest() {
     sources_.erase(std::min_element(sources_.begin(), sources_.end(),

@@ -26,7 +26,7 @@ void require_file(const std::string& what, const fs::path& file) {
 }
 
 void require_program(const ProcessPlan& process) {
-  if (process.program.empty() || !process.host.empty()) return;  // another host checks its programs itself
+  if (process.program.empty()) return;
   const fs::path program = program_folder() / process.program;
   if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
   throw ConfigurationError(
@@ -98,13 +98,14 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   add_config_files(manifest, plan.roster, options.config_files);
   for (const auto& process : manifest.processes) require_program(process);
   std::vector<std::vector<std::string>> groups;
-  if (options.in_process) {
-    for (auto& process : manifest.processes) process.host.clear();
-    manifest.hosts.clear();
-    groups.push_back(plan.roster);
-  }
+  if (options.in_process) groups.push_back(plan.roster);
   for (const auto& group : options.groups) groups.push_back(CLI::detail::split(group, ','));
   regroup(manifest, groups);
+  for (auto& process : manifest.processes) {
+    const auto& hosted = process.components;
+    if (options.no_checkpoints && std::find(hosted.begin(), hosted.end(), manifest.plant) != hosted.end())
+      process.restarts = 0;
+  }
   return plan;
 }
 
@@ -133,6 +134,7 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
     common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
   std::vector<std::string> of_plant = pace_arguments(options.pace);
   if (options.record) of_plant.emplace_back("--record");
+  if (options.no_checkpoints) of_plant.emplace_back("--no-checkpoints");
   return [=, programs = program_folder()](const ProcessPlan& process, std::uint32_t incarnation) {
     std::vector<std::string> arguments;
     if (process.program.empty() && process.components.size() == 1) {

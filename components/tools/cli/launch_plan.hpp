@@ -21,6 +21,7 @@ struct RunOptions {
   std::vector<std::string> groups;        ///< each a comma-separated list of components that share a process
   std::filesystem::path report_dir;       ///< empty: a new folder in runs/
   double max_sim_time_s = 0;              ///< [s] simulated time at which the run ends; 0: no limit
+  bool no_checkpoints = false;            ///< the plant keeps none: it is not restarted, and the run not resumed
   bool record = false;                    ///< log the messages themselves, for `constrictor diff`
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
@@ -60,9 +61,6 @@ void check_components(const RunOptions& options, const LaunchPlan& plan);
 /// The components that constrictor_host can host: all components of this build. Throws std::runtime_error if it does
 /// not start.
 [[nodiscard]] std::vector<std::string> hosted_components();
-
-/// The lines that constrictor_host prints with this option. Throws std::runtime_error if it fails.
-[[nodiscard]] std::vector<std::string> ask_host(const std::string& option);
 
 /// Arguments that give a component the mission of the scenario; no arguments if the scenario has no mission. The
 /// planner receives its mission in this way, because it must not read the scenario.

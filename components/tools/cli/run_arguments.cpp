@@ -54,6 +54,8 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       ->check(number(0.0, 1e6, "s"));
   run->add_flag("--record", options->record,
                 "log all messages except images, so that `constrictor diff` can name fields");
+  run->add_flag("--no-checkpoints", options->no_checkpoints,
+                "keep no checkpoints: if the process of the plant dies, the run is lost");
   run->add_option("--domain", options->domain, "DDS domain, 0 to 229 (default: the first free one of 1 to 100)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));
@@ -72,7 +74,6 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "  constrictor run --in-process --pace realtime\n"
       "  constrictor run --group physics,camera --group navigation,control\n"
       "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"
-      "  constrictor run --manifest my_hosts.yaml                # on several hosts, see deploy/README.md\n"
       "  constrictor run --config planner=components/planner/planner.yaml\n\n"
       "EXIT STATUS\n"
       "  0 the mission succeeded; 1 it did not; 64 wrong usage; 70 a process failed; 75 a process waited too long for\n"
@@ -84,9 +85,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "ENVIRONMENT\n"
       "  CONSTRICTOR_DOMAIN  the domain, like --domain\n"
       "  CONSTRICTOR_DATA    directory of the default files, instead of the source tree or the install prefix\n"
-      "  CYCLONEDDS_URI      DDS configuration; on several hosts, its settings are added to those that the launcher "
-      "makes\n"
-      "  CONSTRICTOR_SSH     command in place of `ssh`, for example `ssh -F my_config`");
+      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
 }
 
 int check_command(const RunOptions& options) {

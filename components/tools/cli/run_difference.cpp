@@ -115,8 +115,24 @@ std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const 
     if (last_tick(log) < 0) throw std::runtime_error((directory / "hashes.bin").string() + ": contains no tick");
     return log;
   };
-  const auto log_a = read(a);
-  return first_run_difference(log_a, read(b));
+  auto log_a = read(a);
+  auto log_b = read(b);
+  // A run whose disk was full has logged only its beginning.
+  std::optional<std::int64_t> end;
+  const std::filesystem::path* full = nullptr;
+  for (const auto* directory : {&a, &b}) {
+    const auto at = HashLog::full_disk_at(*directory);
+    if (!at || (end && *end <= *at)) continue;
+    end = at;
+    full = directory;
+  }
+  if (!end) return first_run_difference(log_a, log_b);
+  for (auto* log : {&log_a, &log_b}) std::erase_if(*log, [&](const Entry& entry) { return entry.tick >= *end; });
+  if (const auto difference = first_run_difference(log_a, log_b)) return difference;
+  throw std::runtime_error(
+      fmt::format("{}: the disk was full at tick {}, so that later messages were not logged; the runs are equal up to "
+                  "this tick, and cannot be compared beyond it",
+                  (*full / "hashes.bin").string(), *end));
 }
 
 }  // namespace constrictor::cli

@@ -31,30 +31,22 @@ bool is_final(int code) {
 }  // namespace
 
 Supervisor::Supervisor(LaunchManifest manifest, CommandLine command_line, std::vector<std::string> environment,
-                       std::filesystem::path log_dir, Print print, StartChild start_child)
+                       std::filesystem::path log_dir, Print print)
     : manifest_(std::move(manifest)),
       command_line_(std::move(command_line)),
       environment_(std::move(environment)),
       log_dir_(std::move(log_dir)),
-      print_(std::move(print)),
-      start_child_(std::move(start_child)) {
+      print_(std::move(print)) {
   for (const auto& plan : manifest_.processes) {
     Supervised process;
     process.plan = plan;
     process.record.name = plan.name();
     process.record.components = plan.components;
-    process.record.host = plan.host;
     processes_.push_back(std::move(process));
   }
 }
 
 Supervisor::~Supervisor() = default;
-
-std::unique_ptr<Child> Supervisor::start_here(const ProcessPlan&, std::uint32_t, const std::vector<std::string>& argv,
-                                              const std::vector<std::string>& environment,
-                                              const std::filesystem::path& log) {
-  return std::make_unique<ChildProcess>(argv, environment, log);
-}
 
 bool Supervisor::is_plant(const Supervised& process) const {
   const auto& components = process.plan.components;
@@ -79,10 +71,9 @@ void Supervisor::spawn(Supervised& process) {
   std::error_code no_log_yet;
   const auto size = std::filesystem::file_size(log_of(process), no_log_yet);
   process.log_offset = no_log_yet ? 0 : size;
-  process.child.reset();
-  ++process.incarnation;
-  process.child = start_child_(process.plan, process.incarnation, command_line_(process.plan, process.incarnation),
-                               environment, log_of(process));
+  process.child.clear();
+  if (is_plant(process)) plant_gone_ = false;
+  process.child.emplace_back(command_line_(process.plan, ++process.incarnation), environment, log_of(process));
   process.over = false;
 }
 
@@ -130,10 +121,13 @@ void Supervisor::handle_exit(Supervised& process, const ChildExit& exit) {
     print_(line.starts_with(name + ": ") ? line : fmt::format("{}: {}", name, line));
   const std::string how = exit.describe();
   const int code = exit.code().value_or(0);
-  if (is_plant(process)) {
-    return fail(fmt::format("{}, the plant, {}", name, how), code ? code : exit_status::kSoftware);
-  }
-  if (ending_ || plant_gone_) {
+  const bool plant = is_plant(process);
+  if (plant && (process.plan.restarts == 0 || is_final(code)))
+    return fail(fmt::format("{}, the plant, {}", name, how),
+                code && code != kNoSuchProgram ? code : exit_status::kSoftware);
+  // Without the plant, the others would not learn that the run is over: it is restarted also after the run's end.
+  // As long as the plant runs, a member that dies at the end of the run is restarted: it may have a report to write.
+  if (!plant && plant_gone_) {
     return print_(fmt::format("{} {} after the end of the {}", name, how, ending_ ? "run" : "plant"));
   }
   if (is_final(code))
@@ -147,7 +141,7 @@ void Supervisor::handle_plants_end(const Supervised& plant) {
     state_ = State::kEnded;
   } else if (Clock::now() - plant.ended > kEndTogether) {
     // The other processes cannot go on: they wait for a tick that never comes.
-    fail(fmt::format("{}, the plant (pid {}), ended before the run did", plant.record.name, plant.child->pid()),
+    fail(fmt::format("{}, the plant (pid {}), ended before the run did", plant.record.name, plant.child.front().pid()),
          exit_status::kSoftware);
   }
 }
@@ -157,7 +151,7 @@ Supervisor::State Supervisor::poll() {
   std::stable_partition(processes_.begin(), processes_.end(), [this](const Supervised& p) { return is_plant(p); });
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    if (const auto& exit = process.child->poll()) handle_exit(process, *exit);
+    if (const auto& exit = process.child.front().poll()) handle_exit(process, *exit);
   }
   for (const auto& process : processes_) {
     if (is_plant(process)) handle_plants_end(process);
@@ -173,7 +167,7 @@ Supervisor::State Supervisor::poll() {
 void Supervisor::sample_memory() {
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    process.record.max_pss_mib = std::max(process.record.max_pss_mib, process.child->pss_mib());
+    process.record.max_pss_mib = std::max(process.record.max_pss_mib, process.child.front().pss_mib());
   }
 }
 
@@ -181,7 +175,7 @@ bool Supervisor::all_gone(bool handle_exits) {
   bool gone = true;
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    const auto& exit = process.child->poll();
+    const auto& exit = process.child.front().poll();
     if (!exit) {
       gone = false;
     } else if (handle_exits) {
@@ -218,7 +212,7 @@ void Supervisor::finish(std::chrono::seconds grace, const std::function<bool()>&
 
 void Supervisor::signal_all(int number) const {
   for (const auto& process : processes_) {
-    if (process.running()) process.child->signal(number);
+    if (process.running()) process.child.front().signal(number);
   }
 }
 

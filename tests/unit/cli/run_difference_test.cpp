@@ -92,7 +92,6 @@ class RunDifferenceOfFiles : public ::testing::Test {
       state->header.sequence_number = static_cast<std::uint64_t>(tick) + 1;
       log.add(topics::kInfos[topics::kJointState.id], Sample{state, &state->header});
     }
-    log.close();
     return folder_.path() / name;
   }
   const testing::TemporaryFolder folder_;

@@ -22,11 +22,11 @@ class SupervisorTest : public ::testing::Test {
  protected:
   /// Starts a run of a plant and two members. The plant and the member `control` execute these scripts, in which $1 is
   /// the incarnation. The member `input` waits forever.
-  void start(const std::string& plant, const std::string& member, int restarts = 100) {
+  void start(const std::string& plant, const std::string& member, int restarts = 100, int restarts_of_plant = 0) {
     LaunchManifest manifest;
     manifest.plant = "physics";
     manifest.processes = {
-        {{"control"}, "", restarts, {"WORD=hello"}}, {{"physics"}, "", 0, {}}, {{"input"}, "", 9, {}}};
+        {{"control"}, "", restarts, {"WORD=hello"}}, {{"physics"}, "", restarts_of_plant, {}}, {{"input"}, "", 9, {}}};
     const auto command_line = [=](const ProcessPlan& process, std::uint32_t incarnation) {
       const std::string script = process.name() == "physics"   ? plant
                                  : process.name() == "control" ? member
@@ -132,7 +132,22 @@ TEST_F(SupervisorTest, DoesNotRepeatTheNameInALineThatBeginsWithIt) {
   EXPECT_FALSE(printed("control: control:")) << printed_;
 }
 
-TEST_F(SupervisorTest, FailsWhenThePlantDies) {
+TEST_F(SupervisorTest, RestartsThePlantAsEveryOtherProcess) {
+  start("test $1 -lt 3 && kill -KILL $$; exec sleep 1000", kWaitForever, 100, 2);
+  ASSERT_TRUE(poll_until([this] { return record(1).restarts == 2; })) << printed_;
+  EXPECT_EQ(supervisor_->poll(), State::kRunning) << supervisor_->failure();
+  EXPECT_TRUE(printed("physics was killed by signal 9 (Killed); restarted as incarnation 3")) << printed_;
+}
+
+TEST_F(SupervisorTest, RestartsAPlantThatIsKilledAfterTheEndOfTheRun) {
+  start("test $1 -lt 2 && { sleep 0.2; kill -KILL $$; }; exit 0", kWaitForever, 100, 2);
+  supervisor_->expect_end();
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
+  EXPECT_EQ(record(1).restarts, 1u);
+}
+
+TEST_F(SupervisorTest, FailsWhenThePlantDiesAndTheManifestAllowsNoRestart) {
   start("kill -SEGV $$", kWaitForever);
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kFailed);

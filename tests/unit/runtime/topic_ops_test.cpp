@@ -72,7 +72,6 @@ TEST(HashLog, HoldsTheHashOfTheMessageWithANeutralHeaderAndWithoutRobot) {
       expected.emplace_back(hash, neutral);
     });
     log.add(0, "too short");
-    log.close();
   }
   const auto entries = HashLog::read(folder.path());
   ASSERT_EQ(entries.size(), expected.size());

@@ -1,0 +1,106 @@
+// The part of ConductorSide that stores checkpoints, and continues from one.
+#include <fmt/format.h>
+#include <cereal/archives/portable_binary.hpp>
+#include <cereal/types/set.hpp>
+#include <cereal/types/string.hpp>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "configuration/configuration.hpp"
+#include "runtime/conductor_side.hpp"
+#include "runtime/member_side.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr auto kStay = std::chrono::seconds(30);
+// The successor of a process that died after the final tick may have missed that a member has ended. Those that live
+// answer within this time.
+constexpr auto kSuccessorStays = std::chrono::seconds(3);
+
+}  // namespace
+
+void ConductorSide::open_store() {
+  const HostOptions& options = context_.options;
+  const bool first = options.incarnation == 1;
+  if (options.checkpoints && !options.setup.output_dir.empty()) {
+    store_ = std::make_unique<RunStore>(options.setup.output_dir, first, context_.log);
+  } else if (!first) {
+    throw ConfigurationError(fmt::format(
+        "--incarnation: found {}, accepted 1: {} keeps no checkpoint (--output and no --no-checkpoints), so that its "
+        "process cannot continue a run",
+        options.incarnation, options.plant));
+  }
+}
+
+void ConductorSide::save() {
+  if (!store_) return;
+  flush_hash_log();
+  if (!control_answers_bytes_) {
+    std::ostringstream bytes;
+    cereal::PortableBinaryOutputArchive archive(bytes);
+    archive(control_answers_);
+    control_answers_bytes_ = std::make_shared<const std::string>(std::move(bytes).str());
+  }
+  Checkpoint checkpoint = conductor_->save();
+  std::ostringstream stream;
+  cereal::PortableBinaryOutputArchive archive(stream);
+  archive(checkpoint.head, hash_log_ ? hash_log_->length() : 0, pacer_, ended_);
+  checkpoint.head = std::move(stream).str();
+  checkpoint.blobs.push_back(control_answers_bytes_);
+  store_->write(checkpoint);
+}
+
+void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& found) {
+  Checkpoint of_conductor = found;
+  std::uint64_t log_length = 0;
+  options.run_id = context_.options.run_id;  // 0: that of the checkpoint
+  try {
+    std::istringstream stream(found.head);
+    cereal::PortableBinaryInputArchive archive(stream);
+    archive(of_conductor.head, log_length, pacer_, ended_);
+    if (found.blobs.empty()) throw std::runtime_error("the checkpoint is incomplete");
+    std::istringstream answers(*found.blobs.back());
+    cereal::PortableBinaryInputArchive archive_of_answers(answers);
+    archive_of_answers(control_answers_);
+  } catch (const cereal::Exception& error) {
+    throw std::runtime_error(fmt::format("the checkpoint is of another release: {}", error.what()));
+  }
+  of_conductor.blobs.pop_back();
+  conductor_ = std::make_unique<Conductor>(std::move(options), static_cast<ConductorSink&>(*this), of_conductor);
+  if (log_length > 0)
+    hash_log_ = std::make_unique<HashLog>(context_.options.setup.output_dir, context_.options.record, log_length);
+}
+
+void ConductorSide::take_status(const msg::ComponentStatus& status) {
+  const auto epoch = conductor_->epoch();
+  if (status.state != msg::kComponentEnded || !epoch || EpochId{status.run_id, status.epoch} != *epoch) return;
+  if (ended_.insert(status.component).second) save();
+}
+
+void ConductorSide::stay_longer() { stays_until_ = HostContext::Clock::now() + kStay; }
+
+bool ConductorSide::stays() {
+  // Without a launcher, nobody restarts a member.
+  if (!store_ || context_.options.run_id == 0 || !conductor_->ended()) return false;
+  const auto now = HostContext::Clock::now();
+  if (!stays_until_) {
+    stays_until_ = now + (context_.options.incarnation > 1 ? kSuccessorStays : kStay);
+    members_.publish_last_statuses();  // by them the launcher knows that the run is over
+  }
+  context_.note_progress();
+  const auto& roster = context_.options.roster;
+  return now < *stays_until_ && std::any_of(roster.begin(), roster.end(), [this](const std::string& name) {
+           return !ended_.contains(name) && !members_.hosts(name);
+         });
+}
+
+void ConductorSide::flush_hash_log() {
+  if (!hash_log_) return;
+  if (const std::string failure = hash_log_->flush(); !failure.empty())
+    context_.log.error("{}; from here on the run is not logged, and `constrictor diff` cannot compare it", failure);
+}
+
+}  // namespace constrictor
