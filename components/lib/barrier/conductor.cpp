@@ -33,7 +33,7 @@ void Conductor::on_hello(const Hello& hello) {
   const bool is_plant = hello.component == options_.plant;
   if (is_plant && member.hello_received && !awaits_plant_) return refuse("the plant cannot be replaced in a run");
   // A process that belongs to this run may still have to come back and conclude it.
-  if (ended_ && hello.run_id == 0) return refuse("the run is over");
+  if (ended_ && hello.run_id == 0 && !is_plant) return refuse("the run is over");
   Hello ours;
   ours.idl_hash = options_.idl_hash;
   ours.config_hash = options_.config_hash;

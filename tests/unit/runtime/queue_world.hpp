@@ -145,7 +145,6 @@ class QueueWorld : private ConductorSink {
     }
   };
   static constexpr std::size_t kStepsKept = 16;  // the depth of barrier/tick_done
-
   void push_done(const Node& from, const TickDone& step) {
     push(key(from, "done", "conductor"), fmt::format("d{},{}", step.epoch.epoch, step.index),
          [this, step] { conductor_->on_done(step); });
@@ -207,6 +206,7 @@ class QueueWorld : private ConductorSink {
     Hello& hello = nodes_[index]->hello;
     hello.component = nodes_[index]->member->name();
     hello.incarnation = incarnation;
+    hello.run_id = conductor_->run_id();
     hello.pid = static_cast<int>(incarnation);
     hello.timing = nodes_[index]->member->timing();
     hello.reads = nodes_[index]->member->reads();
