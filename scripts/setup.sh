@@ -19,12 +19,16 @@ core=(
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
   # checksums of checkpoints
   libxxhash-dev
+  # processes on other hosts
+  openssh-client
 )
 tests=(
   # GoogleTest and Google Benchmark; OpenCV's image files, against which our PNG files are compared
   libgtest-dev libbenchmark-dev libopencv-imgcodecs-dev
   # a terminal for `constrictor teleop`, shells for the completion of `constrictor`
   tmux zsh fish
+  # runs on several hosts, made of network namespaces
+  openssh-server iproute2
   # another vendor's DDS
   libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
 )

@@ -141,7 +141,9 @@ TEST_F(RunCommand, TheSecondCtrlCKillsARunThatDoesNotEnd) {
 }
 
 TEST_F(RunCommand, ProcessesAreKilledIfTheConductorDoesNotAnswerAndTheReportNamesTheReason) {
-  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  // The members must be more patient than the launcher, which waits 5 s for the conductor's answer.
+  write("patient.yaml", replaced(kManifest, "patience_s: 4", "patience_s: 60"));
+  Process launcher = run(100'000, "r", {"--pace", "2x"}, "patient.yaml");
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output();
   kill_member("physics", SIGSTOP);
   launcher.signal(SIGTERM);

@@ -10,6 +10,8 @@
 
 #include <cstddef>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -17,11 +19,15 @@ namespace constrictor {
 
 namespace {
 
+std::filesystem::path lock_file(std::uint32_t domain) {
+  return run_directory() / ("domain-" + std::to_string(domain) + ".lock");
+}
+
 /// Takes the domain's file lock; negative if another process has it. Children do not inherit it, because a child must
 /// not keep the claim of a launcher that died. The file is never removed: otherwise two processes could lock two files
 /// of one name.
 int try_lock(std::uint32_t domain) {
-  const auto file = run_directory() / ("domain-" + std::to_string(domain) + ".lock");
+  const auto file = lock_file(domain);
   const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
   if (lock < 0 || ::flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
   ::close(lock);
@@ -60,6 +66,13 @@ bool domain_in_use(std::uint32_t domain) {
   return taken;
 }
 
+/// The file of a published DDS configuration.
+std::filesystem::path configuration_file(std::uint32_t domain) {
+  return run_directory() / ("domain-" + std::to_string(domain) + ".dds");
+}
+
+constexpr std::uint32_t kFirst = 1, kLast = 100;  // domains among which a free one is chosen
+
 }  // namespace
 
 std::filesystem::path run_directory() {
@@ -72,18 +85,50 @@ std::filesystem::path run_directory() {
 }
 
 bool domain_claimed(std::uint32_t domain) {
+  if (!std::filesystem::exists(lock_file(domain))) return false;
   const int lock = try_lock(domain);
   if (lock >= 0) ::close(lock);
   return lock < 0;
 }
 
+PublishedDdsConfiguration::PublishedDdsConfiguration(std::uint32_t domain, const std::string& xml)
+    : file_(configuration_file(domain)) {
+  const std::filesystem::path unfinished = file_.string() + ".new";
+  std::ofstream file(unfinished);
+  if (!(file << xml).flush()) throw std::runtime_error("cannot write " + unfinished.string());
+  std::filesystem::rename(unfinished, file_);
+}
+
+PublishedDdsConfiguration::~PublishedDdsConfiguration() {
+  std::error_code ignored;
+  if (!file_.empty()) std::filesystem::remove(file_, ignored);
+}
+
+std::string published_dds_configuration(std::uint32_t domain) {
+  std::ifstream file(configuration_file(domain));
+  if (!file || !domain_claimed(domain)) return {};  // without a claim, its owner was killed and could not remove it
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::uint32_t> used_domains() {
+  std::vector<std::uint32_t> used;
+  for (std::uint32_t domain = kFirst; domain <= kLast; ++domain) {
+    if (domain_in_use(domain) || domain_claimed(domain)) used.push_back(domain);
+  }
+  return used;
+}
+
 DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
-  for (std::uint32_t domain = wanted.value_or(1); domain <= wanted.value_or(100); ++domain) {
+  for (std::uint32_t domain = wanted.value_or(kFirst); domain <= wanted.value_or(kLast); ++domain) {
     if (!wanted && domain_in_use(domain)) continue;
     name_ = try_name(domain);
     lock_ = name_ < 0 ? -1 : try_lock(domain);
     domain_ = domain;
-    if (lock_ >= 0) return;
+    if (lock_ >= 0) {
+      std::error_code ignored;  // a killed owner may have left its file
+      std::filesystem::remove(configuration_file(domain), ignored);
+      return;
+    }
     if (name_ >= 0) ::close(name_);
   }
   throw std::runtime_error(

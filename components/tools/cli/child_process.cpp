@@ -99,8 +99,6 @@ ChildProcess::~ChildProcess() {
   ::waitpid(pid_, nullptr, 0);
 }
 
-ChildProcess::ChildProcess(ChildProcess&& other) noexcept : pid_(std::exchange(other.pid_, -1)), exit_(other.exit_) {}
-
 const std::optional<ChildExit>& ChildProcess::poll() {
   if (exit_) return exit_;
   int status = 0;
@@ -110,7 +108,7 @@ const std::optional<ChildExit>& ChildProcess::poll() {
   return exit_;
 }
 
-void ChildProcess::signal(int number) const {
+void ChildProcess::signal(int number) {
   if (!exit_) ::kill(pid_, number);
 }
 

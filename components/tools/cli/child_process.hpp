@@ -1,4 +1,4 @@
-// One process that the launcher started. It cannot outlive the launcher, and its output is kept in a log.
+// One process that the launcher started: on this host, where it cannot outlive the launcher, or on another one.
 #pragma once
 
 #include <sys/types.h>
@@ -29,23 +29,37 @@ struct ChildExit {
   [[nodiscard]] std::string describe() const;
 };
 
-class ChildProcess {
+/// A process that the launcher started, on any host.
+class Child {
+ public:
+  Child() = default;
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  virtual ~Child() = default;  ///< kills the process if it still runs
+
+  [[nodiscard]] virtual pid_t pid() const = 0;
+  /// Returns how the process ended, or nothing while it runs. Never waits. Everything that the process wrote is in its
+  /// log when this returns the end.
+  virtual const std::optional<ChildExit>& poll() = 0;
+  virtual void signal(int number) = 0;
+  /// [MiB] memory in use, each shared page divided by the number of its users; 0 if it is not known.
+  [[nodiscard]] virtual double pss_mib() const = 0;
+};
+
+/// A process on this host.
+class ChildProcess : public Child {
  public:
   /// Starts `argv` with the environment `environment` ("NAME=VALUE", complete); its output is appended to `log`. The
   /// kernel kills the process when the thread that called this ends, however it ends. Throws std::system_error.
   ChildProcess(const std::vector<std::string>& argv, const std::vector<std::string>& environment,
                const std::filesystem::path& log);
-  ~ChildProcess();  ///< kills the process if it still runs
-  ChildProcess(ChildProcess&& other) noexcept;
-  ChildProcess& operator=(ChildProcess&&) = delete;
+  ~ChildProcess() override;
 
-  [[nodiscard]] pid_t pid() const { return pid_; }
+  [[nodiscard]] pid_t pid() const override { return pid_; }
   [[nodiscard]] bool running() const { return !exit_; }
-  /// Returns how the process ended, or nothing while it runs. Never waits.
-  const std::optional<ChildExit>& poll();
-  void signal(int number) const;
-  /// [MiB] memory in use, each shared page divided by the number of its users; 0 if it cannot be read.
-  [[nodiscard]] double pss_mib() const;
+  const std::optional<ChildExit>& poll() override;
+  void signal(int number) override;
+  [[nodiscard]] double pss_mib() const override;
 
  private:
   pid_t pid_ = -1;

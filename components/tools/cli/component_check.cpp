@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr auto kBound = 30s;  // longest time that constrictor_host may take; normally 0.1 s
-constexpr std::size_t kMostLines = 40;
+constexpr std::size_t kMostLines = 100;
 
 /// A file in memory for the output of a process.
 class MemoryFile {
@@ -57,11 +57,13 @@ HostOutput run_host(std::vector<std::string> arguments) {
 
 }  // namespace
 
-std::vector<std::string> hosted_components() {
-  const HostOutput output = run_host({"--components"});
-  if (!output.exit.clean()) throw std::runtime_error("constrictor_host: " + output.exit.describe());
+std::vector<std::string> ask_host(const std::string& option) {
+  const HostOutput output = run_host({option});
+  if (!output.exit.clean()) throw std::runtime_error("constrictor_host " + option + ": " + output.exit.describe());
   return output.lines;
 }
+
+std::vector<std::string> hosted_components() { return ask_host("--components"); }
 
 void check_components(const RunOptions& options, const LaunchPlan& plan) {
   std::vector<std::string> components;

@@ -26,7 +26,7 @@ void require_file(const std::string& what, const fs::path& file) {
 }
 
 void require_program(const ProcessPlan& process) {
-  if (process.program.empty()) return;
+  if (process.program.empty() || !process.host.empty()) return;  // another host checks its programs itself
   const fs::path program = program_folder() / process.program;
   if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
   throw ConfigurationError(
@@ -98,7 +98,11 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   add_config_files(manifest, plan.roster, options.config_files);
   for (const auto& process : manifest.processes) require_program(process);
   std::vector<std::vector<std::string>> groups;
-  if (options.in_process) groups.push_back(plan.roster);
+  if (options.in_process) {
+    for (auto& process : manifest.processes) process.host.clear();
+    manifest.hosts.clear();
+    groups.push_back(plan.roster);
+  }
   for (const auto& group : options.groups) groups.push_back(CLI::detail::split(group, ','));
   regroup(manifest, groups);
   for (auto& process : manifest.processes) {

@@ -62,6 +62,9 @@ void check_components(const RunOptions& options, const LaunchPlan& plan);
 /// not start.
 [[nodiscard]] std::vector<std::string> hosted_components();
 
+/// The lines that constrictor_host prints with this option. Throws std::runtime_error if it fails.
+[[nodiscard]] std::vector<std::string> ask_host(const std::string& option);
+
 /// Arguments that give a component the mission of the scenario; no arguments if the scenario has no mission. The
 /// planner receives its mission in this way, because it must not read the scenario.
 [[nodiscard]] std::vector<std::string> mission_arguments(const LaunchManifest& manifest);

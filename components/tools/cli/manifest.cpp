@@ -39,6 +39,7 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
     if (process.components.empty()) throw entry.error("components", "found none, accepted at least one component");
     process.program = entry.text("program", {}, "");
     process.restarts = static_cast<int>(entry.integer("restarts", 0, 1'000'000, process.restarts));
+    process.host = entry.text("host", {}, "");
     if (entry.has("environment")) process.environment = entry.texts("environment");
     const bool has_latency = entry.has("latency_ticks");
     const auto latency = static_cast<std::uint16_t>(entry.integer("latency_ticks", 1, kLargestLatency_ticks, 1));
@@ -67,6 +68,8 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
       throw root.error("roster", fmt::format("found {}, accepted each of {} once", fmt::join(manifest.order, ", "),
                                              fmt::join(known, ", ")));
   }
+  manifest.packet_bytes = static_cast<int>(root.integer("packet_bytes", 1400, 65500, manifest.packet_bytes));
+  read_hosts(root, manifest);
   root.finish();
   return manifest;
 }
@@ -87,6 +90,12 @@ void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string
                                              fmt::join(roster, ", "), did_you_mean(component, roster)));
       if (!grouped.insert(component).second)
         throw ConfigurationError("--group: found component '" + component + "' twice, accepted once");
+      if (!together.components.empty() && together.host != home->host)
+        throw ConfigurationError(
+            fmt::format("--group: found {} and {}, which the manifest puts on different hosts; "
+                        "accepted components of one host, or --in-process",
+                        together.components.front(), component));
+      together.host = home->host;
       together.components.push_back(component);
       if (!home->program.empty()) together.program = home->program;
       together.restarts = std::min(together.restarts, home->restarts);

@@ -8,7 +8,19 @@
 #include <string>
 #include <vector>
 
+namespace constrictor {
+class Configuration;
+}
+
 namespace constrictor::cli {
+
+/// A host of a run, as the manifest describes it.
+struct HostPlan {
+  std::string ssh;        ///< destination for ssh, "user@10.0.0.2"; empty: the launcher's own host
+  std::string interface;  ///< network interface for DDS, "eth0"; empty: the one that holds the address
+  std::string address;    ///< IPv4 address for DDS; empty: the one by which ssh or the other hosts reach this host
+  std::filesystem::path directory;  ///< of the installation; relative to the home directory; empty: the usual ones
+};
 
 /// One process of a run.
 struct ProcessPlan {
@@ -16,6 +28,7 @@ struct ProcessPlan {
   std::string program;  ///< empty: the component's own program, or constrictor_host for several components
   int restarts = 100;   ///< largest number of restarts
   std::vector<std::string> environment;  ///< "NAME=VALUE", added to the launcher's environment
+  std::string host = {};                 ///< name of the host that it runs on; empty: the launcher's
 
   /// "control", or "navigation+control" if it hosts several.
   [[nodiscard]] std::string name() const;
@@ -33,6 +46,9 @@ struct LaunchManifest {
   std::map<std::string, std::uint16_t> latency_ticks;         ///< least latency by component; absent: its own
   std::vector<std::string> order;                             ///< of the roster; empty: that of the processes
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: the default file
+  HostPlan here;                                              ///< the launcher's own host
+  std::map<std::string, HostPlan> hosts;                      ///< the other hosts, by name
+  int packet_bytes = 1400;                                    ///< [byte] largest packet of a run with other hosts
 
   /// Every component, in the order that is part of the run's identity.
   [[nodiscard]] std::vector<std::string> roster() const;
@@ -41,6 +57,10 @@ struct LaunchManifest {
 /// Reads a manifest; paths in it are relative to the project's root. Throws ConfigurationError, also if a component is
 /// named twice, the plant is not among the components, or `roster` does not name each of them once.
 LaunchManifest load_manifest(const std::filesystem::path& file);
+
+/// Reads `hosts`, and checks the hosts that the processes of `manifest` name. Hosts without a process are left out.
+/// A process on the launcher's own host then has an empty host. Throws ConfigurationError.
+void read_hosts(Configuration& root, LaunchManifest& manifest);
 
 /// Puts each group of components into one process of its own; other components stay where they are. Call roster()
 /// before: the order of the roster must not depend on the grouping. Throws ConfigurationError if a component is

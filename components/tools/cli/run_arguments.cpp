@@ -74,6 +74,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "  constrictor run --in-process --pace realtime\n"
       "  constrictor run --group physics,camera --group navigation,control\n"
       "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"
+      "  constrictor run --manifest my_hosts.yaml                # on several hosts, see deploy/README.md\n"
       "  constrictor run --config planner=components/planner/planner.yaml\n\n"
       "EXIT STATUS\n"
       "  0 the mission succeeded; 1 it did not; 64 wrong usage; 70 a process failed; 75 a process waited too long for\n"
@@ -85,7 +86,9 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "ENVIRONMENT\n"
       "  CONSTRICTOR_DOMAIN  the domain, like --domain\n"
       "  CONSTRICTOR_DATA    directory of the default files, instead of the source tree or the install prefix\n"
-      "  CYCLONEDDS_URI      DDS configuration, needed to reach other hosts (deploy/cyclonedds)");
+      "  CYCLONEDDS_URI      DDS configuration; on several hosts, its settings are added to those that the launcher "
+      "makes\n"
+      "  CONSTRICTOR_SSH     command in place of `ssh`, for example `ssh -F my_config`");
 }
 
 int check_command(const RunOptions& options) {

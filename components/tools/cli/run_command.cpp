@@ -10,6 +10,7 @@
 #include <random>
 
 #include "cli/progress_display.hpp"
+#include "cli/remote/host_set.hpp"
 #include "cli/run_ending.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/run_report.hpp"
@@ -51,21 +52,30 @@ std::uint64_t random_run_id() {
   return (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
 }
 
+/// A signal that arrived before the run began.
+struct Interrupted {
+  int signal;
+};
+
 /// One run, from the start of its processes to its report.
 class Launcher {
  public:
   Launcher(const RunOptions& options, LaunchPlan plan)
       : options_(options),
         plan_(std::move(plan)),
-        claim_(options.domain),
+        hosts_(
+            plan_.manifest, [this](const std::string& line) { display_.print(line); }, [this] { wait_for_hosts(); }),
+        claim_(hosts_.domain(options.domain)),
         report_dir_(make_report_dir(options, plan_.manifest.scenario_file)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
         note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_}),
         run_id_(random_run_id()),
+        hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_), true)),
         observer_(claim_.domain(), run_id_),
-        supervisor_(plan_.manifest, make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_),
-                    run_environment(), report_dir_ / "logs",
-                    [this](const std::string& line) { display_.print(line); }) {}
+        supervisor_(
+            plan_.manifest, make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_), run_environment(),
+            report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
+            [this](const auto&... process) { return hosts_.start(process...); }) {}
 
   int run() {
     const auto processes = plan_.manifest.processes.size();
@@ -78,11 +88,16 @@ class Launcher {
     watch_run();
     const double wall_time_s = std::chrono::duration<double>(Clock::now() - start).count();
     end_processes();
+    hosts_.finish();
     for (const auto& line : observer_.poll()) display_.print(line);
     return report(wall_time_s);
   }
 
  private:
+  void wait_for_hosts() {
+    if (const int signal = signals_.wait(20ms); signal != 0) throw Interrupted{signal};
+  }
+
   /// Until the run has ended, a process failed, or the processes must be killed.
   void watch_run() {
     SpeedMeter speed;
@@ -167,7 +182,7 @@ class Launcher {
     } else if (options_.max_sim_time_s > 0 && view.sim_time_s() > options_.max_sim_time_s - 3 * view.period_s) {
       outcome.end_reason = fmt::format("time limit of {:g} s", options_.max_sim_time_s);
     }
-    const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records());
+    const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records(), hosts_.report());
     display_.print(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
                                verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")",
                                verdict.sim_time_s, wall_time_s, (report_dir_ / "report.json").string()));
@@ -178,11 +193,13 @@ class Launcher {
   LaunchPlan plan_;
   SignalQueue signals_;  // first, because it must exist before any thread or process is started
   ProgressDisplay display_;
+  HostSet hosts_;
   DomainClaim claim_;
   fs::path report_dir_;
   std::string scenario_;
   PublishedNote note_;
   std::uint64_t run_id_;
+  bool hosts_prepared_;  ///< before the observer, which needs the DDS configuration
   RunObserver observer_;
   Supervisor supervisor_;
   Clock::time_point memory_sampled_{};
@@ -204,7 +221,11 @@ fs::path make_new_directory(const fs::path& wanted) {
 int run_command(const RunOptions& options) {
   LaunchPlan plan = make_launch_plan(options);
   check_components(options, plan);
-  return Launcher(options, std::move(plan)).run();
+  try {
+    return Launcher(options, std::move(plan)).run();
+  } catch (const Interrupted& interrupted) {
+    return 128 + interrupted.signal;
+  }
 }
 
 }  // namespace constrictor::cli

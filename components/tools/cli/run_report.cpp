@@ -36,7 +36,7 @@ RunVerdict judge(const RunOutcome& outcome, const RunView& view, const Json& mis
 }  // namespace
 
 RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcome& outcome, const RunView& view,
-                        const std::vector<ProcessRecord>& processes) {
+                        const std::vector<ProcessRecord>& processes, const nlohmann::ordered_json& hosts) {
   std::ifstream mission_file(report_dir / "mission.json");
   Json mission = Json::parse(mission_file, nullptr, false);
   if (!mission.is_object()) mission = Json::object();
@@ -58,6 +58,7 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   Json list = Json::array();
   for (const auto& process : processes) {
     list.push_back({{"name", process.name},
+                    {"host", process.host.empty() ? "here" : process.host},
                     {"cpu_s", process.cpu_s},
                     {"max_pss_mib", process.max_pss_mib},
                     {"restarts", process.restarts},
@@ -65,6 +66,7 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                     {"refused", sum_over(process.components, view.refused)}});
   }
   report["processes"] = std::move(list);
+  if (!hosts.is_null()) report["hosts"] = hosts;
   if (!outcome.error.empty()) report["error"] = outcome.error;
   for (const auto& [key, value] : mission.items()) {
     if (!report.contains(key)) report[key] = value;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct RunVerdict {
 /// Merges `report_dir`/mission.json, if the report component wrote it, with `outcome`, `view` and `processes` into
 /// `report_dir`/report.json. The run is a success if mission.json reports one and there is no error. The reason is the
 /// first of these texts that is not empty: the error, the reason in mission.json (which the figure also shows), the end
-/// reason. If all are empty, it says that no reason is known. Throws std::runtime_error if the file cannot be written.
+/// reason. If all are empty, it says that no reason is known. `hosts`:
+/// HostSet::report(). Throws std::runtime_error if the file cannot be written.
 RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcome& outcome, const RunView& view,
-                        const std::vector<ProcessRecord>& processes);
+                        const std::vector<ProcessRecord>& processes, const nlohmann::ordered_json& hosts = {});
 
 }  // namespace constrictor::cli

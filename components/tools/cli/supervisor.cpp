@@ -31,22 +31,30 @@ bool is_final(int code) {
 }  // namespace
 
 Supervisor::Supervisor(LaunchManifest manifest, CommandLine command_line, std::vector<std::string> environment,
-                       std::filesystem::path log_dir, Print print)
+                       std::filesystem::path log_dir, Print print, StartChild start_child)
     : manifest_(std::move(manifest)),
       command_line_(std::move(command_line)),
       environment_(std::move(environment)),
       log_dir_(std::move(log_dir)),
-      print_(std::move(print)) {
+      print_(std::move(print)),
+      start_child_(std::move(start_child)) {
   for (const auto& plan : manifest_.processes) {
     Supervised process;
     process.plan = plan;
     process.record.name = plan.name();
     process.record.components = plan.components;
+    process.record.host = plan.host;
     processes_.push_back(std::move(process));
   }
 }
 
 Supervisor::~Supervisor() = default;
+
+std::unique_ptr<Child> Supervisor::start_here(const ProcessPlan&, std::uint32_t, const std::vector<std::string>& argv,
+                                              const std::vector<std::string>& environment,
+                                              const std::filesystem::path& log) {
+  return std::make_unique<ChildProcess>(argv, environment, log);
+}
 
 bool Supervisor::is_plant(const Supervised& process) const {
   const auto& components = process.plan.components;
@@ -71,9 +79,11 @@ void Supervisor::spawn(Supervised& process) {
   std::error_code no_log_yet;
   const auto size = std::filesystem::file_size(log_of(process), no_log_yet);
   process.log_offset = no_log_yet ? 0 : size;
-  process.child.clear();
+  process.child.reset();
   if (is_plant(process)) plant_gone_ = false;
-  process.child.emplace_back(command_line_(process.plan, ++process.incarnation), environment, log_of(process));
+  ++process.incarnation;
+  process.child = start_child_(process.plan, process.incarnation, command_line_(process.plan, process.incarnation),
+                               environment, log_of(process));
   process.over = false;
 }
 
@@ -141,7 +151,7 @@ void Supervisor::handle_plants_end(const Supervised& plant) {
     state_ = State::kEnded;
   } else if (Clock::now() - plant.ended > kEndTogether) {
     // The other processes cannot go on: they wait for a tick that never comes.
-    fail(fmt::format("{}, the plant (pid {}), ended before the run did", plant.record.name, plant.child.front().pid()),
+    fail(fmt::format("{}, the plant (pid {}), ended before the run did", plant.record.name, plant.child->pid()),
          exit_status::kSoftware);
   }
 }
@@ -151,7 +161,7 @@ Supervisor::State Supervisor::poll() {
   std::stable_partition(processes_.begin(), processes_.end(), [this](const Supervised& p) { return is_plant(p); });
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    if (const auto& exit = process.child.front().poll()) handle_exit(process, *exit);
+    if (const auto& exit = process.child->poll()) handle_exit(process, *exit);
   }
   for (const auto& process : processes_) {
     if (is_plant(process)) handle_plants_end(process);
@@ -167,7 +177,7 @@ Supervisor::State Supervisor::poll() {
 void Supervisor::sample_memory() {
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    process.record.max_pss_mib = std::max(process.record.max_pss_mib, process.child.front().pss_mib());
+    process.record.max_pss_mib = std::max(process.record.max_pss_mib, process.child->pss_mib());
   }
 }
 
@@ -175,7 +185,7 @@ bool Supervisor::all_gone(bool handle_exits) {
   bool gone = true;
   for (auto& process : processes_) {
     if (!process.running()) continue;
-    const auto& exit = process.child.front().poll();
+    const auto& exit = process.child->poll();
     if (!exit) {
       gone = false;
     } else if (handle_exits) {
@@ -212,7 +222,7 @@ void Supervisor::finish(std::chrono::seconds grace, const std::function<bool()>&
 
 void Supervisor::signal_all(int number) const {
   for (const auto& process : processes_) {
-    if (process.running()) process.child.front().signal(number);
+    if (process.running()) process.child->signal(number);
   }
 }
 

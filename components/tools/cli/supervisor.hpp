@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct ProcessRecord {
   double cpu_s = 0;        ///< [s] user and system time
   double max_pss_mib = 0;  ///< [MiB] largest sample
   std::uint32_t restarts = 0;
+  std::string host = {};  ///< ProcessPlan::host
 };
 
 class Supervisor {
@@ -27,12 +29,24 @@ class Supervisor {
   /// Shows one line to the user.
   using Print = std::function<void(const std::string& line)>;
 
+  /// Starts the next incarnation of a process on the host that its plan names; appends its output to `log`.
+  using StartChild = std::function<std::unique_ptr<Child>(
+      const ProcessPlan& plan, std::uint32_t incarnation, const std::vector<std::string>& argv,
+      const std::vector<std::string>& environment, const std::filesystem::path& log)>;
+
   /// `environment` is complete; each process's own variables are added to it. Output goes to `log_dir`/NAME.log.
+  /// `start_child`: the default starts every process on this host.
   Supervisor(LaunchManifest manifest, CommandLine command_line, std::vector<std::string> environment,
-             std::filesystem::path log_dir, Print print);
+             std::filesystem::path log_dir, Print print, StartChild start_child = start_here);
   ~Supervisor();  ///< kills the processes that still run
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
+
+  /// Starts a process on this host.
+  static std::unique_ptr<Child> start_here(const ProcessPlan& plan, std::uint32_t incarnation,
+                                           const std::vector<std::string>& argv,
+                                           const std::vector<std::string>& environment,
+                                           const std::filesystem::path& log);
 
   /// Starts all processes. Throws std::system_error.
   void start();
@@ -74,14 +88,14 @@ class Supervisor {
   using Clock = std::chrono::steady_clock;
   struct Supervised {
     ProcessPlan plan;
-    std::vector<ChildProcess> child;  ///< the present incarnation; empty before the start
+    std::unique_ptr<Child> child;  ///< the present incarnation; null before the start
     ProcessRecord record;
     std::uint32_t incarnation = 0;
     Clock::time_point ended{};
     std::uintmax_t log_offset = 0;  ///< [byte] where the output of this incarnation begins in its log
     int deaths_without_tick = 0;    ///< number of deaths by its own fault since the newest tick
     bool over = false;              ///< the process has ended, and its exit was handled
-    [[nodiscard]] bool running() const { return !over && !child.empty(); }
+    [[nodiscard]] bool running() const { return !over && child; }
   };
   void spawn(Supervised& process);
   void handle_exit(Supervised& process, const ChildExit& exit);
@@ -100,6 +114,7 @@ class Supervisor {
   std::vector<std::string> environment_;
   std::filesystem::path log_dir_;
   Print print_;
+  StartChild start_child_;
   std::vector<Supervised> processes_;
   std::int64_t tick_ = -1;  ///< newest known tick of the run
   State state_ = State::kRunning;

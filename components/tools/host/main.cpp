@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <sstream>
 
+#include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
 #include "host/known_components.hpp"
 #include "runtime/component_main.hpp"
 #include "runtime/host.hpp"
+#include "runtime/loaded_libraries.hpp"
 #include "runtime/numeric_profile.hpp"
 #include "runtime/version.hpp"
 
@@ -18,6 +20,17 @@ int main(int argc, char** argv) {
     std::printf("%s\n", kVersion);
     return exit_status::kOk;
   }
+  if (first == "--describe") {
+    ensure_numeric_environment(argv);
+    std::printf("profile %s\n", numeric_profile().c_str());
+    for (const auto& [name, version] : loaded_libraries())
+      std::printf("library %s %s\n", name.c_str(), version.c_str());
+    for (const auto& [name, make] : known_components()) {
+      const auto file = make().default_config;
+      if (!file.empty()) std::printf("default %s %s\n", name.c_str(), data_path(file).c_str());
+    }
+    return exit_status::kOk;
+  }
   if (first == "--components") {
     for (const auto& [name, make] : known_components()) std::printf("%s\n", name.c_str());
     return exit_status::kOk;
@@ -26,6 +39,7 @@ int main(int argc, char** argv) {
     std::printf(
         "usage: constrictor_host NAME[,NAME...] [OPTION...]\n"
         "       constrictor_host --components      # print the names, one per line\n"
+        "       constrictor_host --describe        # print numeric profile, libraries, default configurations\n"
         "All components have the same options: constrictor_host NAME --help. Components:");
     for (const auto& [name, make] : known_components()) std::printf(" %s", name.c_str());
     std::printf("\n");

@@ -47,7 +47,7 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
   EXPECT_EQ(plan.manifest.robot_file.filename(), "serpens.yaml");
   EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
   EXPECT_EQ(names_of(kManifests), (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live",
-                                                            "case_study_mx106", "manual"}));
+                                                            "case_study_mx106", "manual", "two_hosts"}));
 }
 
 TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {

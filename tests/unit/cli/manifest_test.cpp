@@ -132,5 +132,52 @@ TEST(Manifest, RegroupingMovesComponentsAndKeepsAllOfThem) {
   EXPECT_THROW(regroup(manifest, {{"a"}, {"b", "a"}}), ConfigurationError);
 }
 
+const char* const kHosts =
+    "processes:\n  - {components: [physics], host: here}\n  - {components: [control], host: robot}\n"
+    "  - {components: [planner]}\n";
+
+TEST(Manifest, ProcessesOfTheLaunchersOwnHostHaveNoHost) {
+  const File file("plant: physics\nrobot: r.yaml\nscenario: s.yaml\n" + std::string(kHosts) +
+                  "hosts: {here: local, robot: {ssh: snake@10.0.0.2, interface: eth0, directory: /opt/c},\n"
+                  "        idle: {ssh: idle}}\n");
+  const LaunchManifest manifest = load_manifest(file.path());
+  EXPECT_EQ(manifest.processes[0].host, "");
+  EXPECT_EQ(manifest.processes[1].host, "robot");
+  EXPECT_EQ(manifest.processes[2].host, "");
+  ASSERT_EQ(manifest.hosts.size(), 1u) << "a host without a process needs no connection";
+  EXPECT_EQ(manifest.hosts.at("robot").ssh, "snake@10.0.0.2");
+  EXPECT_EQ(manifest.hosts.at("robot").interface, "eth0");
+  EXPECT_EQ(manifest.hosts.at("robot").directory, "/opt/c");
+}
+
+TEST(Manifest, RejectsHostsThatSshOrAShellCouldMisread) {
+  const auto error = [](const std::string& hosts) {
+    return File("plant: physics\nrobot: r.yaml\nscenario: s.yaml\n" + std::string(kHosts) + "hosts: " + hosts + "\n")
+        .error();
+  };
+  EXPECT_EQ(error("{here: local, robot: {ssh: a}}"), "accepted");
+  for (const char* ssh : {"-oProxyCommand=x", "'a b'", "'a;b'", "\"a'b\"", "''"})
+    EXPECT_NE(error(std::string("{here: local, robot: {ssh: ") + ssh + "}}").find("hosts.robot.ssh: found"),
+              std::string::npos)
+        << ssh;
+  EXPECT_NE(error("{here: local, robot: {ssh: a, directory: '$(x)'}}").find("hosts.robot.directory: found '$(x)'"),
+            std::string::npos);
+  EXPECT_NE(error("{here: local, robot: {ssh: a, address: 10.0.0}}").find("accepted an IPv4 address"),
+            std::string::npos);
+  EXPECT_NE(error("{here: local, robot: {ssh: a, shh: b}}").find("did you mean"), std::string::npos);
+  EXPECT_NE(error("{here: local, robot: local}").find("a second host without ssh"), std::string::npos);
+  EXPECT_NE(error("{here: local, robbot: {ssh: a}}").find("found host robot, accepted here, robbot"),
+            std::string::npos);
+}
+
+TEST(Manifest, AGroupHasOneHost) {
+  const File file("plant: physics\nrobot: r.yaml\nscenario: s.yaml\n" + std::string(kHosts) +
+                  "hosts: {here: local, robot: {ssh: a}}\n");
+  LaunchManifest manifest = load_manifest(file.path());
+  EXPECT_THROW(regroup(manifest, {{"physics", "control"}}), ConfigurationError);
+  regroup(manifest, {{"physics", "planner"}});
+  EXPECT_EQ(manifest.processes.size(), 2u);
+}
+
 }  // namespace
 }  // namespace constrictor::cli

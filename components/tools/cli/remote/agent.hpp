@@ -1,0 +1,86 @@
+// The agent: runs the processes of one run on a host to which the launcher has an ssh connection.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/child_process.hpp"
+#include "cli/remote/message_channel.hpp"
+#include "cyclone/domain_claim.hpp"
+
+namespace constrictor::cli {
+
+/// The folder of an agent below run_directory(): its socket, its lock, files, logs and output of the run.
+[[nodiscard]] std::filesystem::path agent_folder(const std::string& token);
+
+/// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder
+/// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run.
+void remove_stale_agents(const std::filesystem::path& own);
+
+/// Starts processes, reports how they end, forwards their logs and the files that they write. It outlives a broken
+/// connection: the launcher connects again to its socket. It kills its processes and removes its folder when the
+/// launcher says so, after the patience without a message from the launcher, and soon after the launcher has closed the
+/// connection without a new one. If the agent itself is killed, the kernel kills its processes.
+class Agent {
+ public:
+  /// Makes the folder of the agent and listens on the socket in it. Throws std::system_error.
+  explicit Agent(const std::string& token);
+  ~Agent();
+  Agent(const Agent&) = delete;
+  Agent& operator=(const Agent&) = delete;
+  /// Until the run is over. Returns the exit status.
+  int run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Managed {
+    std::uint32_t incarnation = 0;
+    std::unique_ptr<ChildProcess> child;
+    std::uintmax_t log_sent = 0;  ///< [byte] of its log that the launcher has
+    double pss_mib = 0;
+  };
+  void accept_connection();
+  void take(const nlohmann::json& message);
+  void take_hello(const nlohmann::json& message);
+  void prepare(const nlohmann::json& message);
+  void start(const nlohmann::json& message);
+  void signal(const nlohmann::json& message);
+  void collect();
+  void send_logs();
+  void send_state();
+  void send_files();
+  /// Looks for processes that have ended. True if one has.
+  bool reap();
+  /// Why the agent has to end; empty: it has not.
+  [[nodiscard]] bool abandoned() const;
+  void kill_all();
+  /// Kills all processes, removes all files and frees the domain.
+  void clean_up();
+  [[nodiscard]] std::filesystem::path log_of(const std::string& name) const {
+    return folder_ / "logs" / (name + ".log");
+  }
+
+  std::filesystem::path folder_;
+  Descriptor lock_, listener_, signals_;
+  std::unique_ptr<MessageChannel> channel_;
+  std::optional<Clock::time_point> disconnected_at_;
+  Clock::time_point last_word_ = Clock::now();
+  Clock::time_point last_state_{};
+  std::chrono::duration<double> patience_{60};
+  std::unique_ptr<DomainClaim> claim_;
+  PublishedDdsConfiguration dds_;
+  std::string dds_xml_;
+  std::map<std::string, Managed> processes_;
+  std::map<std::string, std::uintmax_t> files_to_send_;  ///< output files by name: [byte] that have been sent
+  nlohmann::json description_;                           ///< of this host; null before the first hello
+  bool prepared_ = false;
+  bool collecting_ = false;
+  bool over_ = false;
+};
+
+}  // namespace constrictor::cli

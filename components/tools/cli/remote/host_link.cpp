@@ -1,0 +1,268 @@
+#include "cli/remote/host_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+
+#include "cli/remote/host_description.hpp"
+#include "runtime/version.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+constexpr auto kPing = 1s;
+constexpr auto kSilent = 5s;         // without a word, the connection counts as broken
+constexpr auto kAttemptBound = 20s;  // for a new connection, from the start of ssh to the agent's answer
+constexpr auto kFirstPause = 250ms;  // between two attempts; doubled after each
+constexpr auto kLongestPause = 8000ms;
+
+/// Whether an attempt to connect that ended with this error would end in the same way again.
+bool is_final(const std::string& error) {
+  for (const char* text : {"Permission denied", "Host key verification failed", "REMOTE HOST IDENTIFICATION",
+                           "cannot start ssh", "Bad configuration", "Could not resolve hostname"}) {
+    if (error.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+HostLink::HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print)
+    : name_(std::move(name)),
+      plan_(std::move(plan)),
+      token_(std::move(token)),
+      patience_(patience_s),
+      print_(std::move(print)) {}
+
+HostLink::~HostLink() = default;
+
+void HostLink::refuse(const std::string& reason) const {
+  throw HostError(fmt::format("host {} ({}): {}", name_, plan_.ssh, reason));
+}
+
+void HostLink::exchange() {
+  if (ended_ || lost_) return;
+  try {
+    if (connection_) {
+      connection_->channel().exchange();
+      while (connection_) {
+        const auto message = connection_->channel().receive();
+        if (!message) break;
+        take(*message);
+      }
+      if (connection_ && up_ && connection_->channel().closed()) {
+        go_away(connection_->ended() ? connection_->last_error() : "the connection was closed");
+        connection_.reset();
+      }
+    }
+    if (up_ && Clock::now() - last_word_ > kSilent)
+      go_away(fmt::format("no answer for {} s", std::chrono::seconds(kSilent).count()));
+    if (up_ && Clock::now() - last_ping_ > kPing) {
+      last_ping_ = Clock::now();
+      send({{"op", "ping"}});
+    }
+    if (!up_ && !ended_) connect();
+  } catch (const ProtocolError& error) {
+    if (!prepared_) refuse(error.what());
+    give_up(error.what());
+  } catch (const HostError& error) {
+    if (!prepared_) throw;
+    give_up(error.what());
+  }
+  if (up_ || ended_ || Clock::now() - away_since_ < patience_) return;
+  const std::string reason =
+      fmt::format("could not be reached for {:.0f} s (patience_s of the manifest): {}", patience_.count(), last_error_);
+  if (!prepared_) refuse(reason);
+  give_up(reason);
+}
+
+void HostLink::give_up(const std::string& reason) {
+  lost_ = true;
+  up_ = false;
+  connection_.reset();
+  next_.reset();
+  print_(fmt::format("host {}: {}", name_, reason));
+  for (auto& [process, state] : processes_) state.lost = true;
+}
+
+void HostLink::go_away(const std::string& why) {
+  if (!up_) return;
+  up_ = false;
+  if (ending_) ended_ = true;
+  away_since_ = last_word_;
+  last_error_ = why;
+  pause_ = kFirstPause;
+  next_attempt_ = Clock::now();
+  away_printed_ = false;
+}
+
+void HostLink::connect() {
+  const auto now = Clock::now();
+  if (next_) return read_new_connection();
+  if (now < next_attempt_) return;
+  next_ = std::make_unique<SshConnection>(plan_, token_, begun_);
+  attempt_began_ = now;
+  say_hello(*next_);
+}
+
+void HostLink::say_hello(SshConnection& connection) {
+  Json logs = Json::object();
+  for (const auto& [process, state] : processes_) logs[process] = state.received;
+  connection.channel().send({{"op", "hello"},
+                             {"protocol", kAgentProtocol},
+                             {"patience_s", patience_.count()},
+                             {"interface", plan_.interface},
+                             {"address", plan_.address},
+                             {"network", this_network()},
+                             {"logs", logs}});
+}
+
+void HostLink::read_new_connection() {
+  next_->channel().exchange();
+  if (const auto message = next_->channel().receive()) {
+    // A new connection works: the silent one before it is not needed any more.
+    connection_ = std::move(next_);
+    return take(*message);
+  }
+  const bool ended = next_->channel().closed() && next_->ended();
+  if (!ended && Clock::now() - attempt_began_ < kAttemptBound) return;
+  last_error_ = ended ? next_->last_error() : "ssh did not connect in time";
+  next_.reset();
+  if (!begun_ && is_final(last_error_)) refuse(last_error_ + "; `ssh " + plan_.ssh + "` must work without a question");
+  next_attempt_ = Clock::now() + pause_;
+  pause_ = std::min<std::chrono::milliseconds>(2 * pause_, kLongestPause);
+  if (std::exchange(away_printed_, true)) return;
+  print_(fmt::format("host {} cannot be reached: {}; trying again for up to {:.0f} s", name_, last_error_,
+                     patience_.count()));
+}
+
+void HostLink::send(const Json& message) {
+  if (up_ && connection_) connection_->channel().send(message);
+}
+
+void HostLink::take(const Json& message) {
+  last_word_ = Clock::now();
+  const auto op = field<std::string>(message, "op");
+  if (op == "hello") take_hello(message);
+  else if (op == "state") take_state(message);
+  else if (op == "log") take_log(message);
+  else if (op == "file") take_file(message);
+  else if (op == "prepared") prepared_ = true;
+  else if (op == "collected") collecting_ = false, collected_ = true;
+  else if (op == "ended") ended_ = true;
+  else if (op == "gone") agent_is_gone();
+  else if (op == "error") refuse(field<std::string>(message, "text"));
+  else if (op == "no release")
+    refuse(
+        fmt::format("found no constrictor of release {}, but:{} install this release there, or name its directory "
+                    "in the manifest (key directory)",
+                    kVersion, message.value("text", "").empty() ? " none;" : message.value("text", "")));
+  else throw ProtocolError("found op \"" + op + "\", which this release does not know");
+}
+
+void HostLink::take_hello(const Json& message) {
+  if (begun_ && away_printed_)
+    print_(fmt::format("host {} is reached again after {:.0f} s", name_,
+                       std::chrono::duration<double>(Clock::now() - away_since_).count()));
+  description_ = message;
+  begun_ = up_ = true;
+  away_printed_ = false;
+  pause_ = kFirstPause;
+  resend();
+}
+
+void HostLink::resend() {
+  if (ending_) return send({{"op", "end"}});
+  if (!preparation_.is_null() && !description_.value("prepared", false)) send(preparation_);
+  for (const auto& [process, state] : processes_) {
+    if (state.exit) continue;
+    send(state.request);  // the agent ignores it if it has started the process
+    if (state.wanted_signal != 0)
+      send({{"op", "signal"}, {"name", process}, {"incarnation", state.incarnation}, {"number", state.wanted_signal}});
+  }
+  if (collecting_) send({{"op", "collect"}});
+}
+
+void HostLink::agent_is_gone() {
+  connection_.reset();
+  begun_ = false;
+  print_(fmt::format("host {}: its agent has ended, and all its processes with it; it is started again", name_));
+  for (auto& [process, state] : processes_) {
+    state.received = 0;
+    if (!state.exit) state.exit = ChildExit{SIGKILL, 0};
+  }
+  if (ending_) ended_ = true;
+  next_attempt_ = Clock::now();
+}
+
+void HostLink::prepare(const Json& request) {
+  preparation_ = request;
+  send(request);
+}
+
+void HostLink::start(const std::string& process, std::uint32_t incarnation, Json request,
+                     const std::filesystem::path& log) {
+  const std::uintmax_t received = processes_[process].received;
+  processes_[process] = {incarnation, std::move(request), false, lost_, 0, 0, 0, std::nullopt, log, received};
+  send(processes_[process].request);
+}
+
+void HostLink::signal(const std::string& process, int number) {
+  Process& state = processes_.at(process);
+  if (state.exit) return;
+  if (number == SIGTERM || number == SIGKILL) state.wanted_signal = number;
+  send({{"op", "signal"}, {"name", process}, {"incarnation", state.incarnation}, {"number", number}});
+}
+
+void HostLink::take_state(const Json& message) {
+  for (const auto& entry : field<std::vector<Json>>(message, "processes")) {
+    const auto found = processes_.find(field<std::string>(entry, "name"));
+    if (found == processes_.end() || found->second.incarnation != field<std::uint32_t>(entry, "incarnation")) continue;
+    Process& process = found->second;
+    process.started = true;
+    process.pid = field<pid_t>(entry, "pid");
+    process.pss_mib = field<double>(entry, "pss_mib");
+    if (entry.contains("wait_status") && !process.exit)
+      process.exit = ChildExit{field<int>(entry, "wait_status"), field<double>(entry, "cpu_s")};
+  }
+}
+
+void HostLink::take_log(const Json& message) {
+  const auto found = processes_.find(field<std::string>(message, "name"));
+  const auto next = field<std::uintmax_t>(message, "next");
+  if (found == processes_.end() || next <= found->second.received) return;
+  std::ofstream(found->second.log, std::ios::app) << field<std::string>(message, "text");
+  found->second.received = next;
+}
+
+void HostLink::collect(const std::filesystem::path& folder) {
+  collect_into_ = folder;
+  collecting_ = true;
+  send({{"op", "collect"}});
+}
+
+void HostLink::take_file(const Json& message) {
+  const auto name = field<std::string>(message, "name");
+  const auto hex = field<std::string>(message, "hex");
+  if (!is_plain_name(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");
+  const bool first = field<std::uintmax_t>(message, "offset") == 0;
+  std::ofstream file(collect_into_ / name, first ? std::ios::binary : std::ios::binary | std::ios::app);
+  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    bytes.push_back(static_cast<char>(digit(hex[i]) * 16 + digit(hex[i + 1])));
+  file << bytes;
+}
+
+void HostLink::end() {
+  ending_ = true;
+  if (up_) return send({{"op", "end"}});
+  if (!begun_) ended_ = true;
+}
+
+}  // namespace constrictor::cli

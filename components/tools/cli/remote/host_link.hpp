@@ -1,0 +1,117 @@
+// The launcher's connection to the agent of one host. It is made again when it breaks.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/child_process.hpp"
+#include "cli/manifest.hpp"
+#include "cli/remote/ssh_connection.hpp"
+
+namespace constrictor::cli {
+
+/// A host that cannot take part in the run. The text names the host, what was found and what to do.
+class HostError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// All functions return at once. exchange() must be called often: it sends, receives, and connects again.
+class HostLink {
+ public:
+  using Print = std::function<void(const std::string& line)>;
+  /// What the agent reported about one process.
+  struct Process {
+    std::uint32_t incarnation = 0;
+    nlohmann::json request;  ///< the message that starts it
+    bool started = false;    ///< the agent has reported it
+    bool lost = false;       ///< the host cannot be reached any more, and its agent ends the process by itself
+    int wanted_signal = 0;   ///< SIGTERM or SIGKILL that was sent to it
+    pid_t pid = 0;
+    double pss_mib = 0;
+    std::optional<ChildExit> exit;
+    std::filesystem::path log;    ///< on the launcher's host
+    std::uintmax_t received = 0;  ///< [byte] of the log on the other host
+  };
+
+  /// Begins to connect. `patience_s`: how long the host may be away before the run fails.
+  HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print);
+  ~HostLink();
+  HostLink(const HostLink&) = delete;
+  HostLink& operator=(const HostLink&) = delete;
+
+  /// Throws HostError if the host refuses the run, or cannot be reached within the patience before it was prepared.
+  void exchange();
+  /// The agent's description of its host; null before its first message.
+  [[nodiscard]] const nlohmann::json& description() const { return description_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const HostPlan& plan() const { return plan_; }
+  /// The folder of the agent on its host.
+  [[nodiscard]] std::string folder() const { return description_.value("folder", ""); }
+
+  /// Claims the domain on the host and sends the files of the run. prepared() tells when that is done.
+  void prepare(const nlohmann::json& request);
+  [[nodiscard]] bool prepared() const { return prepared_; }
+  void start(const std::string& process, std::uint32_t incarnation, nlohmann::json request,
+             const std::filesystem::path& log);
+  void signal(const std::string& process, int number);
+  [[nodiscard]] const Process& process(const std::string& name) const { return processes_.at(name); }
+  /// Asks for the files that the processes of the host have written. They are stored in `folder`.
+  void collect(const std::filesystem::path& folder);
+  [[nodiscard]] bool collected() const { return collected_; }
+  /// Ends the agent and all its processes.
+  void end();
+  [[nodiscard]] bool ended() const { return ended_; }
+  /// The host has been away for longer than the patience.
+  [[nodiscard]] bool lost() const { return lost_; }
+  /// Connected, and the agent has answered recently.
+  [[nodiscard]] bool up() const { return up_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void connect();
+  void say_hello(SshConnection& connection);
+  void take(const nlohmann::json& message);
+  void take_hello(const nlohmann::json& message);
+  void take_state(const nlohmann::json& message);
+  void take_log(const nlohmann::json& message);
+  void take_file(const nlohmann::json& message);
+  /// The agent has died, with its processes.
+  void agent_is_gone();
+  /// The host takes no part in the run any more.
+  void give_up(const std::string& reason);
+  void resend();
+  void send(const nlohmann::json& message);
+  void go_away(const std::string& why);
+  void read_new_connection();
+  [[noreturn]] void refuse(const std::string& reason) const;
+
+  std::string name_;
+  HostPlan plan_;
+  std::string token_;
+  std::chrono::duration<double> patience_;
+  Print print_;
+  std::unique_ptr<SshConnection> connection_;  ///< the one in use; kept while it is silent, until another one works
+  std::unique_ptr<SshConnection> next_;        ///< being made
+  nlohmann::json description_, preparation_;
+  std::map<std::string, Process> processes_;
+  std::filesystem::path collect_into_;
+  bool begun_ = false;  ///< an agent was started, so that connections attach to it
+  bool up_ = false, prepared_ = false, lost_ = false, collecting_ = false, collected_ = false, ending_ = false,
+       ended_ = false, away_printed_ = false;
+  Clock::time_point away_since_ = Clock::now(), last_word_ = Clock::now(), last_ping_{}, next_attempt_ = Clock::now(),
+                    attempt_began_{};
+  std::chrono::milliseconds pause_{250};
+  std::string last_error_;
+};
+
+}  // namespace constrictor::cli

@@ -1,0 +1,71 @@
+// The other hosts of a run, as the launcher sees them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/launch_plan.hpp"
+#include "cli/remote/host_link.hpp"
+#include "cli/supervisor.hpp"
+#include "cyclone/domain_claim.hpp"
+
+namespace constrictor::cli {
+
+class HostSet {
+ public:
+  /// Connects to all hosts of the manifest and compares them with this one; does nothing if it names none. `wait` is
+  /// called meanwhile; it waits a moment, and throws to interrupt. Throws HostError with all differences.
+  HostSet(const LaunchManifest& manifest, HostLink::Print print, std::function<void()> wait);
+  ~HostSet();
+  HostSet(const HostSet&) = delete;
+  HostSet& operator=(const HostSet&) = delete;
+
+  /// The domain to claim: `wanted`, or the first one that is free on all hosts; empty if there are no other hosts.
+  [[nodiscard]] std::optional<std::uint32_t> domain(std::optional<std::uint32_t> wanted) const;
+  /// Claims the domain on all hosts, publishes the DDS configuration, and sends the files of the run. Throws HostError.
+  void prepare(std::uint32_t domain, const std::filesystem::path& report_dir);
+  /// For the supervisor: starts a process on the host that its plan names.
+  [[nodiscard]] std::unique_ptr<Child> start(const ProcessPlan& plan, std::uint32_t incarnation,
+                                             const std::vector<std::string>& argv,
+                                             const std::vector<std::string>& environment,
+                                             const std::filesystem::path& log);
+  /// Fetches the files that the processes of the other hosts have written into the report's directory, and ends the
+  /// agents. All processes must have ended.
+  void finish();
+  /// For report.json: {name: {host, release, libraries ...}}, this host first, under the name "here". Null without
+  /// other hosts.
+  [[nodiscard]] nlohmann::ordered_json report() const;
+
+ private:
+  void connect();
+  void compare() const;
+  /// Ends the agents that can be reached, with all their processes.
+  void end_agents();
+  void add_file(const std::filesystem::path& file);
+  void exchange();
+  /// Calls exchange() until `done` returns true. False after `bound`.
+  bool exchange_until(const std::function<bool()>& done, std::chrono::milliseconds bound);
+  /// The argument with the paths of the run's files replaced by those on the host.
+  [[nodiscard]] std::string there(const HostLink& link, const std::string& argument) const;
+
+  const LaunchManifest& manifest_;
+  HostLink::Print print_;
+  std::function<void()> wait_;
+  std::vector<std::unique_ptr<HostLink>> links_;
+  nlohmann::json ours_;
+  std::map<std::string, std::string> default_configs_;  ///< path by component
+  std::map<std::string, std::string> places_;           ///< of each file in an agent's folder, by path on this host
+  nlohmann::json files_ = nlohmann::json::array();
+  std::filesystem::path report_dir_;
+  std::string dds_xml_;
+  PublishedDdsConfiguration dds_;
+};
+
+}  // namespace constrictor::cli
