@@ -161,6 +161,17 @@ TEST_F(Hosts, AHostWithAnotherReleaseIsRefused) {
   EXPECT_TRUE(members().empty());
 }
 
+TEST_F(Hosts, TheDoctorReportsHostsThatAreReadyAndHostsThatAreNot) {
+  Process well = command({"doctor", "--manifest", (dir_ / "hosts.yaml").string()});
+  EXPECT_EQ(well.wait(30s), exit_status::kOk) << well.output() << well.errors();
+  EXPECT_NE(well.output().find("no fault found"), std::string::npos) << well.output();
+  expect_nothing_left();
+  ssh("echo 'snake@10.0.0.2: Permission denied (publickey).' >&2; exit 255");
+  Process refused = command({"doctor", "--manifest", (dir_ / "hosts.yaml").string()});
+  EXPECT_EQ(refused.wait(30s), exit_status::kFailed) << "it must not try for the patience";
+  EXPECT_NE(refused.output().find("Permission denied (publickey)"), std::string::npos) << refused.output();
+}
+
 TEST_F(Hosts, AHostThatComputesOtherwiseIsRefusedWithTheDifferences) {
   // A copy of this release with another version of ODE, on a processor with another libm.
   const fs::path other = dir_ / "other";

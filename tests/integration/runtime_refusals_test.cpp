@@ -93,6 +93,18 @@ TEST(RuntimeRefusals, AnotherNumericProfileIsRefused) {
   EXPECT_NE(run.processes.at("planner").errors().find("numeric profile differs"), std::string::npos);
 }
 
+TEST(RuntimeRefusals, AnotherScenarioIsRefused) {
+  const TemporaryFolder folder;
+  const std::string other = folder.path() / "100";  // the same name, but another content
+  std::ofstream(other) << "mission: {}\n";
+  ToyRun run(100, {"--patience", "6"});
+  run.start_all({"physics", "navigation", "control", "report"});
+  Process planner({program("toy_host"), "planner", "--domain", std::to_string(run.claim.domain()), "--roster", kRoster,
+                   "--scenario", other, "--robot", ""});
+  EXPECT_EQ(planner.wait(20s), exit_status::kRefused);
+  EXPECT_NE(planner.errors().find("scenario differs"), std::string::npos) << planner.errors();
+}
+
 // A restarted member reads its configuration file again. If the file has changed, the member is refused; otherwise the
 // change would silently alter the result of the run.
 TEST(RuntimeRefusals, ARestartedMemberWithAnotherConfigurationIsRefused) {

@@ -36,6 +36,8 @@ void Conductor::on_hello(const Hello& hello) {
   if (ended_ && hello.run_id == 0 && !is_plant) return refuse("the run is over");
   Hello ours;
   ours.idl_hash = options_.idl_hash;
+  ours.release = options_.release;
+  ours.component_hash = options_.component_hash;
   ours.config_hash = options_.config_hash;
   ours.numeric_profile = options_.numeric_profile;
   if (const auto what = difference(hello, ours)) return refuse(*what);

@@ -33,7 +33,9 @@ struct ConductorOptions {
   std::vector<std::string> roster;  ///< every member, the plant included
   std::string plant;                ///< its name
   std::string idl_hash;
+  std::string release;
   std::string config_hash;
+  std::string component_hash;  ///< of the plant: only its part for the scenario is compared with those of the members
   std::string numeric_profile;
   std::uint64_t seed = 1;
   std::int64_t period_ns = 20'000'000;

@@ -32,18 +32,45 @@ struct BlockReader {
   }
 };
 
+const std::string kScenario = "s:";
+const std::string kConfiguration = " c:";
+/// A hash is recognised by its first digits; several of them must fit into the reason of a refusal.
+std::string shown(const std::string& text) {
+  const bool hash = text.size() > 20 && text.find(' ') == std::string::npos;
+  return hash ? text.substr(0, 12) + "..." : text;
+}
+
+constexpr std::size_t kHashDigits = 28;  // of each hash: both parts fit into the 64 characters of Hello.component_hash
+
 }  // namespace
 
+std::string component_hash(const std::string& scenario, const std::string& configuration) {
+  return kScenario + scenario.substr(0, kHashDigits) + kConfiguration + configuration.substr(0, kHashDigits);
+}
+
+std::string scenario_part(const std::string& component_hash) {
+  const auto end = component_hash.find(kConfiguration);
+  if (!component_hash.starts_with(kScenario) || end == std::string::npos) return {};
+  return component_hash.substr(kScenario.size(), end - kScenario.size());
+}
+
 std::optional<std::string> difference(const Hello& hello, const Hello& ours) {
-  const auto differs = [](const char* what, const std::string& theirs, const std::string& our) {
-    return std::string(what) + " differs: found " + theirs + ", the run has " + our;
+  std::string all;
+  const auto compare = [&](const char* what, const std::string& theirs, const std::string& our) {
+    if (theirs == our) return;
+    all += std::string(all.empty() ? "" : "; ") + what + " differs: found " + shown(theirs) + ", the run has " +
+           shown(our);
   };
-  if (hello.idl_hash != ours.idl_hash) return differs("IDL hash", hello.idl_hash, ours.idl_hash);
-  if (hello.config_hash != ours.config_hash) return differs("configuration hash", hello.config_hash, ours.config_hash);
-  if (hello.numeric_profile != ours.numeric_profile) {
-    return differs("numeric profile", hello.numeric_profile, ours.numeric_profile);
-  }
-  return {};
+  const auto compare_if_known = [&](const char* what, const std::string& theirs, const std::string& our) {
+    if (!theirs.empty() && !our.empty()) compare(what, theirs, our);
+  };
+  compare("IDL hash", hello.idl_hash, ours.idl_hash);
+  compare_if_known("release", hello.release, ours.release);
+  compare("configuration hash", hello.config_hash, ours.config_hash);
+  compare_if_known("scenario", scenario_part(hello.component_hash), scenario_part(ours.component_hash));
+  compare("numeric profile", hello.numeric_profile, ours.numeric_profile);
+  if (all.empty()) return {};
+  return all;
 }
 
 std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs) {

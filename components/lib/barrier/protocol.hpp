@@ -28,17 +28,24 @@ struct Hello {
   std::uint32_t incarnation = 1;
   std::int32_t pid = 0;
   std::string host;
+  std::string release;  ///< version of the program; empty: not known, or a program of another project
   std::string idl_hash;
   std::string config_hash;
-  std::string component_hash;  ///< of the component's own configuration and scenario file
+  std::string component_hash;  ///< of the component's own configuration and scenario file, see component_hash()
   std::string numeric_profile;
   Timing timing;
   TopicSet reads;
   TopicSet writes;
 };
 
-/// Compares IDL hash, configuration hash and numeric profile, which all members of a run have in common. Returns the
-/// first one that differs, with both values; empty if none differs.
+/// Hello.component_hash of a component, made from the hashes of the two files in hexadecimal.
+std::string component_hash(const std::string& scenario, const std::string& configuration);
+/// The part of a Hello.component_hash that stands for the scenario file; empty if it was not made by component_hash().
+std::string scenario_part(const std::string& component_hash);
+
+/// Compares IDL hash, release, configuration hash, scenario and numeric profile, which all members of a run have in
+/// common. Release and scenario are compared only if both are known. Returns all that differ, with both values; empty
+/// if none differs.
 std::optional<std::string> difference(const Hello& hello, const Hello& ours);
 
 /// A member has finished a step.

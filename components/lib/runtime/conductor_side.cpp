@@ -4,8 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "runtime/config_hash.hpp"
 #include "runtime/member_side.hpp"
 #include "runtime/numeric_profile.hpp"
+#include "runtime/version.hpp"
 
 namespace constrictor {
 namespace {
@@ -33,7 +35,9 @@ ConductorOptions ConductorSide::conductor_options() const {
   conductor.roster = options.roster;
   conductor.plant = options.plant;
   conductor.idl_hash = std::string(msg::kIdlHash);
+  conductor.release = kVersion;
   conductor.config_hash = context_.config_hash;
+  conductor.component_hash = component_config_hash(plant_.setup().config_file, plant_.setup().scenario_file);
   conductor.numeric_profile = numeric_profile();
   conductor.seed = options.setup.seed;
   conductor.realtime = options.realtime;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "barrier/protocol.hpp"
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
 
@@ -41,7 +42,7 @@ std::string run_config_hash(const std::filesystem::path& robot_file, const std::
 
 std::string component_config_hash(const std::filesystem::path& config_file,
                                   const std::filesystem::path& scenario_file) {
-  return hash_of(bytes_of(config_file) + '\0' + bytes_of(scenario_file));
+  return component_hash(hash_of(bytes_of(scenario_file)), hash_of(bytes_of(config_file)));
 }
 
 }  // namespace constrictor

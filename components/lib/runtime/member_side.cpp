@@ -72,6 +72,7 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
   hello.incarnation = member.incarnation();
   hello.pid = ::getpid();
   hello.host = context_.host_name;
+  hello.release = kVersion;
   hello.idl_hash = std::string(msg::kIdlHash);
   hello.config_hash = context_.config_hash;
   hello.component_hash = local.config_hash;
@@ -85,7 +86,7 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
 void MemberSide::send_hello() {
   for (const auto& local : members_) {
     const Hello hello = hello_of(local);
-    hello_writer_.write(dds::to_wire(hello, kVersion));
+    hello_writer_.write(dds::to_wire(hello));
     if (conductor_) conductor_->on_hello(hello);
   }
 }

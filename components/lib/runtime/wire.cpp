@@ -76,14 +76,14 @@ std::optional<TickDone> from_wire(const msg::TickDone& message) {
   return done;
 }
 
-msg::Hello to_wire(const Hello& hello, const std::string& version) {
+msg::Hello to_wire(const Hello& hello) {
   msg::Hello message{};
   set_text(message.component, hello.component);
   message.run_id = hello.run_id;
   message.incarnation = hello.incarnation;
   message.pid = hello.pid;
   set_text(message.host, hello.host);
-  set_text(message.version, version);
+  set_text(message.version, hello.release);
   set_text(message.idl_hash, hello.idl_hash);
   set_text(message.config_hash, hello.config_hash);
   set_text(message.component_hash, hello.component_hash);
@@ -102,6 +102,7 @@ Hello from_wire(const msg::Hello& message) {
   hello.incarnation = message.incarnation;
   hello.pid = message.pid;
   hello.host = message.host;
+  hello.release = message.version;
   hello.idl_hash = message.idl_hash;
   hello.config_hash = message.config_hash;
   hello.component_hash = message.component_hash;

@@ -17,7 +17,7 @@ namespace barrier_topics = ::constrictor::barrier_topics;
 msg::TickDone to_wire(const TickDone& done, std::string& block);
 /// `message` must have passed validate(). Returns nothing if the checkpoint is damaged.
 std::optional<TickDone> from_wire(const msg::TickDone& message);
-msg::Hello to_wire(const Hello& hello, const std::string& version);
+msg::Hello to_wire(const Hello& hello);
 Hello from_wire(const msg::Hello& message);
 msg::Resume to_wire(const Resume& resume, std::string& block);
 /// The same for a Resume.

@@ -23,7 +23,8 @@ constexpr std::int64_t kMostAhead =
 struct RunObserver::Readers {
   explicit Readers(std::uint32_t number)
       : domain(number),
-        // Reliable, because the counts in statuses are summed for the report.
+        // Reliable, because the report contains them, or sums of them.
+        hello(dds::Reader<msg::Hello>::member(domain.participant(), wire::kHello)),
         status(dds::Reader<msg::ComponentStatus>::member(domain.participant(), wire::kStatus)),
         waiting(dds::Reader<msg::Waiting>::member(domain.participant(), wire::kWaiting)),
         tick(dds::Reader<msg::Tick>::observer(domain.participant(), wire::kTick)),
@@ -33,6 +34,7 @@ struct RunObserver::Readers {
         authority(dds::Reader<msg::Authority>::observer(domain.participant(), std::string(topics::kAuthority.name))),
         run_state(dds::Reader<msg::RunState>::observer(domain.participant(), wire::kRunState)) {}
   dds::Domain domain;
+  dds::Reader<msg::Hello> hello;
   dds::Reader<msg::ComponentStatus> status;
   dds::Reader<msg::Waiting> waiting;
   dds::Reader<msg::Tick> tick;  ///< closed once the period is known, because ticks are many
@@ -94,6 +96,12 @@ void RunView::take(const msg::ComponentStatus& message) {
   if (present(message.run_id, message.epoch)) tick = std::max(tick, message.tick);
 }
 
+void RunView::take(const msg::Hello& message) {
+  if (message.run_id != 0 && meant_ != 0 && message.run_id != meant_) return;
+  msg::Hello& newest = hellos[message.component];
+  if (message.incarnation >= newest.incarnation) newest = message;
+}
+
 void RunView::take(const msg::MissionStatus& message) {
   if (!present(message.header.run_id, message.header.epoch)) return;
   mission = message;
@@ -134,6 +142,7 @@ std::vector<std::string> RunObserver::poll() {
     });
     if (known) readers_->tick = {};
   }
+  readers_->hello.take(into_view);
   readers_->run_state.take(into_view);
   readers_->status.take(into_view);
   readers_->mission.take(into_view);

@@ -29,10 +29,12 @@ struct RunView {
   std::optional<msg::Authority> authority;
   std::optional<msg::RunState> run_state;
   std::map<std::string, msg::ComponentStatus> components;
+  std::map<std::string, msg::Hello> hellos;       ///< the newest one of each member, by component
   std::map<std::string, std::uint64_t> overruns;  ///< by component, summed over its incarnations
   std::map<std::string, std::uint64_t> refused;
 
   void take(const msg::Tick& message);
+  void take(const msg::Hello& message);
   void take(const msg::ComponentStatus& message);
   void take(const msg::MissionStatus& message);
   void take(const msg::TaskStatus& message);

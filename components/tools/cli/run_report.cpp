@@ -66,6 +66,18 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                     {"refused", sum_over(process.components, view.refused)}});
   }
   report["processes"] = std::move(list);
+  // What each member said about itself: a result can be repeated with the same releases, files and numeric profile.
+  report["members"] = Json::array();
+  for (const auto& [name, hello] : view.hellos) {
+    report["members"].push_back({{"name", name},
+                                 {"host", hello.host},
+                                 {"incarnation", hello.incarnation},
+                                 {"release", hello.version},
+                                 {"idl_hash", hello.idl_hash},
+                                 {"config_hash", hello.config_hash},
+                                 {"component_hash", hello.component_hash},
+                                 {"numeric_profile", hello.numeric_profile}});
+  }
   if (!hosts.is_null()) report["hosts"] = hosts;
   if (!outcome.error.empty()) report["error"] = outcome.error;
   for (const auto& [key, value] : mission.items()) {

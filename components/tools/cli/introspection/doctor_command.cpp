@@ -11,6 +11,8 @@
 
 #include "cli/introspection/diagnosis.hpp"
 #include "cli/introspection/domain_view.hpp"
+#include "cli/launch_plan.hpp"
+#include "cli/remote/host_check.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
@@ -133,9 +135,36 @@ void tell(const Diagnosis& diagnosis) {
   if (diagnosis.findings.empty()) fmt::print("no fault found\n");
 }
 
+struct DoctorOptions : ViewOptions {
+  std::string manifest;  ///< name in deploy or a path; empty: no hosts are checked
+};
+
+/// Checks the hosts of a manifest.
+int check_manifest(const DoctorOptions& options) {
+  const LaunchManifest manifest = load_manifest(find_file(options.manifest, kManifests));
+  if (manifest.hosts.empty())
+    throw UsageError("--manifest: found one that names no other host, accepted one with hosts");
+  bool well = true;
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& host : check_hosts(manifest, options.domain.value_or(1))) {
+    well = well && host.findings.empty();
+    auto findings = nlohmann::ordered_json::array();
+    if (!options.json) fmt::print("host {}: {}\n", host.name, host.facts.empty() ? "not reached" : host.facts);
+    for (const auto& finding : host.findings) {
+      findings.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
+      if (!options.json) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+    }
+    list.push_back({{"host", host.name}, {"facts", host.facts}, {"findings", findings}});
+  }
+  if (options.json) fmt::print("{}\n", json_text(list, 2));
+  else if (well) fmt::print("no fault found\n");
+  return well ? exit_status::kOk : kFaults;
+}
+
 /// Examines the chosen domain. If none was chosen, examines the domains of all runs on this host, or domain 0 if there
 /// are no runs.
-int doctor(const ViewOptions& options) {
+int doctor(const DoctorOptions& options) {
+  if (!options.manifest.empty()) return check_manifest(options);
   const Facts host = facts_of_host();
   std::vector<std::uint32_t> domains = host.runs;
   if (options.domain) domains = {*options.domain};
@@ -155,16 +184,20 @@ int doctor(const ViewOptions& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Action& action) {
-  auto options = std::make_shared<ViewOptions>();
+  auto options = std::make_shared<DoctorOptions>();
   auto* sub = add_subcommand(app, "doctor", "find faults that keep processes from communicating, and name the cure",
                              action, options, doctor);
   add_view_options(*sub, *options);
+  sub->add_option("--manifest", options->manifest,
+                  "check the other hosts of this launch manifest instead: a name or a file");
   sub->footer(help_footer(
       "Finds: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two "
       "members\n"
       "of one name, small socket buffers. Without --run it examines the domains of all runs on this host; --json then\n"
-      "prints a list if there are several.",
-      {"constrictor doctor", "constrictor doctor --run 7 --json"},
+      "prints a list if there are several. With --manifest, it connects to each host of the manifest and checks "
+      "release,\n"
+      "libraries, numeric profile, and whether packets pass in both directions; clocks need not agree.",
+      {"constrictor doctor", "constrictor doctor --run 7 --json", "constrictor doctor --manifest my_hosts.yaml"},
       "0 no fault found; 1 a fault was found; 64 wrong usage",
       "CONSTRICTOR_DOMAIN  the domain, like --run\n  CYCLONEDDS_URI      DDS configuration; it is examined, too"));
 }

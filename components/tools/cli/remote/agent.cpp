@@ -49,13 +49,17 @@ void remove_stale_agents(const fs::path& own) {
     if (young && entry.path() != own) continue;
     const Descriptor lock(::open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC));
     if (lock.open() && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) continue;
-    fs::remove_all(entry.path(), ignored);
+    // A run that goes on continues from what its processes have written, for example from the plant's checkpoint.
+    for (const auto& part : fs::directory_iterator(entry.path())) {
+      if (entry.path() != own || part.path().filename() != "output") fs::remove_all(part.path(), ignored);
+    }
+    if (entry.path() != own) fs::remove(entry.path(), ignored);
   }
 }
 
 Agent::Agent(const std::string& token) : folder_(agent_folder(token)) {
   remove_stale_agents(folder_);
-  if (::mkdir(folder_.c_str(), 0700) != 0) fail(folder_.string());
+  if (::mkdir(folder_.c_str(), 0700) != 0 && errno != EEXIST) fail(folder_.string());
   lock_ = Descriptor(::open((folder_ / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600));
   if (!lock_.open() || ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) fail((folder_ / "lock").string());
   for (const char* name : {"files", "logs", "output"}) fs::create_directory(folder_ / name);
@@ -88,13 +92,15 @@ void Agent::clean_up() {
 
 int Agent::run() {
   while (!over_ && !abandoned()) {
-    std::array<pollfd, 3> waits{pollfd{listener_.get(), POLLIN, 0}, pollfd{signals_.get(), POLLIN, 0},
+    std::array<pollfd, 4> waits{pollfd{listener_.get(), POLLIN, 0}, pollfd{signals_.get(), POLLIN, 0},
+                                pollfd{echo_.get(), POLLIN, 0},
                                 pollfd{channel_ ? channel_->descriptor() : -1, POLLIN, 0}};
     ::poll(waits.data(), waits.size(), static_cast<int>(kPoll.count()));
     for (signalfd_siginfo info{}; ::read(signals_.get(), &info, sizeof(info)) == sizeof(info);) {
       if (info.ssi_signo != SIGCHLD) over_ = true;
     }
     accept_connection();
+    answer_echo();
     const bool ended = reap();
     if (!channel_) continue;
     try {
@@ -146,9 +152,10 @@ void Agent::take(const Json& message) {
   else if (op == "start") start(message);
   else if (op == "signal") signal(message);
   else if (op == "collect") collect();
+  else if (op == "echo") open_echo(message);
   else if (op == "end") over_ = true;
   else if (op == "ping") last_state_ = {};
-  else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, end, ping");
+  else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, echo, end, ping");
 }
 
 void Agent::take_hello(const Json& message) {

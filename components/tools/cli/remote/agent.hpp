@@ -19,7 +19,8 @@ namespace constrictor::cli {
 [[nodiscard]] std::filesystem::path agent_folder(const std::string& token);
 
 /// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder
-/// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run.
+/// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run:
+/// the killed agent was its predecessor. In this one, the output of the processes is kept.
 void remove_stale_agents(const std::filesystem::path& own);
 
 /// Starts processes, reports how they end, forwards their logs and the files that they write. It outlives a broken
@@ -51,6 +52,9 @@ class Agent {
   void start(const nlohmann::json& message);
   void signal(const nlohmann::json& message);
   void collect();
+  /// Opens a UDP socket whose packets are sent back: `constrictor doctor` checks with it whether packets pass.
+  void open_echo(const nlohmann::json& message);
+  void answer_echo() const;
   void send_logs();
   void send_state();
   void send_files();
@@ -66,7 +70,7 @@ class Agent {
   }
 
   std::filesystem::path folder_;
-  Descriptor lock_, listener_, signals_;
+  Descriptor lock_, listener_, signals_, echo_;
   std::unique_ptr<MessageChannel> channel_;
   std::optional<Clock::time_point> disconnected_at_;
   Clock::time_point last_word_ = Clock::now();

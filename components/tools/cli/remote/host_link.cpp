@@ -75,8 +75,7 @@ void HostLink::exchange() {
     give_up(error.what());
   }
   if (up_ || ended_ || Clock::now() - away_since_ < patience_) return;
-  const std::string reason =
-      fmt::format("could not be reached for {:.0f} s (patience_s of the manifest): {}", patience_.count(), last_error_);
+  const std::string reason = fmt::format("could not be reached for {:.0f} s: {}", patience_.count(), last_error_);
   if (!prepared_) refuse(reason);
   give_up(reason);
 }
@@ -155,6 +154,7 @@ void HostLink::take(const Json& message) {
   else if (op == "prepared") prepared_ = true;
   else if (op == "collected") collecting_ = false, collected_ = true;
   else if (op == "ended") ended_ = true;
+  else if (op == "echoing") echo_answer_ = message;
   else if (op == "gone") agent_is_gone();
   else if (op == "error") refuse(field<std::string>(message, "text"));
   else if (op == "no release")

@@ -68,6 +68,10 @@ class HostLink {
   /// Asks for the files that the processes of the host have written. They are stored in `folder`.
   void collect(const std::filesystem::path& folder);
   [[nodiscard]] bool collected() const { return collected_; }
+  /// Asks the agent to send back what arrives at a UDP port.
+  void echo(std::uint16_t port) { send({{"op", "echo"}, {"port", port}}); }
+  /// Empty: the agent has not answered. Otherwise {error: text}, where an empty text means that the port is open.
+  [[nodiscard]] const nlohmann::json& echo_answer() const { return echo_answer_; }
   /// Ends the agent and all its processes.
   void end();
   [[nodiscard]] bool ended() const { return ended_; }
@@ -102,7 +106,7 @@ class HostLink {
   Print print_;
   std::unique_ptr<SshConnection> connection_;  ///< the one in use; kept while it is silent, until another one works
   std::unique_ptr<SshConnection> next_;        ///< being made
-  nlohmann::json description_, preparation_;
+  nlohmann::json description_, preparation_, echo_answer_;
   std::map<std::string, Process> processes_;
   std::filesystem::path collect_into_;
   bool begun_ = false;  ///< an agent was started, so that connections attach to it
