@@ -80,6 +80,8 @@ class Arbiter {
   Decision decide_planner(const msg::Request& request) { return decide(request, true); }
   /// Decides on a request of a client, which has neither the level nor the name of the built-in planner.
   Decision decide_client(const msg::Request& request, const WriterId& writer = {});
+  /// Latches an emergency stop of this source: that of a request, or one that the plant has latched.
+  Decision stop(const std::string& source);
   /// The process of a source is gone. If the source had authority, no source has it now. The source is forgotten: a
   /// later one of the same name is another source. A detached holder keeps authority and the count of its goals until
   /// it loses authority.
@@ -98,7 +100,6 @@ class Arbiter {
   void note(const msg::Request& request);
   Decision decide(const msg::Request& request, bool built_in);
   Decision decide_task(const msg::Request& request, Source& source);
-  Decision stop(const std::string& source);
   Decision clear_stop(const msg::Request& request);
   Decision release(const msg::Request& request);
   void hold(const msg::Request& request, Source& source);

@@ -30,6 +30,7 @@ void Input::step(const Tick& tick) {
   const std::string holder_before = state_.arbiter.holder;
   const bool stopped_before = state_.arbiter.stopped;
   bool changed = set_planned_parameters(tick);
+  const bool plant_stopped = follow_plant_stop();
   if (client_requests_) {
     for (const auto& item : client_requests_->latch(arbiter.living())) {
       changed = true;
@@ -54,6 +55,9 @@ void Input::step(const Tick& tick) {
                                          " ticks old, accepted " + std::to_string(kStale_ticks));
     });
   }
+  // A request to clear a stop that was sent before this stop of the plant must not clear it.
+  if (plant_stopped) obey(arbiter.stop(text_of(plant_stop_->source)), {});
+  clear_plant_stop();
   if (motion_) motion_out_.write(*motion_);
   changed = changed || state_.arbiter.level != level_before || state_.arbiter.holder != holder_before ||
             state_.arbiter.stopped != stopped_before;
@@ -75,7 +79,24 @@ void Input::answer(const msg::Request& request, Decide&& decide) {
   else
     set_text(answer.reason,
              decision.kind == Decision::kRepeated ? "this request was refused before" : state_.arbiter.refusal);
+  if (answer.granted && request.kind == msg::kRequestClearStop) clearer_ = state_.arbiter.answered_source;
   answer_out_.write(answer);
+}
+
+bool Input::follow_plant_stop() {
+  if (!plant_stop_ || plant_stop_->number <= state_.plant_stops) return false;
+  state_.plant_stops = plant_stop_->number;
+  obey(Arbiter(state_.arbiter).stop(text_of(plant_stop_->source)), {});
+  return true;
+}
+
+void Input::clear_plant_stop() {
+  if (state_.arbiter.stopped || state_.cleared_stops == state_.plant_stops) return;
+  state_.cleared_stops = state_.plant_stops;
+  msg::StopCleared cleared{};
+  cleared.number = state_.plant_stops;
+  set_text(cleared.source, clearer_);
+  stop_cleared_.write(cleared);
 }
 
 void Input::obey(const Decision& decision, const msg::Request& request) {

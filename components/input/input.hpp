@@ -19,9 +19,12 @@ struct InputState {
   bool moving = false;  ///< a direct motion is in force
   std::int64_t last_authority_tick = -1;
   ParameterArbiterState parameters;
+  std::uint64_t plant_stops = 0;    ///< StopState.number of the newest stop of the plant that is known
+  std::uint64_t cleared_stops = 0;  ///< of the newest one that was cleared
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick, parameters);
+    archive(arbiter, last_goal, running_goal, running_task, moving, last_authority_tick, parameters, plant_stops,
+            cleared_stops);
   }
 };
 
@@ -46,6 +49,10 @@ class Input : public StatefulComponent<InputState> {
   /// Requests the changes of input.yaml whose tick comes next; true if there were any.
   bool set_planned_parameters(const Tick& tick);
   void cancel_running();
+  /// Latches a stop that the plant has latched. Returns whether there was one.
+  bool follow_plant_stop();
+  /// Lets the plant end its stop after an operator has cleared it.
+  void clear_plant_stop();
   void publish_authority(const Tick& tick);
 
   Wiring& wiring_;
@@ -55,16 +62,19 @@ class Input : public StatefulComponent<InputState> {
   Output<msg::MotionCommand> motion_out_ = wiring_.output(topics::kMotionCommand);
   Output<msg::ParameterChange> parameter_out_ = wiring_.output(topics::kParameterChange);
   Output<msg::RequestAnswer> answer_out_ = wiring_.output(topics::kRequestAnswer);
+  Latest<msg::StopState> plant_stop_ = wiring_.latest(topics::kStopState);
+  Output<msg::StopCleared> stop_cleared_ = wiring_.output(topics::kStopCleared);
   std::vector<Latest<msg::ParameterList>> parameters_in_;
   std::vector<PlannedChange> planned_;
   std::shared_ptr<ClientRequests> client_requests_;
   int commands_left_ = 0;                     ///< task commands that may still be sent in this step
   int changes_left_ = 0;                      ///< parameter changes that may still be sent in this step
   std::int64_t now_ = 0;                      ///< tick of the present step
+  std::string clearer_;                       ///< source of the last request in this step that cleared a stop
   std::optional<msg::MotionCommand> motion_;  ///< to be written at the end of the present step
 };
 
-/// `client_requests`: where the requests of clients arrive; null: the runtime fills them from the topic `request`.
+/// `client_requests`: where the requests of clients arrive; null: the runtime fills them from the topic `request/v2`.
 ComponentFactory make_input_factory(std::shared_ptr<ClientRequests> client_requests = nullptr);
 
 }  // namespace constrictor

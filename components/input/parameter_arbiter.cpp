@@ -13,7 +13,7 @@ constexpr std::int64_t kFirstPlannedTick = 10;  // every owner has announced its
 constexpr std::size_t kMostInATick = topics::kParameterChange.max_per_tick;
 
 /// A name as people may read it on a terminal.
-std::string printable(const std::string& name) {
+std::string readable_name(const std::string& name) {
   const bool readable = std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
   return readable ? name : "?";
 }
@@ -58,7 +58,7 @@ std::variant<msg::ParameterChange, std::string> ParameterArbiter::decide(
     }
   }
   if (!parameter) {
-    return "parameter: found '" + printable(name) +
+    return "parameter: found '" + readable_name(name) +
            "', accepted one that its component announces (constrictor param list)" +
            (all_announced ? "" : "; not every component has yet");
   }

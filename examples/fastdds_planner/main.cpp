@@ -7,8 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -34,19 +36,39 @@ const std::string kName = "fastdds_planner." + std::to_string(::getpid());
 struct Options {
   std::uint32_t domain = 0;
   std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
-  double at_s = 5.0;      ///< [s] simulated time at which the planner takes the mission over
-  std::size_t after = 0;  ///< number of objects that other planners must have delivered before
+  double at_s = 5.0;       ///< [s] simulated time at which the planner takes the mission over
+  std::size_t after = 0;   ///< number of objects that other planners must have delivered before
+  std::string token_file;  ///< of the run; empty: the one that `constrictor run` writes on this host
 };
+
+/// The run's token, which every request carries; empty if there is no such file: the run may have no token.
+std::string read_token(const Options& options) {
+  std::string file = options.token_file;
+  if (file.empty()) {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    file = (runtime && *runtime ? std::string(runtime) + "/constrictor"
+                                : "/tmp/constrictor-" + std::to_string(::getuid())) +
+           "/run-" + std::to_string(options.domain) + ".token";
+  }
+  std::string token;
+  std::ifstream stream(file);
+  if (!std::getline(stream, token) && !options.token_file.empty())
+    throw std::runtime_error(file + ": found no token, accepted a file that begins with the run's token");
+  return token;
+}
 
 /// Exits with status 64 if the arguments are wrong.
 Options parse(int argc, char** argv) {
   const auto usage = [](int status) {
-    std::fprintf(status ? stderr : stdout,
-                 "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS] [--after N]\n"
-                 "  --domain  DDS domain of the run, as `constrictor run` prints it\n"
-                 "  --order   colours in the order of retrieval: green, red, blue, yellow (default green,red)\n"
-                 "  --at      simulated time in s at which the planner takes the mission over (default 5)\n"
-                 "  --after   number of objects that other planners must have delivered before (default 0)\n");
+    std::fprintf(
+        status ? stderr : stdout,
+        "usage: fastdds_planner --domain N [--order COLOUR,...] [--at SECONDS] [--after N] [--token-file FILE]\n"
+        "  --domain  DDS domain of the run, as `constrictor run` prints it\n"
+        "  --order   colours in the order of retrieval: green, red, blue, yellow (default green,red)\n"
+        "  --at      simulated time in s at which the planner takes the mission over (default 5)\n"
+        "  --after   number of objects that other planners must have delivered before (default 0)\n"
+        "  --token-file  file with the token that `constrictor run` prints (default: the one that it writes "
+        "on this host)\n");
     std::exit(status);
   };
   Options options;
@@ -60,6 +82,8 @@ Options parse(int argc, char** argv) {
       domain = true;
     } else if (name == "--at") {
       options.at_s = std::atof(argv[i]);
+    } else if (name == "--token-file") {
+      options.token_file = argv[i];
     } else if (name == "--after") {
       options.after = static_cast<std::size_t>(std::atoi(argv[i]));
     } else if (name == "--order") {
@@ -83,8 +107,11 @@ Options parse(int argc, char** argv) {
 class Planner {
  public:
   explicit Planner(const Options& options)
-      : options_(options), participant_(options.domain, kName), logic_(options.sequence, msg::kColourBlue) {
-    requests_ = participant_.write<msg::RequestPubSubType>("request", 32);
+      : options_(options),
+        token_(read_token(options)),
+        participant_(options.domain, kName),
+        logic_(options.sequence, msg::kColourBlue) {
+    requests_ = participant_.write<msg::RequestPubSubType>("request/v2", 32);
     pose_ = participant_.read<msg::RobotPosePubSubType>("guidance/pose", false, 1, [this](const msg::RobotPose& pose) {
       now_s_ = static_cast<double>(pose.header().time_ns()) * 1e-9;
       logic_.take(retrieval::Pose{pose.x_m(), pose.y_m(), pose.yaw_rad(), pose.body_yaw_rad()});
@@ -185,6 +212,7 @@ class Planner {
     msg::Request request;
     request.robot_id(1);
     request.source(kName);
+    request.token(token_);
     request.header().sequence_number(++sequence_);
     request.level(msg::kAuthorityExternal);
     request.kind(kind);
@@ -224,6 +252,7 @@ class Planner {
   }
 
   Options options_;
+  std::string token_;
   example::Participant participant_;
   retrieval::Retrieval logic_;
   eprosima::fastdds::dds::DataWriter* requests_ = nullptr;

@@ -1,6 +1,7 @@
 #include "constrictor/sha256.hpp"
 
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -48,6 +49,14 @@ Sha256::Digest sha256(std::span<const std::byte> bytes) {
   Sha256 hash;
   hash.update(bytes);
   return hash.finish();
+}
+
+Sha256::Digest hmac_sha256(std::string_view key, std::string_view text) {
+  Sha256::Digest digest{};
+  const auto* found = HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
+                           reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest.data(), nullptr);
+  require(found ? 1 : 0);
+  return digest;
 }
 
 std::string hex(std::span<const std::uint8_t> bytes) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace constrictor {
 
@@ -28,6 +29,9 @@ class Sha256 {
 
 /// SHA-256 of bytes given at once.
 [[nodiscard]] Sha256::Digest sha256(std::span<const std::byte> bytes);
+
+/// HMAC-SHA-256 (RFC 2104) of a text.
+[[nodiscard]] Sha256::Digest hmac_sha256(std::string_view key, std::string_view text);
 
 /// Lower-case hexadecimal text, two digits a byte.
 [[nodiscard]] std::string hex(std::span<const std::uint8_t> bytes);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 namespace constrictor {
 
@@ -21,5 +22,9 @@ template <std::size_t N>
 std::string text_of(const char (&field)[N]) {
   return {field, ::strnlen(field, N)};
 }
+
+/// Text that came over the network, for a terminal or a log: each control character (C0, DEL, C1) and each byte that is
+/// not UTF-8 becomes "?", so that no message can control a terminal. `kept`: control characters that stay.
+std::string printable(std::string text, std::string_view kept = {});
 
 }  // namespace constrictor

@@ -62,7 +62,8 @@ endfunction()
 # expression for the folder and one for the folders that it may use; the first row that fits counts.
 set(CONSTRICTOR_LAYERS
   "idl.* => idl.*"
-  "components/lib/(configuration|log) => none"
+  "components/lib/configuration => none"
+  "components/lib/log => idl"
   "components/lib/robot => idl|components/lib/configuration"
   "components/lib/component => idl|components/lib/configuration"
   "components/lib/barrier => idl|components/lib/(component|configuration)"

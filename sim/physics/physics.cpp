@@ -38,7 +38,8 @@ Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const
       rates_rad_s_(robot.joints.size()),
       torques_nm_(robot.joints.size()) {}
 
-void Physics::sample(const Tick&) {
+void Physics::sample(const Tick& tick) {
+  stop_.sample(tick);
   if (!scene_written_) {
     scene_.write(scene_description(world_.scenario(), world_.robot()));
     scene_written_ = true;
@@ -61,7 +62,10 @@ void Physics::obey(const Tick& tick) {
     if (refused_count(gate_state_) != refused_before)
       wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
   }
-  const GateOrder order = gate_order(authority_.get(), authority_ ? authority_.age_ticks() : 0, gate_state_);
+  // The plant's own stop comes first: it holds whatever `input` publishes, and also if `input` publishes nothing.
+  const GateOrder order = stop_.in_force()
+                              ? SafetyGate::order_of(true, msg::kAuthorityNone, {}, gate_state_)
+                              : gate_order(authority_.get(), authority_ ? authority_.age_ticks() : 0, gate_state_);
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
   const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
@@ -81,7 +85,7 @@ void Physics::step(const Tick& tick) {
 std::string Physics::save() const {
   std::ostringstream stream;
   cereal::PortableBinaryOutputArchive archive(stream);
-  archive(world_.save(), sensors_, perturbations_, gate_state_, scene_written_);
+  archive(world_.save(), sensors_, perturbations_, gate_state_, stop_.state(), scene_written_);
   return std::move(stream).str();
 }
 
@@ -89,7 +93,9 @@ void Physics::load(const std::string& bytes) {
   std::istringstream stream(bytes);
   cereal::PortableBinaryInputArchive archive(stream);
   std::string world;
-  archive(world, sensors_, perturbations_, gate_state_, scene_written_);
+  PlantStopState stop;
+  archive(world, sensors_, perturbations_, gate_state_, stop, scene_written_);
+  stop_.restore(stop);
   world_.load(world);
 }
 

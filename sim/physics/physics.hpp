@@ -4,6 +4,7 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "component/plant_stop.hpp"
 #include "sim/physics/perturbation_script.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/physics/sensors.hpp"
@@ -20,12 +21,13 @@ class Physics final : public Plant {
   /// has authority.
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
-  /// World, sensors, perturbations and gate: about 10 kB for the case study.
+  /// World, sensors, perturbations, gate and stops: about 10 kB for the case study.
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_state_; }
+  [[nodiscard]] const PlantStopState& stop() const { return stop_.state(); }
 
  private:
   Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
@@ -48,6 +50,7 @@ class Physics final : public Plant {
   Output<msg::WorldState> world_state_ = wiring_.output(topics::kWorldState);
   Output<msg::TouchedState> touched_state_ = wiring_.output(topics::kTouchedState);
   Output<msg::SceneDescription> scene_ = wiring_.output(topics::kSceneDescription);
+  PlantStop stop_{wiring_, config_.stop_ticks()};
   bool scene_written_ = false;
 };
 

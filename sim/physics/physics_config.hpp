@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "configuration/parameter_set.hpp"
 #include "robot/safety_gate.hpp"
@@ -41,14 +42,23 @@ struct PhysicsConfig : ParameterSet {
           kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
       add(command.relax_after_ticks, "command.relax_after_ticks", GateLimits{}.relax_after_ticks, "ticks", {1, 1000000},
           kAtStart, "After this time without an acceptable command the joints relax")};
+  std::vector<double> stop_at_ticks =
+      add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},
+          "Ticks at which an emergency stop is latched, rising: repeats a run with stops (emergency_stop/state)");
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   /// [s] the period of the run's ticks: `period_s` rounded to whole nanoseconds.
   [[nodiscard]] double period_s() const { return static_cast<double>(period_ns()) * 1e-9; }
 
+  [[nodiscard]] std::vector<std::int64_t> stop_ticks() const { return {stop_at_ticks.begin(), stop_at_ticks.end()}; }
+
   /// Checks that a tick is a whole number of solver steps; otherwise the world's time would drift from that of the
   /// ticks. Throws ConfigurationError.
   void complete(const Configuration& root) const {
+    for (std::size_t i = 0; i < stop_at_ticks.size(); ++i) {
+      if (stop_at_ticks[i] != std::floor(stop_at_ticks[i]) || (i > 0 && stop_at_ticks[i] <= stop_at_ticks[i - 1]))
+        throw root.error("stop_at_ticks", "found ticks that do not rise, or fractions, accepted rising whole ticks");
+    }
     const double steps = control_period_s / solver.step_s;
     if (steps >= 0.5 && std::abs(steps - std::round(steps)) <= 1e-6) return;
     throw root.error("period_s", "found a period that is no multiple of solver.step_s, accepted a multiple");

@@ -185,7 +185,7 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   EXPECT_EQ(command({"topic", "echo", "joint_state", "--count", "1", "--field", "header.tock"}), 64) << output_;
   EXPECT_NE(output_.find("found 'tock'"), std::string::npos) << output_;
   EXPECT_NE(output_.find("tick"), std::string::npos) << "the error must list the existing fields: " << output_;
-  EXPECT_EQ(command({"topic", "hz", "request", "--for", "0.5", "--timeout", "1"}), 1);
+  EXPECT_EQ(command({"topic", "hz", "request/v2", "--for", "0.5", "--timeout", "1"}), 1);
   EXPECT_NE(output_.find("request"), std::string::npos) << "the error must name the topic: " << output_;
   EXPECT_EQ(command({"doctor"}), 0) << output_;
   EXPECT_NE(output_.find("no fault found"), std::string::npos);
@@ -244,7 +244,8 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
     ticks.write(msg::Tick{});
     EXPECT_TRUE(eventually([&] {
       command({"status"});
-      return flat(output_).find("last refusal: tick: of another epoch") != std::string::npos;
+      return flat(output_).find("last refusal: barrier/tick.writer: found a process that has not announced itself") !=
+             std::string::npos;
     })) << output_;
   }
   const std::string text = flat(output_);
@@ -258,7 +259,9 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
   for (const auto& component : status["components"]) {
     const bool listens = component["component"] != "physics";  // the plant writes the ticks and does not read them
     EXPECT_EQ(component["refused"], listens ? 1 : 0) << component;
-    EXPECT_EQ(component["last_refusal"], listens ? "tick: of another epoch" : "") << component;
+    EXPECT_EQ(component["last_refusal"],
+              listens ? "barrier/tick.writer: found a process that has not announced itself as this member" : "")
+        << component;
   }
   EXPECT_TRUE(watch.wait_for("authority: EMERGENCY STOP ", 20s))
       << "status --watch must show the new authority: " << watch.output();

@@ -122,7 +122,10 @@ TEST_F(OperatorLoss, AnEmergencyStopRequestedDuringARestartOfInputIsObeyedAfterw
   // Stop the process first, so that the request certainly reaches a process that never takes it.
   ASSERT_EQ(::kill(input_.pid, SIGSTOP), 0);
   const std::uint64_t number = hand_->ask(msg::kRequestEmergencyStop);
-  EXPECT_EQ(hand_->wait_for_answer(number, 500ms), RequestClient::Answer::kNone);
+  // The plant obeys the stop at its next tick, if there is one before the run waits for `input`; `input` cannot.
+  static_cast<void>(hand_->wait_for_answer(number, 500ms));
+  poll();
+  EXPECT_NE(now_.level, msg::kAuthorityEmergencyStop);
   ASSERT_EQ(::kill(input_.pid, SIGKILL), 0);
   EXPECT_EQ(hand_->wait_for_answer(number, 20s), RequestClient::Answer::kGranted);
   EXPECT_TRUE(level(msg::kAuthorityEmergencyStop));

@@ -67,6 +67,9 @@ class Watcher {
     });
   }
 
+  /// For more readers in this process.
+  [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
+
   std::vector<std::pair<msg::Authority, Clock::time_point>> authorities;
   std::vector<msg::JointCommand> commands;
   Clock::time_point changed{};     ///< when the last command arrived whose setpoints differ from those before

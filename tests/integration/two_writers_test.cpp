@@ -11,6 +11,7 @@
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
+#include "cyclone/run_token.hpp"
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
 #include "unit/input/two_writers.hpp"
@@ -33,12 +34,13 @@ dds::Reader<T> reader(dds_entity_t participant, const Topic<T>& topic) {
 /// A client with a participant, a writer of requests and a thread of its own.
 class Program {
  public:
-  Program(std::uint32_t domain, std::string name, std::uint8_t level)
+  Program(std::uint32_t domain, std::string name, std::uint8_t level, std::string token)
       : participant_(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant"),
         writer_(participant_.get(), 0),
         answers_(reader(participant_.get(), topics::kRequestAnswer)),
         name_(std::move(name)),
         level_(level),
+        token_(std::move(token)),
         random_(kSeed + level) {}
   ~Program() {
     give_up_ = true;
@@ -58,6 +60,7 @@ class Program {
     dds::set_text(r.source, name_);
     r.header.sequence_number = asked_.size() + 1;
     r.level = level_;
+    dds::set_text(r.token, token_);
     const bool operates = level_ == msg::kAuthorityOperator;
     r.kind = random_() % 8 == 0 ? msg::kRequestTask : msg::kRequestMotion;
     if (operates && random_() % 20 == 0) r.kind = msg::kRequestRelease;
@@ -84,6 +87,7 @@ class Program {
   dds::Reader<msg::RequestAnswer> answers_;
   std::string name_;
   std::uint8_t level_;
+  std::string token_;
   std::mt19937 random_;
   std::vector<msg::Request> asked_;
   std::atomic<std::uint64_t> answered_{0};
@@ -153,8 +157,9 @@ TEST_F(TwoWritersOverDds, InputNeverObeysBothInTenThousandRequests) {
     commands.take([&](const msg::JointCommand& m) { command_at[m.header.tick] = m; });
     joints.take([&](const msg::JointState& m) { joints_at[m.header.tick] = m; });
   };
-  Program planner(domain(), "machine", msg::kAuthorityExternal);
-  Program pilot(domain(), "pilot", msg::kAuthorityOperator);
+  const std::string token = read_token_file(dir_ / "constrictor" / ("run-" + std::to_string(domain()) + ".token"));
+  Program planner(domain(), "machine", msg::kAuthorityExternal, token);
+  Program pilot(domain(), "pilot", msg::kAuthorityOperator, token);
   ASSERT_TRUE(eventually([&] {
     poll();
     return planner.heard() && pilot.heard() && newest["authority"] > 0 && !joints_at.empty();

@@ -31,6 +31,10 @@ class Member::MemberWiring : public Wiring {
     if (!member_.client_requests_) member_.client_requests_ = std::make_shared<ClientRequests>();
     return member_.client_requests_;
   }
+  std::shared_ptr<StopOrders> stop_orders() override {
+    if (!member_.stop_orders_) member_.stop_orders_ = std::make_shared<StopOrders>();
+    return member_.stop_orders_;
+  }
 
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     if (member_.reads_.contains(topic.id)) bug(member_.name(), fmt::format("declares input {} twice", topic.name));

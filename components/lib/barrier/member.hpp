@@ -15,6 +15,7 @@
 #include "barrier/protocol.hpp"
 #include "component/client_requests.hpp"
 #include "component/component.hpp"
+#include "component/plant_stop.hpp"
 #include "constrictor/sha256.hpp"
 
 namespace constrictor {
@@ -54,6 +55,8 @@ class Member {
   [[nodiscard]] Component& component() { return *component_; }
   /// The latch of clients' requests to this component; null if the component takes none.
   [[nodiscard]] const std::shared_ptr<ClientRequests>& client_requests() const { return client_requests_; }
+  /// The latch of emergency stops for this component; null if it takes none.
+  [[nodiscard]] const std::shared_ptr<StopOrders>& stop_orders() const { return stop_orders_; }
   /// Counts a message that was rejected; `reason` names what was found and what is accepted.
   void refuse(const std::string& reason);
 
@@ -167,6 +170,7 @@ class Member {
   std::vector<TickDone::Written> written_;  ///< by the step in progress
   Counters counters_;
   std::shared_ptr<ClientRequests> client_requests_;
+  std::shared_ptr<StopOrders> stop_orders_;
 };
 
 }  // namespace constrictor

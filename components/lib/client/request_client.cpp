@@ -33,11 +33,15 @@ struct RequestClient::Endpoints {
         domain(number),
         authority(dds::Reader<msg::Authority>::member(domain.participant(), std::string(topics::kAuthority.name))),
         answer(dds::Reader<msg::RequestAnswer>::member(domain.participant(), std::string(topics::kRequestAnswer.name))),
+        stops(dds::Reader<msg::StopState>::member(domain.participant(), std::string(topics::kStopState.name))),
+        stop(domain.participant(), barrier_topics::kEmergencyStop),
         request(domain.participant(), lease.count(), by_hand) {}
   std::uint32_t domain_number;
   dds::Domain domain;
   dds::Reader<msg::Authority> authority;
   dds::Reader<msg::RequestAnswer> answer;
+  dds::Reader<msg::StopState> stops;
+  dds::Writer<msg::EmergencyStop> stop;
   dds::RequestWriter request;
   std::optional<GoalReader> goals;
 };
@@ -45,7 +49,9 @@ struct RequestClient::Endpoints {
 RequestClient::RequestClient(std::uint32_t domain, RequestClientOptions options)
     : options_(std::move(options)),
       endpoints_(std::make_unique<Endpoints>(domain, options_.lease, options_.lease_by_hand)),
-      sequence_(first_sequence_number()) {}
+      sequence_(first_sequence_number()) {
+  if (!options_.key) options_.key = run_key(domain);
+}
 
 RequestClient::~RequestClient() = default;
 
@@ -61,10 +67,20 @@ bool RequestClient::connect(std::chrono::milliseconds bound) {
   return true;
 }
 
+bool RequestClient::connect_to_stop(std::chrono::milliseconds bound) {
+  const auto end = WaitClock::now() + bound;
+  while (!connected() && endpoints_->stop.readers() == 0) {
+    if (WaitClock::now() > end || interrupted()) return false;
+    std::this_thread::sleep_for(kPoll);
+    poll();
+  }
+  return true;
+}
+
 void RequestClient::connect_or_throw(std::chrono::milliseconds bound) {
   if (connect(bound)) return;
   if (interrupted()) throw CommandError("interrupted before a request was sent", CommandError::Cause::kInterrupted);
-  const char* missing = connected() ? "no message on topic \"authority\"" : "no subscriber on topic \"request\"";
+  const char* missing = connected() ? "no message on topic \"authority\"" : "no subscriber on topic \"request/v2\"";
   throw CommandError(
       fmt::format("run {}: {} (is `input` running? see `constrictor status --run {}`)", domain(), missing, domain()),
       CommandError::Cause::kNoAnswer);
@@ -76,9 +92,14 @@ std::uint64_t RequestClient::ask(msg::Request request) {
   request.level = options_.level;
   request.detached = options_.detached;
   request.header.sequence_number = ++sequence_;
+  request.header.run_id = options_.key->run_id;
+  set_text(request.token, options_.key->token);
   if (request.kind == msg::kRequestEmergencyStop) {
     take_authority();  // messages that arrived before this request cannot confirm it
     authority_.stop_asked();
+    take_stop_states();
+    plant_stop_.stop_asked(options_.source);
+    send_to_plant(request);
   }
   unanswered_.asked(request, WaitClock::now());
   endpoints_->request.write(request);
@@ -188,6 +209,22 @@ void RequestClient::take_authority() {
   endpoints_->authority.take([this](const msg::Authority& authority) { authority_.take(authority); });
 }
 
+void RequestClient::take_stop_states() {
+  endpoints_->stops.take([this](const msg::StopState& state) { plant_stop_.take(state); });
+}
+
+void RequestClient::send_to_plant(const msg::Request& stop) const {
+  msg::EmergencyStop message{};
+  message.robot_id = stop.robot_id;
+  set_text(message.source, text_of(stop.source));
+  message.sequence_number = stop.header.sequence_number;
+  endpoints_->stop.write(message);
+}
+
+bool RequestClient::plant_has_received_stop() const {
+  return endpoints_->stop.readers() > 0 && dds_wait_for_acks(endpoints_->stop.get(), DDS_SECS(1)) == DDS_RETCODE_OK;
+}
+
 void RequestClient::poll() {
   endpoints_->answer.take([this](const msg::RequestAnswer& answer) {
     if (options_.source != answer.source) return;
@@ -198,15 +235,19 @@ void RequestClient::poll() {
     unanswered_.answered(answer.request_sequence);
   });
   take_authority();
-  if (const std::uint64_t stop = unanswered_.stop(); stop != 0 && authority_.stop_latched()) {
+  take_stop_states();
+  const std::uint64_t stop = unanswered_.stop();
+  if (stop != 0 && (authority_.stop_latched() || plant_stop_.stop_latched())) {
     msg::RequestAnswer answer{};
     answer.granted = true;  // even if another source requested the stop
     answers_.try_emplace(stop, answer);
     unanswered_.answered(stop);
   }
   if (endpoints_->goals) endpoints_->goals->poll();
-  unanswered_.repeat(WaitClock::now(), kRepeat,
-                     [this](const msg::Request& request) { endpoints_->request.write(request); });
+  unanswered_.repeat(WaitClock::now(), kRepeat, [this](const msg::Request& request) {
+    if (request.kind == msg::kRequestEmergencyStop) send_to_plant(request);
+    endpoints_->request.write(request);
+  });
   assert_alive();
 }
 

@@ -12,7 +12,9 @@
 #include "client/authority_tracker.hpp"
 #include "client/command_error.hpp"
 #include "client/goal_tracker.hpp"
+#include "client/run_registry.hpp"
 #include "client/source.hpp"
+#include "client/stop_tracker.hpp"
 #include "client/unanswered_requests.hpp"
 #include "constrictor/messages.hpp"
 
@@ -31,6 +33,8 @@ struct RequestClientOptions {
   bool lease_by_hand = false;
   /// Authority and goals outlive the process until a source releases authority: for scripts of several short commands.
   bool detached = false;
+  /// Run id and token that each request carries. Empty: those that run_key() finds.
+  std::optional<RunKey> key;
   /// Called while a function waits; if it returns true the wait ends with Answer::kInterrupted. Empty: never.
   std::function<bool()> interrupted;
 };
@@ -48,12 +52,15 @@ class RequestClient {
   bool connect(std::chrono::milliseconds bound);
   /// The same, but throws CommandError (kNoAnswer, kInterrupted) instead of returning false.
   void connect_or_throw(std::chrono::milliseconds bound = std::chrono::seconds(10));
+  /// Waits until an emergency stop can be sent: until the plant or `input` reads stops. Neither needs to answer.
+  bool connect_to_stop(std::chrono::milliseconds bound);
   /// True while `input` reads requests.
   [[nodiscard]] bool connected() const;
 
   /// Sends a request; fills in source, level, robot id, number and `detached`. Returns the request's number.
   std::uint64_t ask(msg::Request request);
-  /// Sends a request of a kind that needs no other field: take, release, emergency stop, clear stop.
+  /// Sends a request of a kind that needs no other field: take, release, emergency stop, clear stop. An emergency stop
+  /// is also sent to the plant itself, which obeys it when `input` hangs.
   std::uint64_t ask(std::uint8_t kind);
   /// Sends a motion (kMotion...): frequency of the undulation [Hz], its curvature [1/m], angle [rad].
   std::uint64_t move(std::uint8_t motion, double frequency_hz = 0.0, double curvature_1_m = 0.0,
@@ -84,8 +91,8 @@ class RequestClient {
 
   enum class Answer { kGranted, kRefused, kNone, kInterrupted };
   /// Waits for the answer to a request; kNone if there is none within `bound`. An emergency stop also counts as granted
-  /// when an Authority message of a later tick than the request reports a latched stop, even if another source
-  /// requested it.
+  /// when the plant has latched it, or when an Authority message of a later tick than the request reports a latched
+  /// stop, even if another source requested it.
   Answer wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound);
   /// The reason of the last refusal: that of the last wait_for_answer() that returned kRefused.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
@@ -99,16 +106,22 @@ class RequestClient {
   [[nodiscard]] std::int32_t participant() const;
   /// Waits until the requests have arrived at `input`, at most for 1 s.
   void flush() const;
+  /// Waits, at most for 1 s, until the plant's process has received the emergency stop. False if it has not, or if no
+  /// plant reads stops.
+  [[nodiscard]] bool plant_has_received_stop() const;
 
  private:
   struct Endpoints;
   void take_authority();
+  void take_stop_states();
+  void send_to_plant(const msg::Request& stop) const;
   [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
   RequestClientOptions options_;
   std::unique_ptr<Endpoints> endpoints_;
   std::uint64_t sequence_;
   AuthorityTracker authority_;
+  StopTracker plant_stop_;
   UnansweredRequests unanswered_;
   std::map<std::uint64_t, msg::RequestAnswer> answers_;  ///< the newest, by number of the request
   std::string refusal_;

@@ -1,4 +1,4 @@
-// The writer of the topic `request`.
+// The writer of the topic `request/v2`.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class RequestWriter {
   RequestWriter(dds_entity_t participant, std::int64_t lease_ns, bool by_hand = true);
   void write(const msg::Request& request) const { check(dds_write(writer_.get(), &request), "dds_write"); }
   void assert_alive() const { check(dds_assert_liveliness(writer_.get()), "dds_assert_liveliness"); }
-  /// True if the writer has discovered a reader of `request`: `input`.
+  /// True if the writer has discovered a reader of `request/v2`: `input`.
   [[nodiscard]] bool heard() const;
   /// Waits until the readers have acknowledged everything that was written, at most `bound_ns`.
   void flush(std::int64_t bound_ns) const { dds_wait_for_acks(writer_.get(), bound_ns); }

@@ -45,7 +45,8 @@ RunControlClient::RunControlClient(std::unique_ptr<Endpoints> endpoints, std::ui
       bound_(bound),
       interrupted_(std::move(interrupted)),
       source_(unique_source("control")),
-      sequence_(first_sequence_number()) {}
+      sequence_(first_sequence_number()),
+      key_(run_key(domain)) {}
 
 RunControlClient::RunControlClient(std::uint32_t domain, std::chrono::seconds bound, std::function<bool()> interrupted)
     : RunControlClient(std::make_unique<Endpoints>(domain), domain, bound, std::move(interrupted)) {}
@@ -60,6 +61,8 @@ RunControlClient::~RunControlClient() = default;
 msg::RunState RunControlClient::send(msg::RunControl command) {
   dds::set_text(command.source, source_);
   command.sequence_number = ++sequence_;
+  command.run_id = key_.run_id;
+  dds::set_text(command.token, key_.token);
   const auto end = WaitClock::now() + bound_;
   auto repeat_at = WaitClock::now();
   for (std::optional<msg::RunControlAnswer> answer; WaitClock::now() < end; std::this_thread::sleep_for(kPoll)) {

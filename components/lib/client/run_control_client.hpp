@@ -8,18 +8,19 @@
 #include <string>
 
 #include "client/command_error.hpp"
+#include "client/run_registry.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor {
 
-/// Sends commands on `run_control` and waits for the answers of the conductor. A command is repeated until it is
+/// Sends commands on `run_control/v2` and waits for the answers of the conductor. A command is repeated until it is
 /// answered, because an answer may be written before its reader has been discovered; the conductor obeys it once.
 /// All functions throw CommandError: kRefused with the conductor's reason, kNoAnswer, kInterrupted. Not thread-safe.
 class RunControlClient {
  public:
-  /// Joins the DDS domain of a run (find_domain()). A process joins each domain once. `bound` is how long a command
-  /// waits for its answer, and a step for the next tick. `interrupted` is called while a function waits; the wait ends
-  /// when it returns true.
+  /// Joins the DDS domain of a run (find_domain()), with the key that run_key() finds. A process joins each domain
+  /// once. `bound` is how long a command waits for its answer, and a step for the next tick. `interrupted` is called
+  /// while a function waits; the wait ends when it returns true.
   explicit RunControlClient(std::uint32_t domain, std::chrono::seconds bound = std::chrono::seconds(10),
                             std::function<bool()> interrupted = {});
   /// The same on a participant that this process already has. The participant must outlive this object.
@@ -39,7 +40,7 @@ class RunControlClient {
   msg::RunState reset(std::uint64_t seed);
   /// Ends the run: every member finishes its current tick, and the report is complete.
   msg::RunState end();
-  /// Sends a command; fills in source and number.
+  /// Sends a command; fills in source, number, run id and token.
   msg::RunState send(msg::RunControl command);
 
  private:
@@ -55,6 +56,7 @@ class RunControlClient {
   std::function<bool()> interrupted_;
   std::string source_;
   std::uint64_t sequence_;
+  RunKey key_;
 };
 
 }  // namespace constrictor

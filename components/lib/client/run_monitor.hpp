@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/run_attachment.hpp"
+#include "client/run_registry.hpp"
 #include "constrictor/messages.hpp"
 #include "cyclone/endpoint.hpp"
 
@@ -16,9 +17,10 @@ namespace constrictor {
 /// messages of other runs in the same domain are ignored.
 class RunMonitor {
  public:
-  /// `participant`, in DDS domain `domain`, must outlive this object. `plant`: the run's plant (RunNote.plant).
-  RunMonitor(std::uint32_t domain, std::int32_t participant, std::string plant);
-  /// Takes everything that has arrived, and looks whether the launcher still holds its claim of the domain.
+  /// `participant`, in the DDS domain of `run`, must outlive this object.
+  RunMonitor(const RunNote& run, std::int32_t participant);
+  /// Takes everything that has arrived. Looks whether the launcher still holds its claim of the domain, if it is on
+  /// this host.
   void poll();
   /// Whether the run goes on, and what may be sent to it.
   [[nodiscard]] const RunAttachment& attachment() const { return attachment_; }
@@ -31,8 +33,7 @@ class RunMonitor {
   }
 
  private:
-  std::uint32_t domain_;
-  std::string plant_;
+  RunNote run_;
   dds::Reader<msg::RunState> states_;
   dds::Reader<msg::ComponentStatus> statuses_;
   dds::Reader<msg::Authority> input_;  ///< only to see whether `input` has its writer

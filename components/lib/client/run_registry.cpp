@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "constrictor/json.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/run_token.hpp"
 
 namespace constrictor {
 namespace {
@@ -29,12 +31,20 @@ std::optional<RunNote> read_note(std::uint32_t domain) {
   note.roster = json.value("roster", std::vector<std::string>{});
   note.plant = json.value("plant", "physics");
   note.report_dir = json.value("report_dir", "");
+  note.run_id = json.value("run_id", std::uint64_t{0});
+  note.token = json.value("token", "");
   return note;
 }
 
 }  // namespace
 
-PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file(note.domain)) { write(); }
+PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file(note.domain)) {
+  if (!note.token.empty()) {
+    token_file_ = run_directory() / fmt::format("run-{}.token", note.domain);
+    write_token_file(token_file_, note.token);
+  }
+  write();
+}
 
 void PublishedNote::set_seed(std::uint64_t seed) {
   if (seed == note_.seed) return;
@@ -43,21 +53,24 @@ void PublishedNote::set_seed(std::uint64_t seed) {
 }
 
 void PublishedNote::write() const {
-  const nlohmann::json json = {{"pid", note_.pid},
-                               {"domain", note_.domain},
-                               {"scenario", note_.scenario},
-                               {"seed", note_.seed},
-                               {"roster", note_.roster},
-                               {"plant", note_.plant},
-                               {"report_dir", note_.report_dir.string()}};
+  const nlohmann::json json = {
+      {"pid", note_.pid},       {"domain", note_.domain}, {"scenario", note_.scenario},
+      {"seed", note_.seed},     {"roster", note_.roster}, {"plant", note_.plant},
+      {"run_id", note_.run_id}, {"token", note_.token},   {"report_dir", note_.report_dir.string()}};
   const fs::path unfinished = file_.string() + ".new";
-  std::ofstream(unfinished) << json_text(json, 1) << "\n";
+  {
+    std::ofstream stream(unfinished);
+    // Before the token is in it: only this user may read the note.
+    fs::permissions(unfinished, fs::perms::owner_read | fs::perms::owner_write);
+    stream << json_text(json, 1) << "\n";
+  }
   fs::rename(unfinished, file_);
 }
 
 PublishedNote::~PublishedNote() {
   std::error_code ignored;
   fs::remove(file_, ignored);
+  if (!token_file_.empty()) fs::remove(token_file_, ignored);
 }
 
 std::vector<RunNote> live_runs() {
@@ -87,6 +100,14 @@ RunNote find_run(std::optional<std::uint32_t> domain) {
   if (runs.empty()) fail("no run on this host; start one with `constrictor run`");
   if (runs.size() > 1) fail("several runs on this host; choose one:" + list);
   return runs.front();
+}
+
+RunKey run_key(std::uint32_t domain) {
+  if (domain_claimed(domain)) {
+    if (const auto note = read_note(domain)) return {note->run_id, note->token};
+  }
+  const char* file = std::getenv("CONSTRICTOR_TOKEN_FILE");
+  return {0, file && *file ? read_token_file(file) : std::string()};
 }
 
 std::uint32_t find_domain(std::optional<std::uint32_t> domain) { return domain ? *domain : find_run({}).domain; }

@@ -71,6 +71,12 @@ void ClientRequests::add_refused(const msg::Request& request, const std::string&
   refuse({request.source, false, request, {}, {}, 1}, reason);
 }
 
+void ClientRequests::add_stranger(const msg::Request& request, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (++strangers_ > kMostStrangers) ++dropped_;
+  else refuse({request.source, false, request, {}, {}, 1}, reason);
+}
+
 void ClientRequests::drop(ClientEvent item) {
   ++dropped_;
   refuse(std::move(item),
@@ -106,6 +112,7 @@ std::vector<ClientEvent> ClientRequests::latch(const std::vector<LivingSource>& 
     const std::lock_guard lock(mutex_);
     items.swap(items_);
     refused.swap(refused_);
+    strangers_ = 0;
     lives = lives_;
   }
   for (const auto& [source, writer] : living) {

@@ -45,9 +45,14 @@ class ClientRequests {
   static constexpr std::size_t kMostRefusals =
       20;  ///< refusals between two ticks that are answered one by one; more are only counted
 
+  static constexpr std::size_t kMostStrangers = 4;
+
   void add(const msg::Request& request, const WriterId& writer = {});
   /// Adds an invalid request, which `input` must refuse.
   void add_refused(const msg::Request& request, const std::string& reason);
+  /// Adds a request of a process that may not command the run. `input` refuses at most kMostStrangers of them between
+  /// two ticks, so that strangers cannot use up the answers to refused requests of others.
+  void add_stranger(const msg::Request& request, const std::string& reason);
   void add_death(const std::string& source);
   /// latch() calls `lives(writer)`, which returns whether the writer is alive or may still be discovered. Without it,
   /// all writers count as alive.
@@ -65,6 +70,7 @@ class ClientRequests {
   mutable std::mutex mutex_;
   std::vector<ClientEvent> items_;  ///< in the order of their arrival
   std::vector<ClientEvent> refused_;
+  std::size_t strangers_ = 0;  ///< since the last latch()
   std::uint64_t dropped_ = 0;
   std::function<bool(const WriterId&)> lives_;
 };

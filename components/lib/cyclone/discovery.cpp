@@ -12,6 +12,8 @@
 #include <cstring>
 #include <limits>
 
+#include "constrictor/text.hpp"
+
 namespace constrictor::dds {
 namespace {
 
@@ -22,7 +24,7 @@ Guid guid_of(const dds_guid_t& key) {
 }
 
 std::string take_text(void* text, std::size_t size) {
-  std::string copy(static_cast<const char*>(text), text ? size : 0);
+  std::string copy = printable({static_cast<const char*>(text), text ? size : 0});
   dds_free(text);
   return copy;
 }
@@ -84,8 +86,8 @@ Endpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, bool writer) {
   // RTPS: the last byte of the entity id is the kind of the endpoint; x2 and x7 are the kinds with a key.
   const int kind = endpoint.guid[15] & 0x0f;
   endpoint.keyed = kind == 2 || kind == 7;
-  endpoint.topic = sample.topic_name;
-  endpoint.type = sample.type_name;
+  endpoint.topic = printable(sample.topic_name);
+  endpoint.type = printable(sample.type_name);
   endpoint.qos = qos_of(sample.qos);
   void* data = nullptr;
   std::size_t size = 0;

@@ -1,8 +1,12 @@
 #include "cyclone/domain.hpp"
 
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <mutex>
 #include <string>
 
+#include "constrictor/text.hpp"
 #include "cyclone/domain_claim.hpp"
 
 namespace constrictor::dds {
@@ -23,9 +27,51 @@ std::string configuration_of(std::uint32_t domain) {
   return published.empty() ? std::string(kLoopback) + kInternalSettings + "</Domain></CycloneDDS>" : published;
 }
 
+/// Writes the lines that Cyclone DDS logs, at most kMostLines in each kInterval: packets from strangers can cause a
+/// line each. The number of lines that were left out is written with the next line.
+class LimitedLog {
+ public:
+  static void write(void* log, const dds_log_data_t* line) {
+    static_cast<LimitedLog*>(log)->write(std::string(line->message, line->size));
+  }
+
+ private:
+  static constexpr std::uint64_t kMostLines = 10;
+  static constexpr std::chrono::seconds kInterval{10};
+
+  void write(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - since_ > kInterval) {
+      since_ = now;
+      lines_ = 0;
+    }
+    if (++lines_ > kMostLines) {
+      ++left_out_;
+      return;
+    }
+    if (left_out_ > 0)
+      std::fprintf(stderr, "Cyclone DDS: %llu more lines\n", static_cast<unsigned long long>(left_out_));
+    left_out_ = 0;
+    std::string line = printable(text.substr(0, text.find_last_not_of('\n') + 1));
+    std::fprintf(stderr, "Cyclone DDS: %s\n", line.c_str());
+  }
+
+  std::mutex mutex_;
+  std::chrono::steady_clock::time_point since_{};
+  std::uint64_t lines_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+void limit_log_of_dds() {
+  static LimitedLog* const log = new LimitedLog;  // DDS may write until the process ends
+  dds_set_log_sink(&LimitedLog::write, log);
+}
+
 }  // namespace
 
 Domain::Domain(std::uint32_t domain, Reach reach) {
+  limit_log_of_dds();
   if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI"))
     domain_ = Entity(dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain");
   participant_ = Entity(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant");

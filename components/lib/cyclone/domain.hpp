@@ -10,17 +10,22 @@ namespace constrictor::dds {
 
 /// The networks on which a participant can be discovered if $CYCLONEDDS_URI is not set.
 enum class Reach {
-  kLoopback,  ///< the loopback interface, without multicast, up to 120 participants on this host; and the other hosts
-              ///< of a run on several hosts, see published_dds_configuration()
-  kNetwork,   ///< Cyclone DDS's default, which processes of ROS 2 use
+  /// The loopback interface, without multicast, up to 120 participants on this host; and the other hosts of a run on
+  /// several hosts, see published_dds_configuration(). With the loopback interface alone nothing is sent to other
+  /// hosts,
+  /// but the sockets of Cyclone DDS 0.10 receive on every interface.
+  kLoopback,
+  kNetwork,  ///< Cyclone DDS's default, which processes of ROS 2 use
 };
 
 /// The element `Internal` of every configuration that this project makes, as XML. The high-water mark prevents that a
-/// writer of images waits for a reader whose process is stopped; keep-last bounds the histories. The times let a lost
+/// writer of images waits for a reader whose process is stopped; keep-last bounds the histories. Larger samples than
+/// the largest image are dropped, so that a stranger cannot fill the memory with a few of them. The times let a lost
 /// message be sent again within milliseconds. Cyclone's defaults (heartbeats every 100 ms, 100 ms until a lost message
 /// is requested) let a barrier over a link that loses 1 % of its packets make 5 times fewer ticks.
 inline constexpr const char* kInternalSettings =
-    "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks><NackDelay>5ms</NackDelay>"
+    "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks><MaxSampleSize>64MB</MaxSampleSize>"
+    "<NackDelay>5ms</NackDelay>"
     "<AutoReschedNackDelay>100ms</AutoReschedNackDelay>"
     "<HeartbeatInterval min=\"2ms\" minsched=\"5ms\" max=\"500ms\">10ms</HeartbeatInterval></Internal>";
 

@@ -80,7 +80,8 @@ std::filesystem::path run_directory() {
   const std::filesystem::path directory = runtime && *runtime
                                               ? std::filesystem::path(runtime) / "constrictor"
                                               : std::filesystem::path("/tmp/constrictor-" + std::to_string(::getuid()));
-  std::filesystem::create_directories(directory);
+  if (std::filesystem::create_directories(directory))
+    std::filesystem::permissions(directory, std::filesystem::perms::owner_all);  // the notes contain tokens
   return directory;
 }
 

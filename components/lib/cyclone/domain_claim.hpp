@@ -11,7 +11,7 @@
 namespace constrictor {
 
 /// Folder of the locks and notes of the runs on this host: $XDG_RUNTIME_DIR/constrictor, or /tmp/constrictor-UID. It is
-/// created if it does not exist.
+/// created, for this user only, if it does not exist.
 std::filesystem::path run_directory();
 
 /// True while a process with the same run_directory() claims the domain.

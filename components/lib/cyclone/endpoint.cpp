@@ -5,11 +5,13 @@ namespace {
 
 /// The topic entity is needed only to create the endpoint: DDS keeps it as long as it is in use.
 dds_entity_t create_endpoint(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& topic,
-                             const dds_qos_t* qos, bool writer) {
+                             const dds_qos_t* qos, bool writer, const ReaderGuard& guard = {}) {
   // No topic QoS, so that two endpoints of one topic in a participant may have different QoS.
   const Entity entity(dds_create_topic(participant, &type, topic.c_str(), nullptr, nullptr), "dds_create_topic");
+  if (guard.passes)
+    check(dds_set_topic_filter_and_arg(entity.get(), guard.passes, guard.argument), "dds_set_topic_filter_and_arg");
   return check(writer ? dds_create_writer(participant, entity.get(), qos, nullptr)
-                      : dds_create_reader(participant, entity.get(), qos, nullptr),
+                      : dds_create_reader(participant, entity.get(), qos, guard.listener),
                writer ? "dds_create_writer" : "dds_create_reader");
 }
 
@@ -33,12 +35,21 @@ dds_entity_t create_writer(dds_entity_t participant, const dds_topic_descriptor_
 }
 
 dds_entity_t create_member_reader(dds_entity_t participant, const dds_topic_descriptor_t& type,
-                                  const std::string& topic, const std::string& user_data) {
+                                  const std::string& topic, const std::string& user_data, const ReaderGuard& guard) {
   const Qos qos = make_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
   set_user_data(qos.get(), user_data);
+  return create_endpoint(participant, type, topic, qos.get(), false, guard);
+}
+
+dds_entity_t create_command_reader(dds_entity_t participant, const dds_topic_descriptor_t& type,
+                                   const std::string& topic, int depth) {
+  const Qos qos = make_qos();
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   return create_endpoint(participant, type, topic, qos.get(), false);
 }
 
@@ -52,10 +63,13 @@ dds_entity_t create_observer_reader(dds_entity_t participant, const dds_topic_de
 }
 
 std::vector<std::string> matched_user_data(dds_entity_t endpoint, bool is_writer) {
+  const auto get = is_writer ? dds_get_matched_subscriptions : dds_get_matched_publications;
   std::vector<dds_instance_handle_t> handles(256);
-  const int count = is_writer ? dds_get_matched_subscriptions(endpoint, handles.data(), handles.size())
-                              : dds_get_matched_publications(endpoint, handles.data(), handles.size());
-  check(count, "dds_get_matched");
+  int count = check(get(endpoint, handles.data(), handles.size()), "dds_get_matched");
+  if (static_cast<std::size_t>(count) > handles.size()) {  // strangers may have any number of endpoints
+    handles.resize(static_cast<std::size_t>(count));
+    count = check(get(endpoint, handles.data(), handles.size()), "dds_get_matched");
+  }
   std::vector<std::string> found;
   for (std::size_t i = 0; i < std::min<std::size_t>(static_cast<std::size_t>(count), handles.size()); ++i) {
     dds_builtintopic_endpoint_t* data = is_writer ? dds_get_matched_subscription_data(endpoint, handles[i])

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "constrictor/text.hpp"
 #include "cyclone/type_node.hpp"
 #include "cyclone/type_tree.hpp"
 
@@ -131,7 +132,7 @@ class Decoder {
     if (length == 0) return "";  // some vendors omit the terminating zero of an empty string
     std::string text(reinterpret_cast<const char*>(bytes_.data() + at_), length - 1);
     at_ += length;
-    return text;
+    return printable(std::move(text));
   }
   Json elements(const TypeNode& type, std::uint32_t count) {
     if (count > bytes_.size()) damaged("a sequence longer than its sample");

@@ -4,6 +4,8 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "constrictor/text.hpp"
+
 namespace constrictor {
 
 Log::Log(const std::string& name)
@@ -13,13 +15,15 @@ Log::Log(const std::string& name)
 }
 
 void Log::write(Level level, const std::string& text) const {
+  // Lines contain texts of messages from the network.
+  const std::string clean = printable(text, "\n\t");
   switch (level) {
     case Level::kInfo:
-      return logger_->info("{}", text);
+      return logger_->info("{}", clean);
     case Level::kWarning:
-      return logger_->warn("{}", text);
+      return logger_->warn("{}", clean);
     case Level::kError:
-      return logger_->error("{}", text);
+      return logger_->error("{}", clean);
   }
 }
 

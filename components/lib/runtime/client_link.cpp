@@ -4,9 +4,12 @@
 #include <utility>
 
 #include "constrictor/reflect.hpp"
+#include "cyclone/run_token.hpp"
 
 namespace constrictor::dds {
 namespace {
+
+constexpr int kMostStrange = 4096;
 
 void on_liveliness(dds_entity_t, const dds_liveliness_changed_status_t status, void* tracker) {
   if (status.alive_count_change == 0) return;  // DDS deleted a writer that was already dead
@@ -63,8 +66,19 @@ bool WriterTracker::lives(dds_entity_t reader, const WriterId& writer) {
   return known != alive_.end() ? known->second : looking;
 }
 
-ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::chrono::milliseconds grace)
-    : robot_id_(robot_id), tracker_(std::make_unique<WriterTracker>(grace)) {
+bool ClientLink::Gate::passes(const msg::Request& request) {
+  if (token.empty() || same_token(request.token, token)) return true;
+  // A stop also reaches the plant, on a topic where a source costs no memory.
+  return (request.kind == msg::kRequestEmergencyStop ? strange_stops++ : strange_requests++) < kMostStrange;
+}
+
+ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, Admit admit, std::chrono::milliseconds grace,
+                       std::string token)
+    : robot_id_(robot_id),
+      admit_(std::move(admit)),
+      gate_(std::make_unique<Gate>()),
+      tracker_(std::make_unique<WriterTracker>(grace)) {
+  gate_->token = std::move(token);
   const Qos qos = make_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
@@ -73,6 +87,10 @@ ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::ch
   dds_qset_reader_data_lifecycle(qos.get(), DDS_SECS(1), DDS_SECS(1));
   const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr),
                      "dds_create_topic");
+  const auto passes = [](const void* request, void* gate) {
+    return static_cast<Gate*>(gate)->passes(*static_cast<const msg::Request*>(request));
+  };
+  check(dds_set_topic_filter_and_arg(topic.get(), passes, gate_.get()), "dds_set_topic_filter_and_arg");
   // A listener receives every change; a status would keep only the last change. It is set before the reader exists, so
   // that it misses none.
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(tracker_.get()),
@@ -107,6 +125,7 @@ void ClientLink::take(ClientRequests& requests, const std::function<void(const s
       if (violation) refused(std::string(kRequestTopic) + "." + *violation);
       if (request.kind == msg::kRequestEmergencyStop) requests.add(bare_stop(request), writer);
       else if (violation) requests.add_refused(request, *violation);
+      else if (const std::string why = admit_ ? admit_(request) : ""; !why.empty()) requests.add_stranger(request, why);
       else requests.add(request, writer);
     }
     if (info.instance_state != DDS_IST_ALIVE) requests.add_death(request.source);

@@ -1,6 +1,7 @@
-// Reads the topic `request` into the latch of clients' requests, and tracks which clients are alive.
+// Reads the topic `request/v2` into the latch of clients' requests, and tracks which clients are alive.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -20,7 +21,7 @@ namespace constrictor::dds {
 /// Topic on which clients send requests.
 inline constexpr const char* kRequestTopic = barrier_topics::kRequest;
 
-/// Tracks which writers that the reader of `request` has met are alive. DDS reports the end of a source only if the
+/// Tracks which writers that the reader of `request/v2` has met are alive. DDS reports the end of a source only if the
 /// reader has taken a sample of it. A restarted process has none of the samples of its predecessor, so it must track
 /// the writers themselves.
 class WriterTracker {
@@ -49,12 +50,19 @@ class WriterTracker {
 /// as leases are; deaths are latched at a tick, as requests are.
 inline constexpr std::chrono::milliseconds kWriterGrace{3000};
 
-/// Reads `request`: reliable, keep-all, volatile, so that requests from before the start are not obeyed. It matches
+/// Reads `request/v2`: reliable, keep-all, volatile, so that requests from before the start are not obeyed. It matches
 /// writers of any liveliness and lease: DDS reports when the last writer of a source ends, is killed, or misses its
 /// lease.
 class ClientLink {
  public:
-  ClientLink(dds_entity_t participant, std::uint16_t robot_id, std::chrono::milliseconds grace = kWriterGrace);
+  /// Returns why a client may not send this request, in words for people; empty if it may. It is not asked about
+  /// emergency stops.
+  using Admit = std::function<std::string(const msg::Request&)>;
+
+  /// `token`: requests without it cost memory, one source each, only up to a limit in the life of this object; empty:
+  /// there is no such limit.
+  ClientLink(dds_entity_t participant, std::uint16_t robot_id, Admit admit = {},
+             std::chrono::milliseconds grace = kWriterGrace, std::string token = {});
   /// Lets `requests` ask this object which writers are alive. This object must outlive the last such call.
   void track_writers_for(ClientRequests& requests) const;
   /// Moves what has arrived to `requests`. Requests to another robot are ignored. `refused(reason)` is called for a
@@ -64,6 +72,14 @@ class ClientLink {
 
  private:
   std::uint16_t robot_id_;
+  Admit admit_;
+  struct Gate {
+    std::string token;
+    std::atomic<int> strange_requests{0};
+    std::atomic<int> strange_stops{0};
+    [[nodiscard]] bool passes(const msg::Request& request);
+  };
+  std::unique_ptr<Gate> gate_;              // outlives the reader, which calls it in threads of DDS
   std::unique_ptr<WriterTracker> tracker_;  // outlives the reader, whose listener calls it
   Entity reader_;
 };

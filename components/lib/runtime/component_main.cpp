@@ -10,6 +10,7 @@
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "cyclone/entity.hpp"
+#include "cyclone/run_token.hpp"
 #include "log/log.hpp"
 #include "runtime/component_check.hpp"
 #include "runtime/host.hpp"
@@ -65,6 +66,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   HostOptions options;
   std::vector<std::string> config_files;
   std::vector<std::string> latencies;
+  std::string token_file;
   options.setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
 
@@ -93,6 +95,10 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       ->check(CLI::Range(1u, 1'000'000u));
   app.add_option("--run-id", options.run_id,
                  "number of the run that this process belongs to; 0: the first run that begins in the domain");
+  app.add_option("--token-file", token_file,
+                 "file with the run's token, readable by its owner only; without it any process in the domain may "
+                 "command the run")
+      ->envname("CONSTRICTOR_TOKEN_FILE");
   app.add_option("--pace", options.pace, "plant only: at most this many times real time; 0: as fast as possible")
       ->check(kPace);
   app.add_option("--operator-pace", options.operator_pace,
@@ -134,6 +140,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       }
     }
     for (const auto& text : latencies) options.latency_ticks.insert(parse_latency(text, options));
+    if (!token_file.empty()) options.token = read_token_file(token_file);
     options.setup.max_sim_time_s = options.max_sim_time_s;
     options.checkpoints = !no_checkpoints;
     if (check) {

@@ -14,6 +14,8 @@ namespace {
 
 namespace wire = dds::barrier_topics;
 
+constexpr int kMostStrangeControls = 4096;  // without the token, in the life of the process
+
 }  // namespace
 
 ConductorSide::ConductorSide(HostContext& context, Links& links, MemberSide& members)
@@ -67,14 +69,28 @@ void ConductorSide::make_endpoints() {
   resume_writer_ = {participant, wire::kResume};
   refused_writer_ = {participant, wire::kRefused};
   control_answer_writer_ = {participant, wire::kRunControlAnswer};
-  run_state_writer_ = {participant, wire::kRunState};
-  done_reader_ = dds::Reader<msg::TickDone>::member(participant, wire::kTickDone);
-  ready_reader_ = dds::Reader<msg::Ready>::member(participant, wire::kReady);
-  control_reader_ = dds::Reader<msg::RunControl>::member(participant, wire::kRunControl);
-  links_.attach(done_reader_, wire::kTickDone, [this](const msg::TickDone& m) { take_done(m); });
-  links_.attach(ready_reader_, wire::kReady, [this](const msg::Ready& m) { take_ready(m); });
-  status_reader_ = dds::Reader<msg::ComponentStatus>::member(participant, wire::kStatus);
-  links_.attach(status_reader_, wire::kStatus, [this](const msg::ComponentStatus& m) { take_status(m); });
+  // Programs that find a run by its messages learn the plant's name from this writer.
+  run_state_writer_ = {participant, wire::kRunState, context_.options.plant};
+  const dds::WriterBook& book = links_.admission().book();
+  const auto in_roster = [&roster = context_.options.roster](const auto& message) {
+    return std::find(roster.begin(), roster.end(), message.component) != roster.end();
+  };
+  done_reader_ = dds::Reader<msg::TickDone>::guarded(participant, wire::kTickDone, book, in_roster);
+  ready_reader_ = dds::Reader<msg::Ready>::guarded(participant, wire::kReady, book, in_roster);
+  // A source of its own costs memory as long as its process lives, so the sources without the token are limited.
+  control_reader_ = dds::Reader<msg::RunControl>::guarded(
+      participant, wire::kRunControl, book, [this](const msg::RunControl& message) {
+        const std::string& token = context_.options.token;
+        return token.empty() || same_token(message.token, token) || strange_controls_++ < kMostStrangeControls;
+      });
+  stop_reader_ = dds::Reader<msg::EmergencyStop>::command(participant, wire::kEmergencyStop);
+  links_.attach(stop_reader_.get(),
+                [this] { stop_reader_.take([this](const msg::EmergencyStop& m) { take_stop(m); }); });
+  const auto named = [](const auto& message) { return std::string(message.component); };
+  links_.attach(done_reader_, wire::kTickDone, named, [this](const msg::TickDone& m) { take_done(m); });
+  links_.attach(ready_reader_, wire::kReady, named, [this](const msg::Ready& m) { take_ready(m); });
+  status_reader_ = dds::Reader<msg::ComponentStatus>::guarded(participant, wire::kStatus, book, in_roster);
+  links_.attach(status_reader_, wire::kStatus, named, [this](const msg::ComponentStatus& m) { take_status(m); });
   // Commands are not validated here, because a command that violates its IDL must be answered, too.
   links_.attach(control_reader_.get(),
                 [this] { control_reader_.take([this](const msg::RunControl& m) { take_control(m); }); });
@@ -175,6 +191,7 @@ void ConductorSide::resume(const Resume& resume) {
 }
 
 void ConductorSide::refuse(const Hello& hello, const std::string& reason) {
+  if (!refusals_.allows(HostContext::Clock::now())) return;
   context_.log.warning("{} (pid {} on {}) refused: {}", hello.component, hello.pid, hello.host, reason);
   msg::Refused message{};
   dds::set_text(message.component, hello.component);

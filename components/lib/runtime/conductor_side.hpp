@@ -2,6 +2,7 @@
 // obeys `run_control`.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <set>
@@ -14,6 +15,7 @@
 #include "runtime/host_context.hpp"
 #include "runtime/links.hpp"
 #include "runtime/pacer.hpp"
+#include "runtime/rate_limit.hpp"
 #include "runtime/run_control_answers.hpp"
 #include "runtime/run_store.hpp"
 #include "runtime/wire.hpp"
@@ -40,6 +42,8 @@ class ConductorSide : private ConductorSink {
 
   // Reports of the members of this process.
   void on_hello(const Hello& hello) { conductor_->on_hello(hello); }
+  /// Answers a Hello that is rejected, within a limit for each second.
+  void refuse_hello(const Hello& hello, const std::string& reason) { refuse(hello, reason); }
   void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
   void on_done(const TickDone& step);
   /// To be called when the members of this process have sent Hello. The successor of a process that died lets them
@@ -83,6 +87,9 @@ class ConductorSide : private ConductorSink {
   void stay_longer();
   void take_status(const msg::ComponentStatus& status);
   void take_control(const msg::RunControl& control);
+  /// Answers a process that may not command the run, within a limit for each second.
+  void refuse_stranger(const msg::RunControl& control, const std::string& reason);
+  void take_stop(const msg::EmergencyStop& stop);
   /// Returns why the command is refused; empty if it was obeyed.
   [[nodiscard]] std::string obey(const msg::RunControl& control);
   [[nodiscard]] msg::RunState current_run_state() const;
@@ -101,12 +108,17 @@ class ConductorSide : private ConductorSink {
   RunControlAnswers control_answers_;
   std::set<std::string> ended_;  ///< members whose last status has arrived
   std::optional<HostContext::Clock::time_point> stays_until_;
+  /// Answers to processes that may not take part or command, so that a flood of their messages causes no other flood.
+  RateLimit strangers_;
+  std::atomic<int> strange_controls_{0};  ///< DDS counts them in its threads
+  RateLimit refusals_;
   msg::RunState run_state_{};  ///< tick and real-time factor of the last second
   HostContext::Clock::time_point last_run_state_{};
   dds::Reader<msg::TickDone> done_reader_;
   dds::Reader<msg::Ready> ready_reader_;
   dds::Reader<msg::RunControl> control_reader_;
   dds::Reader<msg::ComponentStatus> status_reader_;
+  dds::Reader<msg::EmergencyStop> stop_reader_;
   dds::Writer<msg::Tick> tick_writer_;
   dds::Writer<msg::EpochStart> epoch_writer_;
   dds::Writer<msg::Resume> resume_writer_;

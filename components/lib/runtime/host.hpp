@@ -29,10 +29,11 @@ struct HostOptions {
   std::string plant = "physics";    ///< the member that is the plant
   std::uint32_t incarnation = 1;    ///< incarnation of this process
   std::uint64_t run_id = 0;         ///< the launcher's number of the run; 0: the first run in the domain; plant: random
-  double pace = 0.0;                ///< plant only: at most this many times real time; 0: no limit
-  double operator_pace = 1.0;       ///< plant only: the same while an operator has authority; 0: no limit
-  bool realtime = false;            ///< plant only: ticks follow the wall clock and wait for no member
-  double max_sim_time_s = 0.0;      ///< plant only: ends the run at this simulated time; 0: never
+  std::string token;            ///< of the run, which clients and members must know; empty: nothing is asked of them
+  double pace = 0.0;            ///< plant only: at most this many times real time; 0: no limit
+  double operator_pace = 1.0;   ///< plant only: the same while an operator has authority; 0: no limit
+  bool realtime = false;        ///< plant only: ticks follow the wall clock and wait for no member
+  double max_sim_time_s = 0.0;  ///< plant only: ends the run at this simulated time; 0: never
   double patience_s = 60.0;  ///< [s] wall time that the process waits for another one before it gives up; 0: for ever
   bool hash_log = true;      ///< plant only: writes output_dir/hashes.bin, which `constrictor diff` compares
   bool record = false;       ///< plant only: the hash log also has the messages themselves, except images

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "cyclone/run_token.hpp"
 #include "log/log.hpp"
 #include "runtime/host.hpp"
 
@@ -29,6 +31,17 @@ class HostContext {
   const std::string host_name;
   const Log log;
   std::optional<int> exit_status;  ///< set as soon as the process has to end
+
+  /// Why a client with this token that names this run (0: any) may not command it; empty if it may. `run_id`: the run;
+  /// 0: it has not begun.
+  [[nodiscard]] std::string stranger(const char* token, std::uint64_t named_run_id, std::uint64_t run_id) const {
+    if (!options.token.empty() && !same_token(token, options.token)) {
+      return *token == '\0' ? "token: found none, accepted the run's token (see --token-file)"
+                            : "token: found another one than the run's (see --token-file)";
+    }
+    if (named_run_id != 0 && run_id != 0 && named_run_id != run_id) return "run_id: of another run";
+    return {};
+  }
 
   /// To be called when the run makes progress: the patience of this process starts again.
   void note_progress() {

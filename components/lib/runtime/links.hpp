@@ -9,6 +9,7 @@
 #include "constrictor/reflect.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
+#include "runtime/admission.hpp"
 
 namespace constrictor {
 
@@ -43,6 +44,30 @@ class Links {
     });
   }
 
+  /// The same for messages of members: `writer_of(message)` is the component that must have written it. Messages of
+  /// other processes are rejected, and those of a component that nobody has announced wait for its Hello.
+  template <class T, class WriterOf, class Use>
+  void attach(const dds::Reader<T>& reader, const char* topic, WriterOf writer_of, Use use) {
+    attach(reader.get(), [this, &reader, topic, writer_of = std::move(writer_of), use = std::move(use)] {
+      reader.take_from([&](const T& message, dds_instance_handle_t writer) {
+        if (const auto violation = validate(message)) return reject_(topic, *violation);
+        const std::string component = writer_of(message);
+        switch (admission_.judge(component, writer)) {
+          case Admission::Verdict::kAccepted:
+            return use(message);
+          case Admission::Verdict::kStranger:
+            return reject_(topic, kNotAnnounced);
+          case Admission::Verdict::kUnknown:
+            break;
+        }
+        const auto kept = [copy = share_copy(message), use] { use(*copy); };
+        if (!admission_.keep(component, writer, sizeof(T), kept)) reject_(topic, kNotAnnounced);
+      });
+    });
+  }
+  static constexpr const char* kNotAnnounced = "writer: found a process that has not announced itself as this member";
+  [[nodiscard]] Admission& admission() { return admission_; }
+
   /// Ends the present or else the next wait(). Any thread may call it.
   void wake();
   /// Takes everything that has arrived.
@@ -54,6 +79,7 @@ class Links {
  private:
   void attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes);
 
+  Admission admission_;  // first, because the readers of this process note their writers in it
   dds::Domain domain_;
   dds::Entity wait_set_;         // of all readers
   dds::Entity always_wait_set_;  // of the readers with Wakes::kAlways

@@ -35,8 +35,10 @@ bool names(const std::vector<std::string>& identities, std::string_view componen
 
 }  // namespace
 
-MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity)
+MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
+                     const WriterBook* book)
     : participant_(participant) {
+  const ReaderGuard guard{book ? book->listener() : nullptr};
   for (const auto& topic : topics::kInfos) {
     const std::string name(topic.name);
     if (writes.contains(topic.id)) {
@@ -44,8 +46,8 @@ MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, 
                                   "dds_create_writer");
     }
     if (reads.contains(topic.id)) {
-      readers_[topic.id] =
-          Entity(create_member_reader(participant, descriptor_of_id(topic.id), name, identity), "dds_create_reader");
+      readers_[topic.id] = Entity(create_member_reader(participant, descriptor_of_id(topic.id), name, identity, guard),
+                                  "dds_create_reader");
     }
   }
 }
@@ -62,14 +64,17 @@ std::vector<std::pair<std::size_t, dds_entity_t>> MemberBus::readers() const {
   return list;
 }
 
-void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample&)>& use) const {
+void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample&, dds_instance_handle_t)>& use) const {
   const auto& ops = topic_ops(topic_id);
-  take_all(readers_[topic_id].get(), [&](const void* message) { use(ops.copy(message)); });
+  take_all_from(readers_[topic_id].get(),
+                [&](const void* message, dds_instance_handle_t writer) { use(ops.copy(message), writer); });
 }
 
-Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of) const {
+Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of,
+                               TopicSet unwritten) const {
   for (const auto& topic : topics::kInfos) {
-    if (readers_[topic.id] && !names(matched_user_data(readers_[topic.id].get(), false), topic.writer)) {
+    if (readers_[topic.id] && !unwritten.contains(topic.id) &&
+        !names(matched_user_data(readers_[topic.id].get(), false), topic.writer)) {
       return {&topic, true, std::string(topic.writer)};
     }
     const auto readers = readers_of.find(topic.id);

@@ -26,17 +26,21 @@ struct Unmatched {
 class MemberBus {
  public:
   /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws Error.
-  MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity);
+  /// `book`: notes the writers that the readers meet, and must outlive them; null: none.
+  MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
+            const WriterBook* book = nullptr);
 
   void write(const TopicInfo& topic, const Sample& sample) const;
   /// Readers with their topic ids, for a wait set.
   [[nodiscard]] std::vector<std::pair<std::size_t, dds_entity_t>> readers() const;
-  /// Takes all samples that have arrived on one topic.
-  void take(std::size_t topic_id, const std::function<void(const Sample&)>& use) const;
+  /// Takes all samples that have arrived on one topic: `use(sample, publication handle of its writer)`.
+  void take(std::size_t topic_id, const std::function<void(const Sample&, dds_instance_handle_t)>& use) const;
 
   /// First endpoint of this process whose counterpart is missing; empty if all have met. `readers_of[topic]`: members
   /// in other processes that read the topic.
-  [[nodiscard]] Unmatched unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of) const;
+  /// `unwritten`: topics that the Hello of their component does not announce; their readers have no counterpart.
+  [[nodiscard]] Unmatched unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of,
+                                    TopicSet unwritten = {}) const;
   /// Text for people: both endpoints with their QoS, or that the counterpart is not there.
   [[nodiscard]] std::string explain(const Unmatched& missing) const;
 

@@ -12,6 +12,21 @@ namespace {
 
 namespace wire = dds::barrier_topics;
 
+/// The name in Admission of every plant, also of one whose hashes differ: only a plant may refuse a process.
+constexpr const char* kRefuser = "(plants)";
+constexpr int kMostStrangeHellos = 16;  // of components outside the roster, in the life of the process
+
+/// [byte] about what a sample holds in memory.
+std::size_t size_of(const TopicInfo& topic, const Sample& sample) {
+  const bool image = topic.type == Description<msg::CameraImage>::kName;
+  return topic_ops(topic.id).max_size +
+         (image ? static_cast<const msg::CameraImage*>(sample.message.get())->data._length : 0);
+}
+
+bool is_in(const std::vector<std::string>& roster, const char* component) {
+  return std::find(roster.begin(), roster.end(), component) != roster.end();
+}
+
 }  // namespace
 
 void MemberSide::make_endpoints() {
@@ -28,40 +43,61 @@ void MemberSide::make_endpoints() {
     const bool in_roster = std::count(roster.begin(), roster.end(), writer) > 0;
     if (hosts(writer) || !in_roster) reads.erase(topic.id);
   }
-  bus_ = std::make_unique<dds::MemberBus>(participant, reads, writes, context_.identity);
+  bus_ = std::make_unique<dds::MemberBus>(participant, reads, writes, context_.identity, &links_.admission().book());
   hello_writer_ = {participant, wire::kHello};
   waiting_writer_ = {participant, wire::kWaiting};
   status_writer_ = {participant, wire::kStatus};
-  refused_reader_ = dds::Reader<msg::Refused>::member(participant, wire::kRefused);
-  hello_reader_ = dds::Reader<msg::Hello>::member(participant, wire::kHello);
+  const dds::WriterBook& book = links_.admission().book();
+  refused_reader_ = dds::Reader<msg::Refused>::guarded(
+      participant, wire::kRefused, book, [&roster](const msg::Refused& m) { return is_in(roster, m.component); });
+  hello_reader_ = dds::Reader<msg::Hello>::guarded(participant, wire::kHello, book, [this](const msg::Hello& m) {
+    // The conductor answers a few components that are not in the roster, because their users have made a mistake.
+    return is_in(context_.options.roster, m.component) || (plant_ && strange_hellos_++ < kMostStrangeHellos);
+  });
   if (!plant_) {
     done_writer_ = {participant, wire::kTickDone};
     ready_writer_ = {participant, wire::kReady};
-    tick_reader_ = dds::Reader<msg::Tick>::member(participant, wire::kTick);
-    epoch_reader_ = dds::Reader<msg::EpochStart>::member(participant, wire::kEpochStart);
-    resume_reader_ = dds::Reader<msg::Resume>::member(participant, wire::kResume);
-    run_state_reader_ = dds::Reader<msg::RunState>::member(participant, wire::kRunState);
+    tick_reader_ = dds::Reader<msg::Tick>::guarded(participant, wire::kTick, book);
+    epoch_reader_ = dds::Reader<msg::EpochStart>::guarded(participant, wire::kEpochStart, book);
+    resume_reader_ = dds::Reader<msg::Resume>::guarded(
+        participant, wire::kResume, book, [&roster](const msg::Resume& m) { return is_in(roster, m.component); });
+    run_state_reader_ = dds::Reader<msg::RunState>::guarded(
+        participant, wire::kRunState, book,
+        [run_id = context_.options.run_id](const msg::RunState& m) { return run_id == 0 || m.run_id == run_id; });
   }
   attach_barrier_readers();
   attach_inputs();
 }
 
 void MemberSide::attach_barrier_readers() {
+  const auto by_plant = [this](const auto&) { return context_.options.plant; };
+  const auto by_a_plant = [](const auto&) { return std::string(kRefuser); };
+  links_.attach(refused_reader_, wire::kRefused, by_a_plant, [this](const msg::Refused& m) { take_refused(m); });
   if (!plant_) {
-    links_.attach(epoch_reader_, wire::kEpochStart, [this](const msg::EpochStart& m) { take_epoch_start(m); });
-    links_.attach(resume_reader_, wire::kResume, [this](const msg::Resume& m) { take_resume(m); });
-    links_.attach(tick_reader_, wire::kTick, [this](const msg::Tick& m) { take_tick(m); });
-    links_.attach(run_state_reader_, wire::kRunState, [this](const msg::RunState& m) { take_run_state(m); });
+    links_.attach(epoch_reader_, wire::kEpochStart, by_plant,
+                  [this](const msg::EpochStart& m) { take_epoch_start(m); });
+    links_.attach(resume_reader_, wire::kResume, by_plant, [this](const msg::Resume& m) { take_resume(m); });
+    links_.attach(tick_reader_, wire::kTick, by_plant, [this](const msg::Tick& m) { take_tick(m); });
+    links_.attach(run_state_reader_, wire::kRunState, by_plant, [this](const msg::RunState& m) { take_run_state(m); });
   }
-  links_.attach(refused_reader_, wire::kRefused, [this](const msg::Refused& m) { take_refused(m); });
-  links_.attach(hello_reader_, wire::kHello, [this](const msg::Hello& m) { take_hello(m); });
+  links_.attach(hello_reader_.get(), [this] {
+    hello_reader_.take_from([this](const msg::Hello& message, dds_instance_handle_t writer) {
+      if (const auto violation = validate(message)) return reject(wire::kHello, *violation);
+      take_hello(message, writer);
+    });
+  });
 }
 
 void MemberSide::attach_inputs() {
   for (auto& local : members_) {
     Member& member = *local.member;
     if (!member.client_requests()) continue;
-    client_link_ = std::make_unique<dds::ClientLink>(links_.participant(), context_.options.setup.robot_id);
+    client_link_ = std::make_unique<dds::ClientLink>(
+        links_.participant(), context_.options.setup.robot_id,
+        [this](const msg::Request& request) {
+          return context_.stranger(request.token, request.header.run_id, run_id());
+        },
+        dds::kWriterGrace, context_.options.token);
     client_link_->track_writers_for(*member.client_requests());
     links_.attach(client_link_->get(), [this, &member] {
       client_link_->take(*member.client_requests(), [&](const std::string& reason) { member.refuse(reason); });
@@ -69,15 +105,30 @@ void MemberSide::attach_inputs() {
   }
   for (const auto& [topic_id, reader] : bus_->readers()) {
     const auto take = [this, id = topic_id] {
-      bus_->take(id, [&](const Sample& sample) {
-        if (conductor_) conductor_->note_authority(topics::kInfos[id], sample);
-        for (auto& local : members_) {
-          if (local.member->reads().contains(id)) local.member->on_sample(id, sample);
-        }
-      });
+      bus_->take(id, [&](const Sample& sample, dds_instance_handle_t writer) { take_sample(id, sample, writer); });
     };
     links_.attach(reader, take, Links::Wakes::kIfWanted);
   }
+}
+
+void MemberSide::take_sample(std::size_t id, const Sample& sample, dds_instance_handle_t writer) {
+  const TopicInfo& topic = topics::kInfos[id];
+  const auto deliver = [this, id, sample] {
+    if (conductor_) conductor_->note_authority(topics::kInfos[id], sample);
+    for (auto& local : members_) {
+      if (local.member->reads().contains(id)) local.member->on_sample(id, sample);
+    }
+  };
+  const std::string component(topic.writer);
+  switch (links_.admission().judge(component, writer)) {
+    case Admission::Verdict::kAccepted:
+      return deliver();
+    case Admission::Verdict::kStranger:
+      break;
+    case Admission::Verdict::kUnknown:
+      if (links_.admission().keep(component, writer, size_of(topic, sample), deliver)) return;
+  }
+  reject(std::string(topic.name), Links::kNotAnnounced);
 }
 
 std::uint64_t MemberSide::run_id() const {
@@ -99,22 +150,40 @@ void MemberSide::reject(const std::string& topic, const std::string& reason) {
   (plant_ ? plant_ : members_.front().member.get())->refuse(topic + "." + reason);
 }
 
-void MemberSide::take_hello(const msg::Hello& message) {
+std::optional<dds::GuidPrefix> MemberSide::participant_that_proves(const Hello& hello, dds_instance_handle_t writer) {
+  const auto participant = links_.admission().book().participant_of(writer);
+  const std::string& token = context_.options.token;
+  if (!participant || token.empty() || same_token(hello.proof, dds::hello_proof(token, hello, *participant)))
+    return participant;
+  return {};
+}
+
+void MemberSide::take_hello(const msg::Hello& message, dds_instance_handle_t writer) {
   const Hello hello = dds::from_wire(message);
   if (hello.run_id != 0 && !accept_run(wire::kHello, hello.run_id)) return;
+  if (hosts(hello.component) && hello.pid == ::getpid() && hello.host == context_.host_name)
+    return;  // sent by this process itself
+  const auto& roster = context_.options.roster;
+  const auto participant = participant_that_proves(hello, writer);
+  if (!participant && is_in(roster, hello.component.c_str())) {
+    reject(wire::kHello, "proof: found none of the run's token");
+    if (conductor_) conductor_->refuse_hello(hello, "it does not know the token of the run (see --token-file)");
+    return;
+  }
+  Admission& admission = links_.admission();
+  if (participant && hello.component == context_.options.plant) admission.announce(kRefuser, ++refusers_, *participant);
   // A process of another run does not replace a member, and no member waits for it. The conductor sends it the reason.
   const bool same_run = !difference(hello, hello_of(members_.front()));
-  const auto& roster = context_.options.roster;
   if (hosts(hello.component)) {
-    if (hello.pid == ::getpid() && hello.host == context_.host_name) return;  // sent by this process itself
     if (!conductor_ && same_run && hello.incarnation > context_.options.incarnation) {
       context_.log.warning("replaced by incarnation {} of {} (pid {} on {}); this process ends", hello.incarnation,
                            hello.component, hello.pid, hello.host);
       context_.exit_status = exit_status::kRefused;
       return;
     }
-  } else if (same_run && std::count(roster.begin(), roster.end(), hello.component) > 0) {
-    hellos_[hello.component] = hello;
+  } else if (participant && same_run && is_in(roster, hello.component.c_str())) {
+    if (admission.announce(hello.component, hello.incarnation, *participant)) hellos_[hello.component] = hello;
+    else reject(wire::kHello, "another process has announced this member");
   }
   if (conductor_) conductor_->on_hello(hello);
 }

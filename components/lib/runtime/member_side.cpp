@@ -80,6 +80,8 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
   hello.timing = member.timing();
   hello.reads = member.reads();
   hello.writes = member.writes();
+  const std::string& token = context_.options.token;
+  if (!token.empty()) hello.proof = dds::hello_proof(token, hello, dds::own_prefix(links_.participant()));
   return hello;
 }
 
@@ -125,15 +127,17 @@ void MemberSide::send_ready() {
   if (now - last_match_check_ < kMatchCheckInterval) return;
   last_match_check_ = now;
   std::map<std::size_t, std::vector<std::string>> readers_of;
+  TopicSet unwritten;  // a plant of your own need not write every topic of the table
   for (const auto& name : context_.options.roster) {
     if (hosts(name)) continue;
     const auto hello = hellos_.find(name);
     if (hello == hellos_.end()) return;  // the member's topics are not known before its Hello
     for (const auto& topic : topics::kInfos) {
       if (hello->second.reads.contains(topic.id)) readers_of[topic.id].push_back(name);
+      if (topic.writer == name && !hello->second.writes.contains(topic.id)) unwritten.insert(topic.id);
     }
   }
-  unmatched_ = bus_->unmatched(readers_of);
+  unmatched_ = bus_->unmatched(readers_of, unwritten);
   if (!unmatched_.empty()) return;
   for (auto& local : members_) {
     if (!owes(local)) continue;

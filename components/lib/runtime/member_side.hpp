@@ -1,6 +1,7 @@
 // The members of one process: they announce themselves, get ready, step, and exchange messages with the other members.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -89,7 +90,11 @@ class MemberSide : private MemberSink {
   void take_resume(const msg::Resume& message);
   void take_tick(const msg::Tick& tick);
   void take_refused(const msg::Refused& message);
-  void take_hello(const msg::Hello& message);
+  void take_hello(const msg::Hello& message, dds_instance_handle_t writer);
+  /// The participant that has sent a Hello; empty if the Hello does not prove that it knows the run's token.
+  [[nodiscard]] std::optional<dds::GuidPrefix> participant_that_proves(const Hello& hello,
+                                                                       dds_instance_handle_t writer);
+  void take_sample(std::size_t topic_id, const Sample& sample, dds_instance_handle_t writer);
   void take_run_state(const msg::RunState& state);
   [[nodiscard]] Hello hello_of(const LocalMember& local) const;
   /// The run of this process: the launcher's, else the one that has begun; 0: none yet.
@@ -102,6 +107,8 @@ class MemberSide : private MemberSink {
 
   HostContext& context_;
   Links& links_;
+  std::atomic<int> strange_hellos_{0};  ///< DDS counts them in its threads
+  std::uint32_t refusers_ = 0;
   std::vector<LocalMember> members_;
   Member* plant_ = nullptr;
   ConductorSide* conductor_ = nullptr;  ///< null: it is in another process

@@ -13,7 +13,26 @@ constexpr auto kStateInterval = std::chrono::seconds(1);
 
 }  // namespace
 
+void ConductorSide::take_stop(const msg::EmergencyStop& stop) {
+  // A stop is obeyed whatever its other fields contain. The plant latches it at its next tick.
+  if (stop.robot_id != context_.options.setup.robot_id || !plant_.stop_orders()) return;
+  plant_.stop_orders()->add(text_of(stop.source));
+}
+
+void ConductorSide::refuse_stranger(const msg::RunControl& control, const std::string& reason) {
+  plant_.refuse(fmt::format("run_control: {}", reason));
+  if (!strangers_.allows(HostContext::Clock::now())) return;
+  if (strangers_.first()) context_.log.warning("run_control of '{}' refused: {}", text_of(control.source), reason);
+  msg::RunControlAnswer answer{};
+  dds::set_text(answer.source, text_of(control.source));
+  answer.sequence_number = control.sequence_number;
+  dds::set_text(answer.refusal, reason);
+  control_answer_writer_.write(answer);  // not kept: a stranger must not displace the answers to others
+}
+
 void ConductorSide::take_control(const msg::RunControl& control) {
+  const std::string why = context_.stranger(control.token, control.run_id, conductor_->run_id());
+  if (!why.empty()) return refuse_stranger(control, why);
   // A client repeats a command until it is answered. The command is obeyed once; later copies get the first answer.
   if (const auto* given = control_answers_.given(control)) return control_answer_writer_.write(*given);
   std::string refusal;

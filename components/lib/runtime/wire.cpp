@@ -1,7 +1,12 @@
 #include "runtime/wire.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
+
+#include "constrictor/sha256.hpp"
+#include "cyclone/run_token.hpp"
 
 namespace constrictor::dds {
 namespace {
@@ -76,6 +81,11 @@ std::optional<TickDone> from_wire(const msg::TickDone& message) {
   return done;
 }
 
+std::string hello_proof(const std::string& token, const Hello& hello, const GuidPrefix& participant) {
+  return proof_of_token(
+      token, fmt::format("hello\n{}\n{}\n{}\n{}", hello.run_id, hello.component, hello.incarnation, hex(participant)));
+}
+
 msg::Hello to_wire(const Hello& hello) {
   msg::Hello message{};
   set_text(message.component, hello.component);
@@ -92,6 +102,7 @@ msg::Hello to_wire(const Hello& hello) {
   message.latency_ticks = hello.timing.latency;
   message.reads = hello.reads.bits();
   message.writes = hello.writes.bits();
+  set_text(message.proof, hello.proof);
   return message;
 }
 
@@ -110,6 +121,7 @@ Hello from_wire(const msg::Hello& message) {
   hello.timing = {message.period_ticks, message.latency_ticks};
   hello.reads = TopicSet::from_bits(message.reads);
   hello.writes = TopicSet::from_bits(message.writes);
+  hello.proof = message.proof;
   return hello;
 }
 

@@ -17,6 +17,10 @@ namespace barrier_topics = ::constrictor::barrier_topics;
 msg::TickDone to_wire(const TickDone& done, std::string& block);
 /// `message` must have passed validate(). Returns nothing if the checkpoint is damaged.
 std::optional<TickDone> from_wire(const msg::TickDone& message);
+/// The proof of a Hello that is sent by this participant: HMAC-SHA-256, keyed with the token, of the lines "hello", run
+/// id, component, incarnation, and participant (24 hexadecimal digits), joined by line feeds. A proof that was read
+/// from the network is worth nothing to another participant.
+std::string hello_proof(const std::string& token, const Hello& hello, const GuidPrefix& participant);
 msg::Hello to_wire(const Hello& hello);
 Hello from_wire(const msg::Hello& message);
 msg::Resume to_wire(const Resume& resume, std::string& block);

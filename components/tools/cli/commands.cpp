@@ -18,6 +18,7 @@
 #include "cli/run_difference.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "runtime/host.hpp"
@@ -31,10 +32,18 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = 20ms;
 constexpr auto kEndBound = 90s;  // longer than RunEnding's bounds together
 
+/// Ends a run whose launcher is not on this host, or that has none: the conductor itself is asked.
+int end_over_dds(const RunNote& run) {
+  RunControlClient(run.domain).end();
+  fmt::print("run {} ends: its processes make their last tick and end\n", run.domain);
+  return exit_status::kOk;
+}
+
 }  // namespace
 
 int end_command(std::optional<std::uint32_t> domain) {
-  const RunNote run = find_run(domain);
+  const RunNote run = join_run(domain);
+  if (!run.on_this_host) return end_over_dds(run);
   if (::kill(run.pid, SIGTERM) != 0) {
     throw CommandError(
         fmt::format("run {}: cannot signal its launcher (pid {}): {}", run.domain, run.pid, ::strerrordesc_np(errno)));

@@ -119,7 +119,7 @@ std::vector<std::string> mission_arguments(const LaunchManifest& manifest) {
 }
 
 CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan, std::uint32_t domain,
-                              const fs::path& report_dir, std::uint64_t run_id) {
+                              const fs::path& report_dir, std::uint64_t run_id, const fs::path& token_file) {
   const LaunchManifest manifest = plan.manifest;
   std::vector<std::string> common = {"--domain",   std::to_string(domain),
                                      "--roster",   fmt::format("{}", fmt::join(plan.roster, ",")),
@@ -130,6 +130,8 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
                                      "--output",   report_dir.string(),
                                      "--patience", fmt::format("{}", manifest.patience_s),
                                      "--run-id",   std::to_string(run_id)};
+  // A file, because other users can read command lines.
+  if (!token_file.empty()) common.insert(common.end(), {"--token-file", token_file.string()});
   const auto mission = mission_arguments(manifest);
   common.insert(common.end(), mission.begin(), mission.end());
   const auto latencies = latency_arguments(manifest);

@@ -69,8 +69,10 @@ void check_components(const RunOptions& options, const LaunchPlan& plan);
 /// planner receives its mission in this way, because it must not read the scenario.
 [[nodiscard]] std::vector<std::string> mission_arguments(const LaunchManifest& manifest);
 
+/// `token_file`: with the run's token; empty: the run has none.
 [[nodiscard]] CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan, std::uint32_t domain,
-                                            const std::filesystem::path& report_dir, std::uint64_t run_id);
+                                            const std::filesystem::path& report_dir, std::uint64_t run_id,
+                                            const std::filesystem::path& token_file = {});
 
 /// The complete environment for a new process: that of this process with the settings of the numeric profile.
 [[nodiscard]] std::vector<std::string> run_environment();

@@ -191,6 +191,7 @@ void add_param(CLI::App& app, Action& action) {
   list_app->add_flag("--names", options->names, "only the names, one in each line")->excludes("--json");
   add("get", "print one parameter", get)->add_option("NAME", options->name, "the parameter")->required();
   auto* set_app = add("set", "change parameters", set);
+  add_token_option(*set_app);
   set_app
       ->add_option("CHANGES", options->changes,
                    "NAME VALUE, as often as needed. They are set in this order; the first refusal ends the command")

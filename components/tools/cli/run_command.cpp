@@ -19,6 +19,7 @@
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/run_token.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -68,13 +69,15 @@ class Launcher {
         claim_(hosts_.domain(options.domain)),
         report_dir_(make_report_dir(options, plan_.manifest.scenario_file)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
-        note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_}),
         run_id_(random_run_id()),
-        hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_), true)),
+        note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_,
+               run_id_, new_token()}),
+        hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_, note_.token_file()), true)),
         observer_(claim_.domain(), run_id_),
         supervisor_(
-            plan_.manifest, make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_), run_environment(),
-            report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
+            plan_.manifest,
+            make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file()),
+            run_environment(), report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
             [this](const auto&... process) { return hosts_.start(process...); }) {}
 
   int run() {
@@ -82,6 +85,8 @@ class Launcher {
     display_.print(fmt::format("run {}: {} seed {}, {} components in {} process{}, report in {}", claim_.domain(),
                                scenario_, options_.seed, plan_.roster.size(), processes, processes == 1 ? "" : "es",
                                report_dir_.string()));
+    display_.print(
+        fmt::format("  token {} (for programs on other hosts: put it into a file, see --token-file)", note_.token()));
     const auto start = Clock::now();
     supervisor_.start();
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
@@ -197,8 +202,8 @@ class Launcher {
   DomainClaim claim_;
   fs::path report_dir_;
   std::string scenario_;
-  PublishedNote note_;
   std::uint64_t run_id_;
+  PublishedNote note_;
   bool hosts_prepared_;  ///< before the observer, which needs the DDS configuration
   RunObserver observer_;
   Supervisor supervisor_;

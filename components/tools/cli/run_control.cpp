@@ -52,9 +52,10 @@ std::string pace_text(const msg::RunState& state) {
 
 int control(const Options& options, std::uint8_t command) {
   const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
-  const RunNote run = find_run(options.run);
+  const RunNote run = join_run(options.run);
   catch_interrupts();
-  RunControlClient client(run.domain, 10s, [&] { return interrupt_signal() != 0 || !domain_claimed(run.domain); });
+  RunControlClient client(run.domain, 10s,
+                          [&] { return interrupt_signal() != 0 || (run.on_this_host && !domain_claimed(run.domain)); });
   try {
     const msg::RunState state = command == msg::kRunStep    ? client.step(static_cast<std::uint32_t>(options.steps))
                                 : command == msg::kRunReset ? client.reset(options.seed)
@@ -82,11 +83,6 @@ int ask(RequestClient& client, const char* command, std::uint8_t kind, const cha
   return report_not_granted(client, answer, command);
 }
 
-int stop(RequestClient& client) {
-  return ask(client, "stop", msg::kRequestEmergencyStop,
-             "emergency stop: the robot holds its posture until `constrictor clear-stop`");
-}
-
 int clear_stop(RequestClient& client) {
   return ask(client, "clear-stop", msg::kRequestClearStop,
              "emergency stop cleared; the robot stands until `constrictor release` or another request");
@@ -108,9 +104,34 @@ int release(RequestClient& client) {
 }
 
 int operate(const Options& options, const char* command, int (*use)(RequestClient&)) {
-  RequestClient client(find_run(options.run).domain, operator_options(unique_source("operator")));
+  RequestClient client(join_run(options.run).domain, operator_options(unique_source("operator")));
   if (const int status = connect(client, command); status != exit_status::kOk) return status;
   return use(client);
+}
+
+/// The emergency stop goes to `input` and to the plant itself. So it needs neither an answer of `input` nor a token.
+int stop(const Options& options) {
+  catch_interrupts();
+  const std::uint32_t domain = options.run ? *options.run : find_run({}).domain;
+  RequestClient client(domain, operator_options(unique_source("operator")));
+  if (!client.connect_to_stop(5s)) {
+    if (interrupt_signal() != 0) return interrupt_status();
+    std::fprintf(stderr,
+                 "stop: run %u: neither the plant nor `input` is there (is the run in another domain? see `constrictor "
+                 "status`)\n",
+                 domain);
+    return exit_status::kWaitedTooLong;
+  }
+  const auto answer = client.wait_for_answer(client.ask(msg::kRequestEmergencyStop), 5s);
+  if (answer == RequestClient::Answer::kGranted)
+    fmt::print("emergency stop: the robot holds its posture until `constrictor clear-stop`\n");
+  if (answer == RequestClient::Answer::kNone && client.plant_has_received_stop()) {
+    std::fprintf(stderr,
+                 "stop: the plant has received the stop and obeys it at its next tick, but the run makes no tick now "
+                 "(it is paused, or waits for a process; see `constrictor status`)\n");
+    return exit_status::kWaitedTooLong;
+  }
+  return report_not_granted(client, answer, "stop");
 }
 
 }  // namespace
@@ -161,8 +182,10 @@ void add_run_control(CLI::App& app, Action& action) {
       ->add_option("SEED", options->seed, "the seed")
       ->required()
       ->check(whole_number());
-  add("stop", "latch an emergency stop: the robot holds its posture", operates("stop", stop),
-      help_footer("Every source may request it at any time. It stays latched until `constrictor clear-stop`.",
+  add(
+      "stop", "latch an emergency stop: the robot holds its posture", [options] { return stop(*options); },
+      help_footer("Needs no token. The plant itself obeys it, also while `input` hangs. It stays latched until "
+                  "`constrictor clear-stop`.",
                   {"constrictor stop"},
                   fmt::format("0 the stop is latched; {}; 75 no answer within 5 s;\n  130 interrupted by Ctrl-C: the "
                               "request was sent, but is not confirmed",

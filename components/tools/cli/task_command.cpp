@@ -37,7 +37,7 @@ struct Options {
 };
 
 int with_client(const Options& options, int (*use)(RequestClient&, const Options&)) {
-  RequestClient client(find_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
+  RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
   if (const int status = connect(client, "task"); status != exit_status::kOk) return status;
   return use(client, options);
 }

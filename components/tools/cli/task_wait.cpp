@@ -115,7 +115,7 @@ int task_wait(const TaskWaitOptions& options, std::optional<std::uint32_t> run) 
   if (options.goal == "any" && options.end)
     throw UsageError("--goal: found 'any', accepted a goal's number together with --end");
   const auto bound = parse_duration("--timeout", options.timeout);
-  return Waiting(options, find_run(run).domain).run(bound);
+  return Waiting(options, join_run(run).domain).run(bound);
 }
 
 }  // namespace constrictor::cli

@@ -42,7 +42,7 @@ class Teleop {
  public:
   explicit Teleop(const RunNote& run)
       : client_(run.domain, operator_options(unique_source("teleop"), kTeleopLease)),
-        monitor_(run.domain, client_.participant(), run.plant),
+        monitor_(run, client_.participant()),
         observer_(client_.participant(), monitor_) {
     screen_.run = fmt::format("{} {}", run.domain, run.scenario);
     screen_.source = client_.source();
@@ -181,7 +181,7 @@ class Teleop {
 int teleop(const Options& options) {
   if (!options.drive.empty()) return teleop_drive(options.drive, options.duration, options.run);
   if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
-  const RunNote run = find_run(options.run);
+  const RunNote run = join_run(options.run);
   int status = exit_status::kOk;
   std::string over;
   std::string farewell;
@@ -195,7 +195,7 @@ int teleop(const Options& options) {
   if (!over.empty()) std::fprintf(stderr, "teleop: %s; the robot holds its posture\n", over.c_str());
   else if (status == exit_status::kWaitedTooLong) {
     std::fprintf(stderr,
-                 "teleop: run %u: no subscriber on topic \"request\" (is `input` running? see `constrictor "
+                 "teleop: run %u: no subscriber on topic \"request/v2\" (is `input` running? see `constrictor "
                  "status`)\n",
                  run.domain);
   } else if (!farewell.empty()) {

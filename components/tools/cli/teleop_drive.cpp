@@ -52,10 +52,10 @@ void stand_and_release(RequestClient& client) {
 int teleop_drive(const std::string& speed_and_turn, const std::string& duration, std::optional<std::uint32_t> run) {
   const DriveGait gait = parse_drive(speed_and_turn);
   const auto bound = duration.empty() ? std::chrono::milliseconds(24h * 365) : parse_duration("--for", duration);
-  const RunNote note = find_run(run);
+  const RunNote note = join_run(run);
   RequestClient client(note.domain, operator_options(unique_source("teleop"), kTeleopLease));
   if (const int status = connect(client, "teleop"); status != exit_status::kOk) return status;
-  RunMonitor monitor(note.domain, client.participant(), note.plant);
+  RunMonitor monitor(note, client.participant());
   const auto answer = client.wait_for_answer(client.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m), 5s);
   if (answer == RequestClient::Answer::kInterrupted) stand_and_release(client);
   if (answer != RequestClient::Answer::kGranted) return report_not_granted(client, answer, "teleop");

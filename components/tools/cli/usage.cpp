@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "configuration/closest_name.hpp"
+#include "cyclone/run_token.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -65,9 +67,21 @@ CLI::Validator number(double min, double max, const std::string& unit) {
 }
 
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain) {
-  app.add_option("--run", domain, "DDS domain of the run (default: the only run on this host)")
+  app.add_option("--run,--domain", domain,
+                 "DDS domain of the run, which may be on another host (default: the only run on this host)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));
+  add_token_option(app);
+}
+
+void add_token_option(CLI::App& app) {
+  app.add_option_function<std::string>(
+      "--token-file",
+      [](const std::string& file) {
+        static_cast<void>(read_token_file(file));
+        ::setenv("CONSTRICTOR_TOKEN_FILE", file.c_str(), 1);
+      },
+      "file with the token of a run that was not started on this host (default: $CONSTRICTOR_TOKEN_FILE)");
 }
 
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,

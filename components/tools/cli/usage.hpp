@@ -30,8 +30,10 @@ CLI::Validator whole_number(std::uint64_t min = 0, std::uint64_t max = std::nume
 /// Accepts only finite numbers from `min` to `max`; `unit`, for example "s", is shown in the error message.
 CLI::Validator number(double min, double max, const std::string& unit);
 
-/// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN.
+/// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN; and --token-file.
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);
+/// Adds --token-file, from which clients in this process take the token (run_key()).
+void add_token_option(CLI::App& app);
 
 /// The ENVIRONMENT of the commands that join a run, for help_footer().
 inline constexpr const char* kRunEnvironment =

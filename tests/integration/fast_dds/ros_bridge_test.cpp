@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "client/request_writer.hpp"
+#include "client/run_registry.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "cyclone/wait_set.hpp"
@@ -154,6 +155,7 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   msg::Request wish{};
   wish.robot_id = 1;
   dds::set_text(wish.source, "hand");
+  dds::set_text(wish.token, run_key(domain).token);
   wish.level = msg::kAuthorityOperator;
   wish.kind = msg::kRequestTake;
   wish.header.sequence_number = 1;

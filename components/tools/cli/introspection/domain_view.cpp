@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 }  // namespace
 
 void add_view_options(CLI::App& app, ViewOptions& options) {
-  app.add_option("--run", options.domain,
+  app.add_option("--run,--domain", options.domain,
                  "DDS domain of the run, or any other domain (default: the only run on this host)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));

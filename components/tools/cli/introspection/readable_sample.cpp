@@ -27,6 +27,9 @@ class Reader {
       count_ = value.get<std::size_t>();
       capacity_ = static_cast<std::size_t>(info.max);
     }
+    // The token of a run lets its reader command the run, so it must not remain on terminals and in logs.
+    if (std::string_view(info.name) == "token" && value.is_string() && !value.get<std::string>().empty())
+      value = "(hidden)";
     make_readable(info, field, value);
   }
 

@@ -194,6 +194,7 @@ Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
 /// True once the launcher has removed its note or died. It shows the end of a run whose plant was killed, because such
 /// a plant cannot publish the end.
 bool is_gone(const RunNote& run) {
+  if (!run.on_this_host) return false;
   const auto runs = live_runs();
   return std::none_of(runs.begin(), runs.end(),
                       [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
@@ -211,7 +212,7 @@ int status(const Options& options) {
       return exit_status::kOk;
     }
   }
-  const RunNote run = find_run(options.view.domain);
+  const RunNote run = join_run(options.view.domain);
   RunObserver observer(run.domain);
   RateMeter rates;
   // Statuses are kept for late readers, but a rate needs two of them; the state of the run arrives once a second.

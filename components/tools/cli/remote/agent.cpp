@@ -201,6 +201,8 @@ void Agent::prepare(const Json& message) {
     fs::create_directories(path.parent_path());
     if (!(std::ofstream(path, std::ios::binary) << field<std::string>(file, "text")).flush())
       throw std::runtime_error("cannot write " + path.string());
+    // One of the files has the token of the run.
+    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
   }
   prepared_ = true;
   channel_->send({{"op", "prepared"}});

@@ -120,11 +120,12 @@ void HostSet::add_file(const fs::path& file) {
   places_[file.string()] = fmt::format("files/{}/{}", number, file.filename().string());
 }
 
-void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir) {
+void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs::path& token_file) {
   if (links_.empty()) return;
   report_dir_ = report_dir;
   add_file(manifest_.robot_file);
   add_file(manifest_.scenario_file);
+  add_file(token_file);
   for (const auto& [component, file] : manifest_.config_files) add_file(file);
   for (const auto& process : manifest_.processes) {
     if (process.host.empty() || !process.program.empty()) continue;

@@ -29,8 +29,9 @@ class HostSet {
 
   /// The domain to claim: `wanted`, or the first one that is free on all hosts; empty if there are no other hosts.
   [[nodiscard]] std::optional<std::uint32_t> domain(std::optional<std::uint32_t> wanted) const;
-  /// Claims the domain on all hosts, publishes the DDS configuration, and sends the files of the run. Throws HostError.
-  void prepare(std::uint32_t domain, const std::filesystem::path& report_dir);
+  /// Claims the domain on all hosts, publishes the DDS configuration, and sends the files of the run, `token_file`
+  /// among them. Throws HostError.
+  void prepare(std::uint32_t domain, const std::filesystem::path& report_dir, const std::filesystem::path& token_file);
   /// For the supervisor: starts a process on the host that its plan names.
   [[nodiscard]] std::unique_ptr<Child> start(const ProcessPlan& plan, std::uint32_t incarnation,
                                              const std::vector<std::string>& argv,

@@ -1,0 +1,70 @@
+#include "cyclone/writer_book.hpp"
+
+#include <algorithm>
+
+namespace constrictor::dds {
+namespace {
+
+constexpr std::size_t kMostDead = 512;  // dead writers whose samples may still be waiting in a reader
+
+GuidPrefix prefix_of(const dds_guid_t& guid) {
+  GuidPrefix prefix{};
+  std::copy_n(guid.v, prefix.size(), prefix.begin());
+  return prefix;
+}
+
+}  // namespace
+
+GuidPrefix own_prefix(dds_entity_t entity) {
+  dds_guid_t guid{};
+  check(dds_get_guid(entity, &guid), "dds_get_guid");
+  return prefix_of(guid);
+}
+
+WriterBook::WriterBook() : listener_(dds_create_listener(this), dds_delete_listener) {
+  dds_lset_subscription_matched(listener_.get(),
+                                [](dds_entity_t reader, const dds_subscription_matched_status_t status, void* book) {
+                                  static_cast<WriterBook*>(book)->note(reader, status);
+                                });
+}
+
+void WriterBook::note(dds_entity_t reader, const dds_subscription_matched_status_t& status) {
+  const dds_instance_handle_t writer = status.last_publication_handle;
+  if (status.current_count_change <= 0) {
+    const std::lock_guard lock(mutex_);
+    const auto known = writers_.find(writer);
+    if (known == writers_.end() || --known->second.readers > 0) return;
+    ++dead_;
+    return forget_some_dead();
+  }
+  dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
+  if (!data) return;
+  const GuidPrefix participant = prefix_of(data->key);
+  dds_builtintopic_free_endpoint(data);
+  const std::lock_guard lock(mutex_);
+  if (writers_.size() >= kMost && !writers_.contains(writer)) return;
+  Entry& entry = writers_[writer];
+  entry.participant = participant;
+  ++entry.readers;
+}
+
+void WriterBook::forget_some_dead() {
+  if (dead_ <= kMostDead) return;
+  std::erase_if(writers_, [](const auto& entry) { return entry.second.readers <= 0; });
+  dead_ = 0;
+}
+
+std::optional<GuidPrefix> WriterBook::participant_of(dds_instance_handle_t writer) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = writers_.find(writer);
+  return known == writers_.end() ? std::nullopt : std::optional(known->second.participant);
+}
+
+bool WriterBook::lives(const GuidPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(writers_.begin(), writers_.end(), [&](const auto& entry) {
+    return entry.second.readers > 0 && entry.second.participant == participant;
+  });
+}
+
+}  // namespace constrictor::dds

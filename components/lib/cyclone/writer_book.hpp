@@ -1,0 +1,50 @@
+// Which participant each remote writer belongs to, for readers that accept samples of announced participants only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "cyclone/entity.hpp"
+
+namespace constrictor::dds {
+
+/// The first 12 bytes of a GUID, as they are sent: they identify a participant.
+using GuidPrefix = std::array<std::uint8_t, 12>;
+
+/// The prefix of an entity of this process.
+[[nodiscard]] GuidPrefix own_prefix(dds_entity_t entity);
+
+/// Notes each writer at the time when a reader matches it, because the participant of a writer that is gone can no
+/// longer be found, but its samples may still be waiting in the reader. Thread-safe.
+class WriterBook {
+ public:
+  /// Writers beyond this number are not noted: strangers may create any number of them.
+  static constexpr std::size_t kMost = 4096;
+
+  WriterBook();
+  /// For dds_create_reader() of the readers whose writers are noted. This object must outlive them.
+  [[nodiscard]] const dds_listener_t* listener() const { return listener_.get(); }
+  /// The participant of the writer with this publication handle; empty if the writer was not noted.
+  [[nodiscard]] std::optional<GuidPrefix> participant_of(dds_instance_handle_t writer) const;
+  /// True if a writer of this participant is matched at present.
+  [[nodiscard]] bool lives(const GuidPrefix& participant) const;
+
+ private:
+  struct Entry {
+    GuidPrefix participant{};
+    int readers = 0;  ///< of this process that match it at present
+  };
+  void note(dds_entity_t reader, const dds_subscription_matched_status_t& status);
+  void forget_some_dead();
+
+  std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener_;
+  mutable std::mutex mutex_;
+  std::map<dds_instance_handle_t, Entry> writers_;
+  std::size_t dead_ = 0;
+};
+
+}  // namespace constrictor::dds

@@ -1,0 +1,69 @@
+// Which messages of other processes a process of the run accepts: those of the processes that have announced themselves
+// as a member of the run by Hello.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cyclone/writer_book.hpp"
+
+namespace constrictor {
+
+/// A member's messages come from the participant that has sent its Hello. A message that arrives before the Hello waits
+/// for it. Not thread-safe, the book aside.
+class Admission {
+ public:
+  /// Bounds on what waits for the Hello of its writer. For each writer, so that none can use up the room of another.
+  static constexpr std::size_t kMostMessages = 1024;
+  static constexpr std::size_t kMostBytes = 64u << 20;
+  static constexpr std::size_t kMostWriters = 64;
+
+  /// To be called for each Hello that was found to be of this run, before its content is used. Returns false if another
+  /// living participant has announced the member with the same or a higher incarnation: the Hello must be ignored.
+  bool announce(const std::string& component, std::uint32_t incarnation, const dds::GuidPrefix& participant);
+
+  enum class Verdict {
+    kAccepted,
+    kUnknown,   ///< nobody has announced this member yet
+    kStranger,  ///< the writer is not in the participant that has announced it
+  };
+  [[nodiscard]] Verdict judge(const std::string& component, dds_instance_handle_t writer);
+  /// Keeps a message with the verdict kUnknown: `deliver` is called as soon as the participant of its writer announces
+  /// the member. Returns false if there is no room: the message is dropped.
+  bool keep(const std::string& component, dds_instance_handle_t writer, std::size_t bytes,
+            std::function<void()> deliver);
+
+  dds::WriterBook& book() { return book_; }
+
+ private:
+  struct Announced {
+    std::uint32_t incarnation = 0;
+    /// Of the newest incarnation first. Earlier ones count, too: their last samples may arrive late.
+    std::vector<dds::GuidPrefix> participants;
+    /// Of the same incarnation, ignored while the announced one lives. The conductor may have accepted another one of
+    /// them first than this process; those that it refuses end.
+    std::vector<dds::GuidPrefix> rivals;
+  };
+  struct Waiting {
+    std::string component;
+    dds_instance_handle_t writer = 0;
+    std::size_t bytes = 0;
+    std::function<void()> deliver;
+  };
+  struct Load {
+    std::size_t messages = 0;
+    std::size_t bytes = 0;
+  };
+  void deliver_waiting(const std::string& component);
+
+  dds::WriterBook book_;
+  std::map<std::string, Announced> announced_;
+  std::deque<Waiting> waiting_;
+  std::map<dds_instance_handle_t, Load> load_;
+};
+
+}  // namespace constrictor
