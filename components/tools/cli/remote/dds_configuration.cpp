@@ -18,7 +18,8 @@ std::string dds_configuration(const std::string& own, const std::vector<std::str
       "<CycloneDDS><Domain><General><Interfaces>"
       "<NetworkInterface address=\"{}\" multicast=\"false\"/>"
       "</Interfaces><AllowMulticast>false</AllowMulticast><MaxMessageSize>{}B</MaxMessageSize></General>"
-      "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
+      "<Discovery><SPDPInterval>2s</SPDPInterval><ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
       "<Peers>{}</Peers></Discovery>{}"
       "<Tracing><Verbosity>severe</Verbosity><OutputFile>stderr</OutputFile></Tracing></Domain></CycloneDDS>",
       own, message_bytes, peers, dds::kInternalSettings);

@@ -1,0 +1,208 @@
+// Runs on two and three hosts (namespaces with an sshd each) over a network that loses, delays and reorders frames.
+// Each run is started with `constrictor run` alone, and has the result of one process.
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "support/namespace_hosts.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+const std::vector<std::string> kPrograms = {
+    "constrictor", "constrictor_host", "toy_host",   "physics", "camera",  "perception",
+    "guidance",    "control",          "navigation", "input",   "planner", "report"};
+
+/// Cyclone DDS's own times, in place of those of the built-in configuration.
+constexpr const char* kDefaultTimes =
+    "CYCLONEDDS_URI='<CycloneDDS><Domain><Internal><NackDelay>100ms</NackDelay><AutoReschedNackDelay>1s"
+    "</AutoReschedNackDelay><HeartbeatInterval min=\"5ms\" minsched=\"20ms\" max=\"8s\">100ms</HeartbeatInterval>"
+    "</Internal></Domain></CycloneDDS>' ";
+
+class LongHosts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = NamespaceHosts::missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+  void make(int count) { hosts_ = std::make_unique<NamespaceHosts>(count, kPrograms, CONSTRICTOR_SOURCE_DIR); }
+
+  /// Writes the manifest of the toys: three of the five processes run on host2.
+  void write_toys(int patience_s = 60) const {
+    std::ofstream(hosts_->tmp(1) / "toys.yaml")
+        << "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
+        << "patience_s: " << patience_s << "\nhosts: {here: local, robot: {ssh: root@10.77.0.2}}\nprocesses:\n"
+        << "  - {components: [physics], program: toy_host}\n"
+           "  - {components: [navigation], program: toy_host, host: robot}\n"
+           "  - {components: [control], program: toy_host, host: robot}\n"
+           "  - {components: [planner], program: toy_host}\n"
+           "  - {components: [report], program: toy_host, host: robot}\n";
+  }
+  /// A run of toys, reported in the folder `name` of host1.
+  [[nodiscard]] Process toys(long ticks, const std::string& name, const std::string& options = "",
+                             const std::string& environment = "") const {
+    const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
+    std::ofstream(hosts_->tmp(1) / scenario) << "";
+    return hosts_->on(
+        1, environment + "exec constrictor run " + scenario + " --manifest toys.yaml --report " + name + " " + options);
+  }
+  [[nodiscard]] nlohmann::json report(const std::string& name) const {
+    return nlohmann::json::parse(std::ifstream(hosts_->tmp(1) / name / "report.json"), nullptr, false);
+  }
+  /// The state hash of a run of toys in one process.
+  std::string reference(long ticks) {
+    Process run = toys(ticks, "one", "--in-process");
+    EXPECT_EQ(run.wait(60s), 0) << run.output() << run.errors();
+    return report("one").value("state_hash", "none");
+  }
+  /// Runs toys to the end, compares the result with `expected`, and returns the ticks per second.
+  double rate(long ticks, const std::string& expected, const std::string& what, const std::string& environment = "") {
+    Process run = toys(ticks, "run", "", environment);
+    EXPECT_EQ(run.wait(300s), 0) << what << ": " << run.output() << run.errors();
+    const auto json = report("run");
+    EXPECT_EQ(json.value("state_hash", ""), expected) << what;
+    const double per_s = static_cast<double>(ticks) / json.value("wall_time_s", 1e9);
+    std::printf("%-40s %7.1f ticks/s\n", what.c_str(), per_s);
+    std::fflush(stdout);
+    return per_s;
+  }
+  /// The newest tick of the run as `constrictor status` shows it, which joins the run without set-up; -1: none.
+  [[nodiscard]] std::int64_t newest_tick() const {
+    Process status = hosts_->on(1, "exec constrictor status --json");
+    if (status.wait(20s) != 0) return -1;
+    std::int64_t newest = -1;
+    const auto json = nlohmann::json::parse(status.output(), nullptr, false);
+    if (!json.is_object()) return -1;
+    for (const auto& component : json.value("components", nlohmann::json::array()))
+      newest = std::max(newest, component.value("tick", std::int64_t{-1}));
+    return newest;
+  }
+  void expect_nothing_left(int host) const {
+    EXPECT_TRUE(eventually([&] { return hosts_->processes(host, "toy_host").empty(); }, 30s)) << "on host " << host;
+    EXPECT_TRUE(eventually([&] { return hosts_->processes(host, "--token").empty(); }, 30s)) << "on host " << host;
+    for (const auto& entry : std::filesystem::directory_iterator(hosts_->tmp(host) / "constrictor-0"))
+      EXPECT_EQ(entry.path().extension(), ".lock") << entry.path();
+  }
+
+  std::unique_ptr<NamespaceHosts> hosts_;
+};
+
+TEST_F(LongHosts, LossDelayAndReorderingChangeNoResult) {
+  make(2);
+  write_toys();
+  struct Link {
+    int delay_ms;
+    long ticks;
+  };
+  for (const auto& [delay_ms, ticks] : {Link{0, 1000}, Link{10, 150}, Link{50, 50}}) {
+    const std::string expected = reference(ticks);
+    for (const char* loss : {"0", "0.01", "0.05"}) {
+      hosts_->network("loss 0");
+      hosts_->network("delay " + std::to_string(delay_ms) + (delay_ms == 0 ? " 0" : " 2"));
+      hosts_->network(std::string("loss ") + loss);
+      rate(ticks, expected, "delay " + std::to_string(delay_ms) + " ms, loss " + loss);
+    }
+  }
+  hosts_->network("delay 10 5");
+  hosts_->network("loss 0.01");
+  hosts_->network("reorder 0.05");
+  rate(150, reference(150), "delay 10 to 15 ms, loss 0.01, reorder 0.05");
+  expect_nothing_left(2);
+}
+
+TEST_F(LongHosts, BlackoutsOfLessThanThePatienceOnlyDelayARun) {
+  make(2);
+  write_toys();
+  const std::string expected = reference(400);
+  for (const int seconds : {1, 10, 30}) {
+    Process run = toys(400, "run", "--pace 2x");
+    ASSERT_TRUE(eventually([&] { return newest_tick() > 20; }, 60s)) << run.output();
+    hosts_->network("blackout " + std::to_string(seconds));
+    ASSERT_EQ(run.wait(120s), 0) << seconds << " s: " << run.output() << run.errors();
+    const auto json = report("run");
+    EXPECT_EQ(json.value("state_hash", ""), expected) << seconds << " s";
+    EXPECT_GE(json.value("wall_time_s", 0.0), seconds) << "the black-out was in the run";
+    for (const auto& process : json["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
+    std::printf("black-out of %2d s: a run of 4 s took %.1f s\n", seconds, json.value("wall_time_s", 0.0));
+  }
+  expect_nothing_left(2);
+}
+
+// The runs alternate, so that the load of the machine acts on both kinds.
+TEST_F(LongHosts, LostMessagesAreRepeatedInTimeForFourTimesTheTicksOfCyclonesTimes) {
+  make(2);
+  write_toys();
+  const std::string expected = reference(600);
+  hosts_->network("loss 0.01");
+  double ours_s = 0, default_s = 0;
+  for (int i = 0; i < 3; ++i) {
+    ours_s += 600 / rate(600, expected, "loss 0.01");
+    default_s += 600 / rate(600, expected, "loss 0.01, Cyclone's times", kDefaultTimes);
+  }
+  EXPECT_GE(default_s / ours_s, 4.0);
+}
+
+TEST_F(LongHosts, CommandsOnAnotherHostJoinARunWithoutSetUp) {
+  make(2);
+  write_toys();
+  Process run = toys(100'000, "run", "--pace 1x --domain 9");
+  ASSERT_TRUE(eventually([&] { return newest_tick() > 20; }, 60s)) << run.output();
+  Process topics = hosts_->on(2, "exec constrictor topic echo joint_command --run 9 --count 1");
+  EXPECT_EQ(topics.wait(30s), 0) << topics.output() << topics.errors();
+  Process nodes = hosts_->on(2, "exec constrictor node list --run 9");
+  EXPECT_EQ(nodes.wait(30s), 0);
+  for (const char* host : {"host1", "host2"}) EXPECT_NE(nodes.output().find(host), std::string::npos) << nodes.output();
+  Process end = hosts_->on(1, "exec constrictor end");
+  EXPECT_EQ(end.wait(60s), 0) << end.output() << end.errors();
+  expect_nothing_left(2);
+}
+
+TEST_F(LongHosts, WhenTheLauncherDiesOrTheHostIsAwayForTooLongNothingIsLeft) {
+  make(2);
+  write_toys(8);
+  Process killed = toys(100'000, "killed", "--pace 1x");
+  ASSERT_TRUE(eventually([&] { return hosts_->processes(2, "toy_host").size() == 3; }, 60s)) << killed.output();
+  for (const pid_t launcher : hosts_->processes(1, "killed")) ::kill(launcher, SIGKILL);
+  expect_nothing_left(2);
+  Process away = toys(100'000, "away", "--pace 1x");
+  ASSERT_TRUE(eventually([&] { return hosts_->processes(2, "toy_host").size() == 3; }, 60s)) << away.output();
+  hosts_->network("blackout 60");
+  const auto status = away.wait(60s);
+  ASSERT_TRUE(status);
+  EXPECT_NE(*status, 0) << away.output();
+  expect_nothing_left(2);
+  expect_nothing_left(1);
+}
+
+TEST_F(LongHosts, TheSnakeOnThreeHostsHasTheResultOfOneProcess) {
+  make(3);
+  std::ofstream(hosts_->tmp(1) / "three.yaml")
+      << "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
+         "hosts: {robot: {ssh: root@10.77.0.2, interface: ctap2}, eye: {ssh: root@10.77.0.3, directory: "
+         "/opt/constrictor}}\nprocesses:\n"
+         "  - {components: [physics], host: robot}\n  - {components: [camera], host: eye}\n"
+         "  - {components: [perception], host: eye}\n  - {components: [guidance], host: robot}\n"
+         "  - {components: [navigation]}\n  - {components: [control], host: robot}\n"
+         "  - {components: [input]}\n  - {components: [planner]}\n  - {components: [report], host: eye}\n";
+  Process doctor = hosts_->on(1, "exec constrictor doctor --manifest three.yaml");
+  ASSERT_EQ(doctor.wait(60s), 0) << doctor.output() << doctor.errors();
+  hosts_->network("loss 0.01");
+  const std::string run = "exec constrictor run --manifest three.yaml --max-sim-time 4 ";
+  // The mission is not over after 4 s: the exit status is that of a mission that did not succeed.
+  Process three = hosts_->on(1, run + "--report three");
+  ASSERT_EQ(three.wait(300s), 1) << three.output() << three.errors();
+  Process one = hosts_->on(1, run + "--in-process --report one");
+  ASSERT_EQ(one.wait(120s), 1) << one.output() << one.errors();
+  Process diff = hosts_->on(1, "exec constrictor diff one three");
+  EXPECT_EQ(diff.wait(30s), 0) << diff.output();
+  EXPECT_EQ(report("three").value("state_hash", "a"), report("one").value("state_hash", "b"));
+  EXPECT_TRUE(std::filesystem::exists(hosts_->tmp(1) / "three/figure.png")) << "of the report, which host3 made";
+  EXPECT_EQ(report("three")["hosts"].size(), 3u);
+  std::printf("three hosts, 1 %% loss: 4 s simulated in %.1f s\n", report("three").value("wall_time_s", 0.0));
+}
+
+}  // namespace
+}  // namespace constrictor::testing
