@@ -73,8 +73,8 @@ struct Conductor::Archived {
   static void hello(Archive& archive, Hello& h) {
     std::uint64_t reads = h.reads.bits();
     std::uint64_t writes = h.writes.bits();
-    archive.values(h.component, h.run_id, h.incarnation, h.pid, h.host, h.idl_hash, h.config_hash, h.component_hash,
-                   h.numeric_profile, h.timing.period, h.timing.latency, reads, writes);
+    archive.values(h.component, h.run_id, h.incarnation, h.pid, h.host, h.release, h.idl_hash, h.config_hash,
+                   h.component_hash, h.numeric_profile, h.timing.period, h.timing.latency, reads, writes);
     h.reads = TopicSet::from_bits(reads);
     h.writes = TopicSet::from_bits(writes);
   }
@@ -117,8 +117,8 @@ struct Conductor::Archived {
 Checkpoint Conductor::save() const {
   static_assert(std::is_trivially_copyable_v<msg::Tick>);
   Writer writer;
-  writer.values(options_.run_id, options_.roster, options_.plant, options_.idl_hash, options_.config_hash,
-                options_.numeric_profile, options_.period_ns, options_.realtime);
+  writer.values(options_.release, options_.run_id, options_.roster, options_.plant, options_.idl_hash,
+                options_.config_hash, options_.numeric_profile, options_.period_ns, options_.realtime);
   Archived::rest(writer, const_cast<Conductor&>(*this));  // writing changes nothing
   return {std::move(writer.stream).str(), std::move(writer.blobs)};
 }
@@ -128,8 +128,9 @@ Conductor::Conductor(ConductorOptions options, ConductorSink& sink, const Checkp
   Reader reader(checkpoint);
   try {
     ConductorOptions found;
-    reader.values(found.run_id, found.roster, found.plant, found.idl_hash, found.config_hash, found.numeric_profile,
-                  found.period_ns, found.realtime);
+    reader.values(found.release, found.run_id, found.roster, found.plant, found.idl_hash, found.config_hash,
+                  found.numeric_profile, found.period_ns, found.realtime);
+    require_equal("release", found.release, options_.release);
     if (options_.run_id == 0) options_.run_id = found.run_id;
     require_equal("run id", std::to_string(found.run_id), std::to_string(options_.run_id));
     require_equal("IDL hash", found.idl_hash, options_.idl_hash);

@@ -59,7 +59,8 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   if (descriptor_ < 0) throw failure(path_, std::strerror(errno));
   try {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      throw failure(path_, "another process of the plant has this file open: is the run still going on?");
+      throw CheckpointInUse(
+          failure(path_, "another process of the plant has this file open: is the run still going on?").what());
     const off_t found = ::lseek(descriptor_, 0, SEEK_END);
     size_ = static_cast<std::size_t>(found);
     const bool fresh = size_ == 0;

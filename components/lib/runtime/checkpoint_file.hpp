@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 
@@ -14,13 +15,19 @@
 
 namespace constrictor {
 
+/// Another process has the file open.
+class CheckpointInUse : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Two slots take turns. Each names the place of one checkpoint in the rest of the file, and contains its number and
 /// checksums. The checkpoint of the other slot is overwritten only after the new one is complete, so that a process
 /// that is killed at any point leaves a complete checkpoint. A blob that both checkpoints contain is stored once.
 class CheckpointFile {
  public:
-  /// Opens `path`, or creates it. Throws std::runtime_error if it cannot be written, if it is no checkpoint file, or if
-  /// another process has it open.
+  /// Opens `path`, or creates it. Throws std::runtime_error if it cannot be written or if it is no checkpoint file, and
+  /// CheckpointInUse if another process has it open.
   explicit CheckpointFile(std::filesystem::path path);
   ~CheckpointFile();
   CheckpointFile(const CheckpointFile&) = delete;

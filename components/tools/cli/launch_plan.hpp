@@ -23,6 +23,7 @@ struct RunOptions {
   double max_sim_time_s = 0;              ///< [s] simulated time at which the run ends; 0: no limit
   bool no_checkpoints = false;            ///< the plant keeps none: it is not restarted, and the run not resumed
   bool record = false;                    ///< log the messages themselves, for `constrictor diff`
+  std::filesystem::path resume_dir;       ///< folder of a run to continue; empty: a new run
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
 };

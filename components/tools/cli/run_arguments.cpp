@@ -59,6 +59,14 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
   run->add_option("--domain", options->domain, "DDS domain, 0 to 229 (default: the first free one of 1 to 100)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));
+  auto* resume = run->add_option("--resume", options->resume_dir,
+                                 "report directory of a run that was interrupted: continue it; only --domain may be "
+                                 "given in addition")
+                     ->check(CLI::ExistingDirectory);
+  for (CLI::Option* other : run->get_options()) {
+    const std::string name = other->get_name();
+    if (other != resume && name != "--domain" && name != "--help") resume->excludes(other);
+  }
   run->footer(
       "Checks all files first. Then starts the components of a launch manifest in a DDS domain of their own, shows "
       "the\n"
@@ -67,19 +75,21 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "In lock-step the result depends only on scenario, seed, robot and configurations; grouping, pace, load, killed\n"
       "processes and hosts do not change it.\n"
       "The first Ctrl-C (or SIGTERM) ends the run in order and writes the complete report; the second kills all\n"
-      "processes.\n\n"
+      "processes. If the launcher is killed, its terminal is closed, a process fails or the computer stops, --resume\n"
+      "continues the run with the same result; a reboot loses at most the last 10 s of wall time.\n\n"
       "EXAMPLES\n"
       "  constrictor run\n"
       "  constrictor run line --seed 7 --report /tmp/seven\n"
       "  constrictor run --in-process --pace realtime\n"
+      "  constrictor run --resume /tmp/seven                     # the launcher was killed: go on\n"
       "  constrictor run --group physics,camera --group navigation,control\n"
       "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"
       "  constrictor run --manifest my_hosts.yaml                # on several hosts, see deploy/README.md\n"
       "  constrictor run --config planner=components/planner/planner.yaml\n\n"
       "EXIT STATUS\n"
       "  0 the mission succeeded; 1 it did not; 64 wrong usage; 70 a process failed; 75 a process waited too long for\n"
-      "  another one; 76 a process was refused; 78 wrong configuration; 130 ended by Ctrl-C, 143 by SIGTERM or\n"
-      "  `constrictor end`, before the mission succeeded\n\n"
+      "  another one; 76 a process was refused; 78 wrong configuration; 129 its terminal was closed; 130 ended by\n"
+      "  Ctrl-C, 143 by SIGTERM or `constrictor end`, before the mission succeeded\n\n"
       "FILES\n"
       "  runs/                          reports, unless --report names another directory\n"
       "  $XDG_RUNTIME_DIR/constrictor/  notes by which other commands find the run\n\n"

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <ctime>
@@ -13,14 +14,17 @@
 #include "cli/remote/host_set.hpp"
 #include "cli/run_ending.hpp"
 #include "cli/run_observer.hpp"
+#include "cli/run_record.hpp"
 #include "cli/run_report.hpp"
 #include "cli/signal_queue.hpp"
 #include "cli/supervisor.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/configuration.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/run_token.hpp"
 #include "runtime/host.hpp"
+#include "runtime/run_store.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -43,7 +47,8 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
   } else {
     fs::create_directories(dir);
   }
-  for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin"}) fs::remove(dir / old);
+  for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json"}) fs::remove(dir / old);
+  remove_checkpoints(dir);
   return fs::absolute(dir);
 }
 
@@ -61,22 +66,25 @@ struct Interrupted {
 /// One run, from the start of its processes to its report.
 class Launcher {
  public:
-  Launcher(const RunOptions& options, LaunchPlan plan)
+  /// `resumed`: the run that is continued; null: a new one.
+  Launcher(const RunOptions& options, LaunchPlan plan, const RunRecord* resumed)
       : options_(options),
         plan_(std::move(plan)),
         hosts_(
             plan_.manifest, [this](const std::string& line) { display_.print(line); }, [this] { wait_for_hosts(); }),
         claim_(hosts_.domain(options.domain)),
-        report_dir_(make_report_dir(options, plan_.manifest.scenario_file)),
+        report_dir_(resumed ? options.report_dir : make_report_dir(options, plan_.manifest.scenario_file)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
-        run_id_(random_run_id()),
+        resumed_(resumed != nullptr),
+        record_(resumed ? *resumed : RunRecord{absolute_options(options, plan_), random_run_id(), {}}),
+        run_id_(record_.run_id),
         note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_,
                run_id_, new_token()}),
         hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_, note_.token_file()), true)),
         observer_(claim_.domain(), run_id_),
         supervisor_(
             plan_.manifest,
-            make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file()),
+            recorded(make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file())),
             run_environment(), report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
             [this](const auto&... process) { return hosts_.start(process...); }) {}
 
@@ -88,7 +96,11 @@ class Launcher {
     display_.print(
         fmt::format("  token {} (for programs on other hosts: put it into a file, see --token-file)", note_.token()));
     const auto start = Clock::now();
-    supervisor_.start();
+    if (resumed_) {
+      fs::remove(report_dir_ / "report.json");  // it says why the run was interrupted
+      display_.print(prepare_checkpoint(report_dir_));
+    }
+    supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
     watch_run();
     const double wall_time_s = std::chrono::duration<double>(Clock::now() - start).count();
@@ -99,6 +111,33 @@ class Launcher {
   }
 
  private:
+  // Notes each incarnation: one that continues the run later must be newer.
+  CommandLine recorded(CommandLine command_line) {
+    return [this, command_line = std::move(command_line)](const ProcessPlan& process, std::uint32_t incarnation) {
+      record_.incarnations[process.name()] = incarnation;
+      write_record();
+      return command_line(process, incarnation);
+    };
+  }
+
+  void write_record() {
+    try {
+      write_run_record(report_dir_, record_);
+    } catch (const std::exception& error) {
+      display_.print(fmt::format("{}; the run goes on, but it cannot be resumed", error.what()));
+    }
+  }
+  /// Removes the checkpoints of a run that ended in order. If it did not, says how to continue it.
+  void note_end() {
+    if (killed_.empty() && supervisor_.failure().empty()) {
+      record_.over = true;
+      write_record();
+      remove_checkpoints(report_dir_);
+    } else if (fs::exists(report_dir_ / RunStore::kFile)) {
+      display_.print(fmt::format("to continue this run: constrictor run --resume {}", report_dir_.string()));
+    }
+  }
+
   void wait_for_hosts() {
     if (const int signal = signals_.wait(20ms); signal != 0) throw Interrupted{signal};
   }
@@ -129,7 +168,11 @@ class Launcher {
 
   /// Waits for signals, and asks the conductor to end the run if one arrived. True if the processes must be killed.
   bool must_kill(std::chrono::milliseconds bound) {
-    if (const int signal = signals_.wait(bound); signal != 0) {
+    const int signal = signals_.wait(bound);
+    if (signal == SIGHUP && !options_.no_checkpoints && !ending_.requested()) {
+      // The terminal is gone, but nobody asked to end the mission.
+      killed_ = left_ = "its terminal was closed";
+    } else if (signal != 0) {
       note_signal(signal);
       if (run_is_over_) ending_.accepted(Clock::now());
       if (ending_.wants_answer()) ask_conductor_to_end();
@@ -169,7 +212,7 @@ class Launcher {
     }
     if (!killed_.empty()) {
       display_.print("killing all processes, the report will be incomplete: " + killed_);
-      supervisor_.stop(ending_.at_once());
+      supervisor_.stop(ending_.at_once() || !left_.empty());
     }
   }
 
@@ -177,7 +220,11 @@ class Launcher {
     const RunView& view = observer_.view();
     RunOutcome outcome{scenario_, view.seed(options_.seed), wall_time_s, "", ""};
     int status = ending_.requested() ? 128 + ending_.first_signal() : exit_status::kFailed;
-    if (ending_.requested()) {
+    note_end();
+    if (!left_.empty()) {
+      outcome.error = fmt::format("the run was left at {:.1f} s because {}", view.sim_time_s(), left_);
+      status = 128 + SIGHUP;
+    } else if (ending_.requested()) {
       outcome.end_reason = fmt::format("ended by user at {:.1f} s", view.sim_time_s());
       if (!killed_.empty()) outcome.error = outcome.end_reason + "; processes killed because " + killed_;
       else outcome.error = supervisor_.failure();
@@ -202,6 +249,8 @@ class Launcher {
   DomainClaim claim_;
   fs::path report_dir_;
   std::string scenario_;
+  bool resumed_;
+  RunRecord record_;
   std::uint64_t run_id_;
   PublishedNote note_;
   bool hosts_prepared_;  ///< before the observer, which needs the DDS configuration
@@ -211,6 +260,7 @@ class Launcher {
   RunEnding ending_;
   bool run_is_over_ = false;  ///< the plant has ended; the other processes are ending
   std::string killed_;        ///< why the processes are killed; empty if they are not killed
+  std::string left_;          ///< why the run is left without an end, so that it can be resumed; else empty
 };
 
 }  // namespace
@@ -223,11 +273,25 @@ fs::path make_new_directory(const fs::path& wanted) {
   return directory;
 }
 
-int run_command(const RunOptions& options) {
+int run_command(const RunOptions& given) {
+  std::optional<RunRecord> resumed;
+  RunOptions options = given;
+  if (!given.resume_dir.empty()) {
+    resumed = read_run_record(given.resume_dir);
+    options = resumed->options;
+    options.domain = given.domain;
+  }
   LaunchPlan plan = make_launch_plan(options);
+  for (const auto& process : plan.manifest.processes) {
+    const auto& hosted = process.components;
+    if (resumed && !process.host.empty() &&
+        std::find(hosted.begin(), hosted.end(), plan.manifest.plant) != hosted.end())
+      throw ConfigurationError(
+          fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
+  }
   check_components(options, plan);
   try {
-    return Launcher(options, std::move(plan)).run();
+    return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr).run();
   } catch (const Interrupted& interrupted) {
     return 128 + interrupted.signal;
   }

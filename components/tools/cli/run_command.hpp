@@ -18,8 +18,8 @@ std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
 /// Adds the options that `run`, `check` and `serve` share: those that name files, and the seed.
 void add_file_options(CLI::App& app, RunOptions& options);
 
-/// Carries out a run. Throws UsageError or ConfigurationError for faults that are found before a process is started.
-/// Returns the exit status: 0 only after a successful mission.
-int run_command(const RunOptions& options);
+/// Carries out a run, or continues the one in `given.resume_dir`. Throws UsageError or ConfigurationError for faults
+/// that are found before a process is started. Returns the exit status: 0 only after a successful mission.
+int run_command(const RunOptions& given);
 
 }  // namespace constrictor::cli

@@ -65,11 +65,13 @@ std::filesystem::path Supervisor::log_of(const Supervised& process) const {
   return log_dir_ / (process.record.name + ".log");
 }
 
-void Supervisor::start() {
+void Supervisor::start(const std::map<std::string, std::uint32_t>& last_incarnations) {
   std::filesystem::create_directories(log_dir_);
   for (auto& process : processes_) {
     std::error_code ignored;
-    std::filesystem::remove(log_of(process), ignored);
+    if (last_incarnations.empty()) std::filesystem::remove(log_of(process), ignored);
+    const auto last = last_incarnations.find(process.record.name);
+    if (last != last_incarnations.end()) process.incarnation = last->second;
     spawn(process);
   }
 }

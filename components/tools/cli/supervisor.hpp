@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,8 +49,9 @@ class Supervisor {
                                            const std::vector<std::string>& environment,
                                            const std::filesystem::path& log);
 
-  /// Starts all processes. Throws std::system_error.
-  void start();
+  /// Starts all processes. `last_incarnations`: of a run that is continued, by the name of the process; its logs are
+  /// continued, too. Throws std::system_error.
+  void start(const std::map<std::string, std::uint32_t>& last_incarnations = {});
 
   enum class State {
     kRunning,
