@@ -1,5 +1,6 @@
 // toy_host NAME[,NAME...] OPTIONS: a process that hosts toy components, for tests of the runtime over DDS.
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -21,7 +22,8 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   ToyReport(Wiring& wiring, const Setup& setup)
       : wiring_(wiring),
         joints_(wiring.latest(topics::kJointState)),
-        ticks_(std::stol(setup.scenario_file.filename().string())),
+        // 0 if the name is no number: `--topics` and `--check` build the toy with any scenario
+        ticks_(std::strtol(setup.scenario_file.filename().c_str(), nullptr, 10)),
         output_dir_(setup.output_dir) {}
   void step(const Tick& tick) override {
     state_.mix(joints_->position_rad[0]);

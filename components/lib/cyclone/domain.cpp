@@ -8,17 +8,19 @@
 
 #include "constrictor/text.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/security.hpp"
 
 namespace constrictor::dds {
 namespace {
 
-// Message size and participant index: see deploy/README.md.
+// Message size and participant index: see deploy/README.md. What Cyclone logs goes to LimitedLog; its trace, which
+// would repeat the lines without a limit, goes nowhere.
 constexpr const char* kLoopback = R"(<CycloneDDS><Domain>
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>
 <Peers><Peer Address="localhost"/></Peers></Discovery>
-<Tracing><Verbosity>severe</Verbosity><OutputFile>stderr</OutputFile></Tracing>
+<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing>
 )";
 
 /// The configuration that the launcher of a run on several hosts has published for this domain, or the built-in one.
@@ -70,11 +72,17 @@ void limit_log_of_dds() {
 
 }  // namespace
 
-Domain::Domain(std::uint32_t domain, Reach reach) {
+Domain::Domain(std::uint32_t domain, Reach reach, const std::string& identity) {
   limit_log_of_dds();
   if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI"))
     domain_ = Entity(dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain");
-  participant_ = Entity(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant");
+  const Qos qos = make_qos();
+  const auto folder = reach == Reach::kLoopback ? security_folder(domain) : std::filesystem::path();
+  if (!folder.empty()) {
+    const char* chosen = std::getenv("CONSTRICTOR_IDENTITY");
+    set_identity(qos.get(), folder, !identity.empty() ? identity : chosen && *chosen ? chosen : "operator");
+  }
+  participant_ = Entity(dds_create_participant(domain, qos.get(), nullptr), "dds_create_participant");
 }
 
 }  // namespace constrictor::dds

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "cyclone/entity.hpp"
 
@@ -29,10 +30,13 @@ inline constexpr const char* kInternalSettings =
     "<AutoReschedNackDelay>100ms</AutoReschedNackDelay>"
     "<HeartbeatInterval min=\"2ms\" minsched=\"5ms\" max=\"500ms\">10ms</HeartbeatInterval></Internal>";
 
-/// Joins `domain`. A process can join each domain only once at a time. Throws Error.
+/// Joins `domain`. A process can join each domain only once at a time. Throws Error, or std::runtime_error if the run
+/// is secured and the files of the identity cannot be used.
 class Domain {
  public:
-  explicit Domain(std::uint32_t domain, Reach reach = Reach::kLoopback);
+  /// `identity`: with which the participant joins a secured run, see security_folder(); empty: $CONSTRICTOR_IDENTITY,
+  /// or "operator".
+  explicit Domain(std::uint32_t domain, Reach reach = Reach::kLoopback, const std::string& identity = {});
   [[nodiscard]] dds_entity_t participant() const { return participant_.get(); }
 
  private:

@@ -1,11 +1,14 @@
 #include "runtime/component_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <exception>
 #include <set>
 
 #include "barrier/history_depth.hpp"
+#include "component/client_requests.hpp"
 #include "component/data_path.hpp"
 
 namespace constrictor {
@@ -15,6 +18,10 @@ namespace {
 class UnconnectedWiring : public Wiring {
  public:
   void request_end_of_run() override {}
+  std::shared_ptr<ClientRequests> client_requests() override {
+    takes_requests = true;
+    return std::make_shared<ClientRequests>();
+  }
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     hello.reads.insert(topic.id);
     InputSlot& slot = inputs_.emplace_back();
@@ -29,6 +36,8 @@ class UnconnectedWiring : public Wiring {
 
   Hello hello;  ///< what the component would announce: name, timing and topics
 
+  bool takes_requests = false;
+
  private:
   std::deque<InputSlot> inputs_;  // a deque, because its elements keep the addresses that components store
   std::deque<OutputSlot> outputs_;
@@ -36,17 +45,41 @@ class UnconnectedWiring : public Wiring {
 
 }  // namespace
 
+namespace {
+
+Setup setup_of(const HostOptions& options, const ComponentFactory& factory) {
+  Setup setup = options.setup;
+  setup.component = factory.name;
+  setup.output_dir.clear();
+  const auto chosen = options.config_files.find(factory.name);
+  if (chosen != options.config_files.end()) setup.config_file = chosen->second;
+  else if (!factory.default_config.empty()) setup.config_file = data_path(factory.default_config);
+  return setup;
+}
+
+}  // namespace
+
+std::vector<std::string> topics_of_components(const HostOptions& options,
+                                              const std::vector<ComponentFactory>& factories) {
+  std::vector<std::string> lines;
+  for (const auto& factory : factories) {
+    UnconnectedWiring wiring;
+    static_cast<void>(factory.create(wiring, setup_of(options, factory)));
+    for (const auto& topic : topics::kInfos) {
+      if (wiring.hello.reads.contains(topic.id)) lines.push_back(fmt::format("reads {}", topic.name));
+      if (wiring.hello.writes.contains(topic.id)) lines.push_back(fmt::format("writes {}", topic.name));
+    }
+    if (wiring.takes_requests) lines.push_back(fmt::format("reads {}", barrier_topics::kRequest.name));
+  }
+  return lines;
+}
+
 std::vector<std::string> check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories) {
   std::vector<std::string> errors;
   std::set<std::string> reported;
   std::vector<Hello> hellos;
   for (const auto& factory : factories) {
-    Setup setup = options.setup;
-    setup.component = factory.name;
-    setup.output_dir.clear();
-    const auto chosen = options.config_files.find(factory.name);
-    if (chosen != options.config_files.end()) setup.config_file = chosen->second;
-    else if (!factory.default_config.empty()) setup.config_file = data_path(factory.default_config);
+    Setup setup = setup_of(options, factory);
     try {
       UnconnectedWiring wiring;
       const auto component = factory.create(wiring, setup);

@@ -15,4 +15,9 @@ namespace constrictor {
 [[nodiscard]] std::vector<std::string> check_components(const HostOptions& options,
                                                         const std::vector<ComponentFactory>& factories);
 
+/// The topics that the components of a process exchange with other processes, one line each: "reads TOPIC" or "writes
+/// TOPIC". Topics of the barrier aside, which every process uses. Throws what the components' constructors throw.
+std::vector<std::string> topics_of_components(const HostOptions& options,
+                                              const std::vector<ComponentFactory>& factories);
+
 }  // namespace constrictor

@@ -114,6 +114,8 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       ->check(CLI::Range(0.0, 86400.0));
   bool check = false;
   app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
+  bool topics = false;
+  app.add_flag("--topics", topics, "print which topics the components read and write, and exit; joins no run");
   app.add_flag("--record", options.record, "plant only: record every message except images, for `constrictor diff`");
   bool no_checkpoints = false;
   app.add_flag("--no-checkpoints", no_checkpoints,
@@ -147,6 +149,10 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       const std::vector<std::string> errors = check_components(options, factories);
       for (const auto& error : errors) std::fprintf(stderr, "%s\n", error.c_str());
       return errors.empty() ? exit_status::kOk : exit_status::kConfiguration;
+    }
+    if (topics) {
+      for (const auto& line : topics_of_components(options, factories)) std::printf("%s\n", line.c_str());
+      return exit_status::kOk;
     }
     return Host(std::move(options), std::move(factories)).run();
   } catch (const ConfigurationError& error) {

@@ -33,6 +33,12 @@ std::string names_of(const std::vector<ComponentFactory>& factories) {
   return fmt::format("{}", fmt::join(names, ","));
 }
 
+/// The name of the identity of a process in a secured run: its components, joined by "+" as in the names of its files.
+std::string security_identity(std::string components) {
+  std::replace(components.begin(), components.end(), ',', '+');
+  return components;
+}
+
 HostContext make_context(HostOptions options, const std::vector<ComponentFactory>& factories) {
   const std::string identity = names_of(factories);
   const std::string config_hash =
@@ -46,7 +52,7 @@ class Host::Impl {
  public:
   Impl(HostOptions options, std::vector<ComponentFactory> factories)
       : context_(make_context(std::move(options), factories)),
-        links_(context_.options.domain),
+        links_(context_.options.domain, security_identity(context_.identity)),
         members_(context_, links_, std::move(factories)) {
     links_.on_rejected([this](const std::string& topic, const std::string& reason) { members_.reject(topic, reason); });
     if (!members_.plant()) return;

@@ -4,8 +4,8 @@
 
 namespace constrictor {
 
-Links::Links(std::uint32_t domain)
-    : domain_(domain),
+Links::Links(std::uint32_t domain, const std::string& identity)
+    : domain_(domain, dds::Reach::kLoopback, identity),
       wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
       always_wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
       woken_(dds_create_guardcondition(domain_.participant()), "dds_create_guardcondition") {

@@ -18,8 +18,8 @@ class Links {
   /// Receives the reason why a message on a topic was rejected.
   using Reject = std::function<void(const std::string& topic, const std::string& reason)>;
 
-  /// Joins `domain`. Throws dds::Error.
-  explicit Links(std::uint32_t domain);
+  /// Joins `domain`, in a secured run with this identity. Throws what dds::Domain throws.
+  Links(std::uint32_t domain, const std::string& identity);
   [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
 
   /// Sets the function that receives rejections. Must be called before the first message is taken.

@@ -40,9 +40,10 @@ struct HostOutput {
   std::vector<std::string> lines;  ///< lines of standard output and standard error together
 };
 
-/// Runs constrictor_host to its end. Throws std::runtime_error if it does not end within kBound.
-HostOutput run_host(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), (program_folder() / "constrictor_host").string());
+/// Runs a program of this build to its end, by default constrictor_host. Throws std::runtime_error if it does not end
+/// within kBound.
+HostOutput run_host(std::vector<std::string> arguments, const std::string& program = "constrictor_host") {
+  arguments.insert(arguments.begin(), (program_folder() / program).string());
   const MemoryFile output;
   ChildProcess host(arguments, run_environment(), output.path());
   const auto end = std::chrono::steady_clock::now() + kBound;
@@ -56,6 +57,17 @@ HostOutput run_host(std::vector<std::string> arguments) {
 }
 
 }  // namespace
+
+std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process) {
+  const std::string program = process.program.empty() ? "constrictor_host" : process.program;
+  const HostOutput output = run_host(
+      {fmt::format("{}", fmt::join(process.components, ",")), "--topics", "--robot", plan.manifest.robot_file.string(),
+       "--scenario", plan.manifest.scenario_file.string(), "--seed", std::to_string(options.seed)},
+      program);
+  if (output.exit.clean()) return output.lines;
+  throw ConfigurationError(fmt::format("{} --topics {}: {}\n  {}", program, process.name(), output.exit.describe(),
+                                       fmt::join(output.lines, "\n  ")));
+}
 
 std::vector<std::string> ask_host(const std::string& option) {
   const HostOutput output = run_host({option});

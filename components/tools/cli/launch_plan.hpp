@@ -26,6 +26,7 @@ struct RunOptions {
   std::filesystem::path resume_dir;       ///< folder of a run to continue; empty: a new run
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
+  std::filesystem::path secure;           ///< folder that `constrictor keys` has made; empty: without DDS Security
 };
 
 /// A folder of the project with YAML files that users choose by name.
@@ -58,6 +59,11 @@ struct LaunchPlan {
 /// Components with a program of their own are not checked. Throws ConfigurationError with one line for each component
 /// whose files are wrong.
 void check_components(const RunOptions& options, const LaunchPlan& plan);
+
+/// The topics that a process of the plan uses, as its program prints them with --topics. Throws ConfigurationError if
+/// the program does not print them.
+[[nodiscard]] std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan,
+                                                 const ProcessPlan& process);
 
 /// The components that constrictor_host can host: all components of this build. Throws std::runtime_error if it does
 /// not start.

@@ -56,6 +56,10 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
                 "log all messages except images, so that `constrictor diff` can name fields");
   run->add_flag("--no-checkpoints", options->no_checkpoints,
                 "keep no checkpoints: if the process of the plant dies, the run is lost");
+  run->add_option(
+      "--secure", options->secure,
+      "use DDS Security with the identities in this folder (constrictor keys); without it everybody who can\n"
+      "send packets to the domain can read the run");
   run->add_option("--domain", options->domain, "DDS domain, 0 to 229 (default: the first free one of 1 to 100)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));

@@ -10,6 +10,7 @@
 #include <ctime>
 #include <random>
 
+#include "cli/keys/keys_command.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/remote/host_set.hpp"
 #include "cli/run_ending.hpp"
@@ -23,6 +24,7 @@
 #include "configuration/configuration.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/run_token.hpp"
+#include "cyclone/security.hpp"
 #include "runtime/host.hpp"
 #include "runtime/run_store.hpp"
 
@@ -81,6 +83,7 @@ class Launcher {
         note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_,
                run_id_, new_token()}),
         hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_, note_.token_file()), true)),
+        security_(claim_.domain(), options.secure),
         observer_(claim_.domain(), run_id_),
         supervisor_(
             plan_.manifest,
@@ -253,7 +256,8 @@ class Launcher {
   RunRecord record_;
   std::uint64_t run_id_;
   PublishedNote note_;
-  bool hosts_prepared_;  ///< before the observer, which needs the DDS configuration
+  bool hosts_prepared_;              ///< before the observer, which needs the DDS configuration
+  dds::PublishedSecurity security_;  ///< before the observer, which joins the run with an identity
   RunObserver observer_;
   Supervisor supervisor_;
   Clock::time_point memory_sampled_{};
@@ -290,6 +294,11 @@ int run_command(const RunOptions& given) {
           fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
   }
   check_components(options, plan);
+  if (!options.secure.empty()) {
+    check_keys(options.secure, plan);
+    ::setenv("CONSTRICTOR_SECURITY", fs::absolute(options.secure).c_str(), 1);  // for the processes of the run
+    ::unsetenv("CONSTRICTOR_IDENTITY");
+  }
   try {
     return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr).run();
   } catch (const Interrupted& interrupted) {

@@ -15,6 +15,7 @@ using Action = std::function<int()>;
 /// Each adds the subcommands that its file implements. When one of them is chosen on the command line, `action` is set.
 void add_run(CLI::App& app, Action& action);          ///< run, check
 void add_serve(CLI::App& app, Action& action);        ///< serve
+void add_keys(CLI::App& app, Action& action);         ///< keys
 void add_list(CLI::App& app, Action& action);         ///< list
 void add_robot(CLI::App& app, Action& action);        ///< robot
 void add_commands(CLI::App& app, Action& action);     ///< end, diff; host has only its help here
@@ -29,9 +30,9 @@ void add_doctor(CLI::App& app, Action& action);       ///< doctor
 void add_agent(CLI::App& app, Action& action);        ///< agent
 void add_completion(CLI::App& app, Action& action);   ///< completion
 
-inline constexpr std::array kSubcommands{add_run,         add_serve,  add_list,   add_robot, add_commands,
-                                         add_run_control, add_teleop, add_task,   add_param, add_topic,
-                                         add_node,        add_status, add_doctor, add_agent, add_completion};
+inline constexpr std::array kSubcommands{
+    add_run,   add_serve, add_list, add_robot,  add_commands, add_run_control, add_teleop,     add_task,
+    add_param, add_topic, add_node, add_status, add_doctor,   add_agent,       add_completion, add_keys};
 
 /// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
 template <class Options, class Run>

@@ -21,7 +21,7 @@ std::string dds_configuration(const std::string& own, const std::vector<std::str
       "<Discovery><SPDPInterval>2s</SPDPInterval><ParticipantIndex>auto</ParticipantIndex>"
       "<MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
       "<Peers>{}</Peers></Discovery>{}"
-      "<Tracing><Verbosity>severe</Verbosity><OutputFile>stderr</OutputFile></Tracing></Domain></CycloneDDS>",
+      "<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing></Domain></CycloneDDS>",
       own, message_bytes, peers, dds::kInternalSettings);
   return additional.empty() ? configuration : configuration + "," + additional;
 }

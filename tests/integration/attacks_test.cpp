@@ -1,0 +1,151 @@
+// Attacks on a run from another participant, without DDS Security: the token and the announced writers must keep what
+// is forged away from the result, and what strangers send may cost neither much memory nor many log lines. The figures
+// are in tests/README.md.
+#include <numeric>
+
+#include "integration/attacker.hpp"
+#include "integration/run_command_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+class Attacks : public RunCommand {
+ protected:
+  static constexpr long kTicks = 800;
+
+  void SetUp() override {
+    Process reference = run(kTicks, "reference", {"--in-process"});
+    ASSERT_EQ(reference.wait(60s), exit_status::kOk) << reference.errors();
+    launcher_.emplace(run(kTicks, "attacked", {"--pace", "2x"}));
+    const unsigned domain = domain_of(*launcher_);
+    ASSERT_GT(domain, 0u) << launcher_->errors();
+    attacker_.emplace(domain);
+    ASSERT_TRUE(attacker_->ready_to_forge(5)) << launcher_->output() << launcher_->errors();
+  }
+  /// [KiB] resident memory of all members together.
+  [[nodiscard]] long memory_kib() const {
+    long sum = 0;
+    for (const auto& [name, pid] : members()) {
+      std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+      for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmRSS:")) sum += std::stol(line.substr(6));
+    }
+    return sum;
+  }
+  /// [byte] all logs together.
+  [[nodiscard]] std::uintmax_t log_size() const {
+    std::uintmax_t sum = 0;
+    for (const auto& entry : fs::directory_iterator(dir_ / "attacked" / "logs")) sum += entry.file_size();
+    return sum;
+  }
+  /// Ends the test: the run must have the result of the run that was left alone.
+  void expect_same_result() {
+    attacker_->poll();
+    ASSERT_EQ(launcher_->wait(60s), exit_status::kOk) << launcher_->output() << launcher_->errors();
+    EXPECT_EQ(state_hash("attacked"), state_hash("reference"));
+    EXPECT_NE(state_hash("reference"), "none");
+    for (const auto& process : report("attacked").at("processes")) EXPECT_EQ(process.at("restarts"), 0) << process;
+    expect_nobody_left();
+  }
+
+  std::optional<Process> launcher_;
+  std::optional<Attacker> attacker_;
+};
+
+TEST_F(Attacks, ForgedAndReplayedMessagesOfMembersDoNotChangeTheRun) {
+  Attacker& attacker = *attacker_;
+  const std::uint64_t forged = attacker.forge_control(msg::kRunEnd, "");
+  const std::uint64_t guessed = attacker.forge_control(msg::kRunEnd, std::string(32, '0'));
+  attacker.forge_control(msg::kRunReset, std::string(64, 'f'));
+  EXPECT_TRUE(eventually([&] {
+    attacker.poll();
+    return attacker.answers.contains(forged) || attacker.answers.contains(guessed);
+  })) << "a refused command is answered";
+  for (const auto& [number, refusal] : attacker.answers) EXPECT_NE(refusal.find("token: found"), std::string::npos);
+  for (const std::string name : {"physics", "navigation", "control", "planner", "report"}) {
+    for (const std::uint32_t incarnation : {1u, 2u, 1000u}) {
+      attacker.forge_hello(name, incarnation);
+      for (const std::int64_t ahead : {-1, 0, 1, 1000}) attacker.forge_done(name, incarnation, ahead, true);
+    }
+    msg::Refused refusal{};
+    dds::set_text(refusal.component, name);
+    refusal.run_id = attacker.state->run_id;
+    refusal.incarnation = 1;
+    refusal.pid = attacker.known.at(name).pid;
+    dds::set_text(refusal.host, attacker.known.at(name).host);
+    attacker.refused.write(refusal);
+  }
+  msg::EpochStart start{};
+  start.run_id = attacker.state->run_id;
+  start.epoch = attacker.state->epoch + 1;
+  start.seed = 99;
+  dds::set_text(start.config_hash, attacker.known.at("navigation").config_hash);
+  attacker.start.write(start);
+  for (const std::int64_t ahead : {-1, 0, 1, 2, 100}) {
+    attacker.forge_tick(ahead, false);
+    attacker.forge_tick(ahead, true);
+  }
+  for (int i = 0; i < 50; ++i) {
+    attacker.poll();
+    for (const std::uint64_t ahead : {1, 2, 3, 100}) {
+      attacker.forge_joint_command(ahead, 1);
+      attacker.forge_joint_command(ahead, 1000);
+    }
+    static_cast<void>(eventually([] { return false; }, 10ms));
+  }
+  const auto log = log_size();
+  expect_same_result();
+  std::printf("forged messages: same result, logs of %ju bytes\n", log);
+}
+
+// Half of them name no component of the roster, the others a member with ever higher incarnations.
+TEST_F(Attacks, FiftyThousandHellosCostNeitherMemoryNorLogLinesNorAnswers) {
+  Attacker& attacker = *attacker_;
+  const long before_kib = memory_kib();
+  const auto log_before = log_size();
+  const auto refused = dds::Reader<msg::Refused>::member(attacker.get(), wire::kRefused);
+  std::size_t answers = 0;
+  const auto began = std::chrono::steady_clock::now();
+  for (int i = 0; i < 50'000; ++i) {
+    msg::Hello message = attacker.known.at("navigation");
+    dds::set_text(message.component, i % 2 == 0 ? "stranger_" + std::to_string(i) : "navigation");
+    message.incarnation = 1000 + static_cast<std::uint32_t>(i);
+    attacker.hello.write(message);
+    refused.take([&](const msg::Refused&) { ++answers; });
+  }
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  dds_wait_for_acks(attacker.hello.get(), DDS_SECS(20));
+  const long grown_kib = memory_kib() - before_kib;
+  const auto logged = log_size() - log_before;
+  std::printf("50000 Hellos in %.1f s: memory of 5 processes %+ld KiB, logs %ju bytes, %zu answers\n", wall_s,
+              grown_kib, logged, answers);
+  // For comparison: a participant that keeps 25,000 instances of Hello needs about 20 MB, in each process.
+  EXPECT_LT(grown_kib, 20'000);
+  EXPECT_LT(logged, 100'000u);
+  EXPECT_LT(answers, 16 + 10 * static_cast<std::size_t>(wall_s + 21));
+  expect_same_result();
+}
+
+TEST_F(Attacks, CommandsAndStopsFromManySourcesCostLittle) {
+  Attacker& attacker = *attacker_;
+  const long before_kib = memory_kib();
+  for (int i = 0; i < 20'000; ++i) {
+    msg::RunControl message{};
+    dds::set_text(message.source, "source_" + std::to_string(i));
+    message.sequence_number = 1;
+    message.command = msg::kRunEnd;
+    attacker.control.write(message);
+    msg::EmergencyStop stop{};
+    stop.robot_id = 1;
+    dds::set_text(stop.source, "source_" + std::to_string(i));
+    attacker.stop.write(stop);
+  }
+  dds_wait_for_acks(attacker.control.get(), DDS_SECS(20));
+  const long grown_kib = memory_kib() - before_kib;
+  std::printf("20000 commands and stops from 20000 sources: memory of 5 processes %+ld KiB\n", grown_kib);
+  EXPECT_LT(grown_kib, 20'000);
+  expect_same_result();
+}
+
+}  // namespace
+}  // namespace constrictor::testing
