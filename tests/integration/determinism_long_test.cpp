@@ -91,6 +91,65 @@ TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
   EXPECT_EQ(restarts("killed"), kDeaths * static_cast<int>(kRestartableLive.size()));
 }
 
+// The plant, which is also the conductor, is one of them. The moments are random.
+TEST_F(WholeCaseStudy, SameHashWhenAnyProcessIsKilledAtRandomMoments) {
+  const std::string expected = reference();
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::vector<std::string> all = kRestartable;
+  all.emplace_back("physics");
+  Process launcher = start("shot");
+  std::map<std::string, int> kills;
+  for (int i = 0; i < 60 && launcher.running(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1500));
+    const std::string& victim = i % 3 == 0 ? all.back() : all[random() % all.size()];
+    const pid_t pid = pid_of(victim);
+    if (pid <= 0) continue;
+    ::kill(pid, SIGKILL);
+    ++kills[victim];
+  }
+  EXPECT_EQ(hash_of("shot", launcher), expected);
+  EXPECT_GE(kills["physics"], 5);
+  EXPECT_GE(restarts("shot"), 15);
+}
+
+TEST_F(WholeCaseStudy, SameHashWhenTheProcessWithAllMembersIsKilledAtRandomMoments) {
+  const std::string expected = reference();
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  Process launcher = start("all", {"--in-process"});
+  for (int i = 0; i < 10 && launcher.running(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 3000));
+    for (const auto& [pid, line] : command_lines()) {
+      if (line.find("--incarnation") != std::string::npos && line.find((dir_ / "all").string()) != std::string::npos)
+        ::kill(pid, SIGKILL);
+    }
+  }
+  EXPECT_EQ(hash_of("all", launcher), expected);
+  EXPECT_GE(restarts("all"), 5);
+}
+
+TEST_F(WholeCaseStudy, SameHashWhenTheLauncherIsKilledAndTheRunIsResumed) {
+  const std::string expected = reference();
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  auto launcher = std::make_unique<Process>(start("left"));
+  int kills = 0;
+  for (; kills < 6 && launcher->running(); ++kills) {
+    ASSERT_TRUE(eventually([&] { return fs::exists(dir_ / "left" / "run.json"); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1000 + random() % 4000));
+    launcher->signal(SIGKILL);
+    ASSERT_TRUE(launcher->wait(20s));
+    launcher = std::make_unique<Process>(
+        std::vector<std::string>{program("constrictor"), "run", "--resume", (dir_ / "left").string()});
+  }
+  EXPECT_EQ(hash_of("left", *launcher), expected);
+  EXPECT_GE(kills, 3);
+}
+
 TEST_F(WholeCaseStudy, SameHashAfterAResetFromAnotherSeed) {
   const std::map<std::string, std::string> registry = {
       {"XDG_RUNTIME_DIR", dir_.string()}};  // a registry in which this run is the only one

@@ -82,6 +82,18 @@ TEST(RuntimeProcesses, AnyProcessMayBeStoppedAndContinued) {
   }
 }
 
+// As a virtual machine that is stopped, or a computer that sleeps.
+TEST(RuntimeProcesses, AFreezeOfAllProcessesLongerThanThePatienceEndsNoRun) {
+  const std::string expected = reference(1000);
+  ToyRun run(1000, {"--pace", "10", "--patience", "2"});
+  run.start_all(kEach);
+  ASSERT_TRUE(run.wait_for_step_of("report", 1));
+  for (auto& [group, process] : run.processes) process.signal(SIGSTOP);
+  std::this_thread::sleep_for(3500ms);
+  for (auto& [group, process] : run.processes) process.signal(SIGCONT);
+  EXPECT_EQ(run.result(), expected);
+}
+
 TEST(RuntimeProcesses, CappedPaceGivesTheSameResult) {
   const std::string expected = reference(100);
   ToyRun run(100, {"--pace", "4"});

@@ -172,6 +172,29 @@ TEST_F(MemberTest, AtRealTimePaceItStepsAtTheNewestTickAndCountsTheOthers) {
   EXPECT_EQ(member->counters().skipped, 4u);
 }
 
+TEST_F(MemberTest, AtRealTimePaceAnInputThatMissedManySamplesReceivesAgain) {
+  const auto member = make();
+  member->on_epoch(kEpoch, 1);
+  const auto send_tick = [&](std::int64_t index) {
+    msg::Tick tick = tick_at(index, visible(static_cast<std::uint64_t>(index) + 1, 0));
+    tick.realtime = true;
+    member->on_tick(tick);
+  };
+  give_joints(*member, 1);
+  send_tick(0);
+  ASSERT_TRUE(member->try_step());
+  // The member was stopped while the plant wrote more samples than a sequence number may be ahead.
+  send_tick(2 * InputBuffer::kFarthestAhead - 1);
+  give_joints(*member, 2 * InputBuffer::kFarthestAhead);
+  ASSERT_TRUE(member->try_step());
+  EXPECT_EQ(member->counters().refused, 0u) << member->counters().last_refusal;
+  std::uint64_t seen = 0;
+  for (const auto& [topic, count] : record_.steps.back().consumed) {
+    if (topic == topics::kJointState.id) seen = count;
+  }
+  EXPECT_EQ(seen, 2 * InputBuffer::kFarthestAhead);
+}
+
 TEST_F(MemberTest, TheFinalTickEndsItWithoutAStep) {
   const auto member = make();
   member->on_epoch(kEpoch, 1);
