@@ -5,14 +5,17 @@
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
-#include <xxhash.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
+
+#define XXH_INLINE_ALL  // so that programs that use this library need not link libxxhash
+#include <xxhash.h>
 
 namespace constrictor {
 namespace {
@@ -63,7 +66,10 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
           failure(path_, "another process of the plant has this file open: is the run still going on?").what());
     const off_t found = ::lseek(descriptor_, 0, SEEK_END);
     size_ = static_cast<std::size_t>(found);
-    const bool fresh = size_ == 0;
+    // A process that was killed while it made the file may have left it without content.
+    char magic[sizeof kMagic] = {};
+    const bool fresh = ::pread(descriptor_, magic, sizeof magic, 0) < 0 ||
+                       std::all_of(magic, std::end(magic), [](char c) { return c == 0; });
     if (!fresh && size_ < kFirstSize) throw failure(path_, "found a file that is too short for a checkpoint");
     grow(fresh ? kFirstSize : size_);
     auto& header = *reinterpret_cast<Header*>(data_);

@@ -116,6 +116,7 @@ void Supervisor::restart(Supervised& process, const std::string& why, bool own_f
         exit_status::kSoftware);
   }
   ++process.record.restarts;
+  process.started_at_end = ending_;
   print_(fmt::format("{} {}; restarted as incarnation {}", process.record.name, why, process.incarnation + 1));
   spawn(process);
 }
@@ -125,7 +126,13 @@ void Supervisor::handle_exit(Supervised& process, const ChildExit& exit) {
   process.ended = Clock::now();
   process.record.cpu_s += exit.cpu_s;
   if (exit.clean()) {
-    plant_gone_ = plant_gone_ || is_plant(process);
+    if (!is_plant(process)) return;
+    plant_gone_ = true;
+    // A member that died after its own end, and was restarted, would wait for the plant in vain. A report that draws
+    // finishes its files before it heeds the signal.
+    for (const auto& other : processes_) {
+      if (other.started_at_end && other.running()) other.child->signal(SIGTERM);
+    }
     return;
   }
   const std::string& name = process.record.name;

@@ -147,6 +147,15 @@ TEST_F(SupervisorTest, RestartsAPlantThatIsKilledAfterTheEndOfTheRun) {
   EXPECT_EQ(record(1).restarts, 1u);
 }
 
+TEST_F(SupervisorTest, EndsAMemberThatWasRestartedAfterTheRunWhenThePlantHasEnded) {
+  start("sleep 1; exit 0", "test $1 -lt 2 && kill -KILL $$; trap 'exit 0' TERM; while :; do sleep 0.05; done", 100, 2);
+  supervisor_->expect_end();
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
+  EXPECT_EQ(record(0).restarts, 1u) << "as long as the plant runs, it may still have something to write";
+  ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it must end by itself";
+}
+
 TEST_F(SupervisorTest, FailsWhenThePlantDiesAndTheManifestAllowsNoRestart) {
   start("kill -SEGV $$", kWaitForever);
   ASSERT_TRUE(poll_until_over());
