@@ -54,8 +54,8 @@ class ConductorSide : private ConductorSink {
   void note_authority(const TopicInfo& topic, const Sample& sample);
   /// A member of this process has written `sample`: adds it to the hash log, if this run has a hash log.
   void record(const TopicInfo& topic, const Sample& sample);
-  /// True after the final tick while the process has to stay for other members: one that is restarted now, such as a
-  /// report that was killed while it drew, needs its checkpoint and the final tick. At most kStay.
+  /// True after the final tick while the process has to stay for other members: one that is restarted now needs its
+  /// checkpoint and the final tick. At most 30 s.
   [[nodiscard]] bool stays();
   /// Reports the members that delay the next tick.
   void report_waiting();
