@@ -144,7 +144,6 @@ class Launcher {
   void wait_for_hosts() {
     if (const int signal = signals_.wait(20ms); signal != 0) throw Interrupted{signal};
   }
-
   /// Until the run has ended, a process failed, or the processes must be killed.
   void watch_run() {
     SpeedMeter speed;
@@ -268,14 +267,6 @@ class Launcher {
 };
 
 }  // namespace
-
-fs::path make_new_directory(const fs::path& wanted) {
-  if (wanted.has_parent_path()) fs::create_directories(wanted.parent_path());
-  fs::path directory = wanted;
-  for (int number = 2; !fs::create_directory(directory); ++number)
-    directory = fmt::format("{}-{}", wanted.string(), number);
-  return directory;
-}
 
 int run_command(const RunOptions& given) {
   std::optional<RunRecord> resumed;
