@@ -14,7 +14,7 @@ class Hosts : public RunCommand {
     environment_["CONSTRICTOR_SSH"] = (dir_ / "ssh").string();
     environment_["XDG_RUNTIME_DIR"] = (dir_ / "here").string();
     fs::create_directory(dir_ / "here");
-    hosts("directory: " + fs::path(program("constrictor")).parent_path().string());
+    patience(20);
   }
   /// Writes the script in place of ssh, which first executes `commands`.
   void ssh(const std::string& commands) const {
@@ -23,14 +23,15 @@ class Hosts : public RunCommand {
     fs::permissions(dir_ / "ssh", fs::perms::owner_all);
   }
   /// Writes hosts.yaml: navigation, control and report run on the host `robot`.
-  void hosts(const std::string& keys) const {
-    std::string manifest = kManifest;
+  void hosts(const std::string& keys, int patience_s) const {
+    std::string manifest = replaced(kManifest, "patience_s: 4", "patience_s: " + std::to_string(patience_s));
     for (const char* name : {"navigation", "control", "report"}) {
       const std::string entry = std::string("[") + name + "], program: toy_host";
       manifest = replaced(manifest, entry, entry + ", host: robot");
     }
     write("hosts.yaml", manifest + "hosts: {here: local, robot: {ssh: snake@10.0.0.2, " + keys + "}}\n");
   }
+  void patience(int seconds) const { hosts("directory: " + bin_.string(), seconds); }
   [[nodiscard]] Process run_there(long ticks, const std::string& report, std::vector<std::string> more = {}) const {
     return run(ticks, report, std::move(more), "hosts.yaml");
   }
@@ -58,6 +59,7 @@ class Hosts : public RunCommand {
       EXPECT_TRUE(entry.path().extension() == ".lock") << entry.path() << " is left";
   }
 
+  const fs::path bin_ = fs::path(program("constrictor")).parent_path();
   fs::path there_;
 };
 
@@ -99,7 +101,7 @@ TEST_F(Hosts, AProcessThatDiesThereIsRestartedAndItsLastLinesAreShown) {
 TEST_F(Hosts, ABrokenConnectionIsMadeAgainAndDisturbsNoProcess) {
   ASSERT_EQ(run_there(300, "one", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run_there(300, "two", {"--pace", "2x"});
-  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output();
+  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output() << launcher.errors();
   const auto before = members();
   // The processes of the connection: those with the token that do not lead a session, as the agent does.
   const pid_t keeper = agent();
@@ -121,7 +123,7 @@ TEST_F(Hosts, ABrokenConnectionIsMadeAgainAndDisturbsNoProcess) {
 TEST_F(Hosts, WhenTheAgentIsKilledItsProcessesAreStartedAgain) {
   ASSERT_EQ(run_there(300, "one", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run_there(300, "two", {"--pace", "2x"});
-  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output();
+  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output() << launcher.errors();
   ::kill(agent(), SIGKILL);
   ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
   EXPECT_EQ(state_hash("two"), state_hash("one"));
@@ -130,13 +132,15 @@ TEST_F(Hosts, WhenTheAgentIsKilledItsProcessesAreStartedAgain) {
 }
 
 TEST_F(Hosts, WhenTheLauncherIsKilledNothingIsLeft) {
+  patience(6);
   Process launcher = run_there(100000, "two", {"--pace", "1x"});
-  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output();
+  ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output() << launcher.errors();
   launcher.signal(SIGKILL);
-  expect_nothing_left();  // within the manifest's patience of 4 s
+  expect_nothing_left();  // within the manifest's patience
 }
 
 TEST_F(Hosts, AHostThatCannotBeReachedIsTriedForThePatience) {
+  patience(4);
   ssh("echo x >> " + (dir_ / "tries").string() + "; echo 'ssh: connect to host: No route to host' >&2; exit 255");
   const auto start = std::chrono::steady_clock::now();
   Process launcher = run_there(300, "two");
@@ -154,7 +158,7 @@ TEST_F(Hosts, AHostWithAnotherReleaseIsRefused) {
   fs::create_directories(dir_ / "other/bin");
   write("other/bin/constrictor", "#!/bin/sh\necho 9.9.9\n");
   fs::permissions(dir_ / "other/bin/constrictor", fs::perms::owner_all);
-  hosts("directory: " + (dir_ / "other").string());
+  hosts("directory: " + (dir_ / "other").string(), 20);
   Process launcher = run_there(300, "two");
   ASSERT_EQ(launcher.wait(30s), exit_status::kSoftware) << launcher.output();
   EXPECT_NE(launcher.errors().find("other/bin/constrictor is 9.9.9"), std::string::npos) << launcher.errors();
@@ -181,7 +185,7 @@ TEST_F(Hosts, AHostThatComputesOtherwiseIsRefusedWithTheDifferences) {
         "#!/bin/sh\n" + program("constrictor_host") +
             " \"$@\" | sed 's/libode.so[^ ]*/libode.so.9/; s/^profile libm ./profile libm x/'\n");
   fs::permissions(other / "constrictor_host", fs::perms::owner_all);
-  hosts("directory: " + other.string());
+  hosts("directory: " + other.string(), 20);
   Process launcher = run_there(300, "two");
   ASSERT_EQ(launcher.wait(30s), exit_status::kSoftware) << launcher.output();
   EXPECT_NE(launcher.errors().find("host robot: numeric profile: found libm x"), std::string::npos)

@@ -80,6 +80,9 @@ TEST(PlainName, IsNoPathAndNotHidden) {
   for (const char* good : {"mamba.yaml", "navigation+control", "A_1-b"}) EXPECT_TRUE(is_plain_name(good)) << good;
   for (const char* bad : {"", ".", "..", ".hidden", "a/b", "/etc", "a b", "a\nb", "\xff"})
     EXPECT_FALSE(is_plain_name(bad)) << bad;
+  EXPECT_TRUE(is_plain_path("snapshots/3.png"));
+  for (const char* bad : {"", "/etc/passwd", "../x", "a/../../x", "a//b", "a/"})
+    EXPECT_FALSE(is_plain_path(bad)) << bad;
 }
 
 TEST(DdsConfiguration, ResolvesFilesAndKeepsXml) {

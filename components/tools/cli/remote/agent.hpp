@@ -80,7 +80,7 @@ class Agent {
   PublishedDdsConfiguration dds_;
   std::string dds_xml_;
   std::map<std::string, Managed> processes_;
-  std::map<std::string, std::uintmax_t> files_to_send_;  ///< output files by name: [byte] that have been sent
+  std::map<std::string, std::uintmax_t> files_to_send_;  ///< output files by path: [byte] that have been sent
   nlohmann::json description_;                           ///< of this host; null before the first hello
   bool prepared_ = false;
   bool collecting_ = false;

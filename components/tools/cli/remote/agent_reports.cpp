@@ -103,9 +103,9 @@ void Agent::send_state() {
 void Agent::collect() {
   collecting_ = true;
   files_to_send_.clear();
-  for (const auto& entry : fs::directory_iterator(folder_ / "output")) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file() && is_plain_name(name)) files_to_send_[name] = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "output")) {
+    const std::string path = fs::relative(entry.path(), folder_ / "output").string();
+    if (entry.is_regular_file() && is_plain_path(path)) files_to_send_[path] = 0;
   }
 }
 

@@ -249,7 +249,8 @@ void HostLink::collect(const std::filesystem::path& folder) {
 void HostLink::take_file(const Json& message) {
   const auto name = field<std::string>(message, "name");
   const auto hex = field<std::string>(message, "hex");
-  if (!is_plain_name(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");
+  if (!is_plain_path(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");
+  std::filesystem::create_directories((collect_into_ / name).parent_path());
   const bool first = field<std::uintmax_t>(message, "offset") == 0;
   std::ofstream file(collect_into_ / name, first ? std::ios::binary : std::ios::binary | std::ios::app);
   const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };

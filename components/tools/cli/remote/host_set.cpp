@@ -170,6 +170,11 @@ void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs
     exchange();
     wait_();
   }
+  for (const auto& link : links_) {
+    const Json& description = link->description();
+    print_(fmt::format("host {}: {} {}, {} cores", link->name(), description.value("host", ""),
+                       description.value("ip", ""), description.value("cores", 0)));
+  }
 }
 
 std::string HostSet::there(const HostLink& link, const std::string& argument) const {

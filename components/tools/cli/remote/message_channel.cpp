@@ -79,4 +79,10 @@ bool is_plain_name(const std::string& name) {
          });
 }
 
+bool is_plain_path(const std::string& path) {
+  const auto slash = path.find('/');
+  if (slash == std::string::npos) return is_plain_name(path);
+  return is_plain_name(path.substr(0, slash)) && is_plain_path(path.substr(slash + 1));
+}
+
 }  // namespace constrictor::cli

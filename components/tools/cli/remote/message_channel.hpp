@@ -78,5 +78,7 @@ T field(const nlohmann::json& message, const char* name) {
 
 /// Whether a text may name a file of a run or a process: letters, digits, '.', '_', '-', '+'; not hidden, no path.
 [[nodiscard]] bool is_plain_name(const std::string& name);
+/// Whether a text is a relative path of plain names.
+[[nodiscard]] bool is_plain_path(const std::string& path);
 
 }  // namespace constrictor::cli
