@@ -11,7 +11,7 @@ namespace {
 
 class Attacks : public RunCommand {
  protected:
-  static constexpr long kTicks = 800;
+  static constexpr long kTicks = 400;
 
   void SetUp() override {
     Process reference = run(kTicks, "reference", {"--in-process"});

@@ -25,7 +25,7 @@ class Variable {
 
 class Secure : public RunCommand {
  protected:
-  static constexpr long kTicks = 1500;
+  static constexpr long kTicks = 600;
 
   void SetUp() override {
     environment_["XDG_RUNTIME_DIR"] = dir_.string();
@@ -47,8 +47,8 @@ class Secure : public RunCommand {
 TEST_F(Secure, ASecuredRunHasTheResultOfAnUnsecuredOneAndCommandsFindTheirIdentity) {
   Process reference = run(kTicks, "reference", {"--in-process"});
   ASSERT_EQ(reference.wait(60s), exit_status::kOk) << reference.errors();
-  Process launcher = secured_run(kTicks, "4x");
-  for (const std::string name : {"pause", "resume", "status"}) {
+  Process launcher = secured_run(kTicks, "1x");
+  for (const std::string name : {"pause", "status", "resume"}) {
     Process process = command({name});
     EXPECT_EQ(process.wait(20s), exit_status::kOk) << name << process.output() << process.errors();
   }
@@ -67,7 +67,7 @@ TEST_F(Secure, AStrangerWithoutAnIdentityOrWithOneOfAnotherAuthorityMeetsNobody)
   const unsigned domain = domain_of(launcher);
   {
     Attacker plain(domain);
-    EXPECT_FALSE(plain.meets_anybody(5s));
+    EXPECT_FALSE(plain.meets_anybody(2s));
   }
   make_keys("foreign");
   {
@@ -75,7 +75,7 @@ TEST_F(Secure, AStrangerWithoutAnIdentityOrWithOneOfAnotherAuthorityMeetsNobody)
     const dds::Domain rogue(domain);
     const auto states = dds::Reader<msg::RunState>::member(rogue.participant(), wire::kRunState);
     const dds::Writer<msg::EmergencyStop> stop(rogue.participant(), wire::kEmergencyStop);
-    EXPECT_FALSE(eventually([&] { return states.writers() > 0 || stop.readers() > 0; }, 5s));
+    EXPECT_FALSE(eventually([&] { return states.writers() > 0 || stop.readers() > 0; }, 2s));
   }
   {
     const Variable folder("CONSTRICTOR_SECURITY", keys());
@@ -127,7 +127,7 @@ TEST_F(Secure, AStolenIdentityGivesNoRightsButThoseOfItsComponent) {
     const dds::Domain thief(domain_of(launcher), dds::Reach::kLoopback, "report");
     const dds::Writer<msg::EmergencyStop> stop(thief.participant(), wire::kEmergencyStop);
     const auto states = dds::Reader<msg::RunState>::member(thief.participant(), wire::kRunState);
-    EXPECT_FALSE(eventually([&] { return states.writers() > 0 || stop.readers() > 0; }, 5s))
+    EXPECT_FALSE(eventually([&] { return states.writers() > 0 || stop.readers() > 0; }, 2s))
         << "the run's processes must refuse rights that the thief has signed";
   }
   launcher.signal(SIGTERM);

@@ -27,6 +27,11 @@ std::string new_token() {
   return token;
 }
 
+std::uint64_t new_run_id() {
+  std::random_device entropy;
+  return (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
+}
+
 void write_token_file(const std::filesystem::path& file, const std::string& token) {
   const std::string line = token + "\n";
   std::error_code ignored;

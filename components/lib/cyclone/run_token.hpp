@@ -11,6 +11,9 @@ namespace constrictor {
 /// A new token: 128 random bits as 32 hexadecimal digits.
 [[nodiscard]] std::string new_token();
 
+/// A number that distinguishes a run from others; never 0. Nothing that a run computes depends on it.
+[[nodiscard]] std::uint64_t new_run_id();
+
 /// Writes the token into a new file that only this user can read. Throws std::runtime_error.
 void write_token_file(const std::filesystem::path& file, const std::string& token);
 

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <csignal>
 #include <ctime>
-#include <random>
 
 #include "cli/keys/keys_command.hpp"
 #include "cli/progress_display.hpp"
@@ -54,12 +53,6 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
   return fs::absolute(dir);
 }
 
-/// A number that distinguishes this run from others; nothing that a run computes depends on it.
-std::uint64_t random_run_id() {
-  std::random_device entropy;
-  return (static_cast<std::uint64_t>(entropy()) << 32 | entropy()) | 1;
-}
-
 /// A signal that arrived before the run began.
 struct Interrupted {
   int signal;
@@ -78,7 +71,7 @@ class Launcher {
         report_dir_(resumed ? options.report_dir : make_report_dir(options, plan_.manifest.scenario_file)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
         resumed_(resumed != nullptr),
-        record_(resumed ? *resumed : RunRecord{absolute_options(options, plan_), random_run_id(), {}}),
+        record_(resumed ? *resumed : RunRecord{absolute_options(options, plan_), new_run_id(), {}}),
         run_id_(record_.run_id),
         note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_,
                run_id_, new_token()}),
@@ -285,11 +278,7 @@ int run_command(const RunOptions& given) {
           fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
   }
   check_components(options, plan);
-  if (!options.secure.empty()) {
-    check_keys(options.secure, plan);
-    ::setenv("CONSTRICTOR_SECURITY", fs::absolute(options.secure).c_str(), 1);  // for the processes of the run
-    ::unsetenv("CONSTRICTOR_IDENTITY");
-  }
+  if (!options.secure.empty()) use_keys(options.secure, plan);
   try {
     return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr).run();
   } catch (const Interrupted& interrupted) {

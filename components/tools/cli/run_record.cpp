@@ -29,6 +29,7 @@ RunOptions absolute_options(RunOptions options, const LaunchPlan& plan) {
   options.scenario = plan.manifest.scenario_file.string();
   options.robot = plan.manifest.robot_file.string();
   options.manifest = find_file(options.manifest, kManifests).string();
+  if (!options.secure.empty()) options.secure = fs::absolute(options.secure);
   options.config_files.clear();
   for (const auto& [name, file] : plan.manifest.config_files)
     options.config_files.push_back(name + "=" + file.string());
@@ -37,13 +38,21 @@ RunOptions absolute_options(RunOptions options, const LaunchPlan& plan) {
 
 void write_run_record(const fs::path& folder, const RunRecord& record) {
   const RunOptions& options = record.options;
-  const Json json = {{"version", kVersion},          {"run_id", record.run_id},
-                     {"over", record.over},          {"incarnations", record.incarnations},
-                     {"scenario", options.scenario}, {"manifest", options.manifest},
-                     {"robot", options.robot},       {"seed", options.seed},
-                     {"pace", options.pace},         {"in_process", options.in_process},
-                     {"groups", options.groups},     {"max_sim_time_s", options.max_sim_time_s},
-                     {"record", options.record},     {"config_files", options.config_files}};
+  const Json json = {{"version", kVersion},
+                     {"run_id", record.run_id},
+                     {"over", record.over},
+                     {"incarnations", record.incarnations},
+                     {"scenario", options.scenario},
+                     {"manifest", options.manifest},
+                     {"robot", options.robot},
+                     {"seed", options.seed},
+                     {"pace", options.pace},
+                     {"in_process", options.in_process},
+                     {"groups", options.groups},
+                     {"max_sim_time_s", options.max_sim_time_s},
+                     {"record", options.record},
+                     {"config_files", options.config_files},
+                     {"secure", options.secure.string()}};
   const fs::path beside = folder / "run.json.part";
   {
     std::ofstream file(beside);
@@ -81,6 +90,7 @@ RunRecord read_run_record(const fs::path& folder) {
     options.max_sim_time_s = json.at("max_sim_time_s");
     options.record = json.at("record");
     options.config_files = json.at("config_files").get<std::vector<std::string>>();
+    options.secure = json.value("secure", "");
   } catch (const Json::exception& error) {
     throw wrong(fmt::format("it is damaged: {}", error.what()));
   }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 
@@ -78,7 +79,7 @@ int keys(const Options& options) {
 
 std::string identity_of(const ProcessPlan& process) { return fmt::format("{}", fmt::join(process.components, "+")); }
 
-void check_keys(const fs::path& folder, const LaunchPlan& plan) {
+void use_keys(const fs::path& folder, const LaunchPlan& plan) {
   std::vector<std::string> names{"operator"};
   for (const auto& process : plan.manifest.processes) names.push_back(identity_of(process));
   std::string problems;
@@ -86,7 +87,11 @@ void check_keys(const fs::path& folder, const LaunchPlan& plan) {
     const std::string problem = dds::problem_of_identity(folder, name);
     if (!problem.empty()) problems += "\n  " + problem;
   }
-  if (problems.empty()) return;
+  if (problems.empty()) {
+    ::setenv("CONSTRICTOR_SECURITY", fs::absolute(folder).c_str(), 1);
+    ::unsetenv("CONSTRICTOR_IDENTITY");  // each process has the identity of its components
+    return;
+  }
   throw ConfigurationError(
       fmt::format("--secure: {} cannot be used for this run:{}\n  `constrictor keys {}` with the "
                   "same manifest and groups makes what is missing",

@@ -12,8 +12,9 @@ namespace constrictor::cli {
 /// The name of the identity of a process: its components, joined by "+".
 [[nodiscard]] std::string identity_of(const ProcessPlan& process);
 
-/// Checks that `folder` has valid files for every process of the plan and for the operator. Throws ConfigurationError
-/// with everything that is missing or has expired, and what to do.
-void check_keys(const std::filesystem::path& folder, const LaunchPlan& plan);
+/// Lets this process and those that it starts use the identities in `folder`. Throws ConfigurationError, with
+/// everything that is missing or has expired and what to do, unless it has valid files for every process of the plan
+/// and for the operator.
+void use_keys(const std::filesystem::path& folder, const LaunchPlan& plan);
 
 }  // namespace constrictor::cli
