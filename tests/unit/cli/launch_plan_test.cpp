@@ -50,6 +50,15 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
                                                             "case_study_mx106", "manual", "two_hosts"}));
 }
 
+TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {
+  options_.manifest = "two_hosts";
+  EXPECT_EQ(make_launch_plan(options_).manifest.hosts.size(), 1u);
+  options_.secure = "keys";
+  EXPECT_THROW(static_cast<void>(make_launch_plan(options_)), ConfigurationError);
+  options_.in_process = true;
+  EXPECT_TRUE(make_launch_plan(options_).manifest.hosts.empty());
+}
+
 TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {
   options_.scenario = "lime";
   expect_refused(options_, {"scenario: found 'lime'", "case_study, line", "did you mean 'line'?"});
