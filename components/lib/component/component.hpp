@@ -95,8 +95,8 @@ class ConfiguredComponent : public StatefulComponent<State> {
 };
 
 /// The plant: it owns the joints and therefore the time. At tick k, `sample` writes what is measured at t_k (visible in
-/// tick k itself); then `step` applies the commands visible at k and advances to t_{k+1}. A plant cannot be restarted:
-/// save() is never called.
+/// tick k itself); then `step` applies the commands visible at k and advances to t_{k+1}. save() is called after
+/// sample(); a plant that does not override it has no state that a restarted process would need.
 class Plant : public Component {
  public:
   virtual void sample(const Tick& tick) = 0;
