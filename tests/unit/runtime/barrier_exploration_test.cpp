@@ -171,18 +171,6 @@ TEST(BarrierExploration, ACrashOfThePlantDuringTheStartGivesTheSameResult) {
 TEST(BarrierExploration, ACrashOfThePlantWhileTheRunIsResetGivesTheResultOfANewRun) {
   explore({{plant(), control()}, 1, {"physics"}, 1, 1, false});
 }
-
-TEST(BarrierExploration, ACrashOfThePlantAmongSlowerMembersGivesTheSameResult) {
-  explore({{plant(), navigation({2, 2}), control()}, 1, {"physics"}, 1, 0, false});
-}
-
-TEST(BarrierExploration, TwoCrashesOfThePlantGiveTheSameResult) {
-  explore({{plant(), control()}, 1, {"physics"}, 2, 0, false});
-}
-
-TEST(BarrierExploration, ACrashOfThePlantAndOneOfControlGiveTheSameResult) {
-  explore({{plant(), control()}, 1, {"physics", "control"}, 2, 0, false});
-}
 #endif
 
 TEST(BarrierExploration, ACrashDuringTheStartGivesTheSameResult) {
