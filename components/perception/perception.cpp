@@ -1,7 +1,10 @@
 #include "perception/perception.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "robot/robot_model.hpp"
 
@@ -9,6 +12,17 @@ namespace constrictor {
 namespace {
 
 constexpr std::size_t kAttitudes = 32;  // [ticks] longer than the delay of any camera
+
+/// FNV-1a (Fowler, Noll, Vo) over words of eight bytes; the bytes after the last whole word are left out.
+std::uint64_t fingerprint(const dds_sequence_octet& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (std::uint32_t i = 0; i + 8 <= bytes._length; i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes._buffer + i, sizeof word);
+    hash = (hash ^ word) * 0x100000001b3;
+  }
+  return hash;
+}
 
 }  // namespace
 
@@ -29,6 +43,13 @@ msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
                  : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
 }
 
+bool Perception::frozen(const msg::CameraImage& image) {
+  const std::uint64_t now = fingerprint(image.data);
+  state_.equal_images = now == state_.fingerprint ? state_.equal_images + 1 : 1;
+  state_.fingerprint = now;
+  return config_.frozen_after > 0 && state_.equal_images > config_.frozen_after;
+}
+
 void Perception::step(const Tick& tick) {
   if (parameters_.step(tick, state_.parameters)) detector_ = perception::LineAndBlobDetector(config_);
   if (imu_ && imu_.fresh()) {
@@ -41,6 +62,13 @@ void Perception::step(const Tick& tick) {
   const std::string error = perception::image_error(*image_, *info_);
   if (!error.empty()) {
     wiring_.count_refusal("camera/image: " + error);
+    return;
+  }
+  if (frozen(*image_)) {
+    wiring_.count_refusal(
+        fmt::format("camera/image: found the same bytes in {} images, accepted at most {}; the camera "
+                    "is frozen",
+                    state_.equal_images, config_.frozen_after));
     return;
   }
   ++state_.images;

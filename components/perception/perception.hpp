@@ -25,10 +25,12 @@ struct PerceptionState {
   std::deque<Attitude> attitudes;  ///< of the last ticks, the oldest first
   std::uint8_t line_colour = 0;    ///< named by a task; 0: no task has named one
   std::uint64_t images = 0;        ///< number of processed images
+  std::uint64_t fingerprint = 0;   ///< of the last image
+  int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, parameters);
+    archive(attitudes, line_colour, images, fingerprint, equal_images, parameters);
   }
 };
 
@@ -41,6 +43,8 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   void step(const Tick& tick) override;
 
  private:
+  /// Whether the camera repeats its image. The noise of any camera makes each image different.
+  [[nodiscard]] bool frozen(const msg::CameraImage& image);
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
   perception::LineAndBlobDetector detector_;

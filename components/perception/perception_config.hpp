@@ -36,6 +36,8 @@ struct PerceptionConfig : ParameterSet {
                             "Smaller blobs are ignored");
   double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, kWhileRunning,
                                 "More distant objects and zones are not reported");
+  int frozen_after = add(frozen_after, "camera.frozen_after", 3, "images", {0, 1000}, kWhileRunning,
+                         "After this many equal images, further ones are refused: the camera is frozen. 0: never");
   double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, kWhileRunning,
                           "Least difference between the channels of a coloured pixel (full scale: 1)");
   double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, kWhileRunning,

@@ -58,6 +58,9 @@ class Serve : public ::testing::Test {
     }
     return hashes;
   }
+  [[nodiscard]] fs::path plant_folder(const std::string& number) const {
+    return dir_.path() / "out" / ("physics+guidance+navigation+control+input+planner+report" + number);
+  }
   [[nodiscard]] pid_t host_of(const std::string& component) const {
     for (const auto& [pid, line] : command_lines()) {
       const bool host = fs::path(line.substr(0, line.find('\0'))).filename() == "constrictor_host";
@@ -88,6 +91,14 @@ TEST_F(Serve, TwoHostsCarryOutOneRunAfterTheOtherAlsoWhenAProcessIsKilled) {
   EXPECT_TRUE(eventually([&] { return host_of("physics") > 0; }));
   ::kill(host_of("perception"), SIGKILL);
   EXPECT_TRUE(far.wait_for("was killed by signal 9 (Killed); starting it again", 20s)) << far.output();
+  // The plant, too, comes back into its run.
+  const auto run_begun = [&] {
+    std::error_code none;
+    return fs::file_size(plant_folder("") / "hashes.bin", none) > 10'000 && !none;
+  };
+  ASSERT_TRUE(eventually(run_begun, 20s)) << plant.output();
+  ::kill(host_of("physics"), SIGKILL);
+  EXPECT_TRUE(plant.wait_for("continues the run at tick", 20s)) << plant.output();
   EXPECT_TRUE(eventually([&] { return hashes().size() >= 2; }, 60s)) << plant.output() << far.output();
   for (const auto& hash : hashes()) EXPECT_EQ(hash, expected);
   EXPECT_NE(plant.output().find("the run is over; waiting for the next one"), std::string::npos);

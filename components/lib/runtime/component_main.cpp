@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "cyclone/entity.hpp"
 #include "cyclone/run_token.hpp"
+#include "faults/faulty_component.hpp"
 #include "log/log.hpp"
 #include "runtime/component_check.hpp"
 #include "runtime/host.hpp"
@@ -90,6 +93,8 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--latency", latencies,
                  "NAME=TICKS: the outputs of this member of the roster become visible this many ticks after its step "
                  "began, or later if its own latency is longer; equal in all processes of the run; may be repeated");
+  app.add_option("--faults", options.faults_file,
+                 "file of faults (YAML) that the run suffers on purpose; equal in all processes of the run");
   app.add_option("--incarnation", options.incarnation,
                  "1 at the first start of the process in the run, and one more at each restart")
       ->check(CLI::Range(1u, 1'000'000u));
@@ -145,6 +150,9 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
     if (!token_file.empty()) options.token = read_token_file(token_file);
     options.setup.max_sim_time_s = options.max_sim_time_s;
     options.checkpoints = !no_checkpoints;
+    const auto plan = std::make_shared<const FaultPlan>(load_fault_plan(options.faults_file, options.roster));
+    const auto wait_ms = [](double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); };
+    for (auto& factory : factories) factory = with_faults(std::move(factory), plan, wait_ms);
     if (check) {
       const std::vector<std::string> errors = check_components(options, factories);
       for (const auto& error : errors) std::fprintf(stderr, "%s\n", error.c_str());

@@ -27,7 +27,8 @@ std::string hash_of(const std::string& bytes) {
 }  // namespace
 
 std::string run_config_hash(const std::filesystem::path& robot_file, const std::vector<std::string>& roster,
-                            const std::string& plant, const std::map<std::string, std::uint16_t>& latency_ticks) {
+                            const std::string& plant, const std::map<std::string, std::uint16_t>& latency_ticks,
+                            const std::filesystem::path& faults_file) {
   std::string bytes = bytes_of(robot_file) + '\0' + plant;
   for (const auto& name : roster) {
     bytes += '\0';
@@ -37,6 +38,7 @@ std::string run_config_hash(const std::filesystem::path& robot_file, const std::
     bytes += '\0';
     bytes += fmt::format("{}={}", name, ticks);
   }
+  if (!faults_file.empty()) bytes += '\0' + bytes_of(faults_file);
   return hash_of(bytes);
 }
 

@@ -41,8 +41,8 @@ std::string security_identity(std::string components) {
 
 HostContext make_context(HostOptions options, const std::vector<ComponentFactory>& factories) {
   const std::string identity = names_of(factories);
-  const std::string config_hash =
-      run_config_hash(options.setup.robot_file, options.roster, options.plant, options.latency_ticks);
+  const std::string config_hash = run_config_hash(options.setup.robot_file, options.roster, options.plant,
+                                                  options.latency_ticks, options.faults_file);
   return {std::move(options), identity, config_hash, this_host()};
 }
 

@@ -108,6 +108,8 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   require_file("robot", manifest.robot_file);
   add_config_files(manifest, plan.roster, options.config_files);
   for (const auto& process : manifest.processes) require_program(process);
+  plan.faults = load_fault_plan(options.faults_file, plan.roster);
+  if (!options.faults_file.empty()) manifest.faults_file = fs::absolute(options.faults_file);
   std::vector<std::vector<std::string>> groups;
   if (options.in_process) {
     for (auto& process : manifest.processes) process.host.clear();
@@ -148,6 +150,7 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
   if (!token_file.empty()) common.insert(common.end(), {"--token-file", token_file.string()});
   const auto mission = mission_arguments(manifest);
   common.insert(common.end(), mission.begin(), mission.end());
+  if (!manifest.faults_file.empty()) common.insert(common.end(), {"--faults", manifest.faults_file.string()});
   const auto latencies = latency_arguments(manifest);
   common.insert(common.end(), latencies.begin(), latencies.end());
   if (options.max_sim_time_s > 0)

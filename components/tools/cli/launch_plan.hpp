@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/manifest.hpp"
+#include "faults/fault_plan.hpp"
 
 namespace constrictor::cli {
 
@@ -27,6 +28,7 @@ struct RunOptions {
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
   std::filesystem::path secure;           ///< folder that `constrictor keys` has made; empty: without DDS Security
+  std::filesystem::path faults_file;      ///< faults that the run suffers on purpose; empty: none
 };
 
 /// A folder of the project with YAML files that users choose by name.
@@ -47,6 +49,7 @@ inline const NamedFiles kRobots{"robot", "components/lib/robot", "robots"};
 [[nodiscard]] std::filesystem::path find_file(const std::string& text, const NamedFiles& files);
 
 struct LaunchPlan {
+  FaultPlan faults;
   LaunchManifest manifest;          ///< components as --in-process and --group distribute them
   std::vector<std::string> roster;  ///< in the manifest's order, which does not depend on the distribution
 };

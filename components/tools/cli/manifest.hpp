@@ -45,6 +45,7 @@ struct LaunchManifest {
   std::vector<ProcessPlan> processes;
   std::map<std::string, std::uint16_t> latency_ticks;         ///< least latency by component; absent: its own
   std::vector<std::string> order;                             ///< of the roster; empty: that of the processes
+  std::filesystem::path faults_file;                          ///< absolute; set by `run --faults`; empty: no faults
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; absent: the default file
   HostPlan here;                                              ///< the launcher's own host
   std::map<std::string, HostPlan> hosts;                      ///< the other hosts, by name

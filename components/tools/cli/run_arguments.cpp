@@ -49,6 +49,9 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       ->allow_extra_args(false)
       ->excludes("--in-process");
   run->add_option("--report", options->report_dir, "directory for the report (default: a new one below runs/)");
+  run->add_option("--faults", options->faults_file,
+                  "file of faults (YAML): samples lost, late, wrong; processes killed, stopped, slow; see\n"
+                  "components/lib/faults/README.md");
   run->add_option("--max-sim-time", options->max_sim_time_s,
                   "[s] end the run at this simulated time (default: no limit but the report component's)")
       ->check(number(0.0, 1e6, "s"));

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <ctime>
 
+#include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/remote/host_set.hpp"
@@ -91,6 +92,8 @@ class Launcher {
                                report_dir_.string()));
     display_.print(
         fmt::format("  token {} (for programs on other hosts: put it into a file, see --token-file)", note_.token()));
+    if (!options_.faults_file.empty())
+      fs::copy_file(options_.faults_file, report_dir_ / "faults.yaml", fs::copy_options::overwrite_existing);
     const auto start = Clock::now();
     if (resumed_) {
       fs::remove(report_dir_ / "report.json");  // it says why the run was interrupted
@@ -152,6 +155,9 @@ class Launcher {
     const RunView& view = observer_.view();
     note_.set_seed(view.seed(options_.seed));
     supervisor_.run_is_at(view.tick, view.held());
+    for (const auto& [component, signal] : faults_.due(view.sim_time_s(), Clock::now()))
+      supervisor_.signal(component, signal);
+    for (const auto& line : faults_.news(view.sim_time_s())) display_.print(line);
     // A launcher that was stopped (SIGSTOP) for long can miss the plant's last status; mission.json shows the same.
     const bool reported = supervisor_.plant_is_gone() && fs::exists(report_dir_ / "mission.json");
     if (reported || view.ended(plan_.manifest.plant)) supervisor_.expect_end();
@@ -252,6 +258,7 @@ class Launcher {
   dds::PublishedSecurity security_;  ///< before the observer, which joins the run with an identity
   RunObserver observer_;
   Supervisor supervisor_;
+  FaultDirector faults_{plan_.faults};
   Clock::time_point memory_sampled_{};
   RunEnding ending_;
   bool run_is_over_ = false;  ///< the plant has ended; the other processes are ending

@@ -30,6 +30,7 @@ RunOptions absolute_options(RunOptions options, const LaunchPlan& plan) {
   options.robot = plan.manifest.robot_file.string();
   options.manifest = find_file(options.manifest, kManifests).string();
   if (!options.secure.empty()) options.secure = fs::absolute(options.secure);
+  options.faults_file = plan.manifest.faults_file;
   options.config_files.clear();
   for (const auto& [name, file] : plan.manifest.config_files)
     options.config_files.push_back(name + "=" + file.string());
@@ -52,7 +53,8 @@ void write_run_record(const fs::path& folder, const RunRecord& record) {
                      {"max_sim_time_s", options.max_sim_time_s},
                      {"record", options.record},
                      {"config_files", options.config_files},
-                     {"secure", options.secure.string()}};
+                     {"secure", options.secure.string()},
+                     {"faults", options.faults_file.string()}};
   const fs::path beside = folder / "run.json.part";
   {
     std::ofstream file(beside);
@@ -91,6 +93,7 @@ RunRecord read_run_record(const fs::path& folder) {
     options.record = json.at("record");
     options.config_files = json.at("config_files").get<std::vector<std::string>>();
     options.secure = json.value("secure", "");
+    options.faults_file = json.value("faults", "");
   } catch (const Json::exception& error) {
     throw wrong(fmt::format("it is damaged: {}", error.what()));
   }

@@ -32,6 +32,7 @@ struct ServeOptions {
   RunOptions run;
   std::vector<std::string> components;
   fs::path state_dir;
+  fs::path token_file;
 };
 
 fs::path default_state_dir() {
@@ -67,10 +68,12 @@ class Server {
           process.name(),
           [this, &process, folder = fs::path()](std::uint32_t incarnation, bool same_run) mutable {
             if (!same_run || folder.empty()) folder = output_folder(process);
-            // A run has one plant: with a new plant a new run begins, in which it is the first one.
+            // The plant continues its run from the checkpoint in its folder. Otherwise a new run begins with it.
             const auto& hosted = process.components;
-            if (std::find(hosted.begin(), hosted.end(), plan_.manifest.plant) != hosted.end()) incarnation = 1;
-            return make_command_line(options_.run, plan_, *options_.run.domain, folder, 0)(process, incarnation);
+            const bool is_plant = std::find(hosted.begin(), hosted.end(), plan_.manifest.plant) != hosted.end();
+            if (is_plant && (!same_run || folder.empty())) incarnation = 1;
+            return make_command_line(options_.run, plan_, *options_.run.domain, folder, 0, options_.token_file)(
+                process, incarnation);
           },
           with_variables(run_environment(), process.environment), file,
           [](const std::string& line) {
@@ -157,6 +160,11 @@ void add_serve(CLI::App& app, Action& action) {
   serve->add_option("--state", options->state_dir,
                     "folder in which the numbers of the starts are kept (default: $STATE_DIRECTORY, or\n"
                     "constrictor in $XDG_STATE_HOME or ~/.local/state)");
+  serve
+      ->add_option("--token-file", options->token_file,
+                   "file with the token of the runs, the same on all hosts and readable by its owner only;\n"
+                   "without it any program in the domain may command the robot")
+      ->check(CLI::ExistingFile);
   serve->footer(help_footer(
       "For a host that runs its part of the robot from the time when it is switched on. No launcher is needed: a run\n"
       "begins when the last member of the roster has joined, on whatever host. A process that dies comes back into "

@@ -229,6 +229,14 @@ void Supervisor::finish(std::chrono::seconds grace, const std::function<bool()>&
   stop();
 }
 
+void Supervisor::signal(const std::string& component, int number) const {
+  for (const auto& process : processes_) {
+    const auto& hosted = process.plan.components;
+    if (process.running() && std::find(hosted.begin(), hosted.end(), component) != hosted.end())
+      process.child->signal(number);
+  }
+}
+
 void Supervisor::signal_all(int number) const {
   for (const auto& process : processes_) {
     if (process.running()) process.child->signal(number);

@@ -67,6 +67,8 @@ class Supervisor {
   /// pause keeps the next one back.
   void run_is_at(std::int64_t tick, bool held);
   void sample_memory();
+  /// Sends a signal to the process that hosts this component, if it runs.
+  void signal(const std::string& component, int number) const;
   /// The plant published that the run is over: processes end from now on, and none is restarted.
   void expect_end() { ending_ = true; }
   /// True if the plant's process ended with status 0. Without expect_end() soon afterwards the run has failed.

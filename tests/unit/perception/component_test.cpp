@@ -11,6 +11,7 @@
 #include "barrier/local_run.hpp"
 #include "component/data_path.hpp"
 #include "constrictor/text.hpp"
+#include "faults/faulty_component.hpp"
 #include "perception/perception.hpp"
 #include "ray_caster.hpp"
 #include "support/scripted_members.hpp"
@@ -109,6 +110,29 @@ std::unique_ptr<LocalRun> make_run(bool with_changes = false) {
                                           make_perception_factory()};
   if (with_changes) factories.push_back(testing::member_of_class<Desk>("input"));
   return std::make_unique<LocalRun>(factories, setup);
+}
+
+TEST(PerceptionComponent, AFrozenCameraIsNoticedAndForgivenWhenItGoesOn) {
+  auto plan = std::make_shared<FaultPlan>();
+  TopicFault freeze;
+  freeze.kind = TopicFault::Kind::kFreeze;
+  freeze.topic = &topics::kInfos[topics::kCameraImage.id];
+  freeze.from_ns = 500'000'000;     // tick 25
+  freeze.until_ns = 1'200'000'000;  // tick 60
+  plan->topics = {freeze};
+  constrictor::Setup setup;
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  LocalRun run({imu(), testing::member_of_class<Eye>("camera"), tasks(), with_faults(make_perception_factory(), plan)},
+               setup);
+  std::vector<std::int64_t> seen;
+  run.subscribe<msg::LinePercept>(topics::kLinePercept,
+                                  [&](const msg::LinePercept& line) { seen.push_back(line.exposure_tick); });
+  run.advance(80);
+  // The image of tick 15 is broken. Three equal images in a row are accepted, because a camera may send one of them
+  // again.
+  EXPECT_EQ(seen, (std::vector<std::int64_t>{0, 5, 10, 20, 20, 20, 60, 65, 70, 75}));
+  EXPECT_EQ(run.member("perception").counters().last_refusal,
+            "camera/image: found the same bytes in 8 images, accepted at most 3; the camera is frozen");
 }
 
 TEST(PerceptionComponent, UsesTheAttitudeOfTheExposure) {

@@ -126,6 +126,7 @@ void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs
   add_file(manifest_.robot_file);
   add_file(manifest_.scenario_file);
   add_file(token_file);
+  if (!manifest_.faults_file.empty()) add_file(manifest_.faults_file);
   for (const auto& [component, file] : manifest_.config_files) add_file(file);
   for (const auto& process : manifest_.processes) {
     if (process.host.empty() || !process.program.empty()) continue;

@@ -1,0 +1,117 @@
+#include "faults/fault_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "configuration/closest_name.hpp"
+#include "configuration/configuration.hpp"
+#include "faults/message_fields.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kLongest_s = 1e6;
+
+const std::vector<std::string> kTopicKinds = {"drop", "delay", "duplicate", "corrupt", "freeze", "bias"};
+const std::vector<std::string> kProcessKinds = {"kill", "stop", "slow"};
+
+std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+template <class Kind>
+Kind kind_of(Configuration& entry, const std::vector<std::string>& names) {
+  const std::string name = entry.text("kind", names);
+  return static_cast<Kind>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+const TopicInfo& topic_of(Configuration& entry) {
+  const std::string name = entry.text("topic");
+  std::vector<std::string> accepted;
+  for (const auto& topic : topics::kInfos) {
+    if (topic.name == name) return topic;
+    accepted.emplace_back(topic.name);
+  }
+  throw entry.error("topic", fmt::format("found {}, accepted a topic of members (see `constrictor topic list`){}", name,
+                                         did_you_mean(name, accepted)));
+}
+
+/// Reads from_s and until_s; without until_s the fault lasts until the end of the run.
+template <class Fault>
+void read_times(Configuration& entry, Fault& fault) {
+  fault.from_ns = nanoseconds(entry.number("from_s", {0, kLongest_s}, 0.0));
+  fault.until_ns = std::numeric_limits<std::int64_t>::max();
+  if (!entry.has("until_s")) return;
+  fault.until_ns = nanoseconds(entry.number("until_s", {0, kLongest_s}));
+  if (fault.until_ns <= fault.from_ns) throw entry.error("until_s", "found a time that is not after from_s");
+}
+
+TopicFault read_topic_fault(Configuration& entry) {
+  TopicFault fault;
+  fault.topic = &topic_of(entry);
+  fault.kind = kind_of<TopicFault::Kind>(entry, kTopicKinds);
+  read_times(entry, fault);
+  fault.probability = entry.number("probability", {0, 1}, 1.0);
+  if (fault.kind == TopicFault::Kind::kDelay)
+    fault.delay_ticks = static_cast<int>(entry.integer("delay_ticks", 1, 10000));
+  if (fault.kind == TopicFault::Kind::kBias) {
+    fault.field = entry.text("field");
+    fault.amount = entry.number("amount", {-1e9, 1e9});
+    if (const auto why = not_a_real_number(fault.topic->id, fault.field)) throw entry.error("field", *why);
+  }
+  return fault;
+}
+
+ProcessFault read_process_fault(Configuration& entry, const std::vector<std::string>& roster) {
+  ProcessFault fault;
+  fault.component = entry.text("process");
+  if (std::find(roster.begin(), roster.end(), fault.component) == roster.end()) {
+    throw entry.error("process", fmt::format("found {}, accepted {}{}", fault.component, fmt::join(roster, ", "),
+                                             did_you_mean(fault.component, roster)));
+  }
+  fault.kind = kind_of<ProcessFault::Kind>(entry, kProcessKinds);
+  if (fault.kind == ProcessFault::Kind::kSlow) {
+    read_times(entry, fault);
+    fault.step_ms = entry.number("step_ms", {0.01, 10000});
+  } else {
+    fault.from_ns = nanoseconds(entry.number("at_s", {0, kLongest_s}));
+    if (fault.kind == ProcessFault::Kind::kStop) fault.for_s = entry.number("for_s", {0.01, 3600});
+  }
+  return fault;
+}
+
+}  // namespace
+
+FaultPlan load_fault_plan(const std::filesystem::path& file, const std::vector<std::string>& roster) {
+  FaultPlan plan;
+  if (file.empty()) return plan;
+  Configuration root = Configuration::load(file);
+  plan.seed = static_cast<std::uint64_t>(root.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+  std::uint64_t number = 0;
+  for (Configuration& entry : root.list("faults")) {
+    ++number;
+    if (entry.has("topic") == entry.has("process"))
+      throw entry.error("topic", "found neither or both of topic and process, accepted one of them");
+    if (entry.has("topic")) {
+      plan.topics.push_back(read_topic_fault(entry));
+      plan.topics.back().number = number;
+    } else {
+      plan.processes.push_back(read_process_fault(entry, roster));
+    }
+    entry.finish();
+  }
+  root.finish();
+  return plan;
+}
+
+std::string describe(const TopicFault& fault) {
+  return fmt::format("{} of {}", kTopicKinds[static_cast<std::size_t>(fault.kind)], fault.topic->name);
+}
+
+std::string describe(const ProcessFault& fault) {
+  return fmt::format("{} of {}", kProcessKinds[static_cast<std::size_t>(fault.kind)], fault.component);
+}
+
+}  // namespace constrictor

@@ -1,0 +1,63 @@
+// A file of faults that a run is to suffer: `constrictor run --faults FILE`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "constrictor/topics.hpp"
+
+namespace constrictor {
+
+/// What happens to the samples of one topic, for all of its readers alike.
+struct TopicFault {
+  enum class Kind {
+    kDrop,       ///< the sample never arrives
+    kDelay,      ///< it arrives `delay_ticks` later, with its own time stamp
+    kDuplicate,  ///< it arrives twice
+    kCorrupt,    ///< one bit of it is changed; readers refuse it if it is no valid message then
+    kFreeze,     ///< it has the content of the last sample before the fault, with its own time stamp
+    kBias,       ///< `amount` is added to the number `field`
+  };
+  Kind kind = Kind::kDrop;
+  const TopicInfo* topic = nullptr;
+  std::int64_t from_ns = 0;   ///< simulated time of the first sample that may be concerned
+  std::int64_t until_ns = 0;  ///< and of the first one that is not any more
+  double probability = 1.0;   ///< that a sample within this time is concerned
+  int delay_ticks = 0;        ///< [ticks] of kDelay
+  std::string field;          ///< of kBias: "position_rad[3]", "pose.x_m"
+  double amount = 0.0;        ///< of kBias, in the unit of the field
+  std::uint64_t number = 0;   ///< its place in the file; with the seeds it decides which samples are concerned
+};
+
+/// What happens to the process of one component. It changes no result in lock-step.
+struct ProcessFault {
+  enum class Kind {
+    kKill,  ///< killed; the launcher starts it again
+    kStop,  ///< stopped for `for_s` of wall time
+    kSlow,  ///< each step takes `step_ms` longer until `until_ns`
+  };
+  Kind kind = Kind::kKill;
+  std::string component;
+  std::int64_t from_ns = 0;   ///< simulated time
+  std::int64_t until_ns = 0;  ///< simulated time, of kSlow
+  double for_s = 0.0;         ///< [s] wall time, of kStop
+  double step_ms = 0.0;       ///< [ms] wall time, of kSlow
+};
+
+struct FaultPlan {
+  std::uint64_t seed = 1;
+  std::vector<TopicFault> topics;
+  std::vector<ProcessFault> processes;
+};
+
+/// Reads a file of faults; an empty path is a plan without faults. Throws ConfigurationError with file, line, key, what
+/// was found and what is accepted. `roster`: the components that a fault of a process may name.
+[[nodiscard]] FaultPlan load_fault_plan(const std::filesystem::path& file, const std::vector<std::string>& roster);
+
+/// "drop of perception/objects", for messages.
+[[nodiscard]] std::string describe(const TopicFault& fault);
+[[nodiscard]] std::string describe(const ProcessFault& fault);
+
+}  // namespace constrictor

@@ -1,0 +1,57 @@
+#include "cli/fault_director.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+
+namespace constrictor::cli {
+namespace {
+
+double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
+
+}  // namespace
+
+FaultDirector::FaultDirector(FaultPlan plan) {
+  for (const auto& fault : plan.topics)
+    announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
+  for (const auto& fault : plan.processes) {
+    if (fault.kind == ProcessFault::Kind::kSlow)
+      announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
+    else processes_.push_back({fault});
+  }
+}
+
+std::vector<FaultDirector::Signal> FaultDirector::due(double sim_time_s, Clock::time_point now) {
+  std::vector<Signal> signals;
+  for (auto& [fault, begun, over, end] : processes_) {
+    const bool stops = fault.kind == ProcessFault::Kind::kStop;
+    if (!begun && sim_time_s >= seconds(fault.from_ns)) {
+      begun = true;
+      over = !stops;
+      end = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(fault.for_s));
+      signals.push_back({fault.component, stops ? SIGSTOP : SIGKILL});
+      announced_.push_back({describe(fault), seconds(fault.from_ns), 2e9});
+    } else if (begun && !over && now >= end) {
+      over = true;
+      signals.push_back({fault.component, SIGCONT});
+    }
+  }
+  return signals;
+}
+
+std::vector<std::string> FaultDirector::news(double sim_time_s) {
+  std::vector<std::string> lines;
+  for (auto& [text, from_s, until_s, said] : announced_) {
+    if (said == 0 && sim_time_s >= from_s) {
+      said = 1;
+      lines.push_back(fmt::format("fault: {} begins at {:.1f} s", text, from_s));
+    }
+    if (said == 1 && sim_time_s >= until_s) {
+      said = 2;
+      lines.push_back(fmt::format("fault: {} ends at {:.1f} s", text, until_s));
+    }
+  }
+  return lines;
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,46 @@
+// Carries out the faults of processes that a run is to suffer (`run --faults`): decides which process gets which signal
+// when. Pure: its owner sends the signals.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "faults/fault_plan.hpp"
+
+namespace constrictor::cli {
+
+class FaultDirector {
+ public:
+  using Clock = std::chrono::steady_clock;
+  struct Signal {
+    std::string component;
+    int number;  ///< SIGKILL, SIGSTOP or SIGCONT
+  };
+
+  explicit FaultDirector(FaultPlan plan);
+
+  /// The signals that are due at this simulated and wall time, each once. A fault begins when the run is seen at its
+  /// time, up to 0.2 s of wall time later.
+  std::vector<Signal> due(double sim_time_s, Clock::time_point now);
+  /// What has begun or ended since the last call, for people: "fault: drop of perception/objects begins".
+  std::vector<std::string> news(double sim_time_s);
+
+ private:
+  struct Process {
+    ProcessFault fault;
+    bool begun = false;
+    bool over = false;
+    Clock::time_point end{};
+  };
+  struct Announced {
+    std::string text;
+    double from_s;
+    double until_s;
+    int said = 0;  ///< 1: that it begins, 2: that it ends
+  };
+  std::vector<Process> processes_;
+  std::vector<Announced> announced_;
+};
+
+}  // namespace constrictor::cli
