@@ -48,11 +48,16 @@ Admission::Verdict Admission::judge(const std::string& component, dds_instance_h
   return Verdict::kAccepted;
 }
 
+bool Admission::has_room(dds_instance_handle_t writer, std::size_t bytes) const {
+  const auto load = load_.find(writer);
+  if (load == load_.end()) return load_.size() < kMostWriters && bytes <= kMostBytes;
+  return load->second.messages < kMostMessages && load->second.bytes + bytes <= kMostBytes;
+}
+
 bool Admission::keep(const std::string& component, dds_instance_handle_t writer, std::size_t bytes,
                      std::function<void()> deliver) {
-  if (load_.size() >= kMostWriters && !load_.contains(writer)) return false;
+  if (!has_room(writer, bytes)) return false;
   Load& load = load_[writer];
-  if (load.messages >= kMostMessages || load.bytes + bytes > kMostBytes) return false;
   ++load.messages;
   load.bytes += bytes;
   waiting_.push_back({component, writer, bytes, std::move(deliver)});

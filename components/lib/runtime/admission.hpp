@@ -19,7 +19,7 @@ class Admission {
  public:
   /// Bounds on what waits for the Hello of its writer. For each writer, so that none can use up the room of another.
   static constexpr std::size_t kMostMessages = 1024;
-  static constexpr std::size_t kMostBytes = 64u << 20;
+  static constexpr std::size_t kMostBytes = 8u << 20;
   static constexpr std::size_t kMostWriters = 64;
 
   /// To be called for each Hello that was found to be of this run, before its content is used. Returns false if another
@@ -29,11 +29,15 @@ class Admission {
   enum class Verdict {
     kAccepted,
     kUnknown,   ///< nobody has announced this member yet
-    kStranger,  ///< the writer is not in the participant that has announced it
+    kStranger,  ///< the writer is not in the participant that has announced it, or not yet
   };
   [[nodiscard]] Verdict judge(const std::string& component, dds_instance_handle_t writer);
-  /// Keeps a message with the verdict kUnknown: `deliver` is called as soon as the participant of its writer announces
-  /// the member. Returns false if there is no room: the message is dropped.
+  /// Whether keep() has room for a message of this writer.
+  [[nodiscard]] bool has_room(dds_instance_handle_t writer, std::size_t bytes) const;
+  /// Keeps a message whose verdict is not kAccepted: `deliver` is called as soon as the participant of its writer
+  /// announces the member. The process that replaces a member may be heard before its Hello, because they are sent by
+  /// different writers. Whatever waits when somebody else announces the member is dropped. Returns false if there is no
+  /// room: the message is dropped.
   bool keep(const std::string& component, dds_instance_handle_t writer, std::size_t bytes,
             std::function<void()> deliver);
 

@@ -44,24 +44,24 @@ class Links {
     });
   }
 
-  /// The same for messages of members: `writer_of(message)` is the component that must have written it. Messages of
-  /// other processes are rejected, and those of a component that nobody has announced wait for its Hello.
+  /// The same for messages of members: `writer_of(message)` is the component that must have written it. Messages of a
+  /// process that has not announced this component wait for its Hello; if another process has announced it, they are
+  /// counted as rejected at once, because they may be a stranger's.
   template <class T, class WriterOf, class Use>
   void attach(const dds::Reader<T>& reader, const char* topic, WriterOf writer_of, Use use) {
     attach(reader.get(), [this, &reader, topic, writer_of = std::move(writer_of), use = std::move(use)] {
       reader.take_from([&](const T& message, dds_instance_handle_t writer) {
         if (const auto violation = validate(message)) return reject_(topic, *violation);
         const std::string component = writer_of(message);
-        switch (admission_.judge(component, writer)) {
-          case Admission::Verdict::kAccepted:
-            return use(message);
-          case Admission::Verdict::kStranger:
-            return reject_(topic, kNotAnnounced);
-          case Admission::Verdict::kUnknown:
-            break;
-        }
-        const auto kept = [copy = share_copy(message), use] { use(*copy); };
-        if (!admission_.keep(component, writer, sizeof(T), kept)) reject_(topic, kNotAnnounced);
+        const Admission::Verdict verdict = admission_.judge(component, writer);
+        if (verdict == Admission::Verdict::kAccepted) return use(message);
+        T found = message;
+        reflect::OctetsFinder octets;
+        Description<T>::visit(found, octets);
+        const std::size_t bytes = sizeof(T) + (octets.found ? octets.found->_length : 0);
+        const bool room = admission_.has_room(writer, bytes);
+        if (room) admission_.keep(component, writer, bytes, [copy = share_copy(message), use] { use(*copy); });
+        if (!room || verdict == Admission::Verdict::kStranger) reject_(topic, kNotAnnounced);
       });
     });
   }

@@ -120,15 +120,10 @@ void MemberSide::take_sample(std::size_t id, const Sample& sample, dds_instance_
     }
   };
   const std::string component(topic.writer);
-  switch (links_.admission().judge(component, writer)) {
-    case Admission::Verdict::kAccepted:
-      return deliver();
-    case Admission::Verdict::kStranger:
-      break;
-    case Admission::Verdict::kUnknown:
-      if (links_.admission().keep(component, writer, size_of(topic, sample), deliver)) return;
-  }
-  reject(std::string(topic.name), Links::kNotAnnounced);
+  const Admission::Verdict verdict = links_.admission().judge(component, writer);
+  if (verdict == Admission::Verdict::kAccepted) return deliver();
+  const bool kept = links_.admission().keep(component, writer, size_of(topic, sample), deliver);
+  if (!kept || verdict == Admission::Verdict::kStranger) reject(std::string(topic.name), Links::kNotAnnounced);
 }
 
 std::uint64_t MemberSide::run_id() const {

@@ -6,6 +6,7 @@
 
 #include "barrier/local_run.hpp"
 #include "sim/physics/physics.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
@@ -38,7 +39,8 @@ class Driver final : public Component {
 
 /// A cylinder in the body's way, a box and a peg behind it, and a push on the box.
 std::filesystem::path crowded_scene() {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "crowded.yaml";
+  static const testing::TemporaryFolder folder;  // of this process alone: tests run side by side
+  const std::filesystem::path file = folder.path() / "crowded.yaml";
   std::ofstream(file) << R"(name: crowded
 start: {position_m: [0, 0], yaw_rad: 0}
 objects:
