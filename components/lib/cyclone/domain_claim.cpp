@@ -119,9 +119,9 @@ std::vector<std::uint32_t> used_domains() {
   return used;
 }
 
-DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted) {
+DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted, const std::set<std::uint32_t>& avoid) {
   for (std::uint32_t domain = wanted.value_or(kFirst); domain <= wanted.value_or(kLast); ++domain) {
-    if (!wanted && domain_in_use(domain)) continue;
+    if (!wanted && (avoid.contains(domain) || domain_in_use(domain))) continue;
     name_ = try_name(domain);
     lock_ = name_ < 0 ? -1 : try_lock(domain);
     domain_ = domain;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,12 +42,12 @@ std::string published_dds_configuration(std::uint32_t domain);
 /// The domains from 1 to 100 that are claimed or in use on this host.
 std::vector<std::uint32_t> used_domains();
 
-/// Claims the first free domain from 1 to 100, or only `wanted`. The claim is a file lock and an abstract socket name:
-/// the kernel frees both when the process ends in any way. A domain that is in use without a claim is skipped. Throws
-/// std::runtime_error if no domain is free.
+/// Claims the first free domain from 1 to 100 that is not in `avoid`, or only `wanted`. The claim is a file lock and an
+/// abstract socket name: the kernel frees both when the process ends in any way. A domain that is in use without a
+/// claim is skipped. Throws std::runtime_error if no domain is free.
 class DomainClaim {
  public:
-  explicit DomainClaim(std::optional<std::uint32_t> wanted = std::nullopt);
+  explicit DomainClaim(std::optional<std::uint32_t> wanted = std::nullopt, const std::set<std::uint32_t>& avoid = {});
   ~DomainClaim();
   DomainClaim(const DomainClaim&) = delete;
   DomainClaim& operator=(const DomainClaim&) = delete;

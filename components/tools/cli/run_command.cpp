@@ -68,7 +68,7 @@ class Launcher {
         plan_(std::move(plan)),
         hosts_(
             plan_.manifest, [this](const std::string& line) { display_.print(line); }, [this] { wait_for_hosts(); }),
-        claim_(hosts_.domain(options.domain)),
+        claim_(options.domain, hosts_.used_domains()),
         report_dir_(resumed ? options.report_dir : make_report_dir(options, plan_.manifest.scenario_file)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
         resumed_(resumed != nullptr),

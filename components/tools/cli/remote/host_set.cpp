@@ -24,7 +24,6 @@ using Json = nlohmann::json;
 
 constexpr auto kCollectBound = 60s;
 constexpr auto kEndBound = 6s;
-constexpr std::uint32_t kFirstDomain = 1, kLastDomain = 100;
 
 std::string random_token() {
   std::random_device entropy;
@@ -100,14 +99,10 @@ bool HostSet::exchange_until(const std::function<bool()>& done, std::chrono::mil
   }
 }
 
-std::optional<std::uint32_t> HostSet::domain(std::optional<std::uint32_t> wanted) const {
-  if (links_.empty() || wanted) return wanted;
-  std::set<std::uint32_t> used = ours_["used_domains"].get<std::set<std::uint32_t>>();
+std::set<std::uint32_t> HostSet::used_domains() const {
+  std::set<std::uint32_t> used;
   for (const auto& link : links_) used.merge(link->description()["used_domains"].get<std::set<std::uint32_t>>());
-  for (std::uint32_t domain = kFirstDomain; domain <= kLastDomain; ++domain) {
-    if (!used.contains(domain)) return domain;
-  }
-  throw HostError("no DDS domain from 1 to 100 is free on all hosts; end a run, or choose one with --domain");
+  return used;
 }
 
 void HostSet::add_file(const fs::path& file) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,8 @@ class HostSet {
   HostSet(const HostSet&) = delete;
   HostSet& operator=(const HostSet&) = delete;
 
-  /// The domain to claim: `wanted`, or the first one that is free on all hosts; empty if there are no other hosts.
-  [[nodiscard]] std::optional<std::uint32_t> domain(std::optional<std::uint32_t> wanted) const;
+  /// The DDS domains that are in use on one of the other hosts.
+  [[nodiscard]] std::set<std::uint32_t> used_domains() const;
   /// Claims the domain on all hosts, publishes the DDS configuration, and sends the files of the run, `token_file`
   /// among them. Throws HostError.
   void prepare(std::uint32_t domain, const std::filesystem::path& report_dir, const std::filesystem::path& token_file);
