@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <optional>
+#include <set>
 
 #include "support/temporary_folder.hpp"
 namespace constrictor {
@@ -32,6 +33,12 @@ TEST_F(DomainClaims, DifferEvenIfTheRunDirectoriesDiffer) {
   EXPECT_FALSE(domain_claimed(first.domain()));  // the first claim belongs to the other run directory
   EXPECT_TRUE(domain_claimed(third.domain()));
   EXPECT_THROW(DomainClaim(first.domain()), std::runtime_error);
+}
+
+TEST_F(DomainClaims, AvoidTheDomainsThatAreInUseOnOtherHosts) {
+  std::set<std::uint32_t> avoid;
+  for (std::uint32_t domain = 1; domain <= 80; ++domain) avoid.insert(domain);
+  EXPECT_GT(DomainClaim(std::nullopt, avoid).domain(), 80u);
 }
 
 TEST_F(DomainClaims, EndWithTheirHolder) {

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "support/temporary_folder.hpp"
 
@@ -52,7 +54,7 @@ TEST_F(RunToken, AFileThatOthersCanReadOrThatHoldsNoTokenIsRefusedWithTheCure) {
   EXPECT_NE(error_of(file("secret\n", fs::perms::owner_read | fs::perms::others_read)).find("chmod 600"),
             std::string::npos);
   EXPECT_NE(error_of(folder_.path() / "missing").find("cannot be read"), std::string::npos);
-  for (const std::string text : {"", "\n", "two words", "bell\a", std::string(65, 'x').c_str()})
+  for (const std::string& text : std::vector<std::string>{"", "\n", "two words", "bell\a", std::string(65, 'x')})
     EXPECT_NE(error_of(file(text)).find("accepted 1 to 64 printable characters"), std::string::npos) << text;
   EXPECT_EQ(error_of(file(std::string(64, 'x'))), "");
 }
