@@ -46,6 +46,7 @@ void WriterBook::note(dds_entity_t reader, const dds_subscription_matched_status
   Entry& entry = writers_[writer];
   entry.participant = participant;
   ++entry.readers;
+  noted_.notify_all();
 }
 
 void WriterBook::forget_some_dead() {
@@ -55,7 +56,8 @@ void WriterBook::forget_some_dead() {
 }
 
 std::optional<GuidPrefix> WriterBook::participant_of(dds_instance_handle_t writer) const {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
+  noted_.wait_for(lock, kLongestWait, [&] { return writers_.contains(writer) || writers_.size() >= kMost; });
   const auto known = writers_.find(writer);
   return known == writers_.end() ? std::nullopt : std::optional(known->second.participant);
 }

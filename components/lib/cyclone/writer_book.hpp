@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -24,11 +26,14 @@ class WriterBook {
  public:
   /// Writers beyond this number are not noted: strangers may create any number of them.
   static constexpr std::size_t kMost = 4096;
+  static constexpr std::chrono::milliseconds kLongestWait{20};
 
   WriterBook();
   /// For dds_create_reader() of the readers whose writers are noted. This object must outlive them.
   [[nodiscard]] const dds_listener_t* listener() const { return listener_.get(); }
-  /// The participant of the writer with this publication handle; empty if the writer was not noted.
+  /// The participant of the writer with this publication handle; empty if the writer was not noted. A sample can be
+  /// taken before Cyclone has reported the match with its writer, which happens in another thread: an unknown writer is
+  /// waited for, at most kLongestWait.
   [[nodiscard]] std::optional<GuidPrefix> participant_of(dds_instance_handle_t writer) const;
   /// True if a writer of this participant is matched at present.
   [[nodiscard]] bool lives(const GuidPrefix& participant) const;
@@ -43,6 +48,7 @@ class WriterBook {
 
   std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener_;
   mutable std::mutex mutex_;
+  mutable std::condition_variable noted_;
   std::map<dds_instance_handle_t, Entry> writers_;
   std::size_t dead_ = 0;
 };
