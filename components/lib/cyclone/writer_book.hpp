@@ -26,7 +26,7 @@ class WriterBook {
  public:
   /// Writers beyond this number are not noted: strangers may create any number of them.
   static constexpr std::size_t kMost = 4096;
-  static constexpr std::chrono::milliseconds kLongestWait{20};
+  static constexpr std::chrono::milliseconds kLongestWait{1000};
 
   WriterBook();
   /// For dds_create_reader() of the readers whose writers are noted. This object must outlive them.

@@ -259,6 +259,8 @@ void MemberSide::report_waiting() {
     }
     publish_status(local, msg::kComponentWaiting);
   }
+  // Whoever has not heard who this process is does not accept its messages. Nobody minds hearing it again.
+  send_hello();
 }
 
 void MemberSide::report_waiting(const Member& waiter, const std::string& topic, const std::string& writer,
