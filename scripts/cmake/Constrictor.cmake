@@ -64,6 +64,7 @@ set(CONSTRICTOR_LAYERS
   "idl.* => idl.*"
   "components/lib/configuration => none"
   "components/lib/log => idl"
+  "components/lib/dynamixel => components/lib/configuration"
   "components/lib/robot => idl|components/lib/configuration"
   "components/lib/component => idl|components/lib/configuration"
   "components/lib/barrier => idl|components/lib/(component|configuration)"

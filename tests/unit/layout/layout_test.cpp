@@ -67,6 +67,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
   for (const auto& one : declared_libraries(CONSTRICTOR_ROOT)) folders.insert(one.folder);
   for (const char* folder : {"idl",
                              "components/lib/configuration",
+                             "components/lib/dynamixel",
                              "components/lib/robot",
                              "components/lib/component",
                              "components/lib/barrier",
