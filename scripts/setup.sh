@@ -19,6 +19,8 @@ core=(
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
   # checksums of checkpoints
   libxxhash-dev
+  # recordings
+  libzstd-dev zlib1g-dev
   # processes on other hosts
   openssh-client
 )
@@ -32,6 +34,8 @@ tests=(
   # another vendor's DDS
   libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
 )
+# The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
+command -v npm >/dev/null || tests+=(nodejs npm)
 tools=(clang-format clang-tidy doxygen graphviz shellcheck)
 bench=(libmujoco-dev)
 

@@ -76,8 +76,8 @@ foreach(entry IN LISTS COMPLETIONS)
 endforeach()
 
 # Libraries to build against, as Constrictor::messages and so on.
-set(PUBLIC_LIBRARIES options messages log component barrier faults cyclone client runtime configuration robot
-    dynamixel)
+set(PUBLIC_LIBRARIES options messages log component barrier faults cyclone recording client runtime
+    configuration robot dynamixel)
 foreach(library IN LISTS PUBLIC_LIBRARIES)
   set_target_properties(constrictor_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS constrictor_${library} EXPORT ConstrictorTargets

@@ -24,7 +24,7 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME constrictor-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "constrictor (= ${PROJECT_VERSION}), cyclonedds-dev, libcli11-dev, libeigen3-dev, \
-libfmt-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+libfmt-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev, libzstd-dev, nlohmann-json3-dev, zlib1g-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
     "Headers, libraries, IDL files and examples for components, planners and clients
  of one's own: find_package(Constrictor).")

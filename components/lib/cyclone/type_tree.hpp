@@ -18,6 +18,13 @@ namespace constrictor::dds {
 
 struct TypeNode;
 
+/// A type in the language of ROS 2's message files.
+struct Ros2Schema {
+  std::string name;     ///< "constrictor/msg/JointState"; empty: the language cannot express the type
+  std::string text;     ///< the fields of the type, then those of all structures that it contains
+  std::string why_not;  ///< if the name is empty: "its type contains a union"
+};
+
 class TypeTree {
  public:
   /// Requests the descriptions of the endpoint's type and of all types that it contains. Null if the endpoint announces
@@ -34,6 +41,8 @@ class TypeTree {
   [[nodiscard]] nlohmann::ordered_json decode(std::span<const std::uint8_t> bytes) const;
   /// The type as IDL-like text.
   [[nodiscard]] std::string text() const;
+  /// The type for recordings. Enumerations are integers, arrays have one dimension, names are in lower case.
+  [[nodiscard]] Ros2Schema ros2_schema() const;
 
  private:
   explicit TypeTree(std::shared_ptr<const TypeNode> root);

@@ -72,6 +72,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/lib/component",
                              "components/lib/barrier",
                              "components/lib/cyclone",
+                             "components/lib/recording",
                              "components/lib/runtime",
                              "components/tools/cli",
                              "components/tools/ros_bridge",

@@ -1,0 +1,78 @@
+#include "recording/mcap_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace constrictor::mcap {
+
+File::File(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
+  const int flags = mode == Mode::kRead ? O_RDONLY : mode == Mode::kCreate ? O_RDWR | O_CREAT | O_TRUNC : O_RDWR;
+  descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0600);
+  if (descriptor_ < 0) fail("cannot be opened", errno);
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    throw Error(path_.string() + ": found no regular file, accepted an MCAP file");
+  }
+}
+
+File::~File() { ::close(descriptor_); }
+
+void File::fail(const char* what, int error) const {
+  const std::string text = fmt::format("{}: {}: {}", path_.string(), what, std::strerror(error));
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw DiskFull(text);
+  throw Error(text);
+}
+
+std::uint64_t File::size() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail("cannot be examined", errno);
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+std::string File::read(std::uint64_t offset, std::uint64_t size) const {
+  const std::uint64_t all = this->size();
+  std::string bytes(offset < all ? std::min(size, all - offset) : 0, '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count =
+        ::pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail("cannot be read", errno);
+    if (count == 0) break;  // another process has made it shorter
+    done += static_cast<std::size_t>(count);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+void File::write(std::uint64_t offset, std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) fail("cannot be written", count < 0 ? errno : ENOSPC);
+    offset += static_cast<std::uint64_t>(count);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void File::truncate(std::uint64_t size) const {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("cannot be cut", errno);
+}
+
+void File::reserve(std::uint64_t offset, std::uint64_t size) const {
+  for (;;) {
+    if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(size)) == 0)
+      return;
+    if (errno == EINTR) continue;
+    if (errno == EOPNOTSUPP || errno == ENOSYS) return;
+    fail("cannot be written", errno);
+  }
+}
+
+}  // namespace constrictor::mcap

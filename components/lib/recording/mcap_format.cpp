@@ -1,0 +1,265 @@
+#include "recording/mcap_format.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+
+namespace constrictor::mcap {
+
+void Contents::note_message(std::uint16_t channel, std::uint64_t log_time) {
+  Statistics& s = statistics;
+  s.start_time = s.message_count == 0 ? log_time : std::min(s.start_time, log_time);
+  s.end_time = s.message_count == 0 ? log_time : std::max(s.end_time, log_time);
+  ++s.message_count;
+  ++s.channel_message_counts[channel];
+}
+
+Statistics Contents::complete_statistics() const {
+  Statistics complete = statistics;
+  complete.schema_count = static_cast<std::uint16_t>(schemas.size());
+  complete.channel_count = static_cast<std::uint32_t>(channels.size());
+  complete.attachment_count = static_cast<std::uint32_t>(attachments.size());
+  complete.metadata_count = static_cast<std::uint32_t>(metadata.size());
+  complete.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  return complete;
+}
+
+void Encoder::texts(const Texts& entries) {
+  std::string list;
+  Encoder encoder(list);
+  for (const auto& [name, value] : entries) {
+    encoder.text(name);
+    encoder.text(value);
+  }
+  text(list);
+}
+
+void Decoder::damaged(const std::string& found) const { throw Error(what_ + ": " + found); }
+
+Bytes Decoder::take(std::uint64_t size) {
+  if (size > bytes_.size()) damaged(fmt::format("ends {} bytes too early", size - bytes_.size()));
+  const Bytes taken = bytes_.first(static_cast<std::size_t>(size));
+  bytes_ = bytes_.subspan(static_cast<std::size_t>(size));
+  return taken;
+}
+
+std::string Decoder::text() { return std::string(text_of(take(number<std::uint32_t>()))); }
+
+Decoder Decoder::part() { return {take(number<std::uint32_t>()), what_}; }
+
+Texts Decoder::texts() {
+  Decoder list = part();
+  Texts entries;
+  while (list.left() > 0) {
+    std::string name = list.text();
+    entries[std::move(name)] = list.text();
+  }
+  return entries;
+}
+
+void append_record(std::string& bytes, Op op, std::string_view content) {
+  Encoder encoder(bytes);
+  encoder.number(static_cast<std::uint8_t>(op));
+  encoder.number(static_cast<std::uint64_t>(content.size()));
+  encoder.raw(content);
+}
+
+std::string encode(const Schema& schema) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(schema.id);
+  encoder.text(schema.name);
+  encoder.text(schema.encoding);
+  encoder.text(schema.data);
+  return bytes;
+}
+
+std::string encode(const Channel& channel) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(channel.id);
+  encoder.number(channel.schema_id);
+  encoder.text(channel.topic);
+  encoder.text(channel.message_encoding);
+  encoder.texts(channel.metadata);
+  return bytes;
+}
+
+std::string encode(const ChunkIndex& index) {
+  std::string offsets;
+  for (Encoder encoder(offsets); const auto& [channel, offset] : index.message_index_offsets) {
+    encoder.number(channel);
+    encoder.number(offset);
+  }
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(index.start_time);
+  encoder.number(index.end_time);
+  encoder.number(index.offset);
+  encoder.number(index.length);
+  encoder.text(offsets);
+  encoder.number(index.message_index_length);
+  encoder.text(index.compression);
+  encoder.number(index.compressed_size);
+  encoder.number(index.uncompressed_size);
+  return bytes;
+}
+
+std::string encode(const Statistics& statistics) {
+  std::string counts;
+  for (Encoder encoder(counts); const auto& [channel, count] : statistics.channel_message_counts) {
+    encoder.number(channel);
+    encoder.number(count);
+  }
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(statistics.message_count);
+  encoder.number(statistics.schema_count);
+  encoder.number(statistics.channel_count);
+  encoder.number(statistics.attachment_count);
+  encoder.number(statistics.metadata_count);
+  encoder.number(statistics.chunk_count);
+  encoder.number(statistics.start_time);
+  encoder.number(statistics.end_time);
+  encoder.text(counts);
+  return bytes;
+}
+
+std::string encode(const Attachment& attachment) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(attachment.log_time);
+  encoder.number(attachment.log_time);  // when it was created
+  encoder.text(attachment.name);
+  encoder.text(attachment.media_type);
+  encoder.number(static_cast<std::uint64_t>(attachment.data.size()));
+  encoder.raw(attachment.data);
+  encoder.number(crc32(bytes_of(bytes)));
+  return bytes;
+}
+
+std::string encode(const Metadata& metadata) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.text(metadata.name);
+  encoder.texts(metadata.entries);
+  return bytes;
+}
+
+std::string encode(const AttachmentIndex& index) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(index.offset);
+  encoder.number(index.length);
+  encoder.number(index.log_time);
+  encoder.number(index.log_time);
+  encoder.number(index.data_size);
+  encoder.text(index.name);
+  encoder.text(index.media_type);
+  return bytes;
+}
+
+std::string encode(const MetadataIndex& index) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(index.offset);
+  encoder.number(index.length);
+  encoder.text(index.name);
+  return bytes;
+}
+
+std::string encode_message_index(std::uint16_t channel, const MessageIndex& index) {
+  std::string entries;
+  for (Encoder encoder(entries); const auto& [time, offset] : index) {
+    encoder.number(time);
+    encoder.number(offset);
+  }
+  std::string bytes;
+  Encoder encoder(bytes);
+  encoder.number(channel);
+  encoder.text(entries);
+  return bytes;
+}
+
+Schema decode_schema(Bytes bytes) {
+  Decoder decoder(bytes, "Schema record");
+  Schema schema;
+  schema.id = decoder.number<std::uint16_t>();
+  if (schema.id == 0) decoder.damaged("found id 0, accepted 1 to 65535");
+  schema.name = decoder.text();
+  schema.encoding = decoder.text();
+  schema.data = decoder.text();
+  return schema;
+}
+
+Channel decode_channel(Bytes bytes) {
+  Decoder decoder(bytes, "Channel record");
+  Channel channel;
+  channel.id = decoder.number<std::uint16_t>();
+  channel.schema_id = decoder.number<std::uint16_t>();
+  channel.topic = decoder.text();
+  channel.message_encoding = decoder.text();
+  channel.metadata = decoder.texts();
+  return channel;
+}
+
+Message decode_message(Bytes bytes) {
+  Decoder decoder(bytes, "Message record");
+  Message message;
+  message.channel_id = decoder.number<std::uint16_t>();
+  message.sequence = decoder.number<std::uint32_t>();
+  message.log_time = decoder.number<std::uint64_t>();
+  message.publish_time = decoder.number<std::uint64_t>();
+  message.data = decoder.take(decoder.left());
+  return message;
+}
+
+Attachment decode_attachment(Bytes bytes) {
+  Decoder decoder(bytes, "Attachment record");
+  Attachment attachment;
+  attachment.log_time = decoder.number<std::uint64_t>();
+  decoder.number<std::uint64_t>();
+  attachment.name = decoder.text();
+  attachment.media_type = decoder.text();
+  attachment.data = std::string(text_of(decoder.take(decoder.number<std::uint64_t>())));
+  const std::size_t checked = bytes.size() - decoder.left();
+  const auto crc = decoder.number<std::uint32_t>();
+  if (crc != 0 && crc != crc32(bytes.first(checked)))
+    decoder.damaged(fmt::format("'{}' does not have the content that its checksum states", attachment.name));
+  return attachment;
+}
+
+Metadata decode_metadata(Bytes bytes) {
+  Decoder decoder(bytes, "Metadata record");
+  Metadata metadata;
+  metadata.name = decoder.text();
+  metadata.entries = decoder.texts();
+  return metadata;
+}
+
+Statistics decode_statistics(Bytes bytes) {
+  Decoder decoder(bytes, "Statistics record");
+  Statistics statistics;
+  statistics.message_count = decoder.number<std::uint64_t>();
+  statistics.schema_count = decoder.number<std::uint16_t>();
+  statistics.channel_count = decoder.number<std::uint32_t>();
+  statistics.attachment_count = decoder.number<std::uint32_t>();
+  statistics.metadata_count = decoder.number<std::uint32_t>();
+  statistics.chunk_count = decoder.number<std::uint32_t>();
+  statistics.start_time = decoder.number<std::uint64_t>();
+  statistics.end_time = decoder.number<std::uint64_t>();
+  Decoder counts = decoder.part();
+  while (counts.left() > 0) {
+    const auto channel = counts.number<std::uint16_t>();
+    statistics.channel_message_counts[channel] = counts.number<std::uint64_t>();
+  }
+  return statistics;
+}
+
+std::uint32_t crc32(Bytes bytes, std::uint32_t before) {
+  if (bytes.empty()) return before;  // zlib takes a null pointer for a request of the initial value
+  return static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
+}
+
+}  // namespace constrictor::mcap
