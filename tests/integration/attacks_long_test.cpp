@@ -8,8 +8,8 @@
 
 #include <random>
 
+#include "integration/attacked_run.hpp"
 #include "integration/attacker.hpp"
-#include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -58,23 +58,9 @@ class Eavesdropper {
   int socket_;
 };
 
-class HeavyAttacks : public RunCommand {
+class HeavyAttacks : public AttackedRun {
  protected:
   void SetUp() override { environment_["XDG_RUNTIME_DIR"] = dir_.string(); }
-  [[nodiscard]] long memory_kib() const {
-    long sum = 0;
-    for (const auto& [name, pid] : members()) {
-      std::ifstream status("/proc/" + std::to_string(pid) + "/status");
-      for (std::string line; std::getline(status, line);)
-        if (line.starts_with("VmRSS:")) sum += std::stol(line.substr(6));
-    }
-    return sum;
-  }
-  [[nodiscard]] std::uintmax_t log_size() const {
-    std::uintmax_t sum = 0;
-    for (const auto& entry : fs::directory_iterator(dir_ / "r" / "logs")) sum += entry.file_size();
-    return sum;
-  }
   /// Sends changed copies of overheard packets to the ports where they were overheard.
   void send_changed(const std::vector<Eavesdropper::Packet>& overheard) const {
     const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
@@ -108,12 +94,12 @@ class HeavyAttacks : public RunCommand {
     ASSERT_EQ(overheard.size(), 2000u);
     const long before_kib = memory_kib();
     const auto pids = members();
-    const auto log_before = log_size();
+    const auto log_before = log_size("r");
     const auto began = std::chrono::steady_clock::now();
     send_changed(overheard);
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     const long grown_kib = memory_kib() - before_kib;
-    const auto logged = log_size() - log_before;
+    const auto logged = log_size("r") - log_before;
     std::printf("%d changed packets in %.0f s%s: memory of 5 processes %+ld KiB, logs %ju bytes\n", kPackets, wall_s,
                 options.empty() ? "" : " (secured)", grown_kib, logged);
     EXPECT_LT(grown_kib, 200'000);

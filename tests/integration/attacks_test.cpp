@@ -3,13 +3,13 @@
 // are in tests/README.md.
 #include <numeric>
 
+#include "integration/attacked_run.hpp"
 #include "integration/attacker.hpp"
-#include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-class Attacks : public RunCommand {
+class Attacks : public AttackedRun {
  protected:
   static constexpr long kTicks = 400;
 
@@ -21,22 +21,6 @@ class Attacks : public RunCommand {
     ASSERT_GT(domain, 0u) << launcher_->errors();
     attacker_.emplace(domain);
     ASSERT_TRUE(attacker_->ready_to_forge(5)) << launcher_->output() << launcher_->errors();
-  }
-  /// [KiB] resident memory of all members together.
-  [[nodiscard]] long memory_kib() const {
-    long sum = 0;
-    for (const auto& [name, pid] : members()) {
-      std::ifstream status("/proc/" + std::to_string(pid) + "/status");
-      for (std::string line; std::getline(status, line);)
-        if (line.starts_with("VmRSS:")) sum += std::stol(line.substr(6));
-    }
-    return sum;
-  }
-  /// [byte] all logs together.
-  [[nodiscard]] std::uintmax_t log_size() const {
-    std::uintmax_t sum = 0;
-    for (const auto& entry : fs::directory_iterator(dir_ / "attacked" / "logs")) sum += entry.file_size();
-    return sum;
   }
   /// Ends the test: the run must have the result of the run that was left alone.
   void expect_same_result() {
@@ -93,7 +77,7 @@ TEST_F(Attacks, ForgedAndReplayedMessagesOfMembersDoNotChangeTheRun) {
     }
     static_cast<void>(eventually([] { return false; }, 10ms));
   }
-  const auto log = log_size();
+  const auto log = log_size("attacked");
   expect_same_result();
   std::printf("forged messages: same result, logs of %ju bytes\n", log);
 }
@@ -102,7 +86,7 @@ TEST_F(Attacks, ForgedAndReplayedMessagesOfMembersDoNotChangeTheRun) {
 TEST_F(Attacks, FiftyThousandHellosCostNeitherMemoryNorLogLinesNorAnswers) {
   Attacker& attacker = *attacker_;
   const long before_kib = memory_kib();
-  const auto log_before = log_size();
+  const auto log_before = log_size("attacked");
   const auto refused = dds::Reader<msg::Refused>::member(attacker.get(), wire::kRefused);
   std::size_t answers = 0;
   const auto began = std::chrono::steady_clock::now();
@@ -116,7 +100,7 @@ TEST_F(Attacks, FiftyThousandHellosCostNeitherMemoryNorLogLinesNorAnswers) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   dds_wait_for_acks(attacker.hello.get(), DDS_SECS(20));
   const long grown_kib = memory_kib() - before_kib;
-  const auto logged = log_size() - log_before;
+  const auto logged = log_size("attacked") - log_before;
   std::printf("50000 Hellos in %.1f s: memory of 5 processes %+ld KiB, logs %ju bytes, %zu answers\n", wall_s,
               grown_kib, logged, answers);
   // For comparison: a participant that keeps 25,000 instances of Hello needs about 20 MB, in each process.

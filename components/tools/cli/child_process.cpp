@@ -60,6 +60,19 @@ std::string ChildExit::describe() const {
   return fmt::format("was killed by signal {} ({})", WTERMSIG(wait_status), ::strsignal(WTERMSIG(wait_status)));
 }
 
+pid_t fork_bound_to_caller() {
+  sigset_t none;
+  ::sigemptyset(&none);
+  const pid_t launcher = ::getpid();
+  const pid_t pid = ::fork();
+  if (pid != 0) return pid;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != launcher) ::_exit(exit_status::kSoftware);  // the launcher died before prctl
+  ::setpgid(0, 0);  // Ctrl-C must reach only the launcher, which ends its processes in order
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  return 0;
+}
+
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const std::vector<std::string>& environment,
                            const std::filesystem::path& log) {
   // All memory is allocated before the fork: during the fork, another thread may hold the lock of the heap.
@@ -67,15 +80,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& argv, const std::vect
   const auto variables = pointers(environment);
   const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (output < 0) throw std::system_error(errno, std::generic_category(), log.string());
-  sigset_t none;
-  ::sigemptyset(&none);
-  const pid_t launcher = ::getpid();
-  pid_ = ::fork();
+  pid_ = fork_bound_to_caller();
   if (pid_ == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != launcher) ::_exit(exit_status::kSoftware);  // the launcher died before prctl
-    ::setpgid(0, 0);  // Ctrl-C must reach only the launcher, which ends its processes in order
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
     const int input = ::open("/dev/null", O_RDONLY);
     ::dup2(input, STDIN_FILENO);
     ::dup2(output, STDOUT_FILENO);

@@ -46,6 +46,10 @@ class Child {
   [[nodiscard]] virtual double pss_mib() const = 0;
 };
 
+/// fork() for a child that executes another program at once: the kernel kills the child when the calling thread ends,
+/// Ctrl-C on the terminal does not reach it, and no signal is blocked in it. Returns as fork() does.
+[[nodiscard]] pid_t fork_bound_to_caller();
+
 /// A process on this host.
 class ChildProcess : public Child {
  public:

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,15 +63,8 @@ SshConnection::SshConnection(const HostPlan& host, const std::string& token, boo
   if (!errors_.open() || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
     throw std::system_error(errno, std::generic_category(), "ssh");
   Descriptor ours(sockets[0]), theirs(sockets[1]);
-  sigset_t none;
-  ::sigemptyset(&none);
-  const pid_t launcher = ::getpid();
-  pid_ = ::fork();
+  pid_ = fork_bound_to_caller();
   if (pid_ == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != launcher) ::_exit(1);
-    ::setpgid(0, 0);  // Ctrl-C must reach only the launcher
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
     ::dup2(theirs.get(), STDIN_FILENO);
     ::dup2(theirs.get(), STDOUT_FILENO);
     ::dup2(errors_.get(), STDERR_FILENO);
