@@ -1,5 +1,8 @@
 #include "cyclone/endpoint.hpp"
 
+#include "cyclone/matched.hpp"
+#include "cyclone/wait_set.hpp"
+
 namespace constrictor::dds {
 namespace {
 
@@ -10,9 +13,12 @@ dds_entity_t create_endpoint(dds_entity_t participant, const dds_topic_descripto
   const Entity entity(dds_create_topic(participant, &type, topic.c_str(), nullptr, nullptr), "dds_create_topic");
   if (guard.passes)
     check(dds_set_topic_filter_and_arg(entity.get(), guard.passes, guard.argument), "dds_set_topic_filter_and_arg");
-  return check(writer ? dds_create_writer(participant, entity.get(), qos, nullptr)
-                      : dds_create_reader(participant, entity.get(), qos, guard.listener),
-               writer ? "dds_create_writer" : "dds_create_reader");
+  if (writer) return check(dds_create_writer(participant, entity.get(), qos, nullptr), "dds_create_writer");
+  const dds_entity_t reader = check(dds_create_reader(participant, entity.get(), qos, nullptr), "dds_create_reader");
+  if (!guard.book) return reader;
+  wake_by_samples_only(reader);  // before watch(), see there
+  guard.book->watch(reader);
+  return reader;
 }
 
 void set_user_data(dds_qos_t* qos, const std::string& user_data) {
@@ -63,17 +69,10 @@ dds_entity_t create_observer_reader(dds_entity_t participant, const dds_topic_de
 }
 
 std::vector<std::string> matched_user_data(dds_entity_t endpoint, bool is_writer) {
-  const auto get = is_writer ? dds_get_matched_subscriptions : dds_get_matched_publications;
-  std::vector<dds_instance_handle_t> handles(256);
-  int count = check(get(endpoint, handles.data(), handles.size()), "dds_get_matched");
-  if (static_cast<std::size_t>(count) > handles.size()) {  // strangers may have any number of endpoints
-    handles.resize(static_cast<std::size_t>(count));
-    count = check(get(endpoint, handles.data(), handles.size()), "dds_get_matched");
-  }
   std::vector<std::string> found;
-  for (std::size_t i = 0; i < std::min<std::size_t>(static_cast<std::size_t>(count), handles.size()); ++i) {
-    dds_builtintopic_endpoint_t* data = is_writer ? dds_get_matched_subscription_data(endpoint, handles[i])
-                                                  : dds_get_matched_publication_data(endpoint, handles[i]);
+  for (const dds_instance_handle_t handle : matched_endpoints(endpoint, is_writer)) {
+    dds_builtintopic_endpoint_t* data = is_writer ? dds_get_matched_subscription_data(endpoint, handle)
+                                                  : dds_get_matched_publication_data(endpoint, handle);
     if (!data) continue;
     void* bytes = nullptr;
     std::size_t size = 0;

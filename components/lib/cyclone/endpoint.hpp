@@ -19,7 +19,7 @@ namespace constrictor::dds {
 
 /// What a reader needs against strangers. The reader keeps the pointers, which must outlive it.
 struct ReaderGuard {
-  const dds_listener_t* listener = nullptr;  ///< WriterBook::listener(); null: none
+  WriterBook* book = nullptr;  ///< notes the writers; null: none does
   /// Called by DDS, in any thread, before a sample costs the reader any memory: false drops the sample. Null: all pass.
   bool (*passes)(const void* message, void* argument) = nullptr;
   void* argument = nullptr;
@@ -119,10 +119,10 @@ class Reader {
   }
   /// A member's reader whose writers `book` notes. Samples for which `passes(message)` is false cost no memory; DDS
   /// calls it in any thread.
-  static Reader guarded(dds_entity_t participant, const UncountedTopic<T>& topic, const WriterBook& book,
+  static Reader guarded(dds_entity_t participant, const UncountedTopic<T>& topic, WriterBook& book,
                         std::function<bool(const T&)> passes = {}) {
     auto kept = std::make_unique<Passes>(std::move(passes));
-    ReaderGuard guard{book.listener()};
+    ReaderGuard guard{&book};
     if (*kept) {
       guard.passes = [](const void* message, void* own) {
         return (*static_cast<Passes*>(own))(*static_cast<const T*>(message));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cyclone/matched.hpp"
+
 namespace constrictor::dds {
 namespace {
 
@@ -24,34 +26,37 @@ GuidPrefix own_prefix(dds_entity_t entity) {
 WriterBook::WriterBook() : listener_(dds_create_listener(this), dds_delete_listener) {
   dds_lset_subscription_matched(listener_.get(),
                                 [](dds_entity_t reader, const dds_subscription_matched_status_t status, void* book) {
-                                  static_cast<WriterBook*>(book)->note(reader, status);
+                                  static_cast<WriterBook*>(book)->note(reader, status.last_publication_handle);
                                 });
 }
 
-void WriterBook::note(dds_entity_t reader, const dds_subscription_matched_status_t& status) {
-  const dds_instance_handle_t writer = status.last_publication_handle;
-  if (status.current_count_change <= 0) {
-    const std::lock_guard lock(mutex_);
-    const auto known = writers_.find(writer);
-    if (known == writers_.end() || --known->second.readers > 0) return;
+void WriterBook::watch(dds_entity_t reader) {
+  check(dds_set_listener(reader, listener_.get()), "dds_set_listener");
+  for (const dds_instance_handle_t writer : matched_endpoints(reader, false)) note(reader, writer);
+}
+
+void WriterBook::note(dds_entity_t reader, dds_instance_handle_t writer) {
+  // What Cyclone answers under the lock decides, not the status, which may be older than another thread's answer.
+  const std::lock_guard lock(mutex_);
+  dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
+  const auto known = writers_.find(writer);
+  if (!data) {
+    if (known == writers_.end() || known->second.readers.erase(reader) == 0 || !known->second.readers.empty()) return;
     ++dead_;
     return forget_some_dead();
   }
-  dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
-  if (!data) return;
   const GuidPrefix participant = prefix_of(data->key);
   dds_builtintopic_free_endpoint(data);
-  const std::lock_guard lock(mutex_);
-  if (writers_.size() >= kMost && !writers_.contains(writer)) return;
+  if (writers_.size() >= kMost && known == writers_.end()) return;
   Entry& entry = writers_[writer];
   entry.participant = participant;
-  ++entry.readers;
+  entry.readers.insert(reader);
   noted_.notify_all();
 }
 
 void WriterBook::forget_some_dead() {
   if (dead_ <= kMostDead) return;
-  std::erase_if(writers_, [](const auto& entry) { return entry.second.readers <= 0; });
+  std::erase_if(writers_, [](const auto& entry) { return entry.second.readers.empty(); });
   dead_ = 0;
 }
 
@@ -65,7 +70,7 @@ std::optional<GuidPrefix> WriterBook::participant_of(dds_instance_handle_t write
 bool WriterBook::lives(const GuidPrefix& participant) const {
   const std::lock_guard lock(mutex_);
   return std::any_of(writers_.begin(), writers_.end(), [&](const auto& entry) {
-    return entry.second.readers > 0 && entry.second.participant == participant;
+    return !entry.second.readers.empty() && entry.second.participant == participant;
   });
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "cyclone/entity.hpp"
 
@@ -29,8 +30,10 @@ class WriterBook {
   static constexpr std::chrono::milliseconds kLongestWait{1000};
 
   WriterBook();
-  /// For dds_create_reader() of the readers whose writers are noted. This object must outlive them.
-  [[nodiscard]] const dds_listener_t* listener() const { return listener_.get(); }
+  /// Notes the writers of this reader from now on, and those that it has matched already. This object must outlive the
+  /// reader. The reader's status mask must not be changed afterwards: Cyclone's dds_set_status_mask() holds a lock of
+  /// the reader while it waits for the end of the listener, and the listener needs this lock. Throws Error.
+  void watch(dds_entity_t reader);
   /// The participant of the writer with this publication handle; empty if the writer was not noted. A sample can be
   /// taken before Cyclone has reported the match with its writer, which happens in another thread: an unknown writer is
   /// waited for, at most kLongestWait.
@@ -41,9 +44,9 @@ class WriterBook {
  private:
   struct Entry {
     GuidPrefix participant{};
-    int readers = 0;  ///< of this process that match it at present
+    std::set<dds_entity_t> readers;  ///< of this process that match it at present
   };
-  void note(dds_entity_t reader, const dds_subscription_matched_status_t& status);
+  void note(dds_entity_t reader, dds_instance_handle_t writer);
   void forget_some_dead();
 
   std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener_;

@@ -71,7 +71,7 @@ void ConductorSide::make_endpoints() {
   control_answer_writer_ = {participant, wire::kRunControlAnswer};
   // Programs that find a run by its messages learn the plant's name from this writer.
   run_state_writer_ = {participant, wire::kRunState, context_.options.plant};
-  const dds::WriterBook& book = links_.admission().book();
+  dds::WriterBook& book = links_.admission().book();
   const auto in_roster = [&roster = context_.options.roster](const auto& message) {
     return std::find(roster.begin(), roster.end(), message.component) != roster.end();
   };

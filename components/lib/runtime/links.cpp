@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cyclone/wait_set.hpp"
+
 namespace constrictor {
 
 Links::Links(std::uint32_t domain, const std::string& identity)
@@ -19,7 +21,7 @@ Links::Links(std::uint32_t domain, const std::string& identity)
 void Links::wake() { dds::check(dds_set_guardcondition(woken_.get(), true), "dds_set_guardcondition"); }
 
 void Links::attach(dds_entity_t reader, std::function<void()> take, Wakes wakes) {
-  dds::check(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
+  dds::wake_by_samples_only(reader);
   attach_to_wait_sets(reader, std::move(take), wakes);
 }
 

@@ -36,9 +36,9 @@ bool names(const std::vector<std::string>& identities, std::string_view componen
 }  // namespace
 
 MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
-                     const WriterBook* book)
+                     WriterBook* book)
     : participant_(participant) {
-  const ReaderGuard guard{book ? book->listener() : nullptr};
+  const ReaderGuard guard{book};
   for (const auto& topic : topics::kInfos) {
     const std::string name(topic.name);
     if (writes.contains(topic.id)) {

@@ -28,7 +28,7 @@ class MemberBus {
   /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws Error.
   /// `book`: notes the writers that the readers meet, and must outlive them; null: none.
   MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
-            const WriterBook* book = nullptr);
+            WriterBook* book = nullptr);
 
   void write(const TopicInfo& topic, const Sample& sample) const;
   /// Readers with their topic ids, for a wait set.

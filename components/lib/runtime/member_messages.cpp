@@ -47,7 +47,7 @@ void MemberSide::make_endpoints() {
   hello_writer_ = {participant, wire::kHello};
   waiting_writer_ = {participant, wire::kWaiting};
   status_writer_ = {participant, wire::kStatus};
-  const dds::WriterBook& book = links_.admission().book();
+  dds::WriterBook& book = links_.admission().book();
   refused_reader_ = dds::Reader<msg::Refused>::guarded(
       participant, wire::kRefused, book, [&roster](const msg::Refused& m) { return is_in(roster, m.component); });
   hello_reader_ = dds::Reader<msg::Hello>::guarded(participant, wire::kHello, book, [this](const msg::Hello& m) {
