@@ -145,6 +145,12 @@ std::vector<Endpoint> Discovery::endpoints() const {
   return list;
 }
 
+bool Discovery::writers_changed() const {
+  std::uint32_t status = 0;
+  check(dds_get_status_changes(writers_.get(), &status), "dds_get_status_changes");
+  return (status & DDS_DATA_AVAILABLE_STATUS) != 0;
+}
+
 Endpoint own_endpoint(dds_entity_t own, const dds_topic_descriptor_t& type) {
   const Qos qos = make_qos();
   check(dds_get_qos(own, qos.get()), "dds_get_qos");

@@ -51,6 +51,8 @@ class Discovery {
   explicit Discovery(dds_entity_t participant);
   [[nodiscard]] std::vector<Participant> participants() const;
   [[nodiscard]] std::vector<Endpoint> endpoints() const;
+  /// Whether a writer has come or gone since the last endpoints().
+  [[nodiscard]] bool writers_changed() const;
 
  private:
   Guid self_{};

@@ -72,17 +72,21 @@ void limit_log_of_dds() {
 
 }  // namespace
 
-Domain::Domain(std::uint32_t domain, Reach reach, const std::string& identity) {
-  limit_log_of_dds();
-  if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI"))
-    domain_ = Entity(dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain");
+Entity create_participant(std::uint32_t domain, Reach reach, const std::string& identity) {
   const Qos qos = make_qos();
   const auto folder = reach == Reach::kLoopback ? security_folder(domain) : std::filesystem::path();
   if (!folder.empty()) {
     const char* chosen = std::getenv("CONSTRICTOR_IDENTITY");
     set_identity(qos.get(), folder, !identity.empty() ? identity : chosen && *chosen ? chosen : "operator");
   }
-  participant_ = Entity(dds_create_participant(domain, qos.get(), nullptr), "dds_create_participant");
+  return {dds_create_participant(domain, qos.get(), nullptr), "dds_create_participant"};
+}
+
+Domain::Domain(std::uint32_t domain, Reach reach, const std::string& identity) {
+  limit_log_of_dds();
+  if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI"))
+    domain_ = Entity(dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain");
+  participant_ = create_participant(domain, reach, identity);
 }
 
 }  // namespace constrictor::dds

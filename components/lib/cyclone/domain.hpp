@@ -30,6 +30,9 @@ inline constexpr const char* kInternalSettings =
     "<AutoReschedNackDelay>100ms</AutoReschedNackDelay>"
     "<HeartbeatInterval min=\"2ms\" minsched=\"5ms\" max=\"500ms\">10ms</HeartbeatInterval></Internal>";
 
+/// The participant of a Domain, or a further one of a process that has joined `domain` already. Throws as Domain does.
+[[nodiscard]] Entity create_participant(std::uint32_t domain, Reach reach, const std::string& identity);
+
 /// Joins `domain`. A process can join each domain only once at a time. Throws Error, or std::runtime_error if the run
 /// is secured and the files of the identity cannot be used.
 class Domain {

@@ -143,12 +143,15 @@ Entity create_topic(dds_entity_t participant, const Endpoint& writer) {
 }  // namespace
 
 RawReader::RawReader(dds_entity_t participant, const Endpoint& writer, bool history)
+    : RawReader(participant, writer,
+                history && writer.qos.transient_local && writer.qos.reliable ? RawQos{true, true} : RawQos{}) {}
+
+RawReader::RawReader(dds_entity_t participant, const Endpoint& writer, RawQos wanted)
     : topic_(create_topic(participant, writer)) {
   const Qos qos = make_qos();
-  const bool late = history && writer.qos.transient_local && writer.qos.reliable;
-  dds_qset_reliability(qos.get(), late ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
-  dds_qset_durability(qos.get(), late ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1024);
+  dds_qset_reliability(qos.get(), wanted.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_durability(qos.get(), wanted.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), wanted.keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST, 1024);
   const dds_data_representation_id_t encodings[] = {DDS_DATA_REPRESENTATION_XCDR1, DDS_DATA_REPRESENTATION_XCDR2};
   dds_qset_data_representation(qos.get(), 2, encodings);
   if (!writer.qos.partitions.empty()) {
@@ -172,6 +175,12 @@ void RawReader::take(const std::function<void(const RawSample&)>& use) const {
     }
     if (count < static_cast<int>(kBatch)) return;
   }
+}
+
+std::uint64_t RawReader::lost() const {
+  dds_sample_lost_status_t status{};
+  check(dds_get_sample_lost_status(reader_.get(), &status), "dds_get_sample_lost_status");
+  return status.total_count;
 }
 
 int RawReader::writers() const {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
+#include <vector>
 
 #include "constrictor/topics.hpp"
 
@@ -135,6 +137,100 @@ struct FromCdr {
   }
 };
 
+/// Goes through the fields until it finds the header. Only numbers and texts come before it.
+struct HeaderReader {
+  Bytes all;
+  std::optional<msg::Header> found{};
+  std::size_t at = 0;
+
+  template <class T>
+  void operator()(const FieldInfo&, const T&) {
+    if (found) return;
+    if constexpr (std::is_same_v<T, msg::Header>) read_header();
+    else if constexpr (Described<T>) at = all.size();
+    else at += (sizeof(T) - at % sizeof(T)) % sizeof(T) + sizeof(T);
+  }
+  template <std::size_t N>
+  void operator()(const FieldInfo&, const char (&)[N]) {
+    at += (4 - at % 4) % 4;
+    std::uint32_t size = 0;
+    if (found || at > all.size() || all.size() - at < sizeof size) return;
+    std::memcpy(&size, all.data() + at, sizeof size);
+    at += sizeof size + size;
+  }
+  void operator()(const FieldInfo&, const dds_sequence_octet&) {}
+  void read_header() {
+    std::string canonical;
+    FromCdr visitor{all, canonical, at + (8 - at % 8) % 8};
+    static const msg::Header kBlank{};
+    Description<msg::Header>::visit(kBlank, visitor);
+    if (!visitor.ok) return;
+    std::vector<std::uint8_t> unused;
+    Description<msg::Header>::visit(found.emplace(), reflect::ByteReader{std::as_bytes(std::span(canonical)), unused});
+  }
+};
+
+/// Writes the fields of a structure, and collects the structures that it contains.
+struct SchemaWriter {
+  struct Part {
+    std::string name;
+    void (*write)(SchemaWriter&);
+  };
+  std::string text;
+  std::vector<Part> parts;
+
+  template <class T>
+  static void write_structure(SchemaWriter& writer) {
+    static const T kBlank{};
+    Description<T>::visit(kBlank, writer);
+  }
+  template <class T>
+  std::string type_name() {
+    if constexpr (Described<T>) {
+      const std::string name = Description<T>::kName;
+      if (std::none_of(parts.begin(), parts.end(), [&](const Part& part) { return part.name == name; }))
+        parts.push_back({name, write_structure<T>});
+      return "constrictor/" + name;
+    } else if constexpr (std::is_same_v<T, bool>) {
+      return "bool";
+    } else {
+      const char* kind = std::is_floating_point_v<T> ? "float" : std::is_signed_v<T> ? "int" : "uint";
+      return kind + std::to_string(8 * sizeof(T));
+    }
+  }
+  void line(const FieldInfo& info, const std::string& type) {
+    text += type + " ";
+    // ROS 2 requires lower case.
+    for (const char* at = info.name; *at != '\0'; ++at) text += static_cast<char>(std::tolower(*at));
+    text += '\n';
+  }
+  template <class T>
+  void operator()(const FieldInfo& info, const T&) {
+    line(info, type_name<T>());
+  }
+  template <class T, std::size_t N>
+  void operator()(const FieldInfo& info, const T (&)[N]) {
+    line(info, type_name<T>() + "[" + std::to_string(N) + "]");
+  }
+  template <std::size_t N>
+  void operator()(const FieldInfo& info, const char (&)[N]) {
+    line(info, "string");
+  }
+  void operator()(const FieldInfo& info, const dds_sequence_octet&) { line(info, "uint8[]"); }
+};
+
+template <class T>
+std::string make_schema() {
+  SchemaWriter writer;
+  SchemaWriter::write_structure<T>(writer);
+  for (std::size_t i = 0; i < writer.parts.size(); ++i) {
+    const SchemaWriter::Part part = writer.parts[i];
+    writer.text += std::string(80, '=') + "\nMSG: constrictor/" + part.name + "\n";
+    part.write(writer);
+  }
+  return writer.text;
+}
+
 template <class T>
 constexpr MessageCodec make_codec() {
   return {Description<T>::kName,
@@ -152,7 +248,15 @@ constexpr MessageCodec make_codec() {
             FromCdr visitor{cdr.subspan(kHeader), canonical};
             Description<T>::visit(kBlank, visitor);
             return visitor.ok && visitor.all.size() - visitor.at <= kMostPadding;
-          }};
+          },
+          [](Bytes cdr) -> std::optional<msg::Header> {
+            static const T kBlank{};
+            if (cdr.size() < kHeader || cdr[0] != 0 || cdr[1] != 1) return {};
+            HeaderReader reader{cdr.subspan(kHeader)};
+            Description<T>::visit(kBlank, reader);
+            return reader.found;
+          },
+          make_schema<T>};
 }
 
 constexpr std::array kCodecs{

@@ -19,7 +19,14 @@ struct MessageCodec {
   /// Appends the canonical bytes of a message with this CDR, encapsulation header included. Returns false if the CDR is
   /// not exactly one message, or not little-endian.
   bool (*from_cdr)(mcap::Bytes cdr, std::string& canonical);
+  /// The header of a message with this CDR; nothing if the type has no header, or the CDR is too short for it.
+  std::optional<msg::Header> (*header)(mcap::Bytes cdr);
+  /// The type in the language of ROS 2's message files, as TypeTree::ros2_schema() makes it of the type's description.
+  std::string (*schema)();
 };
+
+/// "constrictor/msg/JointState".
+[[nodiscard]] inline std::string schema_name(std::string_view type) { return "constrictor/msg/" + std::string(type); }
 
 /// The codec of a type of topic_table.def; null if no topic has this type.
 [[nodiscard]] const MessageCodec* find_codec(std::string_view type);

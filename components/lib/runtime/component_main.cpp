@@ -55,6 +55,24 @@ std::pair<std::string, std::uint16_t> parse_latency(const std::string& text, con
   return {name, ticks};
 }
 
+void add_recording_options(CLI::App& app, RecordingOptions& options) {
+  app.add_flag("--record", options.record, "plant only: record all topics in the file run.mcap in --output");
+  app.add_option("--images", options.images, "plant only: what --record records of images: on, off, recompute")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RecordedImages>{
+          {"on", RecordedImages::kOn}, {"off", RecordedImages::kOff}, {"recompute", RecordedImages::kRecompute}}));
+  app.add_option_function<std::vector<std::string>>(
+      "--attach",
+      [&options](const std::vector<std::string>& texts) {
+        for (const auto& text : texts) {
+          const auto equals = text.find('=');
+          if (equals == std::string::npos)
+            throw CLI::ValidationError("--attach", "found '" + text + "', accepted NAME=FILE");
+          options.attachments[text.substr(0, equals)] = text.substr(equals + 1);
+        }
+      },
+      "plant only: NAME=FILE: a file that --record adds to the recording; may be repeated");
+}
+
 }  // namespace
 
 int component_main(int argc, char** argv, ComponentFactory factory) {
@@ -121,7 +139,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
   bool topics = false;
   app.add_flag("--topics", topics, "print which topics the components read and write, and exit; joins no run");
-  app.add_flag("--record", options.record, "plant only: record every message except images, for `constrictor diff`");
+  add_recording_options(app, options.recording);
   bool no_checkpoints = false;
   app.add_flag("--no-checkpoints", no_checkpoints,
                "plant only: keep no checkpoints in --output; the process can then not be restarted");

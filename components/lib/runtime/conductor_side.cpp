@@ -57,8 +57,9 @@ void ConductorSide::make_conductor() {
     if (const auto found = store_->read()) return make_successor(conductor_options(), *found);
   }
   if (options.hash_log && !options.setup.output_dir.empty()) {
-    hash_log_ = std::make_unique<HashLog>(options.setup.output_dir, options.record);
+    hash_log_ = std::make_unique<HashLog>(options.setup.output_dir);
   }
+  open_recording({});
   conductor_ = std::make_unique<Conductor>(conductor_options(), static_cast<ConductorSink&>(*this));
 }
 
@@ -119,21 +120,27 @@ void ConductorSide::take_done(const msg::TickDone& message) {
 void ConductorSide::use_done(const TickDone& step) {
   if (!conductor_->on_done(step)) return;
   context_.note_progress();
-  if (!hash_log_) return;
-  for (const auto& written : step.written) hash_log_->add(written.topic, written.bytes);
+  log(step.written);
+  if (recorder_) recorder_->add(step);
+}
+
+void ConductorSide::log(const std::vector<TickDone::Written>& written) {
+  for (const auto& [topic, bytes] : written) {
+    if (hash_log_) hash_log_->add(topic, bytes);
+    if (recorder_) recorder_->add(topic, bytes);
+  }
 }
 
 void ConductorSide::on_done(const TickDone& step) {
-  if (store_) use_done(step);
-  else conductor_->on_done(step);  // record() has seen what it wrote
+  if (store_) return use_done(step);
+  // record() has seen what it wrote.
+  if (conductor_->on_done(step) && recorder_) recorder_->add(step);
 }
 
 bool ConductorSide::tick() {
   if (!conductor_->may_tick() || !pacer_.may_tick(conductor_->next_time_ns())) return false;
   PlantCheckpoint checkpoint = plant_.measure(conductor_->next_index(), conductor_->next_time_ns(), period_ns());
-  if (store_ && hash_log_) {
-    for (const auto& written : checkpoint.written) hash_log_->add(written.topic, written.bytes);
-  }
+  if (store_) log(checkpoint.written);
   pacer_.ticked();
   conductor_->tick(plant_.published(), std::move(checkpoint));
   if (!store_) flush_hash_log();
@@ -146,6 +153,7 @@ bool ConductorSide::tick() {
 
 void ConductorSide::start_epoch(const EpochId& epoch, std::uint64_t seed) {
   if (hash_log_) hash_log_->restart();
+  if (recorder_) recorder_->add(epoch_start(epoch, seed));
   early_.clear();
   ended_.clear();
   save();
@@ -164,18 +172,23 @@ void ConductorSide::continue_epoch(const EpochId& epoch, std::uint64_t seed, con
   }
 }
 
-void ConductorSide::send_epoch(const EpochId& epoch, std::uint64_t seed) {
+msg::EpochStart ConductorSide::epoch_start(const EpochId& epoch, std::uint64_t seed) const {
   msg::EpochStart start{};
   start.run_id = epoch.run_id;
   start.epoch = epoch.epoch;
   start.seed = seed;
   dds::set_text(start.scenario, context_.options.setup.scenario_file.filename().string());
   dds::set_text(start.config_hash, context_.config_hash);
-  epoch_writer_.write(start);
+  return start;
+}
+
+void ConductorSide::send_epoch(const EpochId& epoch, std::uint64_t seed) {
+  epoch_writer_.write(epoch_start(epoch, seed));
   members_.on_epoch(epoch, seed);
 }
 
 void ConductorSide::tick(const msg::Tick& message) {
+  if (recorder_) recorder_->add(message);
   save();
   plant_.publish_sample();
   tick_writer_.write(message);
@@ -204,7 +217,9 @@ void ConductorSide::refuse(const Hello& hello, const std::string& reason) {
 }
 
 void ConductorSide::record(const TopicInfo& topic, const Sample& sample) {
-  if (hash_log_ && !store_) hash_log_->add(topic, sample);  // with a store, on_done() and tick() do
+  if (store_) return;  // on_done() and tick() do it
+  if (hash_log_) hash_log_->add(topic, sample);
+  if (recorder_) recorder_->add(topic, sample);
 }
 
 void ConductorSide::report_waiting() {
@@ -220,6 +235,11 @@ void ConductorSide::finish(bool wait_for_final_tick) {
   // (SIGSTOP) must not prevent the end of the run.
   if (wait_for_final_tick) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
   flush_hash_log();
+  if (recorder_) recorder_->finish();
+}
+
+void ConductorSide::poll_recording() {
+  if (recorder_) recorder_->poll();
 }
 
 }  // namespace constrictor

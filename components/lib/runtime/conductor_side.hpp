@@ -17,6 +17,7 @@
 #include "runtime/pacer.hpp"
 #include "runtime/rate_limit.hpp"
 #include "runtime/run_control_answers.hpp"
+#include "runtime/run_recorder.hpp"
 #include "runtime/run_store.hpp"
 #include "runtime/wire.hpp"
 
@@ -37,6 +38,8 @@ class ConductorSide : private ConductorSink {
   [[nodiscard]] bool held() const { return pacer_.holding() || conductor_->may_tick(); }
   /// [ns] time until the pace may allow the next tick.
   [[nodiscard]] std::int64_t wait_ns() const { return pacer_.wait_ns(); }
+  /// To be called at least every 100 ms.
+  void poll_recording();
   /// Publishes RunState once a second, and at once if `changed`; not before the run has begun.
   void publish_run_state(bool changed);
 
@@ -52,15 +55,15 @@ class ConductorSide : private ConductorSink {
 
   /// Adapts the pace to the source that has authority. Samples of other topics and runs are ignored.
   void note_authority(const TopicInfo& topic, const Sample& sample);
-  /// A member of this process has written `sample`: adds it to the hash log, if this run has a hash log.
+  /// A member of this process has written `sample`: adds it to hash log and recording, if this run has them.
   void record(const TopicInfo& topic, const Sample& sample);
   /// True after the final tick while the process has to stay for other members: one that is restarted now needs its
   /// checkpoint and the final tick. At most 30 s.
   [[nodiscard]] bool stays();
   /// Reports the members that delay the next tick.
   void report_waiting();
-  /// Closes the hash log. If `wait_for_final_tick` is true, first waits a limited time until all members have received
-  /// the final tick.
+  /// Closes hash log and recording. If `wait_for_final_tick` is true, first waits a limited time until all members have
+  /// received the final tick.
   void finish(bool wait_for_final_tick);
 
  private:
@@ -80,6 +83,11 @@ class ConductorSide : private ConductorSink {
   /// Stores a checkpoint. To be called before anything is sent that a successor must know.
   void save();
   void flush_hash_log();
+  /// Begins the recording if this run is recorded; `from`: continues that of the predecessor.
+  void open_recording(std::optional<RecordingPosition> from);
+  /// Adds what a member has written, as canonical bytes, to hash log and recording.
+  void log(const std::vector<TickDone::Written>& written);
+  [[nodiscard]] msg::EpochStart epoch_start(const EpochId& epoch, std::uint64_t seed) const;
   void send_epoch(const EpochId& epoch, std::uint64_t seed);
   void use_done(const TickDone& step);
   void take_done(const msg::TickDone& message);
@@ -104,6 +112,7 @@ class ConductorSide : private ConductorSink {
   Blob control_answers_bytes_;       ///< of control_answers_; null: to be made anew
   std::vector<TickDone> early_;      ///< of a tick that the predecessor of this conductor has sent, and it not yet
   std::unique_ptr<HashLog> hash_log_;
+  std::unique_ptr<RunRecorder> recorder_;
   std::unique_ptr<Conductor> conductor_;
   RunControlAnswers control_answers_;
   std::set<std::string> ended_;  ///< members whose last status has arrived

@@ -47,7 +47,8 @@ void ConductorSide::save() {
   Checkpoint checkpoint = conductor_->save();
   std::ostringstream stream;
   cereal::PortableBinaryOutputArchive archive(stream);
-  archive(checkpoint.head, hash_log_ ? hash_log_->length() : 0, pacer_, ended_);
+  const RecordingPosition recording = recorder_ ? recorder_->position() : RecordingPosition{};
+  archive(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_);
   checkpoint.head = std::move(stream).str();
   checkpoint.blobs.push_back(control_answers_bytes_);
   store_->write(checkpoint);
@@ -56,11 +57,12 @@ void ConductorSide::save() {
 void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& found) {
   Checkpoint of_conductor = found;
   std::uint64_t log_length = 0;
+  RecordingPosition recording;
   options.run_id = context_.options.run_id;  // 0: that of the checkpoint
   try {
     std::istringstream stream(found.head);
     cereal::PortableBinaryInputArchive archive(stream);
-    archive(of_conductor.head, log_length, pacer_, ended_);
+    archive(of_conductor.head, log_length, recording, pacer_, ended_);
     if (found.blobs.empty()) throw std::runtime_error("the checkpoint is incomplete");
     std::istringstream answers(*found.blobs.back());
     cereal::PortableBinaryInputArchive archive_of_answers(answers);
@@ -70,8 +72,19 @@ void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& f
   }
   of_conductor.blobs.pop_back();
   conductor_ = std::make_unique<Conductor>(std::move(options), static_cast<ConductorSink&>(*this), of_conductor);
-  if (log_length > 0)
-    hash_log_ = std::make_unique<HashLog>(context_.options.setup.output_dir, context_.options.record, log_length);
+  if (log_length > 0) hash_log_ = std::make_unique<HashLog>(context_.options.setup.output_dir, log_length);
+  if (recording.recording) open_recording(recording);
+}
+
+void ConductorSide::open_recording(std::optional<RecordingPosition> from) {
+  const HostOptions& options = context_.options;
+  if (!options.recording.record || options.setup.output_dir.empty()) return;
+  try {
+    recorder_ = std::make_unique<RunRecorder>(context_, from);
+  } catch (const mcap::Error& error) {
+    if (!from) throw;
+    context_.log.error("{}; the recording ends here, and the run goes on without it", error.what());
+  }
 }
 
 void ConductorSide::take_status(const msg::ComponentStatus& status) {

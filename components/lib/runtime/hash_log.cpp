@@ -16,8 +16,7 @@
 namespace constrictor {
 namespace {
 
-constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '2'};
-constexpr std::size_t kLargest = 20'000;  // [byte] messages above this (images) are never recorded whole
+constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '3'};
 
 struct Header {
   char magic[sizeof kMagic];
@@ -28,8 +27,7 @@ struct Fixed {
   std::int64_t tick;
   std::uint64_t sequence_number;
   std::uint64_t hash;
-  std::uint32_t size;
-  std::uint32_t topic;
+  std::uint64_t topic;
 };
 
 Header read_header(std::ifstream& file, const std::filesystem::path& directory) {
@@ -43,8 +41,8 @@ Header read_header(std::ifstream& file, const std::filesystem::path& directory) 
 
 }  // namespace
 
-HashLog::HashLog(const std::filesystem::path& directory, bool record, std::optional<std::uint64_t> length)
-    : path_(directory / "hashes.bin"), record_(record) {
+HashLog::HashLog(const std::filesystem::path& directory, std::optional<std::uint64_t> length)
+    : path_(directory / "hashes.bin"), hasher_(std::make_unique<MessageHasher>()) {
   std::filesystem::create_directories(directory);
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
@@ -116,26 +114,28 @@ void HashLog::add(const TopicInfo& topic, const Sample& sample) {
   add(topic.id, bytes);
 }
 
-void HashLog::add(std::uint8_t topic, const std::string& bytes) {
+std::optional<HashLog::Entry> MessageHasher::entry_of(std::uint8_t topic, const std::string& bytes) {
   const auto message = std::as_bytes(std::span(bytes));
   const auto header_at = topic_ops(topic).header_at(message);
-  if (!header_at) return;
+  if (!header_at) return {};
   const auto header = parse_header(message.subspan(*header_at).first<kHeaderSize>());
-  // The hash is that of the message with a neutral header and robot id 0.
   constexpr std::array<std::byte, sizeof(std::uint16_t)> kNoRobot{};
-  const HeaderBytes neutral = header_bytes(neutral_header(header));
-  const std::array<std::span<const std::byte>, 4> pieces{kNoRobot, message.first(*header_at).subspan(kNoRobot.size()),
-                                                         neutral, message.subspan(*header_at + kHeaderSize)};
-  for (const auto& piece : pieces) hash_.update(piece);
+  hash_.update(kNoRobot);
+  hash_.update(message.first(*header_at).subspan(kNoRobot.size()));
+  hash_.update(header_bytes(neutral_header(header)));
+  hash_.update(message.subspan(*header_at + kHeaderSize));
   const auto digest = hash_.finish();
-  Fixed fixed{header.tick, header.sequence_number, 0, 0, topic};
-  std::memcpy(&fixed.hash, digest.data(), sizeof(fixed.hash));
-  const bool whole = record_ && bytes.size() <= kLargest;
-  if (whole) fixed.size = static_cast<std::uint32_t>(bytes.size());
+  HashLog::Entry entry{header.tick, header.sequence_number, topic, 0, {}};
+  std::memcpy(&entry.hash, digest.data(), sizeof(entry.hash));
+  return entry;
+}
+
+void HashLog::add(std::uint8_t topic, const std::string& bytes) {
+  const auto entry = hasher_->entry_of(topic, bytes);
+  if (!entry) return;
+  const Fixed fixed{entry->tick, entry->sequence_number, entry->hash, topic};
   newest_tick_ = std::max(newest_tick_, fixed.tick);
   buffer_.append(reinterpret_cast<const char*>(&fixed), sizeof(fixed));
-  if (!whole) return;
-  for (const auto& piece : pieces) buffer_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
 }
 
 std::vector<HashLog::Entry> HashLog::read(const std::filesystem::path& directory) {
@@ -144,13 +144,9 @@ std::vector<HashLog::Entry> HashLog::read(const std::filesystem::path& directory
   std::vector<Entry> entries;
   Fixed fixed{};
   while (file.read(reinterpret_cast<char*>(&fixed), sizeof(fixed))) {
-    if (fixed.topic >= topics::kCount || fixed.size > kLargest) {
-      throw std::runtime_error((directory / "hashes.bin").string() + ": damaged");
-    }
-    Entry entry{fixed.tick, fixed.sequence_number, static_cast<std::uint8_t>(fixed.topic), fixed.hash,
-                std::string(fixed.size, '\0')};
-    if (!file.read(entry.bytes.data(), fixed.size)) break;
-    entries.push_back(std::move(entry));
+    if (fixed.topic >= topics::kCount) throw std::runtime_error((directory / "hashes.bin").string() + ": damaged");
+    entries.push_back(
+        {fixed.tick, fixed.sequence_number, static_cast<std::uint8_t>(fixed.topic), fixed.hash, std::string()});
   }
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.tick, a.topic, a.sequence_number) < std::tie(b.tick, b.topic, b.sequence_number);

@@ -1,9 +1,10 @@
-// A file with the hash of every message that the members wrote, by tick, and on request the messages themselves:
-// `constrictor diff` compares two of them. The plant's process writes it, since it receives every checkpoint.
+// A file with the hash of every message that the members wrote, by tick: `constrictor diff` compares two of them. The
+// plant's process writes it, since it receives every checkpoint.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 
 namespace constrictor {
 
+class MessageHasher;
+
 class HashLog {
  public:
   struct Entry {
@@ -20,12 +23,12 @@ class HashLog {
     std::uint64_t sequence_number;
     std::uint8_t topic;
     std::uint64_t hash;  ///< first 8 bytes of the SHA-256 of the message with a neutral header
-    std::string bytes;   ///< canonical bytes of the message; empty if they were not recorded
+    std::string bytes;   ///< canonical bytes of the message, if the caller has them; a hash log has none
   };
 
   /// Creates `directory`/hashes.bin. `length`: a successor continues the file of its predecessor after this many bytes.
   /// Throws std::runtime_error if that fails.
-  HashLog(const std::filesystem::path& directory, bool record, std::optional<std::uint64_t> length = {});
+  explicit HashLog(const std::filesystem::path& directory, std::optional<std::uint64_t> length = {});
   ~HashLog();
   HashLog(const HashLog&) = delete;
   HashLog& operator=(const HashLog&) = delete;
@@ -54,7 +57,17 @@ class HashLog {
   std::uint64_t length_ = 0;
   std::int64_t newest_tick_ = 0;
   bool full_ = false;
-  bool record_;
+  std::unique_ptr<MessageHasher> hasher_;
+};
+
+/// Hashes messages as the hash log does.
+class MessageHasher {
+ public:
+  /// The first 8 bytes of the SHA-256 of a message of a topic, given as canonical bytes, with a neutral header and
+  /// robot id 0, and its tick and sequence number; nothing if the bytes are too short for a header.
+  [[nodiscard]] std::optional<HashLog::Entry> entry_of(std::uint8_t topic, const std::string& bytes);
+
+ private:
   Sha256 hash_;
 };
 

@@ -70,7 +70,10 @@ class Host::Impl {
       while (members_.step()) stepped = true;  // the outputs of one member may let another one step
       const bool ticked = conductor_ && conductor_->tick();
       if (stepped || ticked) context_.note_progress();
-      if (conductor_) conductor_->publish_run_state(false);
+      if (conductor_) {
+        conductor_->poll_recording();
+        conductor_->publish_run_state(false);
+      }
       if (members_.all_ended() && !(conductor_ && conductor_->stays())) break;
       links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());
       if (!stepped && !ticked) check_patience();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "component/component.hpp"
+#include "runtime/recording_options.hpp"
 
 namespace constrictor {
 
@@ -34,11 +35,11 @@ struct HostOptions {
   double operator_pace = 1.0;   ///< plant only: the same while an operator has authority; 0: no limit
   bool realtime = false;        ///< plant only: ticks follow the wall clock and wait for no member
   double max_sim_time_s = 0.0;  ///< plant only: ends the run at this simulated time; 0: never
-  double patience_s = 60.0;  ///< [s] wall time that the process waits for another one before it gives up; 0: for ever
-  bool hash_log = true;      ///< plant only: writes output_dir/hashes.bin, which `constrictor diff` compares
-  bool record = false;       ///< plant only: the hash log also has the messages themselves, except images
-  bool checkpoints = true;   ///< plant only: stores checkpoints in output_dir, so that its process can be restarted
-  Setup setup;               ///< of every component; its name is set by the host
+  double patience_s = 60.0;    ///< [s] wall time that the process waits for another one before it gives up; 0: for ever
+  bool hash_log = true;        ///< plant only: writes output_dir/hashes.bin, which `constrictor diff` compares
+  RecordingOptions recording;  ///< plant only: of run.mcap in output_dir
+  bool checkpoints = true;     ///< plant only: stores checkpoints in output_dir, so that its process can be restarted
+  Setup setup;                 ///< of every component; its name is set by the host
   std::map<std::string, std::uint16_t> latency_ticks;  ///< by member of the roster; absent: that of the component
   std::filesystem::path faults_file;                   ///< faults that the run suffers on purpose; empty: none
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; a component without one has its default

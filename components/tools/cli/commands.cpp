@@ -114,19 +114,21 @@ void add_commands(CLI::App& app, Action& action) {
   auto runs = std::make_shared<Directories>();
   auto* diff = add_subcommand(app, "diff", "name the first tick, component, topic and field in which two runs differ",
                               action, runs, [](const Directories& chosen) { return diff_command(chosen.a, chosen.b); });
-  diff->add_option("RUN_A", runs->a, "report directory of a run")->required()->check(CLI::ExistingDirectory);
-  diff->add_option("RUN_B", runs->b, "report directory of another run")->required()->check(CLI::ExistingDirectory);
+  diff->add_option("RUN_A", runs->a, "report directory or recording (run.mcap) of a run")
+      ->required()
+      ->check(CLI::ExistingPath);
+  diff->add_option("RUN_B", runs->b, "the same of another run")->required()->check(CLI::ExistingPath);
   diff->footer(
       "Compares the hashes of everything that was published at every tick. If both runs were made with\n"
       "`constrictor run --record`, it also names the field and both values. Equal runs are equal in every bit of "
       "every\n"
-      "message.\n\n"
+      "message. Two recordings can be compared without their directories; pixels are compared if both have them.\n\n"
       "EXAMPLES\n"
       "  constrictor run line --max-sim-time 5 --report a; constrictor run line --max-sim-time 5 --in-process --report "
       "b\n"
       "  constrictor diff a b\n\n"
       "EXIT STATUS\n"
-      "  0 equal; 1 different; 64 wrong usage; 70 hashes.bin of a run is missing, damaged, or has no tick\n\n"
+      "  0 equal; 1 different; 64 wrong usage; 70 hashes.bin or run.mcap is missing, damaged, or has no tick\n\n"
       "ENVIRONMENT\n  none");
 
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")

@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "cli/usage.hpp"
 #include "component/data_path.hpp"
@@ -72,6 +74,26 @@ std::vector<std::string> pace_arguments(const std::string& pace) {
                                  Pacer::kSlowest, Pacer::kFastest));
   }
   return {"--pace", fmt::format("{}", factor)};
+}
+
+/// The files that a recording contains besides those that every component has, by their names in it.
+std::map<std::string, fs::path> recorded_files(const RunOptions& options, const LaunchManifest& manifest) {
+  std::map<std::string, fs::path> files;
+  files["manifest.yaml"] = find_file(options.manifest, kManifests);
+  if (!manifest.faults_file.empty()) files["faults.yaml"] = manifest.faults_file;
+  for (const auto& line : ask_host("--describe")) {
+    std::istringstream words(line);
+    std::string kind, name, file;
+    if (words >> kind >> name && kind == "default" && std::getline(words >> std::ws, file))
+      files["configuration/" + name + ".yaml"] = file;
+  }
+  for (const auto& [name, file] : manifest.config_files) files["configuration/" + name + ".yaml"] = file;
+  const auto roster = manifest.roster();
+  std::erase_if(files, [&](const auto& entry) {
+    const fs::path path = entry.first;
+    return path.has_parent_path() && std::find(roster.begin(), roster.end(), path.stem()) == roster.end();
+  });
+  return files;
 }
 
 }  // namespace
@@ -156,7 +178,11 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
   if (options.max_sim_time_s > 0)
     common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
   std::vector<std::string> of_plant = pace_arguments(options.pace);
-  if (options.record) of_plant.emplace_back("--record");
+  if (options.record) {
+    of_plant.insert(of_plant.end(), {"--record", "--images", options.images});
+    for (const auto& [name, file] : recorded_files(options, manifest))
+      of_plant.insert(of_plant.end(), {"--attach", name + "=" + file.string()});
+  }
   if (options.no_checkpoints) of_plant.emplace_back("--no-checkpoints");
   return [=, programs = program_folder()](const ProcessPlan& process, std::uint32_t incarnation) {
     std::vector<std::string> arguments;

@@ -23,7 +23,8 @@ struct RunOptions {
   std::filesystem::path report_dir;       ///< empty: a new folder in runs/
   double max_sim_time_s = 0;              ///< [s] simulated time at which the run ends; 0: no limit
   bool no_checkpoints = false;            ///< the plant keeps none: it is not restarted, and the run not resumed
-  bool record = false;                    ///< log the messages themselves, for `constrictor diff`
+  bool record = false;                    ///< record all topics in run.mcap
+  std::string images = "on";              ///< of the recording: "on", "off" or "recompute"
   std::filesystem::path resume_dir;       ///< folder of a run to continue; empty: a new run
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"

@@ -55,8 +55,14 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
   run->add_option("--max-sim-time", options->max_sim_time_s,
                   "[s] end the run at this simulated time (default: no limit but the report component's)")
       ->check(number(0.0, 1e6, "s"));
-  run->add_flag("--record", options->record,
-                "log all messages except images, so that `constrictor diff` can name fields");
+  auto* record = run->add_flag("--record", options->record,
+                               "record all topics of the run's domain in run.mcap, in the report directory");
+  run->add_option("--images", options->images,
+                  "what --record records of images: on (whole), off (nothing), recompute (without their pixels,\n"
+                  "which `constrictor replay` computes again)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"on", "off", "recompute"}))
+      ->needs(record);
   run->add_flag("--no-checkpoints", options->no_checkpoints,
                 "keep no checkpoints: if the process of the plant dies, the run is lost");
   run->add_option(
@@ -78,7 +84,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "Checks all files first. Then starts the components of a launch manifest in a DDS domain of their own, shows "
       "the\n"
       "progress, restarts processes that died, and ends when the mission ends. The report directory then contains\n"
-      "report.json, figure.png, hashes.bin (for `constrictor diff`) and logs/.\n"
+      "report.json, figure.png, hashes.bin (for `constrictor diff`), run.mcap (with --record) and logs/.\n"
       "In lock-step the result depends only on scenario, seed, robot and configurations; grouping, pace, load, killed\n"
       "processes and hosts do not change it.\n"
       "The first Ctrl-C (or SIGTERM) ends the run in order and writes the complete report; the second kills all\n"

@@ -1,17 +1,16 @@
 #include "cli/run_command.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <ctime>
 
 #include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
 #include "cli/progress_display.hpp"
+#include "cli/recording/recording_text.hpp"
 #include "cli/remote/host_set.hpp"
 #include "cli/run_ending.hpp"
 #include "cli/run_observer.hpp"
@@ -38,21 +37,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kMemoryEvery = 2s;
 constexpr auto kAnswerBound = 5s;  // bound on the conductor's answer to the request to end the run
 constexpr auto kEndGrace = 60s;    // when the plant has ended, the report component still draws its figure
-
-fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
-  fs::path dir = options.report_dir;
-  if (dir.empty()) {
-    const std::time_t now = std::time(nullptr);
-    const auto name =
-        fmt::format("{:%Y%m%d-%H%M%S}_{}_seed{}", fmt::localtime(now), scenario.stem().string(), options.seed);
-    dir = make_new_directory(fs::path("runs") / name);
-  } else {
-    fs::create_directories(dir);
-  }
-  for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json"}) fs::remove(dir / old);
-  remove_checkpoints(dir);
-  return fs::absolute(dir);
-}
 
 /// A signal that arrived before the run began.
 struct Interrupted {
@@ -235,6 +219,8 @@ class Launcher {
     } else if (options_.max_sim_time_s > 0 && view.sim_time_s() > options_.max_sim_time_s - 3 * view.period_s) {
       outcome.end_reason = fmt::format("time limit of {:g} s", options_.max_sim_time_s);
     }
+    if (options_.record) outcome.recording = recording_report(report_dir_);
+    if (!outcome.recording.is_null()) display_.print(outcome.recording["text"].get<std::string>());
     const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records(), hosts_.report());
     display_.print(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
                                verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")",

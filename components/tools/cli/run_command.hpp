@@ -15,6 +15,10 @@ namespace constrictor::cli {
 /// processes that call this at the same time get different directories. Throws std::filesystem::filesystem_error.
 std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
 
+/// The directory for the report of a run, as an absolute path: options.report_dir, without the files of an earlier run,
+/// or else a new one in runs/, named by the scenario. Throws std::filesystem::filesystem_error.
+std::filesystem::path make_report_dir(const RunOptions& options, const std::filesystem::path& scenario);
+
 /// Adds the options that `run`, `check` and `serve` share: those that name files, and the seed.
 void add_file_options(CLI::App& app, RunOptions& options);
 

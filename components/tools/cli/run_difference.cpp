@@ -6,8 +6,10 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "cli/recording/recorded_messages.hpp"
 #include "constrictor/compare.hpp"
 #include "constrictor/topics.hpp"
+#include "runtime/recording_options.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -38,7 +40,7 @@ std::optional<FieldDifference> field_difference(const std::string& a, const std:
 
 RunDifference at(const Entry& entry) {
   const TopicInfo& topic = topics::kInfos[entry.topic];
-  return {entry.tick, std::string(topic.writer), std::string(topic.name), "", "", ""};
+  return {entry.tick, std::string(topic.writer), std::string(topic.name), "", "", "", entry.sequence_number};
 }
 
 RunDifference differing(const Entry& a, const Entry& b) {
@@ -105,18 +107,55 @@ std::optional<RunDifference> first_run_difference(const std::vector<Entry>& a, c
   }
   if (end_a == end_b) return std::nullopt;
   return RunDifference{end, std::string(topics::kJointState.writer), "the run's length",
-                       "",  fmt::format("ends at tick {}", end_a),   fmt::format("ends at tick {}", end_b)};
+                       "",  fmt::format("ends at tick {}", end_a),   fmt::format("ends at tick {}", end_b),
+                       0};
 }
 
-std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto read = [](const std::filesystem::path& directory) {
-    auto log = HashLog::read(directory);
-    // If a run made no tick, there is nothing to compare.
-    if (last_tick(log) < 0) throw std::runtime_error((directory / "hashes.bin").string() + ": contains no tick");
-    return log;
+namespace {
+
+/// Names the field in which two messages differ, if both runs were recorded.
+std::optional<RunDifference> with_field(std::optional<RunDifference> difference, const std::filesystem::path& a,
+                                        const std::filesystem::path& b) {
+  if (!difference || !difference->field.empty() || !difference->a.starts_with("hash")) return difference;
+  const auto topic = std::find_if(topics::kInfos.begin(), topics::kInfos.end(),
+                                  [&](const TopicInfo& info) { return info.name == difference->topic; });
+  const auto message_in = [&](const std::filesystem::path& run) {
+    const auto file = recording_of(run);
+    const auto bytes = file.empty() ? std::nullopt : recorded_message(file, topic->id, difference->sequence_number);
+    return Entry{difference->tick, difference->sequence_number, topic->id, 0, bytes.value_or("")};
   };
-  auto log_a = read(a);
-  auto log_b = read(b);
+  RunDifference named = differing(message_in(a), message_in(b));
+  return named.field.empty() ? difference : named;
+}
+
+std::vector<Entry> with_ticks(std::vector<Entry> log, const std::filesystem::path& file) {
+  // If a run made no tick, there is nothing to compare.
+  if (last_tick(log) < 0) throw std::runtime_error(file.string() + ": contains no tick");
+  return log;
+}
+
+std::optional<RunDifference> compare_recordings(const std::filesystem::path& a, const std::filesystem::path& b) {
+  for (const auto* run : {&a, &b}) {
+    if (recording_of(*run).empty())
+      throw std::runtime_error(
+          fmt::format("{}: found no {}, accepted a run that was made with --record, because the "
+                      "other one is given by its recording",
+                      run->string(), kRecordingFile));
+  }
+  const auto file_a = recording_of(a);
+  const auto file_b = recording_of(b);
+  const bool images = has_images(file_a) && has_images(file_b);
+  return with_field(first_run_difference(with_ticks(recorded_hashes(file_a, images), file_a),
+                                         with_ticks(recorded_hashes(file_b, images), file_b)),
+                    a, b);
+}
+
+}  // namespace
+
+std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (!std::filesystem::is_directory(a) || !std::filesystem::is_directory(b)) return compare_recordings(a, b);
+  auto log_a = with_ticks(HashLog::read(a), a / "hashes.bin");
+  auto log_b = with_ticks(HashLog::read(b), b / "hashes.bin");
   // A run whose disk was full has logged only its beginning.
   std::optional<std::int64_t> end;
   const std::filesystem::path* full = nullptr;
@@ -126,9 +165,9 @@ std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const 
     end = at;
     full = directory;
   }
-  if (!end) return first_run_difference(log_a, log_b);
+  if (!end) return with_field(first_run_difference(log_a, log_b), a, b);
   for (auto* log : {&log_a, &log_b}) std::erase_if(*log, [&](const Entry& entry) { return entry.tick >= *end; });
-  if (const auto difference = first_run_difference(log_a, log_b)) return difference;
+  if (auto difference = first_run_difference(log_a, log_b)) return with_field(std::move(difference), a, b);
   throw std::runtime_error(
       fmt::format("{}: the disk was full at tick {}, so that later messages were not logged; the runs are equal up to "
                   "this tick, and cannot be compared beyond it",

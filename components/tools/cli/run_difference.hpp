@@ -15,9 +15,10 @@ struct RunDifference {
   std::int64_t tick = 0;
   std::string component;  ///< the writer of the topic
   std::string topic;
-  std::string field;  ///< empty if the runs were made without --record, or if a message is missing
+  std::string field;  ///< empty if a run was made without --record, or if a message is missing
   std::string a;      ///< the value in the first run, as text
   std::string b;
+  std::uint64_t sequence_number = 0;  ///< of the message in its topic
 };
 
 /// Compares two logs, each ordered by (tick, topic, sequence number) as HashLog::read returns them. The plant ends
@@ -25,8 +26,8 @@ struct RunDifference {
 std::optional<RunDifference> first_run_difference(const std::vector<HashLog::Entry>& a,
                                                   const std::vector<HashLog::Entry>& b);
 
-/// Reads and compares two report directories. Throws std::runtime_error if a log is missing, damaged, or of a run that
-/// never ticked.
+/// Compares two runs, each given by its report directory or by its recording (run.mcap). Throws std::runtime_error if a
+/// log is missing, damaged, or of a run that never ticked.
 std::optional<RunDifference> compare_runs(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace constrictor::cli

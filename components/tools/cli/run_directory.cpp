@@ -1,7 +1,12 @@
 // The directory of a new run.
+#include <fmt/chrono.h>
+
 #include <fmt/format.h>
+#include <ctime>
 
 #include "cli/run_command.hpp"
+#include "cli/run_record.hpp"
+#include "runtime/recording_options.hpp"
 
 namespace constrictor::cli {
 
@@ -13,6 +18,23 @@ fs::path make_new_directory(const fs::path& wanted) {
   for (int number = 2; !fs::create_directory(directory); ++number)
     directory = fmt::format("{}-{}", wanted.string(), number);
   return directory;
+}
+
+fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
+  fs::path dir = options.report_dir;
+  if (dir.empty()) {
+    const std::time_t now = std::time(nullptr);
+    const auto name =
+        fmt::format("{:%Y%m%d-%H%M%S}_{}_seed{}", fmt::localtime(now), scenario.stem().string(), options.seed);
+    dir = make_new_directory(fs::path("runs") / name);
+  } else {
+    fs::create_directories(dir);
+  }
+  for (const char* old :
+       {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json", kRecordingFile, kOpenChunkFile})
+    fs::remove(dir / old);
+  remove_checkpoints(dir);
+  return fs::absolute(dir);
 }
 
 }  // namespace constrictor::cli

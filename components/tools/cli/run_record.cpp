@@ -52,6 +52,7 @@ void write_run_record(const fs::path& folder, const RunRecord& record) {
                      {"groups", options.groups},
                      {"max_sim_time_s", options.max_sim_time_s},
                      {"record", options.record},
+                     {"images", options.images},
                      {"config_files", options.config_files},
                      {"secure", options.secure.string()},
                      {"faults", options.faults_file.string()}};
@@ -91,6 +92,7 @@ RunRecord read_run_record(const fs::path& folder) {
     options.groups = json.at("groups").get<std::vector<std::string>>();
     options.max_sim_time_s = json.at("max_sim_time_s");
     options.record = json.at("record");
+    options.images = json.at("images");
     options.config_files = json.at("config_files").get<std::vector<std::string>>();
     options.secure = json.value("secure", "");
     options.faults_file = json.value("faults", "");

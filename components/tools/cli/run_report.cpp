@@ -79,6 +79,7 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                                  {"numeric_profile", hello.numeric_profile}});
   }
   if (!hosts.is_null()) report["hosts"] = hosts;
+  if (!outcome.recording.is_null()) report["recording"] = outcome.recording;
   if (!outcome.error.empty()) report["error"] = outcome.error;
   for (const auto& [key, value] : mission.items()) {
     if (!report.contains(key)) report[key] = value;

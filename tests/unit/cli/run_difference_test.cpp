@@ -85,7 +85,7 @@ TEST(RunDifference, AStepThatARestartedMemberRepeatsIsNoDifference) {
 class RunDifferenceOfFiles : public ::testing::Test {
  protected:
   std::filesystem::path log_of(const std::string& name, int ticks) const {
-    HashLog log(folder_.path() / name, false);
+    HashLog log(folder_.path() / name);
     for (int tick = 0; tick < ticks; ++tick) {
       const auto state = std::make_shared<msg::JointState>();
       state->header.tick = tick;

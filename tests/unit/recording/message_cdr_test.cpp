@@ -4,10 +4,12 @@
 
 #include <set>
 
+#include "constrictor/compare.hpp"
 #include "constrictor/descriptors.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/type_tree.hpp"
 #include "recording/message_cdr.hpp"
 #include "unit/idl/random_message.hpp"
 
@@ -73,6 +75,14 @@ TEST_F(MessageCdr, IsThatOfCyclone) {
       found[3] = expected[3];
       ASSERT_EQ(found, expected) << Description<T>::kName;
 
+      const auto header = find_codec(Description<T>::kName)->header(mcap::bytes_of(expected));
+      if constexpr (requires { message.header; }) {
+        ASSERT_TRUE(header) << Description<T>::kName;
+        EXPECT_FALSE(first_difference(*header, message.header)) << Description<T>::kName;
+      } else {
+        EXPECT_FALSE(header) << Description<T>::kName;
+      }
+
       std::string canonical;
       canonical_bytes(message, canonical);
       const auto back = message_of<T>(mcap::bytes_of(expected));
@@ -81,6 +91,16 @@ TEST_F(MessageCdr, IsThatOfCyclone) {
       canonical_bytes(*back, returned);
       ASSERT_EQ(returned, canonical) << Description<T>::kName;
     }
+  });
+}
+
+TEST_F(MessageCdr, HasTheSchemaThatTheDescriptionOfTheTypeGives) {
+  for_each_topic_type([&]<class T>() {
+    const auto tree = dds::TypeTree::known(domain_.participant(), dds::descriptor<T>().m_typename);
+    ASSERT_TRUE(tree);
+    const dds::Ros2Schema expected = tree->ros2_schema();
+    EXPECT_EQ(schema_name(Description<T>::kName), expected.name);
+    EXPECT_EQ(find_codec(Description<T>::kName)->schema(), expected.text);
   });
 }
 

@@ -238,7 +238,7 @@ void log_tick(HashLog& log, std::int64_t tick) {
 
 TEST_F(CheckpointFileTest, AHashLogOnAFullDiskSaysWhereItEnds) {
   const SmallDisk disk(4000);
-  HashLog log(folder_.path(), false);
+  HashLog log(folder_.path());
   std::string failure;
   std::int64_t tick = 0;
   for (; failure.empty() && tick < 1000; ++tick) {
@@ -254,21 +254,21 @@ TEST_F(CheckpointFileTest, AHashLogOnAFullDiskSaysWhereItEnds) {
 TEST_F(CheckpointFileTest, AHashLogContinuesAtTheLengthOfTheCheckpoint) {
   std::uint64_t length = 0;
   {
-    HashLog log(folder_.path(), false);
+    HashLog log(folder_.path());
     for (std::int64_t tick = 0; tick < 10; ++tick) log_tick(log, tick);
     EXPECT_EQ(log.flush(), "");
     length = log.length();
     for (std::int64_t tick = 10; tick < 20; ++tick) log_tick(log, tick);  // after the checkpoint
   }
   {
-    HashLog log(folder_.path(), false, length);
+    HashLog log(folder_.path(), length);
     for (std::int64_t tick = 10; tick < 15; ++tick) log_tick(log, tick);
   }
   const auto entries = HashLog::read(folder_.path());
   ASSERT_EQ(entries.size(), 15u);
   for (std::size_t i = 0; i < entries.size(); ++i) EXPECT_EQ(entries[i].tick, static_cast<std::int64_t>(i));
   EXPECT_FALSE(HashLog::full_disk_at(folder_.path()));
-  EXPECT_THROW(HashLog(folder_.path(), false, 1'000'000), std::runtime_error) << "shorter than at the checkpoint";
+  EXPECT_THROW(HashLog(folder_.path(), 1'000'000), std::runtime_error) << "shorter than at the checkpoint";
 }
 
 }  // namespace

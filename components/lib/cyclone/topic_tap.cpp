@@ -1,0 +1,87 @@
+#include "cyclone/topic_tap.hpp"
+
+#include <fmt/format.h>
+
+namespace constrictor::dds {
+namespace {
+
+constexpr auto kTypeBound = std::chrono::milliseconds(500);  // until a process has described its type
+
+}  // namespace
+
+TopicTap::TopicTap(dds_entity_t participant, Wanted wanted)
+    : participant_(participant),
+      wanted_(std::move(wanted)),
+      discovery_(participant),
+      wait_set_(dds_create_waitset(participant), "dds_create_waitset") {}
+
+Ros2Schema TopicTap::schema_of(const Endpoint& writer) const {
+  auto tree = TypeTree::find(participant_, writer, kTypeBound);
+  if (!tree) tree = TypeTree::known(participant_, writer.type);
+  return tree ? tree->ros2_schema() : Ros2Schema{"", "", "its writer does not describe its type"};
+}
+
+void TopicTap::read(const Endpoint& writer) {
+  const std::string key =
+      fmt::format("{}\n{}\n{}\n{}", writer.topic, writer.type, writer.keyed, fmt::join(writer.qos.partitions, "\n"));
+  const auto known = readings_.find(key);
+  RawQos offered{writer.qos.reliable, writer.qos.reliable && writer.qos.transient_local, true};
+  if (known == readings_.end()) {
+    Reading reading{{writer.topic, writer.type, schema_of(writer)}, offered, nullptr, 0};
+    reading.reader = std::make_unique<RawReader>(participant_, writer, offered);
+    check(dds_set_status_mask(reading.reader->get(), DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
+    check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");
+    readings_.emplace(key, std::move(reading));
+    return;
+  }
+  // A reader that asks for more than a writer offers does not meet it.
+  Reading& reading = known->second;
+  const RawQos least{reading.qos.reliable && offered.reliable, reading.qos.transient_local && offered.transient_local,
+                     true};
+  if (least.reliable == reading.qos.reliable && least.transient_local == reading.qos.transient_local) return;
+  reading.lost_before += reading.reader->lost();
+  reading.reader.reset();
+  reading.qos = least;
+  reading.reader = std::make_unique<RawReader>(participant_, writer, least);
+  check(dds_set_status_mask(reading.reader->get(), DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
+  check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");
+}
+
+void TopicTap::discover() {
+  if (!discovery_.writers_changed()) return;
+  for (const auto& endpoint : discovery_.endpoints()) {
+    if (!endpoint.writer || !wanted_(endpoint.topic) || refused_.contains(endpoint.topic)) continue;
+    try {
+      read(endpoint);
+    } catch (const Error& error) {
+      refused_[endpoint.topic] = error.what();
+    }
+  }
+}
+
+void TopicTap::wait(std::chrono::milliseconds bound) const {
+  check(dds_waitset_wait(wait_set_.get(), nullptr, 0, DDS_MSECS(bound.count())), "dds_waitset_wait");
+}
+
+void TopicTap::take(const std::function<void(const Topic&, const RawSample&)>& use) const {
+  for (const auto& [key, reading] : readings_) {
+    if (reading.reader) reading.reader->take([&](const RawSample& sample) { use(reading.topic, sample); });
+  }
+}
+
+std::map<std::string, std::uint64_t> TopicTap::lost() const {
+  std::map<std::string, std::uint64_t> counts;
+  for (const auto& [key, reading] : readings_) {
+    const std::uint64_t lost = reading.lost_before + (reading.reader ? reading.reader->lost() : 0);
+    if (lost > 0) counts[reading.topic.name] += lost;
+  }
+  return counts;
+}
+
+std::vector<const TopicTap::Topic*> TopicTap::topics() const {
+  std::vector<const Topic*> list;
+  for (const auto& [key, reading] : readings_) list.push_back(&reading.topic);
+  return list;
+}
+
+}  // namespace constrictor::dds

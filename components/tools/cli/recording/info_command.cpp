@@ -1,0 +1,158 @@
+// `constrictor info` and `constrictor recover`: what a recording contains, and the end of one whose writer was killed.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "cli/recording/recording_text.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
+#include "constrictor/json.hpp"
+#include "recording/mcap_reader.hpp"
+#include "recording/mcap_writer.hpp"
+#include "recording/recording_summary.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int kMissing = 1;  // exit status
+
+struct InfoOptions {
+  std::string file;
+  bool json = false;
+  bool events = false;
+};
+
+/// Log times of a run are simulated; others are wall time.
+std::string time_text(const RecordingSummary& summary, std::uint64_t time_ns) {
+  const auto kind = summary.recording.find("log_time");
+  if (kind != summary.recording.end() && kind->second == "simulated")
+    return fmt::format("{:.2f} s", static_cast<double>(time_ns) * 1e-9);
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(time_ns / 1'000'000'000)));
+}
+
+Json json_of(const RecordingSummary& summary) {
+  Json json = {
+      {"file_bytes", summary.file_bytes}, {"chunks", summary.chunks},
+      {"messages", summary.messages},     {"duration_s", static_cast<double>(summary.end_ns - summary.start_ns) * 1e-9},
+      {"incomplete", summary.incomplete}, {"proven_complete", summary.proven && summary.missing() == 0},
+      {"missing", summary.missing()},     {"recording", summary.recording},
+      {"dropped", summary.dropped},       {"recovered", summary.recovered},
+      {"mission", summary.mission}};
+  for (const char* list : {"epochs", "topics", "events", "attachments"}) json[list] = Json::array();
+  for (const auto& epoch : summary.epochs) {
+    json["epochs"].push_back({{"run_id", epoch.run_id},
+                              {"epoch", epoch.epoch},
+                              {"seed", epoch.seed},
+                              {"first_tick", epoch.first_tick},
+                              {"last_tick", epoch.last_tick},
+                              {"ticks", epoch.ticks},
+                              {"end_s", epoch.end_s}});
+  }
+  for (const auto& topic : summary.topics) {
+    json["topics"].push_back({{"topic", topic.name},
+                              {"type", topic.type},
+                              {"no_schema", topic.no_schema},
+                              {"messages", topic.messages},
+                              {"bytes", topic.bytes},
+                              {"rate_hz", topic.rate_hz()},
+                              {"missing", topic.missing}});
+  }
+  for (const auto& event : summary.events)
+    json["events"].push_back({{"epoch", event.epoch}, {"time_s", event.time_s}, {"text", event.text}});
+  for (const auto& [name, bytes] : summary.attachments)
+    json["attachments"].push_back({{"name", name}, {"bytes", bytes}});
+  return json;
+}
+
+void print_topics(const RecordingSummary& summary) {
+  fmt::print("\n{:<28} {:>9} {:>9} {:>10} {:>8}  {}\n", "topic", "messages", "rate [Hz]", "size [kB]", "missing",
+             "type");
+  for (const auto& topic : summary.topics) {
+    const std::string type = topic.type.empty() ? "?" : topic.type;
+    fmt::print("{:<28} {:>9} {:>9.2f} {:>10.1f} {:>8}  {}{}\n", topic.name, topic.messages, topic.rate_hz(),
+               static_cast<double>(topic.bytes) * 1e-3, topic.missing, type,
+               topic.no_schema.empty() ? "" : " (bytes without schema: " + topic.no_schema + ")");
+  }
+}
+
+int info(const InfoOptions& options) {
+  const RecordingSummary summary = summarise_recording(options.file);
+  const bool whole = summary.missing() == 0 && summary.incomplete.empty() && summary.dropped.empty();
+  if (options.json) {
+    fmt::print("{}\n", json_text(json_of(summary), 2));
+    return whole ? exit_status::kOk : kMissing;
+  }
+  fmt::print("{}: {}\n", options.file, describe_recording(summary));
+  fmt::print("log time {} to {}\n", time_text(summary, summary.start_ns), time_text(summary, summary.end_ns));
+  for (const auto& [name, value] : summary.recording) {
+    if (!value.empty()) fmt::print("  {}: {}\n", name, value);
+  }
+  for (const auto& epoch : summary.epochs) {
+    fmt::print("run {:x}, epoch {}: seed {}, ticks {} to {} ({}), {:.1f} s simulated\n", epoch.run_id, epoch.epoch,
+               epoch.seed, epoch.first_tick, epoch.last_tick, epoch.ticks, epoch.end_s);
+  }
+  if (!summary.mission.empty()) fmt::print("mission {}\n", summary.mission);
+  print_topics(summary);
+  if (!summary.attachments.empty()) fmt::print("\nattachments:\n");
+  for (const auto& [name, bytes] : summary.attachments) fmt::print("  {} ({} bytes)\n", name, bytes);
+  if (!summary.events.empty()) fmt::print("\nevents:\n");
+  for (const auto& event : summary.events) {
+    fmt::print("  {:>8.2f} s  {}{}\n", event.time_s, event.text,
+               summary.epochs.size() > 1 ? fmt::format("  (epoch {})", event.epoch) : "");
+  }
+  return whole ? exit_status::kOk : kMissing;
+}
+
+int recover(const std::string& file) {
+  mcap::Reader reader(file);
+  std::string why;
+  try {
+    reader.read();
+    why = reader.incomplete();
+  } catch (const mcap::Error& error) {
+    why = error.what();
+  }
+  if (why.empty()) {
+    fmt::print("{}: is complete; nothing to recover\n", file);
+    return exit_status::kOk;
+  }
+  const std::uint64_t before = std::filesystem::file_size(file);
+  const std::uint64_t kept = reader.data_end();
+  mcap::Writer writer(reader);
+  writer.finish({{"recovered", {{"cut_bytes", std::to_string(before - std::min(before, kept))}, {"reason", why}}}});
+  fmt::print("{}: {} messages in {} chunks, {} bytes cut ({})\n", file, writer.contents().statistics.message_count,
+             writer.contents().chunks.size(), before - std::min(before, kept), why);
+  return exit_status::kOk;
+}
+
+}  // namespace
+
+void add_recording_files(CLI::App& app, Action& action) {
+  auto options = std::make_shared<InfoOptions>();
+  auto* info_app = add_subcommand(app, "info", "describe a recording: topics, rates, events, mission, what is missing",
+                                  action, options, info);
+  info_app->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);
+  info_app->add_flag("--json", options->json, "print JSON instead of text, for scripts");
+  info_app->footer(help_footer(
+      "Reads the whole file and checks everything in it. In the recording of a whole run in lock-step, the ticks name\n"
+      "the number of messages of each topic, so that `info` knows whether one is missing. Otherwise it counts the\n"
+      "numbers of messages that were left out.",
+      {"constrictor info runs/NAME/run.mcap", "constrictor info run.mcap --json"},
+      "0 complete; 1 messages are missing, or the file was not finished; 64 wrong usage; 70 damaged, or no MCAP file",
+      "none"));
+
+  auto file = std::make_shared<std::string>();
+  auto* recover_app = add_subcommand(app, "recover", "finish a recording whose writer was killed, or that is damaged",
+                                     action, file, recover);
+  recover_app->add_option("FILE", *file, "recording (MCAP), which is changed")->required()->check(CLI::ExistingFile);
+  recover_app->footer(help_footer(
+      "Keeps everything up to the last complete chunk before the end or the damage, and writes the indexes and the\n"
+      "summary. The recording of a run that is going on must not be recovered.",
+      {"constrictor recover run.mcap"}, "0 the file is complete now; 64 wrong usage; 70 no MCAP file", "none"));
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,51 @@
+#include "cli/recording/recording_text.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/recording_options.hpp"
+
+namespace constrictor::cli {
+
+std::string describe_recording(const RecordingSummary& summary) {
+  std::string text = fmt::format("{} messages of {} topics, {:.1f} MB, {:.1f} s", summary.messages,
+                                 summary.topics.size(), static_cast<double>(summary.file_bytes) * 1e-6,
+                                 static_cast<double>(summary.end_ns - summary.start_ns) * 1e-9);
+  const auto entry = [](const mcap::Texts& texts, const char* name) {
+    const auto found = texts.find(name);
+    return found == texts.end() ? std::string("?") : found->second;
+  };
+  if (summary.missing() > 0) {
+    text += fmt::format("; {} messages are missing:", summary.missing());
+    for (const auto& topic : summary.topics) {
+      if (topic.missing > 0) text += fmt::format(" {} of {},", topic.missing, topic.name);
+    }
+    text.pop_back();
+  } else if (summary.proven) {
+    text += "; nothing is missing: the file has every message that the ticks count";
+  } else {
+    text += "; no gap was found";
+  }
+  if (!summary.dropped.empty())
+    text += fmt::format("; the recording ends at tick {}: {}", entry(summary.dropped, "tick"),
+                        entry(summary.dropped, "reason"));
+  if (!summary.recovered.empty()) text += "; it was recovered after its writer was killed";
+  if (!summary.incomplete.empty()) text += fmt::format("; {} (`constrictor recover` finishes it)", summary.incomplete);
+  return text;
+}
+
+nlohmann::ordered_json recording_report(const std::filesystem::path& report_dir) {
+  const std::filesystem::path file = report_dir / kRecordingFile;
+  if (!std::filesystem::exists(file)) return nullptr;
+  try {
+    const RecordingSummary summary = summarise_recording(file);
+    return {
+        {"file", kRecordingFile},           {"text", fmt::format("{}: {}", file.string(), describe_recording(summary))},
+        {"messages", summary.messages},     {"bytes", summary.file_bytes},
+        {"missing", summary.missing()},     {"proven_complete", summary.proven && summary.missing() == 0},
+        {"incomplete", summary.incomplete}, {"dropped", summary.dropped}};
+  } catch (const mcap::Error& error) {
+    return {{"file", kRecordingFile}, {"text", error.what()}, {"incomplete", error.what()}};
+  }
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,19 @@
+// The summary of a recording as one sentence.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "recording/recording_summary.hpp"
+
+namespace constrictor::cli {
+
+/// "84,123 messages of 40 topics, 12.3 MB, 120.0 s; nothing is missing".
+[[nodiscard]] std::string describe_recording(const RecordingSummary& summary);
+
+/// What the recording in a report directory contains, for report.json; "text" is a line for people. Null: there is
+/// none.
+[[nodiscard]] nlohmann::ordered_json recording_report(const std::filesystem::path& report_dir);
+
+}  // namespace constrictor::cli
