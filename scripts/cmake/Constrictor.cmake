@@ -67,6 +67,8 @@ set(CONSTRICTOR_LAYERS
   "components/lib/dynamixel => components/lib/configuration"
   "components/lib/robot => idl|components/lib/configuration"
   "components/lib/component => idl|components/lib/configuration"
+  "components/lib/plant => idl|components/lib/(component|robot)"
+  "components/lib/serial => components/lib/dynamixel"
   "components/lib/barrier => idl|components/lib/(component|configuration)"
   "components/lib/faults => idl|components/lib/(component|barrier|configuration)"
   "components/lib/cyclone => idl"
@@ -75,8 +77,9 @@ set(CONSTRICTOR_LAYERS
   "components/lib/runtime => idl|components/lib/(component|barrier|faults|cyclone|recording|configuration|log)"
   "components/tools/host => .*"
   "components/tools/.* => idl|components/lib/.*"
+  "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
-  "sim/.* => idl|components/lib/(component|configuration|robot)|sim/.*"
+  "sim/.* => idl|components/lib/(component|configuration|dynamixel|plant|robot)|sim/.*"
   "tests/.* => .*")
 
 # Stops the configuration if a library links one that its folder must not know.

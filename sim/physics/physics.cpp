@@ -7,7 +7,6 @@
 #include <string>
 
 #include "component/data_path.hpp"
-#include "robot/gate_messages.hpp"
 #include "sim/physics/scene_description.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 
@@ -32,14 +31,14 @@ Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const
       world_(robot, scenario, config.solver),
       sensors_(robot, setup.component_seed(), scenario.sensor_noise),
       perturbations_(scenario),
-      gate_(robot, config.command),
+      gate_(wiring, robot, config.command, config.stop_ticks()),
       angles_rad_(robot.joints.size()),
       positions_rad_(robot.joints.size()),
       rates_rad_s_(robot.joints.size()),
       torques_nm_(robot.joints.size()) {}
 
 void Physics::sample(const Tick& tick) {
-  stop_.sample(tick);
+  gate_.sample(tick);
   if (!scene_written_) {
     scene_.write(scene_description(world_.scenario(), world_.robot()));
     scene_written_ = true;
@@ -55,19 +54,8 @@ void Physics::sample(const Tick& tick) {
 }
 
 void Physics::obey(const Tick& tick) {
-  if (command_) {
-    const std::uint64_t refused_before = refused_count(gate_state_);
-    const GateRefusal refusal =
-        gate_.offer(gate_command(*command_, command_->header), {tick.run_id, tick.epoch, tick.index}, gate_state_);
-    if (refused_count(gate_state_) != refused_before)
-      wiring_.count_refusal("joint_command: " + text_of(refusal, gate_state_));
-  }
-  // The plant's own stop comes first: it holds whatever `input` publishes, and also if `input` publishes nothing.
-  const GateOrder order = stop_.in_force()
-                              ? SafetyGate::order_of(true, msg::kAuthorityNone, {}, gate_state_)
-                              : gate_order(authority_.get(), authority_ ? authority_.age_ticks() : 0, gate_state_);
   for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
-  const std::vector<JointSetpoint>& setpoints = gate_.setpoints(angles_rad_, order, tick.period_s(), gate_state_);
+  const std::vector<JointSetpoint>& setpoints = gate_.setpoints(tick, angles_rad_);
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
     positions_rad_[i] = setpoints[i].position_rad;
     rates_rad_s_[i] = setpoints[i].velocity_rad_s;
@@ -85,7 +73,7 @@ void Physics::step(const Tick& tick) {
 std::string Physics::save() const {
   std::ostringstream stream;
   cereal::PortableBinaryOutputArchive archive(stream);
-  archive(world_.save(), sensors_, perturbations_, gate_state_, stop_.state(), scene_written_);
+  archive(world_.save(), sensors_, perturbations_, gate_, scene_written_);
   return std::move(stream).str();
 }
 
@@ -93,9 +81,7 @@ void Physics::load(const std::string& bytes) {
   std::istringstream stream(bytes);
   cereal::PortableBinaryInputArchive archive(stream);
   std::string world;
-  PlantStopState stop;
-  archive(world, sensors_, perturbations_, gate_state_, stop, scene_written_);
-  stop_.restore(stop);
+  archive(world, sensors_, perturbations_, gate_, scene_written_);
   world_.load(world);
 }
 

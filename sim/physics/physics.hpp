@@ -4,7 +4,7 @@
 #pragma once
 
 #include "component/component.hpp"
-#include "component/plant_stop.hpp"
+#include "plant/plant_gate.hpp"
 #include "sim/physics/perturbation_script.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/physics/sensors.hpp"
@@ -26,8 +26,8 @@ class Physics final : public Plant {
   void load(const std::string& bytes) override;
 
   [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] const GateState& gate() const { return gate_state_; }
-  [[nodiscard]] const PlantStopState& stop() const { return stop_.state(); }
+  [[nodiscard]] const GateState& gate() const { return gate_.state(); }
+  [[nodiscard]] const PlantStopState& stop() const { return gate_.stop_state(); }
 
  private:
   Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
@@ -38,19 +38,15 @@ class Physics final : public Plant {
   World world_;
   Sensors sensors_;
   PerturbationScript perturbations_;
-  SafetyGate gate_;
-  GateState gate_state_;
+  PlantGate gate_;
   std::vector<double> angles_rad_, positions_rad_, rates_rad_s_, torques_nm_;  ///< one entry for each joint
 
-  Latest<msg::JointCommand> command_ = wiring_.latest(topics::kJointCommand);
-  Latest<msg::Authority> authority_ = wiring_.latest(topics::kAuthority);
   Output<msg::JointState> joint_state_ = wiring_.output(topics::kJointState);
   Output<msg::ContactState> contact_state_ = wiring_.output(topics::kContactState);
   Output<msg::ImuState> imu_state_ = wiring_.output(topics::kImuState);
   Output<msg::WorldState> world_state_ = wiring_.output(topics::kWorldState);
   Output<msg::TouchedState> touched_state_ = wiring_.output(topics::kTouchedState);
   Output<msg::SceneDescription> scene_ = wiring_.output(topics::kSceneDescription);
-  PlantStop stop_{wiring_, config_.stop_ticks()};
   bool scene_written_ = false;
 };
 

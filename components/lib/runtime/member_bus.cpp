@@ -4,6 +4,7 @@
 #include <optional>
 #include <sstream>
 
+#include "barrier/plant_topics.hpp"
 #include "cyclone/discovery.hpp"
 
 namespace constrictor::dds {
@@ -70,12 +71,12 @@ void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample
                 [&](const void* message, dds_instance_handle_t writer) { use(ops.copy(message), writer); });
 }
 
-Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of,
-                               TopicSet unwritten) const {
+Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of, TopicSet unwritten,
+                               const std::string& plant) const {
   for (const auto& topic : topics::kInfos) {
     if (readers_[topic.id] && !unwritten.contains(topic.id) &&
-        !names(matched_user_data(readers_[topic.id].get(), false), topic.writer)) {
-      return {&topic, true, std::string(topic.writer)};
+        !names(matched_user_data(readers_[topic.id].get(), false), writer_in_run(topic, plant))) {
+      return {&topic, true, writer_in_run(topic, plant)};
     }
     const auto readers = readers_of.find(topic.id);
     if (!writers_[topic.id] || readers == readers_of.end()) continue;

@@ -38,9 +38,10 @@ class MemberBus {
 
   /// First endpoint of this process whose counterpart is missing; empty if all have met. `readers_of[topic]`: members
   /// in other processes that read the topic.
-  /// `unwritten`: topics that the Hello of their component does not announce; their readers have no counterpart.
+  /// `plant`: name of the plant in this run. `unwritten`: topics that the Hello of their component does not announce;
+  /// their readers have no counterpart.
   [[nodiscard]] Unmatched unmatched(const std::map<std::size_t, std::vector<std::string>>& readers_of,
-                                    TopicSet unwritten = {}) const;
+                                    TopicSet unwritten, const std::string& plant) const;
   /// Text for people: both endpoints with their QoS, or that the counterpart is not there.
   [[nodiscard]] std::string explain(const Unmatched& missing) const;
 

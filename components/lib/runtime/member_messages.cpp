@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "barrier/plant_topics.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/member_side.hpp"
 
@@ -39,7 +40,7 @@ void MemberSide::make_endpoints() {
   }
   const auto& roster = context_.options.roster;
   for (const auto& topic : topics::kInfos) {
-    const std::string writer(topic.writer);
+    const std::string writer = writer_in_run(topic, context_.options.plant);
     const bool in_roster = std::count(roster.begin(), roster.end(), writer) > 0;
     if (hosts(writer) || !in_roster) reads.erase(topic.id);
   }
@@ -119,7 +120,7 @@ void MemberSide::take_sample(std::size_t id, const Sample& sample, dds_instance_
       if (local.member->reads().contains(id)) local.member->on_sample(id, sample);
     }
   };
-  const std::string component(topic.writer);
+  const std::string component = writer_in_run(topic, context_.options.plant);
   const Admission::Verdict verdict = links_.admission().judge(component, writer);
   if (verdict == Admission::Verdict::kAccepted) return deliver();
   const bool kept = links_.admission().keep(component, writer, size_of(topic, sample), deliver);

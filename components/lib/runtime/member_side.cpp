@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "barrier/plant_topics.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -134,10 +135,11 @@ void MemberSide::send_ready() {
     if (hello == hellos_.end()) return;  // the member's topics are not known before its Hello
     for (const auto& topic : topics::kInfos) {
       if (hello->second.reads.contains(topic.id)) readers_of[topic.id].push_back(name);
-      if (topic.writer == name && !hello->second.writes.contains(topic.id)) unwritten.insert(topic.id);
+      if (writer_in_run(topic, context_.options.plant) == name && !hello->second.writes.contains(topic.id))
+        unwritten.insert(topic.id);
     }
   }
-  unmatched_ = bus_->unmatched(readers_of, unwritten);
+  unmatched_ = bus_->unmatched(readers_of, unwritten, context_.options.plant);
   if (!unmatched_.empty()) return;
   for (auto& local : members_) {
     if (!owes(local)) continue;
