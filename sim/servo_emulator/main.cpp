@@ -1,0 +1,172 @@
+// servo_emulator: answers on pseudo-terminals as the servos and boards of a robot would, and moves the robot in the
+// simulated world in real time.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <system_error>
+
+#include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
+#include "log/log.hpp"
+#include "robot/robot_model.hpp"
+#include "sim/scenario_loader/scenario_file.hpp"
+#include "sim/servo_emulator/emulated_robot.hpp"
+#include "sim/servo_emulator/pseudo_terminal.hpp"
+#include "sim/servo_emulator/world_file.hpp"
+
+namespace {
+
+using namespace constrictor;
+using namespace constrictor::servo_emulator;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t g_stop = 0;
+void on_signal(int) { g_stop = 1; }
+
+struct Options {
+  fs::path robot = data_path("components/lib/robot/mamba.yaml");
+  fs::path scenario = data_path("sim/scenarios/case_study.yaml");
+  fs::path bus = data_path("deploy/buses/mamba_emulated.yaml");
+  fs::path output = ".";
+  std::uint64_t seed = 1;
+};
+
+/// A named pipe from which the emulator reads commands.
+class CommandPipe {
+ public:
+  explicit CommandPipe(fs::path file) : file_(std::move(file)) {
+    fs::remove(file_);
+    // Both ends are open, so that the pipe does not end when a writer closes it.
+    if (::mkfifo(file_.c_str(), 0600) != 0 ||
+        (descriptor_ = ::open(file_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) < 0)
+      throw std::system_error(errno, std::generic_category(), file_.string());
+  }
+  ~CommandPipe() {
+    ::close(descriptor_);
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+  }
+  CommandPipe(const CommandPipe&) = delete;
+  CommandPipe& operator=(const CommandPipe&) = delete;
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  /// Calls `use` for each whole line that has arrived.
+  template <class Use>
+  void read(Use&& use) {
+    char buffer[512];
+    for (ssize_t count = 0; (count = ::read(descriptor_, buffer, sizeof buffer)) > 0;) {
+      text_.append(buffer, static_cast<std::size_t>(count));
+      for (auto end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
+        use(text_.substr(0, end));
+        text_.erase(0, end + 1);
+      }
+      if (text_.size() > kLongest) text_.clear();
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLongest = 4096;
+  fs::path file_;
+  int descriptor_ = -1;
+  std::string text_;
+};
+
+int emulate(const Options& options, const Log& log) {
+  const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
+  fs::create_directories(options.output);
+  EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
+  WorldFile world(options.output / "world.jsonl", robot.world());
+  std::vector<std::unique_ptr<PseudoTerminal>> terminals;
+  for (const auto& port : plan.ports) {
+    if (fs::path(port.device).is_absolute())
+      throw ConfigurationError(
+          fmt::format("{}: found the device {}, accepted a relative path: the emulator makes its "
+                      "ports in the output folder and replaces no real one",
+                      options.bus.string(), port.device));
+    terminals.push_back(std::make_unique<PseudoTerminal>(options.output / port.device));
+  }
+  CommandPipe commands(options.output / "servo_emulator.commands");
+  log.info("{} servos answer at {} ports in {}", plan.joints.size(), terminals.size(), options.output.string());
+
+  const auto start = Clock::now();
+  const auto now_ns = [&] { return std::chrono::nanoseconds(Clock::now() - start).count(); };
+  std::vector<pollfd> waits;
+  for (const auto& terminal : terminals) waits.push_back({terminal->descriptor(), POLLIN, 0});
+  waits.push_back({commands.descriptor(), POLLIN, 0});
+  dynamixel::Bytes received;
+  const pid_t parent = ::getppid();
+  while (!g_stop && ::getppid() == parent) {  // whoever started it must not leave it behind
+    std::int64_t due_ns = robot.next_step_ns();
+    for (std::size_t i = 0; i < terminals.size(); ++i) {
+      if (const auto& outgoing = robot.line(i).outgoing(); !outgoing.empty())
+        due_ns = std::min(due_ns, outgoing.front().at_ns);
+    }
+    const std::int64_t wait_ns = std::max<std::int64_t>(0, due_ns - now_ns());
+    const timespec wait = {wait_ns / 1'000'000'000, wait_ns % 1'000'000'000};
+    ::ppoll(waits.data(), waits.size(), &wait, nullptr);
+    for (std::size_t i = 0; i < terminals.size(); ++i) {
+      received.clear();
+      terminals[i]->read(received);
+      if (!received.empty()) robot.line(i).receive(received, terminals[i]->baud(), now_ns());
+    }
+    commands.read([&](const std::string& line) {
+      const std::string refusal = robot.command(line);
+      if (refusal.empty()) log.info("obeys '{}'", line);
+      else log.warning("refuses a command: {}", refusal);
+    });
+    if (robot.advance_to(now_ns()) > 0) world.note(robot.world(), robot.left_out_ns());
+    for (std::size_t i = 0; i < terminals.size(); ++i) {
+      auto& outgoing = robot.line(i).outgoing();
+      for (; !outgoing.empty() && outgoing.front().at_ns <= now_ns(); outgoing.pop_front())
+        terminals[i]->write(outgoing.front().bytes);
+    }
+  }
+  log.info("ends after {:.1f} s", robot.world().time_s());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{
+      "servo_emulator: answers as the servos and sensor boards of a robot, on pseudo-terminals, in real time."};
+  app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--bus", options.bus, "bus file (YAML): the servos, their ids and ports")->check(CLI::ExistingFile);
+  app.add_option("--seed", options.seed, "seed of the scenario and of the noise");
+  app.add_option("--output", options.output,
+                 "folder in which the ports, the pipe servo_emulator.commands and the file world.jsonl are made")
+      ->capture_default_str();
+  app.footer(
+      "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
+      "EXAMPLES\n  servo_emulator --output /tmp/robot\n  echo 'cable 0 7' > /tmp/robot/servo_emulator.commands\n\n"
+      "EXIT STATUS\n  0 it was ended; 64 wrong usage; 70 it failed; 78 wrong configuration");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+  const Log log("servo_emulator");
+  try {
+    return emulate(options, log);
+  } catch (const ConfigurationError& error) {
+    log.error("configuration: {}", error.what());
+    return 78;
+  } catch (const std::exception& error) {
+    log.error("{}", error.what());
+    return 70;
+  }
+}
