@@ -27,12 +27,15 @@ void require_file(const std::string& what, const fs::path& file) {
   throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
 }
 
+void require_program(const std::string& name, const std::string& where) {
+  const fs::path program = program_folder() / name;
+  if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
+  throw ConfigurationError(fmt::format("{}: found program {}, accepted an executable file", where, program.string()));
+}
+
 void require_program(const ProcessPlan& process) {
   if (process.program.empty() || !process.host.empty()) return;  // another host checks its programs itself
-  const fs::path program = program_folder() / process.program;
-  if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
-  throw ConfigurationError(
-      fmt::format("process {}: found program {}, accepted an executable file", process.name(), program.string()));
+  require_program(process.program, "process " + process.name());
 }
 
 /// The keys of a run are not sent to other hosts: private keys stay where they were put.
@@ -124,6 +127,10 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   LaunchPlan plan;
   LaunchManifest& manifest = plan.manifest = load_manifest(find_file(options.manifest, kManifests));
   plan.roster = manifest.roster();
+  if (manifest.real_time && options.pace != "lockstep" && options.pace != "realtime")
+    throw UsageError(fmt::format("--pace: found {}, accepted realtime: the plant of manifest {} follows the wall clock",
+                                 options.pace, options.manifest));
+  for (const auto& companion : manifest.beside) require_program(companion.program, "beside");
   if (!options.scenario.empty()) manifest.scenario_file = find_file(options.scenario, kScenarios);
   if (!options.robot.empty()) manifest.robot_file = find_file(options.robot, kRobots);
   require_file("scenario", manifest.scenario_file);
@@ -177,7 +184,7 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
   common.insert(common.end(), latencies.begin(), latencies.end());
   if (options.max_sim_time_s > 0)
     common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
-  std::vector<std::string> of_plant = pace_arguments(options.pace);
+  std::vector<std::string> of_plant = pace_arguments(manifest.real_time ? "realtime" : options.pace);
   if (options.record) {
     of_plant.insert(of_plant.end(), {"--record", "--images", options.images});
     for (const auto& [name, file] : recorded_files(options, manifest))

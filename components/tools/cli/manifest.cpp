@@ -32,6 +32,13 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
   manifest.robot_file = data_path(root.text("robot"));
   manifest.scenario_file = data_path(root.text("scenario"));
   manifest.patience_s = root.number("patience_s", {1, 86400}, manifest.patience_s);
+  manifest.real_time = root.flag("real_time", false);
+  for (Configuration& entry : root.list("beside", false)) {
+    CompanionPlan companion{entry.text("program"), {}};
+    if (entry.has("arguments")) companion.arguments = entry.texts("arguments");
+    entry.finish();
+    manifest.beside.push_back(std::move(companion));
+  }
   std::set<std::string> known;
   for (Configuration& entry : root.list("processes")) {
     ProcessPlan process;

@@ -34,6 +34,12 @@ struct ProcessPlan {
   [[nodiscard]] std::string name() const;
 };
 
+/// A program that runs beside the run without taking part in it, such as emulated devices.
+struct CompanionPlan {
+  std::string program;
+  std::vector<std::string> arguments;  ///< besides --robot, --scenario, --seed and --output
+};
+
 /// The program and its arguments for an incarnation of a process.
 using CommandLine = std::function<std::vector<std::string>(const ProcessPlan& process, std::uint32_t incarnation)>;
 
@@ -41,6 +47,8 @@ struct LaunchManifest {
   std::string plant;  ///< name of the component that is the plant
   std::filesystem::path robot_file;
   std::filesystem::path scenario_file;
+  bool real_time = false;  ///< the plant drives real joints: the pace of the run is `realtime`
+  std::vector<CompanionPlan> beside;
   double patience_s = 60.0;  ///< [s] wall time that a process waits for another one before it gives up
   std::vector<ProcessPlan> processes;
   std::map<std::string, std::uint16_t> latency_ticks;         ///< least latency by component; absent: its own

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 
+#include "cli/companions.hpp"
 #include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
 #include "cli/progress_display.hpp"
@@ -83,6 +84,7 @@ class Launcher {
       fs::remove(report_dir_ / "report.json");  // it says why the run was interrupted
       display_.print(prepare_checkpoint(report_dir_));
     }
+    companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& l) { display_.print(l); });
     supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
     watch_run();
@@ -136,6 +138,7 @@ class Launcher {
   /// Reads the messages that the run has published, and passes their content to the supervisor and the note.
   void update() {
     for (const auto& line : observer_.poll()) display_.print(line);
+    companions_->poll();
     const RunView& view = observer_.view();
     note_.set_seed(view.seed(options_.seed));
     supervisor_.run_is_at(view.tick, view.held());
@@ -247,9 +250,10 @@ class Launcher {
   FaultDirector faults_{plan_.faults};
   Clock::time_point memory_sampled_{};
   RunEnding ending_;
-  bool run_is_over_ = false;  ///< the plant has ended; the other processes are ending
-  std::string killed_;        ///< why the processes are killed; empty if they are not killed
-  std::string left_;          ///< why the run is left without an end, so that it can be resumed; else empty
+  std::optional<Companions> companions_;  ///< programs beside the run; they end after it
+  bool run_is_over_ = false;              ///< the plant has ended; the other processes are ending
+  std::string killed_;                    ///< why the processes are killed; empty if they are not killed
+  std::string left_;                      ///< why the run is left without an end, so that it can be resumed; else empty
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "cli/usage.hpp"
@@ -46,8 +47,20 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
   EXPECT_EQ(plan.manifest.scenario_file.filename(), "line.yaml");
   EXPECT_EQ(plan.manifest.robot_file.filename(), "serpens.yaml");
   EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
-  EXPECT_EQ(names_of(kManifests), (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live",
-                                                            "case_study_mx106", "manual", "two_hosts"}));
+  EXPECT_EQ(names_of(kManifests),
+            (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live", "case_study_mx106",
+                                      "emulated_servos", "manual", "two_hosts"}));
+}
+
+TEST_F(LaunchPlanTest, ARealPlantFollowsTheWallClock) {
+  options_.manifest = "emulated_servos";
+  const LaunchPlan plan = make_launch_plan(options_);
+  ASSERT_EQ(plan.manifest.beside.size(), 1u);
+  EXPECT_EQ(plan.manifest.beside[0].program, "servo_emulator");
+  const auto line = make_command_line(options_, plan, 7, "r", 1)(plan.manifest.processes[0], 1);
+  EXPECT_EQ(std::count(line.begin(), line.end(), "--realtime"), 1);
+  options_.pace = "2x";
+  EXPECT_THROW(static_cast<void>(make_launch_plan(options_)), UsageError);
 }
 
 TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {

@@ -40,6 +40,19 @@ class File {
 
 const char* const kHead = "plant: physics\nrobot: r.yaml\nscenario: s.yaml\nprocesses:\n";
 
+TEST(Manifest, NamesProgramsThatRunBesideTheRun) {
+  const std::string rest = std::string(kHead) + "  - {components: [physics]}\n";
+  const File file(rest + "real_time: true\nbeside:\n  - {program: robot, arguments: [--loud, '3']}\n");
+  const LaunchManifest manifest = load_manifest(file.path());
+  EXPECT_TRUE(manifest.real_time);
+  ASSERT_EQ(manifest.beside.size(), 1u);
+  EXPECT_EQ(manifest.beside[0].program, "robot");
+  EXPECT_EQ(manifest.beside[0].arguments, (std::vector<std::string>{"--loud", "3"}));
+  EXPECT_NE(File(rest + "beside:\n  - {arguments: [x]}\n").error().find("beside[0].program"), std::string::npos)
+      << File(rest + "beside:\n  - {arguments: [x]}\n").error();
+  EXPECT_NE(File(rest + "beside:\n  - {program: x, host: y}\n").error().find("unknown key"), std::string::npos);
+}
+
 TEST(Manifest, TheCaseStudyRunsEachComponentInAProcessOfItsOwn) {
   const LaunchManifest manifest = load_manifest(data_path("deploy/case_study.yaml"));
   EXPECT_EQ(manifest.plant, "physics");

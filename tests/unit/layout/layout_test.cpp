@@ -69,6 +69,8 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/lib/configuration",
                              "components/lib/dynamixel",
                              "components/lib/robot",
+                             "components/lib/plant",
+                             "components/lib/serial",
                              "components/lib/component",
                              "components/lib/barrier",
                              "components/lib/cyclone",
@@ -83,12 +85,14 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/navigation",
                              "components/perception",
                              "components/planner",
+                             "components/servo_bus",
                              "sim/camera",
                              "sim/overview",
                              "sim/physics",
                              "sim/render",
                              "sim/report",
                              "sim/scenario_loader",
+                             "sim/servo_emulator",
                              "sim/world"}) {
     EXPECT_TRUE(folders.contains(folder)) << folder;
   }

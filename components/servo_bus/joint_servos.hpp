@@ -1,0 +1,102 @@
+// The servos of all joints: start-up, one round of reading and one of writing in each tick, and what to do when a servo
+// is lost, shut down or locked. It sees the buses only, and reads no clock.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/joint_limits.hpp"
+#include "servo_bus/bus_ports.hpp"
+#include "servo_bus/servo_bus_config.hpp"
+
+namespace constrictor {
+
+/// What a servo reports of itself and of its joint.
+struct JointReading {
+  double angle_rad = 0.0;
+  double rate_rad_s = 0.0;
+  double torque_nm = 0.0;  ///< not filtered
+  bool torque_on = false;
+  int temperature_c = 0;
+  double voltage_v = 0.0;
+  std::uint8_t hardware_errors = 0;
+  std::int64_t watchdog = 0;  ///< kWatchdogTripped: the servo has stopped and locked its goals
+};
+
+enum class ServoState : std::uint8_t {
+  kLost,      ///< it does not answer, or it was not started yet
+  kReady,     ///< it is configured and answers
+  kShutDown,  ///< it answers, but has switched its torque off because of a hardware error
+};
+
+class JointServos {
+ public:
+  /// `ports` must outlive this object.
+  JointServos(const dynamixel::BusPlan& plan, const RobotModel& robot, const ServoBusConfig& config, BusPorts& ports);
+
+  /// Configures all servos and reads the posture. Moves nothing: a servo without torque gets its present position as
+  /// its goal before its torque can be switched on; a servo whose watchdog has tripped stays as it is. Returns the
+  /// servos that cannot be started, one line each with the reason; empty: all are ready.
+  [[nodiscard]] std::vector<std::string> start();
+  /// Reads all servos, and tries to bring back one that is lost.
+  void measure();
+  /// Sends the setpoints, one for each joint. A torque limit of 0 switches the torque of a joint off.
+  void command(std::span<const JointSetpoint> setpoints);
+  /// Switches the torque of all servos off.
+  void release();
+
+  [[nodiscard]] const JointReading& reading(std::size_t joint) const { return joints_[joint].reading; }
+  [[nodiscard]] ServoState state(std::size_t joint) const { return joints_[joint].state; }
+  [[nodiscard]] std::size_t count() const { return joints_.size(); }
+  /// Every joint can follow commands.
+  [[nodiscard]] bool complete() const;
+  /// The watchdog of a servo has tripped: it obeys nothing until unlock().
+  [[nodiscard]] bool locked() const;
+  /// Clears the watchdogs; the present positions become the goals, so that nothing moves.
+  void unlock();
+  /// What happened since the last call, one line each.
+  [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+
+ private:
+  struct Joint {
+    JointModel limits;
+    dynamixel::JointServo servo;
+    ServoState state = ServoState::kLost;
+    JointReading reading;
+    std::int64_t current_limit = 0;  ///< register of the servo
+    int misses = 0;                  ///< rounds without an answer
+    int reboots = 0;
+    bool seen = false;  ///< in this round
+    std::uint8_t reported_errors = 0;
+    bool reported_lock = false;
+  };
+
+  [[nodiscard]] std::string name_of(std::size_t joint) const;
+  [[nodiscard]] dynamixel::Bytes ids_at(std::size_t port, ServoState state, bool unseen_only = false) const;
+  void read_port(std::size_t port);
+  void take(Joint& joint, const serial::Answer& answer);
+  void judge(std::size_t index);
+  void lose(std::size_t index, const std::string& why);
+  void look_for_one_lost();
+  /// Empty: the servo is ready; else the reason why it is not.
+  [[nodiscard]] std::string bring_up(serial::BusMaster& bus, Joint& joint);
+  void configure(serial::BusMaster& bus, const Joint& joint, bool tripped);
+  void make_blocks();
+
+  const dynamixel::BusPlan& plan_;
+  const ServoBusConfig& config_;
+  BusPorts& ports_;
+  std::vector<Joint> joints_;
+  dynamixel::Bytes pointers_;      ///< values of the registers indirect_address_1 and following
+  std::uint16_t goal_block_ = 0;   ///< address of the goals behind indirect registers
+  std::uint16_t state_block_ = 0;  ///< the same of the measurements
+  std::uint16_t goal_bytes_ = 0;
+  std::uint16_t state_bytes_ = 0;
+  std::size_t next_lost_ = 0;  ///< joint at which the search for a lost servo goes on
+  std::vector<std::string> news_;
+};
+
+}  // namespace constrictor

@@ -1,0 +1,150 @@
+// The part of JointServos that starts, unlocks and releases servos, one question after the other.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "servo_bus/joint_servos.hpp"
+
+namespace constrictor {
+
+using dynamixel::Bytes;
+using dynamixel::Register;
+using serial::Answer;
+using serial::BusMaster;
+
+namespace {
+
+constexpr int kTries = 3;
+constexpr std::int64_t kTimeBasedProfile = 1 << 2;  // bit of the register drive_mode; the direction stays normal
+
+Answer write(BusMaster& bus, std::uint8_t id, const Register& reg, std::int64_t value) {
+  Bytes bytes;
+  dynamixel::put_value(bytes, reg, value);
+  return bus.write(id, reg.address, bytes, kTries);
+}
+
+/// A servo cannot be started; the text says why.
+class StartFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The value of a register. Throws StartFailure.
+std::int64_t read(BusMaster& bus, std::uint8_t id, const Register& reg) {
+  const Answer answer = bus.read(id, reg.address, reg.bytes, kTries);
+  if (!answer.good()) throw StartFailure(fmt::format("cannot read {}: {}", reg.name, answer.text()));
+  return dynamixel::get_number(answer.data, reg.bytes, reg.is_signed);
+}
+
+void require(const Answer& answer, const Register& reg) {
+  if (!answer.good()) throw StartFailure(fmt::format("cannot write {}: {}", reg.name, answer.text()));
+}
+
+}  // namespace
+
+void JointServos::configure(BusMaster& bus, const Joint& joint, bool tripped) {
+  const dynamixel::ServoModel& model = plan_.model;
+  const std::uint8_t id = joint.servo.id;
+  const std::pair<const char*, std::int64_t> wanted[] = {
+      {"return_delay_time", 0},
+      {"drive_mode", kTimeBasedProfile},
+      {"operating_mode", static_cast<std::int64_t>(dynamixel::OperatingMode::kCurrentBasedPosition)},
+      {"homing_offset", 0}};
+  bool off = read(bus, id, model.at("torque_enable")) == 0;
+  for (const auto& [name, value] : wanted) {
+    const Register& reg = model.at(name);
+    // A locked servo keeps its torque until an operator has cleared the stop. The EEPROM wears out by writing.
+    if (tripped || read(bus, id, reg) == value) continue;
+    if (!off) require(write(bus, id, model.at("torque_enable"), 0), model.at("torque_enable"));
+    off = true;
+    require(write(bus, id, reg, value), reg);
+  }
+  require(bus.write(id, model.at("indirect_address_1").address, pointers_, kTries), model.at("indirect_address_1"));
+  require(write(bus, id, model.at("profile_acceleration"), 0), model.at("profile_acceleration"));
+  require(write(bus, id, model.at("profile_velocity"), config_.profile_ms()), model.at("profile_velocity"));
+}
+
+std::string JointServos::bring_up(BusMaster& bus, Joint& joint) {
+  const dynamixel::ServoModel& model = plan_.model;
+  const std::uint8_t id = joint.servo.id;
+  try {
+    const Answer found = bus.ping(id, kTries);
+    if (!found.good() || found.data.size() < 2) return "does not answer (power, cable, id, baud rate?)";
+    const auto number = dynamixel::get_number(found.data, 2, false);
+    if (number != model.number)
+      return fmt::format("is of model {}, accepted {} ({}): another device has this id", number, model.number,
+                         model.name);
+    write(bus, id, model.at("status_return_level"), 2);  // without it there may be no answer to this very write
+    const bool tripped = read(bus, id, model.at("bus_watchdog")) == dynamixel::kWatchdogTripped;
+    configure(bus, joint, tripped);
+    joint.current_limit = read(bus, id, model.at("current_limit"));
+    const std::int64_t position = read(bus, id, model.at("present_position"));
+    const double angle_rad = joint.servo.angle_rad(model, position);
+    if (angle_rad < joint.limits.min_rad - config_.start_tolerance_rad ||
+        angle_rad > joint.limits.max_rad + config_.start_tolerance_rad)
+      return fmt::format(
+          "measures {:.2f} rad, accepted {} to {} rad: move the joint by hand, or correct zero_steps and "
+          "direction in the bus file",
+          angle_rad, joint.limits.min_rad, joint.limits.max_rad);
+    if (!tripped) {
+      require(write(bus, id, model.at("goal_position"), position), model.at("goal_position"));
+      require(write(bus, id, model.at("bus_watchdog"), config_.watchdog_units()), model.at("bus_watchdog"));
+    }
+    const Answer block = bus.read(id, state_block_, state_bytes_, kTries);
+    take(joint, block);
+    if (!block.good() || joint.reading.voltage_v <= 0.0) return "does not keep its indirect addresses";
+  } catch (const StartFailure& failure) {
+    return failure.what();
+  }
+  joint.state = ServoState::kReady;
+  joint.misses = 0;
+  return {};
+}
+
+std::vector<std::string> JointServos::start() {
+  std::vector<std::string> failed;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    std::string why = "its port is closed";
+    ports_.with(joint.servo.port, news_, [&](BusMaster& bus) { why = bring_up(bus, joint); });
+    if (!why.empty()) failed.push_back(fmt::format("{}: {}", name_of(i), why));
+  }
+  for (std::size_t port = 0; port < ports_.size(); ++port)
+    ports_.with(port, news_, [](BusMaster& bus) { bus.set_return_delay(0.0); });
+  return failed;
+}
+
+void JointServos::unlock() {
+  const dynamixel::ServoModel& model = plan_.model;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    if (joint.state == ServoState::kLost || joint.reading.watchdog != dynamixel::kWatchdogTripped) continue;
+    ports_.with(joint.servo.port, news_, [&](BusMaster& bus) {
+      // First 0, which clears it. A servo that was found locked at the start was not configured then.
+      const bool cleared = write(bus, joint.servo.id, model.at("bus_watchdog"), 0).good();
+      if (const std::string why = cleared ? bring_up(bus, joint) : "its watchdog cannot be cleared"; !why.empty())
+        lose(i, why);
+    });
+  }
+}
+
+void JointServos::release() {
+  const std::uint16_t address = plan_.model.at("torque_enable").address;
+  for (std::size_t port = 0; port < ports_.size(); ++port) {
+    ports_.with(port, news_, [&](BusMaster& bus) {
+      for (int i = 0; i < kTries; ++i) {
+        const Bytes ids = plan_.servo_ids(port);
+        if (ids.empty()) return;
+        bus.sync_write(address, 1, ids, Bytes(ids.size(), 0));
+        std::size_t off = 0;
+        bus.sync_read(address, 1, ids, [&](std::uint8_t, const Answer& answer) {
+          if (answer.good() && answer.data[0] == 0) ++off;
+        });
+        if (off == ids.size()) return;
+      }
+    });
+  }
+}
+
+}  // namespace constrictor

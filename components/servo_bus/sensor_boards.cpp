@@ -1,0 +1,102 @@
+#include "servo_bus/sensor_boards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamixel/sensor_board.hpp"
+
+namespace constrictor {
+
+using dynamixel::Bytes;
+using dynamixel::ByteView;
+namespace map = dynamixel::sensor_board;
+
+namespace {
+
+/// Measurements of a board, addressed as its registers are.
+class BoardData {
+ public:
+  explicit BoardData(ByteView data) : data_(data) {}
+  [[nodiscard]] double number(std::size_t address, double unit) const {
+    return unit * static_cast<double>(dynamixel::get_number(data_.subspan(address - map::kBegin), 2, true));
+  }
+  [[nodiscard]] msg::Vector3 vector(std::size_t address, double unit) const {
+    return {number(address, unit), number(address + 2, unit), number(address + 4, unit)};
+  }
+  [[nodiscard]] std::uint8_t byte(std::size_t address) const { return data_[address - map::kBegin]; }
+
+ private:
+  ByteView data_;
+};
+
+std::optional<msg::Quaternion> unit_quaternion(const BoardData& board) {
+  const double w = board.number(map::imu::kOrientation, map::kUnitVector);
+  const msg::Vector3 v = board.vector(map::imu::kOrientation + 2, map::kUnitVector);
+  const double length = std::sqrt(w * w + v.x * v.x + v.y * v.y + v.z * v.z);
+  if (std::abs(length - 1.0) > 0.01) return std::nullopt;
+  return msg::Quaternion{w / length, v.x / length, v.y / length, v.z / length};
+}
+
+}  // namespace
+
+void SensorBoards::note(const char* what, bool& missing, bool answered) {
+  if (missing != answered) return;
+  missing = !answered;
+  news_.push_back(fmt::format("{} {}", what, answered ? "answers again" : "does not answer (power, cable, id?)"));
+}
+
+std::optional<msg::ImuState> SensorBoards::imu() {
+  if (!plan_.imu) return std::nullopt;
+  std::optional<msg::ImuState> state;
+  ports_.with(plan_.imu->port, news_, [&](serial::BusMaster& bus) {
+    const serial::Answer answer = bus.read(plan_.imu->id, map::kBegin, map::imu::kEnd - map::kBegin, 2);
+    if (!answer.good()) return;
+    const BoardData board(answer.data);
+    const auto orientation = unit_quaternion(board);
+    if (!orientation) return;
+    state.emplace();
+    state->orientation = *orientation;
+    state->angular_velocity_rad_s = board.vector(map::imu::kAngularVelocity, map::kRate_rad_s);
+    state->linear_acceleration_m_s2 = board.vector(map::imu::kLinearAcceleration, map::kAcceleration_m_s2);
+  });
+  note("the inertial unit", imu_missing_, state.has_value());
+  return state;
+}
+
+msg::ContactState SensorBoards::contacts() {
+  msg::ContactState state{};
+  if (plan_.contact_boards.empty()) return state;
+  const std::size_t port = plan_.contact_boards.front().port;  // load_bus_plan: all are at one port
+  Bytes ids;
+  for (const auto& board : plan_.contact_boards) ids.push_back(board.id);
+  std::size_t answered = 0;
+  const auto use = [&](std::uint8_t, const serial::Answer& answer) {
+    const auto module = static_cast<std::uint8_t>(answered++);
+    if (!answer.good()) return;
+    const BoardData board(answer.data);
+    state.force_n[module] = board.vector(map::contact::kForce, map::kForce_n);
+    state.torque_nm[module] = board.vector(map::contact::kMoment, map::kMoment_nm);
+    const std::size_t count = std::min<std::size_t>(board.byte(map::contact::kContacts), map::contact::kMost);
+    for (std::size_t i = 0; i < count && state.contact_count < msg::kMaxContacts; ++i) {
+      const std::size_t at = map::contact::kFirst + i * map::contact::kBytesOfOne;
+      state.contacts[state.contact_count++] = {module, board.vector(at, map::kPosition_m),
+                                               board.vector(at + 6, map::kUnitVector),
+                                               board.vector(at + 12, map::kForce_n)};
+    }
+  };
+  ports_.with(port, news_, [&](serial::BusMaster& bus) {
+    bus.fast_sync_read(map::kBegin, map::contact::kEnd - map::kBegin, ids, use);
+  });
+  const bool all = answered == ids.size();
+  note("one of the contact boards", contacts_missing_, all);
+  if (!all) return {};
+  state.module_count = static_cast<std::uint16_t>(ids.size());
+  const auto strength = [](const msg::Contact& one) { return std::hypot(one.force_n.x, one.force_n.y, one.force_n.z); };
+  std::stable_sort(state.contacts, state.contacts + state.contact_count,
+                   [&](const msg::Contact& a, const msg::Contact& b) { return strength(a) > strength(b); });
+  return state;
+}
+
+}  // namespace constrictor

@@ -1,0 +1,38 @@
+// The inertial unit and the contact sensors on the buses (dynamixel/sensor_board.hpp).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constrictor/messages.hpp"
+#include "servo_bus/bus_ports.hpp"
+
+namespace constrictor {
+
+class SensorBoards {
+ public:
+  /// Both must outlive this object.
+  SensorBoards(const dynamixel::BusPlan& plan, BusPorts& ports) : plan_(plan), ports_(ports) {}
+
+  /// Empty: the robot has no inertial unit, or it did not answer in this tick.
+  [[nodiscard]] std::optional<msg::ImuState> imu();
+  /// `module_count` is 0 if the robot has no contact sensors, or if not all of them answered. So no reader takes a
+  /// missing contact for an untouched skin.
+  [[nodiscard]] msg::ContactState contacts();
+  /// What happened since the last call, one line each.
+  [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+
+ private:
+  /// Notes when a sensor is lost, and when it is back.
+  void note(const char* what, bool& missing, bool answered);
+
+  const dynamixel::BusPlan& plan_;
+  BusPorts& ports_;
+  bool imu_missing_ = false;
+  bool contacts_missing_ = false;
+  std::vector<std::string> news_;
+};
+
+}  // namespace constrictor

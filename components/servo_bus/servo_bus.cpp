@@ -1,0 +1,179 @@
+#include "servo_bus/servo_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <cereal/types/string.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+
+#include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
+#include "serial/serial_port.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr std::int64_t kRecordEvery_ticks = 50;
+constexpr double kSlowestClock = 0.6;  // wall time by run time; a late run catches up by at most 0.2 s
+
+RobotModel robot_of(const Setup& setup) {
+  return load_robot(setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file);
+}
+
+dynamixel::BusPlan plan_of(const ServoBusConfig& config, const RobotModel& robot) {
+  const std::filesystem::path file = data_path(config.bus_file);
+  dynamixel::BusPlan plan = dynamixel::load_bus_plan(file, data_path("components/lib/dynamixel/models"));
+  if (plan.joints.size() != robot.joints.size())
+    throw ConfigurationError(fmt::format("{}: joints: found {}, accepted {}, as robot {} has", file.string(),
+                                         plan.joints.size(), robot.joints.size(), robot.name));
+  return plan;
+}
+
+/// Opens serial ports; relative names belong to the output folder of the run.
+OpenPort serial_ports(const std::filesystem::path& folder, double patience_s) {
+  return [folder, patience_s](const dynamixel::BusPort& port) -> std::unique_ptr<serial::Port> {
+    return serial::wait_for_port(folder / port.device, port.baud, patience_s);
+  };
+}
+
+}  // namespace
+
+ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
+    : wiring_(wiring),
+      config_(load_parameters<ServoBusConfig>(setup.config_file)),
+      robot_(robot_of(setup)),
+      plan_(plan_of(config_, robot_)),
+      ports_(plan_.ports, config_.answer_slack_s,
+             open ? open : serial_ports(setup.output_dir, config_.port_patience_s)),
+      servos_(plan_, robot_, config_, ports_),
+      boards_(plan_, ports_),
+      record_(setup.output_dir),
+      gate_(wiring, robot_, config_.command),
+      angles_rad_(robot_.joints.size()),
+      torques_nm_(robot_.joints.size()) {}
+
+ServoBus::~ServoBus() {
+  if (!started_) return;
+  if (config_.torque_off_at_exit) servos_.release();
+}
+
+void ServoBus::start() {
+  try {
+    ports_.open_all();
+  } catch (const serial::PortError& error) {
+    throw ConfigurationError(error.what());
+  }
+  const std::vector<std::string> failed = servos_.start();
+  // A successor must not give up the run: what is missing now is lost, and may come back.
+  if (!failed.empty() && !continued_)
+    throw ConfigurationError(
+        fmt::format("{} of {} servos cannot be started (`constrictor servo scan` shows who "
+                    "answers):\n  {}",
+                    failed.size(), servos_.count(), fmt::join(failed, "\n  ")));
+  for (const auto& line : failed) wiring_.count_refusal(line);
+  started_ = true;
+}
+
+void ServoBus::measure(const Tick& tick) {
+  if (!started_) {
+    start();
+    window_tick_ = tick.index;
+    window_time_ns_ = ports_.now_ns();
+  } else {
+    servos_.measure();
+  }
+}
+
+void ServoBus::check_pace(const Tick& tick) {
+  const std::int64_t ticks = tick.index - window_tick_;
+  if (ticks < kRecordEvery_ticks) return;
+  const std::int64_t now_ns = ports_.now_ns();
+  const double wall_s = static_cast<double>(now_ns - window_time_ns_) * 1e-9;
+  const bool known = now_ns != 0 && window_time_ns_ != 0;
+  if (known && wall_s < kSlowestClock * static_cast<double>(ticks) * tick.period_s())
+    throw ConfigurationError(
+        fmt::format("--pace: found a run with {} ticks in {:.2f} s, accepted --pace realtime: real "
+                    "servos cannot be faster than the clock",
+                    ticks, wall_s));
+  window_tick_ = tick.index;
+  window_time_ns_ = now_ns;
+}
+
+void ServoBus::report_news() {
+  for (const auto& news : {servos_.take_news(), boards_.take_news()}) {
+    for (const auto& line : news) {
+      wiring_.count_refusal(line);
+      record_.add_news(line);
+    }
+  }
+}
+
+void ServoBus::write_joints(double elapsed_s) {
+  msg::JointState state{};
+  state.joint_count = static_cast<std::uint16_t>(servos_.count());
+  for (std::size_t i = 0; i < servos_.count(); ++i) {
+    const JointReading& reading = servos_.reading(i);
+    angles_rad_[i] = reading.angle_rad;
+    torques_nm_[i] += (reading.torque_nm - torques_nm_[i]) * elapsed_s / (robot_.torque_filter_s + elapsed_s);
+    state.position_rad[i] = reading.angle_rad;
+    state.velocity_rad_s[i] = reading.rate_rad_s;
+    state.torque_nm[i] = torques_nm_[i];
+  }
+  joint_state_.write(state);
+}
+
+void ServoBus::sample(const Tick& tick) {
+  const std::int64_t before_ns = ports_.now_ns();
+  measure(tick);
+  const auto imu = boards_.imu();
+  const msg::ContactState contacts = boards_.contacts();
+  bus_time_ns_ = before_ns == 0 ? 0 : ports_.now_ns() - before_ns;
+  report_news();
+  if (servos_.locked() && !locked_) {
+    locked_ = true;
+    gate_.stop("bus_watchdog");
+  }
+  gate_.sample(tick);
+  write_joints(tick.period_s());
+  contact_state_.write(contacts);
+  if (imu) imu_state_.write(*imu);
+  check_pace(tick);
+}
+
+void ServoBus::step(const Tick& tick) {
+  const std::int64_t before_ns = ports_.now_ns();
+  const bool stopped = gate_.stopped();
+  if (locked_ && !stopped) {
+    servos_.unlock();
+    locked_ = servos_.locked();
+    gate_.begin_at_posture();
+  }
+  const bool hold = locked_ || !servos_.complete();
+  if (held_ && !hold) gate_.begin_at_posture();
+  held_ = hold;
+  servos_.command(gate_.setpoints(tick, angles_rad_, hold));
+  if (bus_time_ns_ > 0) record_.add_round(bus_time_ns_ + ports_.now_ns() - before_ns);
+  if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
+}
+
+std::string ServoBus::save() const {
+  std::ostringstream stream;
+  cereal::PortableBinaryOutputArchive archive(stream);
+  archive(gate_, angles_rad_, torques_nm_);
+  return std::move(stream).str();
+}
+
+void ServoBus::load(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  cereal::PortableBinaryInputArchive archive(stream);
+  archive(gate_, angles_rad_, torques_nm_);
+  continued_ = true;
+}
+
+ComponentFactory make_servo_bus_factory(OpenPort open) {
+  return {"servo_bus",
+          [open](Wiring& wiring, const Setup& setup) { return std::make_unique<ServoBus>(wiring, setup, open); },
+          "components/servo_bus/servo_bus.yaml", describe_parameters<ServoBusConfig>};
+}
+
+}  // namespace constrictor

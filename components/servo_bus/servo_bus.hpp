@@ -1,0 +1,66 @@
+// The component `servo_bus`, the plant of a real robot: it drives the joints over serial buses and owns the time of the
+// run, at real-time pace. It sees nothing but the buses.
+#pragma once
+
+#include "component/component.hpp"
+#include "plant/plant_gate.hpp"
+#include "servo_bus/bus_record.hpp"
+#include "servo_bus/joint_servos.hpp"
+#include "servo_bus/sensor_boards.hpp"
+
+namespace constrictor {
+
+class ServoBus final : public Plant {
+ public:
+  /// Reads the robot, the configuration and the bus file; opens no port. Throws ConfigurationError. `open`: replaces
+  /// the serial ports in tests.
+  ServoBus(Wiring& wiring, const Setup& setup, OpenPort open = nullptr);
+  /// Switches the torque off, if the configuration says so.
+  ~ServoBus() override;
+
+  /// Reads the servos and the sensors. The first call opens the ports and starts the servos, which moves nothing.
+  /// Throws ConfigurationError if a servo cannot be started, or if the run is faster than the clock.
+  void sample(const Tick& tick) override;
+  /// Obeys the commands. Holds the posture while a servo is missing, and while the servos are locked.
+  void step(const Tick& tick) override;
+  [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
+  /// Gate, stops and the last posture.
+  [[nodiscard]] std::string save() const override;
+  void load(const std::string& bytes) override;
+
+  [[nodiscard]] const GateState& gate() const { return gate_.state(); }
+  [[nodiscard]] const JointServos& servos() const { return servos_; }
+
+ private:
+  void start();
+  void measure(const Tick& tick);
+  void write_joints(double elapsed_s);
+  void report_news();
+  void check_pace(const Tick& tick);
+
+  Wiring& wiring_;
+  ServoBusConfig config_;
+  RobotModel robot_;
+  dynamixel::BusPlan plan_;
+  BusPorts ports_;
+  JointServos servos_;
+  SensorBoards boards_;
+  BusRecord record_;
+  PlantGate gate_;
+  std::vector<double> angles_rad_, torques_nm_;  ///< one entry for each joint; the torques are low-pass filtered
+  bool started_ = false;
+  bool continued_ = false;           ///< this process continues the run of its predecessor
+  bool locked_ = false;              ///< a stop was ordered because a watchdog has tripped
+  bool held_ = false;                ///< the posture is held because a servo is missing
+  std::int64_t bus_time_ns_ = 0;     ///< that this tick has spent on the buses
+  std::int64_t window_tick_ = 0;     ///< tick at which the measurement of the pace began
+  std::int64_t window_time_ns_ = 0;  ///< clock at that tick
+
+  Output<msg::JointState> joint_state_ = wiring_.output(topics::kJointState);
+  Output<msg::ContactState> contact_state_ = wiring_.output(topics::kContactState);
+  Output<msg::ImuState> imu_state_ = wiring_.output(topics::kImuState);
+};
+
+ComponentFactory make_servo_bus_factory(OpenPort open = nullptr);
+
+}  // namespace constrictor

@@ -1,0 +1,66 @@
+#include "cli/companions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+#include <utility>
+
+#include "cli/launch_plan.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto kGrace = 3s;
+
+}  // namespace
+
+Companions::Companions(const LaunchManifest& manifest, std::uint64_t seed, const std::filesystem::path& report_dir,
+                       Print print)
+    : print_(std::move(print)) {
+  const auto logs = report_dir / "logs";
+  if (!manifest.beside.empty()) std::filesystem::create_directories(logs);
+  for (const CompanionPlan& plan : manifest.beside) {
+    std::vector<std::string> arguments = {(program_folder() / plan.program).string(),
+                                          "--robot",
+                                          manifest.robot_file.string(),
+                                          "--scenario",
+                                          manifest.scenario_file.string(),
+                                          "--seed",
+                                          std::to_string(seed),
+                                          "--output",
+                                          report_dir.string()};
+    arguments.insert(arguments.end(), plan.arguments.begin(), plan.arguments.end());
+    Companion companion{plan.program, logs / (plan.program + ".log"), nullptr};
+    std::filesystem::remove(companion.log);
+    companion.process = std::make_unique<ChildProcess>(arguments, run_environment(), companion.log);
+    companions_.push_back(std::move(companion));
+  }
+}
+
+void Companions::poll() {
+  for (Companion& companion : companions_) {
+    if (companion.reported || !companion.process->poll()) continue;
+    companion.reported = true;
+    for (const auto& line : last_lines(companion.log, 0, 3)) print_(companion.program + ": " + line);
+    print_(fmt::format("{}, which runs beside the run, {}; see {}", companion.program,
+                       companion.process->poll()->describe(), companion.log.string()));
+  }
+}
+
+Companions::~Companions() {
+  const auto any_left = [&] {
+    return std::any_of(companions_.begin(), companions_.end(), [](auto& one) { return !one.process->poll(); });
+  };
+  for (Companion& companion : companions_) {
+    if (!companion.process->poll()) companion.process->signal(SIGTERM);
+  }
+  for (const auto end = std::chrono::steady_clock::now() + kGrace;
+       any_left() && std::chrono::steady_clock::now() < end;)
+    std::this_thread::sleep_for(10ms);
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,158 @@
+// The driver of real servos in a run of real processes: DDS, pseudo-terminals and emulated servos. What really happens
+// is judged by the file that the emulator writes.
+#include <csignal>
+
+#include "integration/cli_fixture.hpp"
+#include "runtime/host.hpp"
+#include "support/command_lines.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+class ServoBusProcesses : public CliFixture {
+ protected:
+  [[nodiscard]] Process run(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"run", "--manifest", "emulated_servos", "--report", run_dir_.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start(std::move(arguments));
+  }
+  /// The world as the emulator noted it last; null before the first note.
+  [[nodiscard]] json world() const {
+    std::ifstream file(run_dir_ / "world.jsonl");
+    std::string line, last;
+    while (std::getline(file, line)) {
+      if (!file.eof()) last = line;  // a line without its end is not whole
+    }
+    json found = json::parse(last, nullptr, false);
+    return found.is_object() && found.contains("head_m") ? found : json();
+  }
+  /// What the driver says.
+  [[nodiscard]] json driver() const { return json::parse(std::ifstream(run_dir_ / "servo_bus.json"), nullptr, false); }
+  [[nodiscard]] int joints(const std::string& state) const {
+    const json now = driver();
+    int count = 0;
+    if (now.is_object() && now.contains("joints")) {
+      for (const auto& joint : now["joints"]) count += joint["state"] == state ? 1 : 0;
+    }
+    return count;
+  }
+  void order(const std::string& command) const {
+    std::ofstream(run_dir_ / "servo_emulator.commands") << command << std::endl;
+  }
+  /// [rad] by which the joint that moves most moves between two notes that are at least `seconds` apart.
+  [[nodiscard]] double motion_rad(double seconds) const {
+    const json before = world();
+    json after;
+    EXPECT_TRUE(eventually([&] {
+      after = world();
+      return after.is_object() && after["time_s"].get<double>() >= before["time_s"].get<double>() + seconds;
+    }));
+    double most = 0.0;
+    for (std::size_t i = 0; i < 23; ++i)
+      most = std::max(most, std::abs(after["joints_rad"][i].get<double>() - before["joints_rad"][i].get<double>()));
+    return most;
+  }
+  [[nodiscard]] bool moves() const {
+    return eventually([&] { return motion_rad(0.3) > 0.1; }, 30s);
+  }
+  [[nodiscard]] bool rests() const {
+    return eventually([&] { return motion_rad(0.6) < 0.02; }, 30s);
+  }
+  /// Processes whose command line names this test's folder.
+  [[nodiscard]] std::map<std::string, pid_t> processes() const {
+    std::map<std::string, pid_t> found;
+    for (const auto& [pid, line] : command_lines()) {
+      if (line.find(run_dir_.string()) == std::string::npos) continue;
+      found[std::filesystem::path(line.substr(0, line.find('\0'))).filename().string()] = pid;
+    }
+    return found;
+  }
+  void end(Process& launcher) {
+    EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+    EXPECT_EQ(launcher.wait(20s), 128 + SIGTERM);
+    EXPECT_TRUE(eventually([&] { return processes().empty(); })) << processes().begin()->first << " is left";
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(run_dir_ / "bus0")));
+  }
+
+  const std::filesystem::path run_dir_ = dir_ / "run";
+};
+
+TEST_F(ServoBusProcesses, IsDrivenStopsAndSurvivesAPulledCable) {
+  Process launcher = run();
+  ASSERT_TRUE(eventually([&] { return joints("ready") == 23; }, 30s)) << launcher.output() << launcher.errors();
+  Process teleop = start({"teleop", "--drive", "0.4,0"});
+  ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
+  EXPECT_TRUE(moves());
+
+  order("cable 0 9");  // the servos of joints 10 to 22 lose their power
+  EXPECT_TRUE(eventually([&] { return joints("lost") == 13; }));
+  EXPECT_EQ(joints("ready"), 10);
+  order("mend 0");
+  EXPECT_TRUE(eventually([&] { return joints("ready") == 23; }));
+  EXPECT_TRUE(moves()) << "the operator still drives";
+
+  EXPECT_EQ(command({"stop"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(rests());
+  const json record = driver();
+  std::printf("time on the buses in a tick: median %.2f ms, 99 %% below %.2f ms, longest %.2f ms\n",
+              record["round_ms"]["median"].get<double>(), record["round_ms"]["p99"].get<double>(),
+              record["round_ms"]["longest"].get<double>());
+  teleop.signal(SIGINT);
+  teleop.wait(10s);
+  end(launcher);
+}
+
+TEST_F(ServoBusProcesses, AFrozenDriverLeavesTheServosLockedUntilAnOperatorClearsTheStop) {
+  Process launcher = run();
+  ASSERT_TRUE(eventually([&] { return joints("ready") == 23; }, 30s)) << launcher.output() << launcher.errors();
+  Process teleop = start({"teleop", "--drive", "0.4,0"});
+  ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
+  ASSERT_TRUE(moves());
+  ::kill(processes().at("servo_bus"), SIGSTOP);
+  EXPECT_TRUE(rests()) << "the watchdogs of the servos stop them";
+  ::kill(processes().at("servo_bus"), SIGCONT);
+  const auto locked = [this] {
+    const json now = driver();
+    return now.is_object() && now["joints"][0]["watchdog"] == -1 && now["joints"][0]["torque_on"] == true;
+  };
+  EXPECT_TRUE(eventually(locked));
+  EXPECT_TRUE(rests()) << "it waits for an operator";
+  teleop.signal(SIGINT);
+  teleop.wait(10s);
+  EXPECT_EQ(command({"clear-stop"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(eventually([&] { return !locked(); }));
+  EXPECT_TRUE(rests()) << "clearing a stop starts no motion";
+  Process again = start({"teleop", "--drive", "0.4,0"});
+  EXPECT_TRUE(moves()) << again.errors();
+  again.signal(SIGINT);
+  again.wait(10s);
+  end(launcher);
+}
+
+// The successor comes within the time of the watchdogs, finds the joints where they are, and goes on.
+TEST_F(ServoBusProcesses, AKilledDriverIsRestartedAndTheRobotGoesOn) {
+  write("patient.yaml", "servo: {watchdog_s: 2}\n");  // a busy machine may need long for the restart
+  Process launcher = run({"--config", "servo_bus=" + (dir_ / "patient.yaml").string()});
+  ASSERT_TRUE(eventually([&] { return joints("ready") == 23; }, 30s)) << launcher.output() << launcher.errors();
+  Process teleop = start({"teleop", "--drive", "0.4,0"});
+  ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
+  ASSERT_TRUE(moves());
+  ::kill(processes().at("servo_bus"), SIGKILL);
+  ASSERT_TRUE(launcher.wait_for("restarted as incarnation 2", 20s)) << launcher.output();
+  EXPECT_TRUE(moves());
+  teleop.signal(SIGINT);
+  teleop.wait(10s);
+  end(launcher);
+}
+
+TEST_F(ServoBusProcesses, RefusesAPaceThatServosCannotFollow) {
+  Process launcher = run({"--pace", "4x"});
+  EXPECT_EQ(launcher.wait(20s), exit_status::kUsage);
+  EXPECT_NE(launcher.errors().find("accepted realtime"), std::string::npos) << launcher.errors();
+}
+
+}  // namespace
+}  // namespace constrictor::testing

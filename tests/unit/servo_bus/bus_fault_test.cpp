@@ -1,0 +1,166 @@
+// The driver on a bad day: cables, servos, power, noise, watchdog, and a successor after a crash.
+#include "driven_robot.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+/// Swings the yaw joints.
+bool swing(std::int64_t tick, msg::JointCommand& command) {
+  for (int i = 0; i < 23; i += 2)
+    command.position_rad[i] = (i % 4 == 0 ? 0.4 : -0.4) * std::sin(0.06 * static_cast<double>(tick));
+  return true;
+}
+
+class BusFault : public DrivenRobot {
+ protected:
+  /// Starts a robot that swings.
+  void start_swinging(const std::string& config = "") {
+    command_ = swing;
+    start(config);
+    ticks(60);
+    ASSERT_EQ(mode(), GateMode::kObeying);
+  }
+  void expect_rest() {
+    ticks(20);
+    EXPECT_EQ(mode(), GateMode::kHolding);
+    const auto before = posture();
+    ticks(50);
+    EXPECT_LT(moved_rad(before), 0.03);
+  }
+  /// The robot obeys again, and no joint has jumped on the way.
+  void expect_swinging_again(int within_ticks) {
+    double fastest_rad = 0.0;
+    int tick = 0;
+    for (; tick < within_ticks && mode() != GateMode::kObeying; ++tick) ticks(1);
+    EXPECT_EQ(mode(), GateMode::kObeying) << last_refusal();
+    for (int i = 0; i < 60; ++i) {
+      const auto before = posture();
+      ticks(1);
+      fastest_rad = std::max(fastest_rad, moved_rad(before));
+    }
+    EXPECT_LT(fastest_rad, 4.0 * 0.02 * 1.6);
+    EXPECT_EQ(torques_on(), 23);
+  }
+};
+
+TEST_F(BusFault, APulledCableStopsTheRobotUntilItIsPluggedIn) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("cable 0 9"), "");
+  for (int i = 0; i < 6 && mode() == GateMode::kObeying; ++i) ticks(1);
+  EXPECT_EQ(mode(), GateMode::kHolding) << "after at most 6 ticks";
+  EXPECT_NE(last_refusal().find("does not answer"), std::string::npos) << last_refusal();
+  expect_rest();
+  EXPECT_EQ(torques_on(), 10) << "the servos before the break hold";
+  ASSERT_EQ(bench_.robot->command("mend 0"), "");
+  expect_swinging_again(80);
+}
+
+TEST_F(BusFault, OneServoThatIsSilentStopsTheRobot) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("silent 6"), "");
+  expect_rest();
+  EXPECT_EQ(driver().servos().state(6), ServoState::kLost);
+  EXPECT_EQ(driver().servos().state(7), ServoState::kReady) << "the servos behind it are asked without it";
+  EXPECT_NE(last_refusal().find("servo 7 of joint 6 at bus0 does not answer"), std::string::npos) << last_refusal();
+}
+
+TEST_F(BusFault, AServoThatStartsAnewIsConfiguredAgain) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("reboot 5"), "");
+  ticks(3);
+  expect_swinging_again(10);
+  EXPECT_EQ(bench_.robot->servo(5).get("bus_watchdog"), 5);
+}
+
+TEST_F(BusFault, AnOverloadedServoStopsTheRobot) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("error 8 32"), "");
+  expect_rest();
+  EXPECT_NE(last_refusal().find("servo 9 of joint 8 at bus0 reports overload"), std::string::npos) << last_refusal();
+  EXPECT_EQ(driver().servos().state(8), ServoState::kShutDown);
+  EXPECT_EQ(torques_on(), 22);
+}
+
+TEST_F(BusFault, AnOverloadedServoIsRebootedWhereThatIsAllowed) {
+  start_swinging("servo: {reboot_on_error: true}");
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(bench_.robot->command("error 8 32"), "");
+    ticks(3);
+    expect_swinging_again(20);
+  }
+  ASSERT_EQ(bench_.robot->command("error 8 32"), "");
+  expect_rest();
+  EXPECT_EQ(driver().servos().state(8), ServoState::kShutDown) << "three times at most";
+}
+
+TEST_F(BusFault, ALowVoltageIsNamedAndDoesNotStopTheRobot) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("voltage 3 9.0"), "");
+  ticks(10);
+  EXPECT_EQ(mode(), GateMode::kObeying);
+  EXPECT_NE(last_refusal().find("reports input voltage (25 C, 9.0 V)"), std::string::npos) << last_refusal();
+}
+
+TEST_F(BusFault, NoiseOnTheLineIsSurvivedByRetries) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("damage 0 0.0005"), "");  // a round has 500 bytes: every fifth answer is damaged
+  ASSERT_EQ(bench_.robot->command("noise 0 0.1"), "");
+  int obeying = 0;
+  for (int i = 0; i < 300; ++i) {
+    ticks(1);
+    obeying += mode() == GateMode::kObeying ? 1 : 0;
+  }
+  EXPECT_GT(obeying, 290);
+}
+
+TEST_F(BusFault, TwoServosWithOneIdAreNoticedAsAServoThatDoesNotAnswer) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("id 3 3"), "");  // joint 3 takes the id of joint 2
+  ticks(10);
+  EXPECT_EQ(mode(), GateMode::kHolding);
+  EXPECT_NE(last_refusal().find("does not answer"), std::string::npos) << last_refusal();
+}
+
+TEST_F(BusFault, AnUnpluggedAdapterStopsTheServosByTheirWatchdogs) {
+  start_swinging();
+  bench_.unplugged = true;
+  ticks(20);
+  EXPECT_EQ(bench_.robot->servo(0).get("bus_watchdog"), -1);
+  const auto before = posture();
+  ticks(20);
+  EXPECT_LT(moved_rad(before), 0.02);
+  bench_.unplugged = false;
+  ticks(100);
+  EXPECT_EQ(mode(), GateMode::kStopped) << "an operator must clear the stop";
+  EXPECT_STREQ(run_->latest(topics::kStopState)->source, "bus_watchdog");
+  EXPECT_EQ(bench_.robot->servo(0).get("bus_watchdog"), -1) << "nothing is unlocked before";
+}
+
+TEST_F(BusFault, ASuccessorFindsTheServosLockedAndMovesNothing) {
+  start_swinging("servo: {torque_off_at_exit: false}");  // as if the process were killed
+  bench_.pass_until(bench_.now_ns + 300'000'000);
+  next_tick_ns_ = bench_.now_ns;
+  EXPECT_EQ(bench_.robot->servo(11).get("bus_watchdog"), -1);
+  EXPECT_EQ(torques_on(), 23) << "the torque stays on";
+  run_->restart("servo_bus");
+  const auto before = posture();
+  ticks(100);
+  EXPECT_EQ(mode(), GateMode::kStopped);
+  EXPECT_LT(moved_rad(before), 0.01);
+  EXPECT_EQ(bench_.robot->servo(11).get("bus_watchdog"), -1);
+}
+
+TEST_F(BusFault, WithoutContactSensorsTheRobotSaysSo) {
+  std::ifstream original(kProject / "deploy/buses/mamba_emulated.yaml");
+  std::string text{std::istreambuf_iterator<char>(original), {}};
+  text = text.substr(0, text.find("contacts:"));
+  std::ofstream(config_.path() / "bus.yaml") << text;
+  command_ = swing;
+  start("bus_file: " + (config_.path() / "bus.yaml").string());
+  ticks(10);
+  EXPECT_EQ(run_->latest(topics::kContactState)->module_count, 0);
+  EXPECT_EQ(mode(), GateMode::kObeying);
+}
+
+}  // namespace
+}  // namespace constrictor::testing

@@ -1,0 +1,177 @@
+// The driver of real servos as a plant: start, motion, refusals, hold, relax, stop, exit.
+#include "driven_robot.hpp"
+
+#include "configuration/configuration.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+TEST_F(DrivenRobot, TheStartMovesNothing) {
+  bench_.pass_until(500'000'000);  // the relaxed robot has come to rest
+  next_tick_ns_ = 500'000'000;
+  for (std::size_t i = 0; i < 23; ++i) {  // a trap: each servo would jump to an old goal
+    bench_.robot->servo(i).set("operating_mode", 5);
+    bench_.robot->servo(i).set("goal_position", 3000);
+  }
+  const auto before = posture();
+  start();
+  ticks(1);
+  EXPECT_LT(moved_rad(before), 0.005);
+  ticks(50);
+  EXPECT_LT(moved_rad(before), 0.01);
+  EXPECT_EQ(torques_on(), 23) << "the posture is held";
+  EXPECT_EQ(mode(), GateMode::kHolding);
+}
+
+TEST_F(DrivenRobot, MeasuresWhatTheRobotDoes) {
+  command_ = bend(0.2);
+  start();
+  ticks(100);
+  const msg::JointState& state = *run_->latest(topics::kJointState);
+  ASSERT_EQ(state.joint_count, 23);
+  for (std::size_t i = 0; i < 23; ++i)
+    EXPECT_NEAR(state.position_rad[i], true_angle_rad(i), 2 * M_PI / 4096) << "joint " << i;
+  EXPECT_NEAR(run_->latest(topics::kImuState)->linear_acceleration_m_s2.z, 9.81, 0.5);
+  const msg::ContactState& felt = *run_->latest(topics::kContactState);
+  ASSERT_EQ(felt.module_count, 24);
+  double weight_n = 0.0;
+  for (int i = 0; i < 24; ++i) weight_n += felt.force_n[i].z;
+  EXPECT_NEAR(weight_n, 24 * 0.3 * 9.81, 15.0);
+  EXPECT_GT(felt.contact_count, 20);
+}
+
+TEST_F(DrivenRobot, FollowsACommandInTheRightDirection) {
+  command_ = [](std::int64_t, msg::JointCommand& command) {
+    command.position_rad[2] = 0.4;
+    command.position_rad[3] = -0.1;  // its servo turns the other way
+    return true;
+  };
+  start();
+  ticks(100);
+  EXPECT_EQ(mode(), GateMode::kObeying);
+  EXPECT_NEAR(true_angle_rad(2), 0.4, 0.02);
+  EXPECT_NEAR(true_angle_rad(3), -0.1, 0.04) << "the pitch joint carries the body";
+}
+
+TEST_F(DrivenRobot, TheTorqueLimitOfTheCommandIsThatOfTheServo) {
+  command_ = [](std::int64_t, msg::JointCommand& command) {
+    command.torque_limit_nm[4] = 1.3;
+    return true;
+  };
+  start();
+  ticks(10);
+  const auto& servo = bench_.robot->servo(4);
+  EXPECT_NEAR(static_cast<double>(servo.get("goal_current")) * 0.00269 * 7.3 / 4.4, 1.3, 0.005);
+}
+
+TEST_F(DrivenRobot, AbsurdAndMissingCommandsAreRefusedAndThePostureIsHeld) {
+  command_ = bend(0.2);
+  start();
+  ticks(60);
+  const auto before = posture();
+  for (const double absurd : {2.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    command_ = bend(absurd);
+    ticks(10);
+    EXPECT_EQ(mode(), GateMode::kHolding) << absurd;
+  }
+  command_ = [](std::int64_t, msg::JointCommand& command) { return command.joint_count = 22, true; };
+  ticks(10);
+  EXPECT_NE(last_refusal().find("wrong number of joints"), std::string::npos) << last_refusal();
+  command_ = nullptr;
+  ticks(20);
+  EXPECT_EQ(mode(), GateMode::kHolding);
+  EXPECT_LT(moved_rad(before), 0.05);
+  ticks(250);
+  EXPECT_EQ(mode(), GateMode::kRelaxed);
+  EXPECT_EQ(torques_on(), 0);
+}
+
+TEST_F(DrivenRobot, ARelaxedRobotDoesNotJumpWhenItsTorqueComesBack) {
+  command_ = [](std::int64_t, msg::JointCommand& command) {
+    command.mode = msg::kServoRelaxed;
+    return true;
+  };
+  start();
+  ticks(20);
+  EXPECT_EQ(torques_on(), 0);
+  command_ = bend(0.3);
+  double fastest_rad = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const auto before = posture();
+    ticks(1);
+    fastest_rad = std::max(fastest_rad, moved_rad(before));
+  }
+  EXPECT_LT(fastest_rad, 4.0 * 0.02 * 1.5) << "no joint is faster than its limit";
+  EXPECT_EQ(torques_on(), 23);
+  EXPECT_NEAR(true_angle_rad(0), 0.3, 0.03);
+}
+
+TEST_F(DrivenRobot, AnEmergencyStopIsObeyedAtOnce) {
+  command_ = [](std::int64_t tick, msg::JointCommand& command) {
+    return bend(0.5 * std::sin(0.05 * static_cast<double>(tick)))(tick, command);
+  };
+  start();
+  ticks(100);
+  order_stop();
+  ticks(15);
+  EXPECT_EQ(mode(), GateMode::kStopped);
+  const auto stopped = posture();
+  ticks(50);
+  EXPECT_LT(moved_rad(stopped), 0.02);
+  EXPECT_TRUE(run_->latest(topics::kStopState)->stopped);
+}
+
+TEST_F(DrivenRobot, TheTorqueIsOffWhenTheProcessEndsInOrder) {
+  command_ = bend(0.1);
+  start();
+  ticks(20);
+  EXPECT_EQ(torques_on(), 23);
+  run_.reset();
+  EXPECT_EQ(torques_on(), 0);
+}
+
+TEST_F(DrivenRobot, OneRoundTakesTheTimeOfItsBytes) {
+  command_ = bend(0.1);
+  start();
+  ticks(20);
+  const std::int64_t before_ns = next_tick_ns_;
+  ticks(1);
+  const double round_s = static_cast<double>(bench_.now_ns - before_ns) * 1e-9;
+  // Question and answer, ten bits a byte at 4 Mbit/s: servos (14 + 23; 8 + 23 * 20), inertial unit (14; 33) and contact
+  // boards (14 + 24; 8 + 24 * 55). The Sync Write to the servos (14 + 23 * 7) is on the line when the round is over.
+  const double bytes = 37 + 468 + 14 + 33 + 38 + 1328;
+  EXPECT_NEAR(round_s, bytes * 10 / 4e6, 0.0002);
+}
+
+TEST_F(DrivenRobot, RefusesARobotWhoseServosDoNotFit) {
+  const auto error = [this] {
+    try {
+      start();
+      ticks(1);
+    } catch (const ConfigurationError& found) {
+      return std::string(found.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(bench_.robot->command("silent 4"), "");
+  EXPECT_NE(error().find("1 of 23 servos cannot be started"), std::string::npos);
+  EXPECT_NE(error().find("servo 5 of joint 4 at bus0: does not answer"), std::string::npos) << error();
+  EXPECT_EQ(bench_.robot->command("mend 0"), "");
+  bench_.robot->servo(7).set("homing_offset", 1500);
+  bench_.pass_until(bench_.now_ns + 100'000'000);
+  EXPECT_EQ(torques_on(), 0) << "nothing was switched on";
+  bench_.unplugged = true;
+  EXPECT_EQ(error(), "the port is gone");
+}
+
+TEST_F(DrivenRobot, RefusesToRunFasterThanTheClock) {
+  start();
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 200; ++i) run_->advance(1);
+      },
+      ConfigurationError);
+}
+
+}  // namespace
+}  // namespace constrictor::testing
