@@ -1,0 +1,83 @@
+// `constrictor servo` on the pseudo-terminals of emulated servos.
+#include "integration/cli_fixture.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ServoCommand : public CliFixture {
+ protected:
+  ServoCommand() {
+    write("bus.yaml", "ports: [{device: bus0, baud: 1000000}]\nservo: {model: xm540_w150}\njoints:\n" + joints() +
+                          "imu: {id: 100}\n");
+    emulator_.emplace(std::vector<std::string>{program("servo_emulator"), "--bus", (dir_ / "bus.yaml").string(),
+                                               "--output", dir_.string()});
+    EXPECT_TRUE(emulator_->wait_for("servos answer", 20s)) << emulator_->errors();
+  }
+  static std::string joints() {
+    std::string text;
+    for (int id = 1; id <= 23; ++id) text += "  - {id: " + std::to_string(id) + "}\n";
+    return text;
+  }
+  int servo(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "servo");
+    arguments.insert(arguments.begin() + 2, {"--port", (dir_ / "bus0").string(), "--baud", "1000000"});
+    return command(std::move(arguments));
+  }
+  [[nodiscard]] bool says(const std::string& text) const { return output_.find(text) != std::string::npos; }
+
+  std::optional<Process> emulator_;
+};
+
+TEST_F(ServoCommand, ScanListsWhoAnswersAtWhichBaudRate) {
+  EXPECT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("at 1000000 bit/s: 24 devices")) << output_;
+  EXPECT_TRUE(says("id  23  xm540_w150, firmware 46, position 2048, 12.0 V, 25 C, torque off, error: none")) << output_;
+  EXPECT_TRUE(says("id 100  inertial unit")) << output_;
+  const std::string port = (dir_ / "bus0").string();
+  EXPECT_EQ(command({"servo", "scan", "--port", port, "--baud", "57600"}), exit_status::kFailed);
+  EXPECT_TRUE(says("nobody answers")) << output_;
+  EXPECT_EQ(command({"servo", "scan", "--port", port, "--baud", "12345"}), exit_status::kUsage);
+  EXPECT_EQ(command({"servo", "scan", "--port", "/dev/no_such_port"}), exit_status::kSoftware);
+  EXPECT_TRUE(says("is the adapter plugged in")) << output_;
+}
+
+TEST_F(ServoCommand, TheTorqueIsSwitchedWithoutAJump) {
+  EXPECT_EQ(servo({"torque", "on"}), exit_status::kUsage) << "of which servo?";
+  EXPECT_EQ(servo({"torque", "on", "--all"}), exit_status::kOk) << output_;
+  EXPECT_EQ(servo({"monitor", "--id", "5", "--rounds", "2"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("   5      2048      0.0")) << output_;
+  EXPECT_EQ(servo({"torque", "off", "--id", "5"}), exit_status::kOk) << output_;
+  EXPECT_EQ(servo({"scan"}), exit_status::kOk);
+  EXPECT_TRUE(says("id   5  xm540_w150, firmware 46, position 2048, 12.0 V, 25 C, torque off")) << output_;
+  EXPECT_TRUE(says("id   6  xm540_w150, firmware 46, position 2048, 12.0 V, 25 C, torque on")) << output_;
+}
+
+TEST_F(ServoCommand, AnIdIsChangedOnlyToOneThatNobodyHas) {
+  EXPECT_EQ(servo({"id", "--id", "7", "--to", "8"}), exit_status::kSoftware);
+  EXPECT_TRUE(says("which another device")) << output_;
+  EXPECT_EQ(servo({"id", "--id", "77", "--to", "78"}), exit_status::kSoftware);
+  EXPECT_TRUE(says("no answer")) << output_;
+  EXPECT_EQ(servo({"torque", "on", "--id", "7"}), exit_status::kOk) << output_;
+  EXPECT_EQ(servo({"id", "--id", "7", "--to", "70"}), exit_status::kSoftware);
+  EXPECT_TRUE(says("its torque is on")) << output_;
+  EXPECT_EQ(servo({"torque", "off", "--id", "7"}), exit_status::kOk) << output_;
+  EXPECT_EQ(servo({"id", "--id", "7", "--to", "70"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("servo 7 is now servo 70")) << output_;
+  EXPECT_EQ(servo({"zero", "--id", "70"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("- {id: 70, zero_steps: 2048}")) << output_;
+}
+
+TEST_F(ServoCommand, LimitsAreShownSetAndRefused) {
+  EXPECT_EQ(servo({"limits", "--id", "3", "--current", "2.5"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("servo 3: current 2.50 A, temperature 80 C")) << output_;
+  EXPECT_EQ(servo({"limits", "--id", "3", "--current", "9"}), exit_status::kUsage);
+  EXPECT_TRUE(says("current_limit: found 9, accepted 0 to 5.5")) << output_;
+  EXPECT_EQ(servo({"limits", "--id", "100"}), exit_status::kSoftware);
+  EXPECT_TRUE(says("found inertial unit")) << output_;
+}
+
+}  // namespace
+}  // namespace constrictor::testing
