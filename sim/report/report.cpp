@@ -39,6 +39,7 @@ Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
       plant_limit_s_(setup.max_sim_time_s),
       folder_(setup.output_dir),
       yaw_joints_(robot.yaw_joints()),
+      mass_kg_(robot.module_mass_kg * static_cast<double>(robot.module_count)),
       head_camera_m_(robot.camera.p_HC),
       torques_(in_folder(folder_, "joint_torques.csv")),
       events_(in_folder(folder_, "events.jsonl")),
@@ -49,6 +50,7 @@ void Report::step(const Tick& tick) {
   if (state_.finished || !world_ || !scene_) return;
   read_line();
   follow_truth();
+  follow_effort(tick);
   follow_mission(tick);
   follow_events();
   follow_parameters(tick);
@@ -108,6 +110,19 @@ void Report::follow_truth() {
       state_.pose_error_rad.add(wrap_angle(pose_->yaw_rad - truth.yaw_rad));
     }
   }
+}
+
+void Report::follow_effort(const Tick& tick) {
+  if (joints_) {
+    double power_w = 0.0;
+    for (std::size_t i = 0; i < joints_->joint_count; ++i)
+      power_w += std::abs(joints_->torque_nm[i] * joints_->velocity_rad_s[i]);
+    state_.effort.add_work(power_w, tick.period_s());
+  }
+  Eigen::Vector2d centre_m(0, 0);
+  for (std::size_t i = 0; i < world_->module_count; ++i)
+    centre_m += planar(world_->module_poses[i]).p / static_cast<double>(world_->module_count);
+  state_.effort.add_centre(centre_m, tick.time_s());
 }
 
 void Report::follow_mission(const Tick& tick) {

@@ -24,6 +24,7 @@ struct ReportState {
   report::RootMeanSquare cross_track;   ///< [m] distance of the head from the line while follow_line runs
   report::RootMeanSquare pose_error_m;  ///< position error of RobotPose, in M
   report::RootMeanSquare pose_error_rad;
+  report::Effort effort;
   std::uint64_t percepts_following = 0;  ///< number of line percepts while follow_line runs
   std::uint64_t percepts_visible = 0;    ///< number of these percepts in which the line was visible
   report::PoseAtTick start;              ///< X_WM: pose of the head at the start of the run
@@ -44,8 +45,8 @@ struct ReportState {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(cross_track, pose_error_m, pose_error_rad, percepts_following, percepts_visible, start, heads, ledger,
-            album, torques_length, events_length, states_length, parameters_length, mission_state, mission,
+    archive(cross_track, pose_error_m, pose_error_rad, effort, percepts_following, percepts_visible, start, heads,
+            ledger, album, torques_length, events_length, states_length, parameters_length, mission_state, mission,
             mission_reason, recoveries, mission_end_tick, run_end_reason, finished);
   }
 };
@@ -66,6 +67,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   Report(Wiring& wiring, const Setup& setup, const RobotModel& robot);
   void read_line();
   void follow_truth();
+  void follow_effort(const Tick& tick);
   void follow_events();
   void follow_parameters(const Tick& tick);
   void follow_mission(const Tick& tick);
@@ -88,6 +90,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never
   std::filesystem::path folder_;
   std::vector<std::size_t> yaw_joints_;
+  double mass_kg_;                 // of all modules
   Eigen::Vector3d head_camera_m_;  // p_HC, for the pictures of the scene
   report::Journal torques_, events_, states_, parameters_;
   std::vector<Eigen::Vector2d> line_m_;  // points of the line in W, from the scene

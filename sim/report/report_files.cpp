@@ -64,6 +64,9 @@ std::string Report::mission_json(const Tick& tick) const {
   json["state_hash"] = hex(world_->state_hash);
   json["reason"] = failure();
   json["mission"] = success() ? "succeeded" : state_.mission == msg::kMissionRunning ? "unfinished" : "failed";
+  json["believed"] = state_.mission == msg::kMissionSucceeded ? "succeeded"
+                     : state_.mission == msg::kMissionRunning ? "unfinished"
+                                                              : "failed";
   json["recoveries"] = state_.recoveries;
   json["objects"] = ordered_json::array();
   for (std::size_t i = 0; i < state_.ledger.objects.size(); ++i) {
@@ -84,6 +87,9 @@ std::string Report::mission_json(const Tick& tick) const {
   json["pose_error"] = {{"rms_m", state_.pose_error_m.rms()},
                         {"rms_rad", state_.pose_error_rad.rms()},
                         {"max_m", state_.pose_error_m.max()}};
+  json["effort"] = {{"work_j", state_.effort.work_j},
+                    {"distance_m", state_.effort.distance_m},
+                    {"cost_of_transport", state_.effort.cost_of_transport(mass_kg_)}};
   json["events"] = lines_of(events_.read(state_.events_length));
   json["states"] = lines_of(states_.read(state_.states_length));
   json["parameters"] = lines_of(parameters_.read(state_.parameters_length));

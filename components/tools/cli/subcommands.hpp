@@ -14,6 +14,7 @@ using Action = std::function<int()>;
 
 /// Each adds the subcommands that its file implements. When one of them is chosen on the command line, `action` is set.
 void add_run(CLI::App& app, Action& action);          ///< run, check
+void add_evaluate(CLI::App& app, Action& action);     ///< evaluate
 void add_serve(CLI::App& app, Action& action);        ///< serve
 void add_keys(CLI::App& app, Action& action);         ///< keys
 void add_list(CLI::App& app, Action& action);         ///< list
@@ -34,9 +35,9 @@ void add_agent(CLI::App& app, Action& action);            ///< agent
 void add_completion(CLI::App& app, Action& action);       ///< completion
 
 inline constexpr std::array kSubcommands{
-    add_run,    add_serve,           add_list, add_robot,  add_commands, add_run_control, add_teleop,     add_task,
-    add_param,  add_topic,           add_node, add_status, add_doctor,   add_agent,       add_completion, add_keys,
-    add_record, add_recording_files, add_servo};
+    add_run,  add_evaluate, add_serve,           add_list, add_robot,  add_commands, add_run_control, add_teleop,
+    add_task, add_param,    add_topic,           add_node, add_status, add_doctor,   add_agent,       add_completion,
+    add_keys, add_record,   add_recording_files, add_servo};
 
 /// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
 template <class Options, class Run>

@@ -40,6 +40,22 @@ TEST(CrossTrack, SineOffsetHasItsRootMeanSquare) {
   EXPECT_NEAR(statistics.rms(), 0.1 / std::sqrt(2.0), 1e-12);
 }
 
+TEST(Effort, ConstantPowerOnACircleHasItsWorkItsPathAndItsCostOfTransport) {
+  constexpr double kPower_w = 30.0, kSpeed_m_s = 0.2, kRadius_m = 1.5, kMass_kg = 12.0, kPeriod_s = 0.02;
+  Effort effort;
+  EXPECT_TRUE(std::isnan(effort.cost_of_transport(kMass_kg)));
+  for (int tick = 0; tick <= 3000; ++tick) {
+    if (tick > 0) effort.add_work(kPower_w, kPeriod_s);
+    const double angle = kSpeed_m_s * tick * kPeriod_s / kRadius_m;
+    // It trembles by 1 mm, which must not count as path.
+    const double radius_m = kRadius_m + (tick % 2 == 0 ? 0.0 : 0.001);
+    effort.add_centre(radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)), tick * kPeriod_s);
+  }
+  EXPECT_NEAR(effort.work_j, kPower_w * 60.0, 1e-6);
+  EXPECT_NEAR(effort.distance_m, kSpeed_m_s * 60.0, 0.01);
+  EXPECT_NEAR(effort.cost_of_transport(kMass_kg), kPower_w / (kMass_kg * 9.81 * kSpeed_m_s), 2e-3);
+}
+
 TEST(CrossTrack, BeyondTheEndsThereIsNone) {
   const std::vector<Eigen::Vector2d> line{{0, 0}, {1, 0}, {2, 1}};
   EXPECT_FALSE(cross_track_m({-0.5, 0.1}, line));

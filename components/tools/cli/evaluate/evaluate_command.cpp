@@ -1,0 +1,168 @@
+// `constrictor evaluate`: many missions, and what they came to together.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <ctime>
+#include <memory>
+#include <thread>
+
+#include "cli/evaluate/evaluation.hpp"
+#include "cli/evaluate/evaluation_record.hpp"
+#include "cli/evaluate/merge.hpp"
+#include "cli/evaluate/page.hpp"
+#include "cli/evaluate/summary.hpp"
+#include "cli/progress_display.hpp"
+#include "cli/run_command.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
+#include "runtime/host.hpp"
+#include "runtime/version.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  EvaluationRequest request;
+  std::string seeds;  ///< empty: 1..10, or those of the merged evaluations
+  std::string shard = "1/1";
+  std::vector<fs::path> merge;
+};
+
+/// "3/16": the third of sixteen parts.
+void parse_shard(const std::string& text, EvaluationRequest& request) {
+  const char* end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, request.shard);
+  bool good = error == std::errc() && slash != end && *slash == '/';
+  if (good) {
+    const auto [rest, wrong] = std::from_chars(slash + 1, end, request.shards);
+    good = wrong == std::errc() && rest == end && request.shard >= 1 && request.shard <= request.shards;
+  }
+  if (!good) throw UsageError(fmt::format("--shard: found '{}', accepted K/N with K from 1 to N, such as 3/16", text));
+}
+
+fs::path new_folder(const RunOptions& options) {
+  const std::string scenario = make_launch_plan(options).manifest.scenario_file.stem().string();
+  const std::time_t now = std::time(nullptr);
+  return make_new_directory(fs::path("evaluations") /
+                            fmt::format("{:%Y%m%d-%H%M%S}_{}", fmt::localtime(now), scenario));
+}
+
+void write_summary(const Evaluation& evaluation, const EvaluationRequest& request) {
+  PageContent page;
+  page.scenario = evaluation.scenario();
+  page.about = fmt::format("Constrictor {}, {} seeds, robot {}, manifest {}", kVersion, request.seeds.size(),
+                           request.run.robot.empty() ? "of the manifest" : request.run.robot, request.run.manifest);
+  page.planned = evaluation.runs().size();
+  page.variants = evaluation.variants();
+  page.results = evaluation.results();
+  const auto summaries = summarise(page.variants, page.results);
+  nlohmann::ordered_json json{{"scenario", page.scenario},
+                              {"version", kVersion},
+                              {"planned_runs", page.planned},
+                              {"variants", to_json(summaries)}};
+  write_whole(evaluation.folder() / "runs.csv", to_csv(page.variants, page.results));
+  write_whole(evaluation.folder() / "summary.json", json.dump(2) + "\n");
+  write_whole(evaluation.folder() / "index.html", make_page(page));
+  fmt::print("\n{}", to_table(summaries));
+}
+
+int evaluate(const Options& given) {
+  EvaluationRequest request = given.request;
+  if (!given.merge.empty() && request.folder.empty()) throw UsageError("--merge: --output FOLDER is missing");
+  if (!given.seeds.empty()) request.seeds = parse_seeds(given.seeds);
+  else request.seeds = given.merge.empty() ? parse_seeds("1..10") : seeds_of(given.merge);
+  parse_shard(given.shard, request);
+  if (request.jobs == 0) request.jobs = std::max(1u, std::thread::hardware_concurrency());
+  if (request.folder.empty()) request.folder = new_folder(request.run);
+  Evaluation evaluation(request);
+  if (!given.merge.empty()) merge_evaluations(given.merge, request);
+  const std::string folder = evaluation.folder().string();
+  int signal = 0;
+  if (given.merge.empty()) {
+    fmt::print("evaluation of {}: {} runs, {} at a time, in {}\n", evaluation.scenario(),
+               (evaluation.runs().size() + request.shards - request.shard) / request.shards, request.jobs, folder);
+    ProgressDisplay display;
+    signal = evaluation.carry_out([&](const std::string& line) { display.print(line); },
+                                  [&](const std::string& line) { display.show_status(line); });
+  }
+  write_summary(evaluation, request);
+  fmt::print("{}/index.html, runs.csv, summary.json\n", folder);
+  if (signal != 0) {
+    fmt::print("interrupted; the same command with --output {} goes on\n", folder);
+    return 128 + signal;
+  }
+  const auto results = evaluation.results();
+  const auto errors = static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const MissionResult& result) { return result.error(); }));
+  if (errors > 0) {
+    fmt::print(
+        stderr,
+        "{} run{} ended with an error, see run.log in the folder of each; the same command with --output {} does "
+        "them again\n",
+        errors, errors == 1 ? "" : "s", folder);
+  }
+  return errors > 0 ? exit_status::kSoftware : exit_status::kOk;
+}
+
+void add_evaluation_options(CLI::App& app, Options& options) {
+  RunOptions& run = options.request.run;
+  app.add_option("SCENARIO", run.scenario,
+                 "a name (see `constrictor list scenarios`) or a file (default: the manifest's)");
+  app.add_option("--seeds", options.seeds, "seeds of the runs: 1..40, or 1,5,9..12 (default: 1..10)");
+  app.add_option("--vary", options.request.vary,
+                 "[FILE:]KEY=VALUE[,VALUE...]: do all runs with each of these values. KEY names a value of the\n"
+                 "scenario, or of FILE: robot, or a component, such as navigation; may be repeated (all combinations)")
+      ->allow_extra_args(false);
+  app.add_option("--jobs", options.request.jobs, "runs at a time (default: as many as there are processor cores)")
+      ->check(whole_number(1, 90));
+  app.add_option("--output", options.request.folder,
+                 "folder of the evaluation (default: a new one below evaluations/); one that exists is continued");
+  app.add_option("--shard", options.shard, "K/N: do only the K-th of N parts of the runs, for several machines")
+      ->capture_default_str();
+  app.add_option("--merge", options.merge,
+                 "do no runs: gather those of these folders, which hold parts of this evaluation, in --output")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--keep", options.request.keep, "of which runs figure, journals and logs are kept")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "failed", "none"}));
+  app.add_option("--manifest", run.manifest, "launch manifest: a name (see `constrictor list manifests`) or a file")
+      ->capture_default_str();
+  app.add_option("--robot", run.robot, "robot: a name (see `constrictor list robots`) or a file");
+  app.add_option("--config", run.config_files,
+                 "NAME=FILE: configuration file of a component, instead of its default; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--faults", run.faults_file, "file of faults (YAML) that every run suffers");
+  app.add_option("--max-sim-time", run.max_sim_time_s, "[s] end each run at this simulated time")
+      ->check(number(0.0, 1e6, "s"));
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  options->request.jobs = 0;
+  auto* sub = add_subcommand(app, "evaluate", "run a scenario with many seeds and values, and plot what came of it",
+                             action, options, evaluate);
+  add_evaluation_options(*sub, *options);
+  sub->footer(help_footer(
+      "Each run is a `constrictor run --in-process` of its own; one that fails stops nothing. The folder then "
+      "contains\n"
+      "index.html (success by phase with 95 % intervals, placement, errors, times, what went wrong, and the command\n"
+      "that repeats each run), runs.csv, summary.json, and report.json of each run.\n"
+      "Ctrl-C stops the runs and shows those that are done. The same command with --output continues: also after a\n"
+      "crash, and with other seeds. It refuses to mix results of different files, options or programs.",
+      {"constrictor evaluate --seeds 1..40", "constrictor evaluate short --seeds 1..20 --jobs 2 --output /tmp/short",
+       "constrictor evaluate short --seeds 1..10 --vary noise.camera_sd=0,0.02,0.05",
+       "constrictor evaluate short --seeds 1..100 --shard 1/2 --output part1",
+       "constrictor evaluate short --seeds 1..100 --merge part1 part2 --output all"},
+      "0 all runs are done, whatever came of their missions; 64 wrong usage; 70 a run ended with an error; 78 wrong\n"
+      "  configuration; 130 Ctrl-C, 143 SIGTERM",
+      kDataEnvironment));
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,232 @@
+#include "cli/evaluate/evaluation.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <system_error>
+
+#include "cli/child_process.hpp"
+#include "cli/evaluate/evaluation_record.hpp"
+#include "cli/run_record.hpp"
+#include "cli/signal_queue.hpp"
+#include "cli/usage.hpp"
+#include "configuration/configuration.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kOutcome = "outcome.json";  // written last: its presence shows that the run is over
+constexpr auto kEndGrace = 10s;                   // for a run that is interrupted
+
+fs::path folder_of(const Variant& variant, std::uint64_t seed) {
+  return fs::path("runs") / variant.folder / fmt::format("seed_{:04}", seed);
+}
+
+/// Removes what only a person looks at.
+void remove_bulk(const fs::path& folder) {
+  const std::set<std::string> kept{"report.json", kOutcome, "run.log"};
+  std::vector<fs::path> bulk;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!kept.contains(entry.path().filename().string())) bulk.push_back(entry.path());
+  }
+  for (const auto& path : bulk) fs::remove_all(path);
+}
+
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("./_=-+:,").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  return !word.empty() && std::all_of(word.begin(), word.end(), plain) ? word : "'" + word + "'";
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+}  // namespace
+
+struct Evaluation::Job {
+  PlannedRun run;
+  std::unique_ptr<ChildProcess> child;
+  Clock::time_point start;
+  bool over = false;
+};
+
+Evaluation::Evaluation(EvaluationRequest request) : request_(std::move(request)) {
+  const LaunchPlan plan = make_launch_plan(request_.run);
+  scenario_ = plan.manifest.scenario_file.stem().string();
+  std::vector<Variation> variations;
+  for (const auto& text : request_.vary) variations.push_back(parse_variation(text));
+  variants_ = make_variants(variations);
+  request_.run = absolute_options(request_.run, plan);
+  request_.folder = fs::absolute(request_.folder);
+  claim_folder();
+  for (const auto& variant : variants_) {
+    options_.push_back(options_of(variant, request_.run, request_.folder / "variants" / variant.folder));
+    check_components(options_.back(), make_launch_plan(options_.back()));
+  }
+  for (const auto seed : request_.seeds) {
+    for (std::size_t i = 0; i < variants_.size(); ++i) runs_.push_back({i, seed, folder_of(variants_[i], seed)});
+  }
+}
+
+Evaluation::~Evaluation() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void Evaluation::claim_folder() {
+  EvaluationRecord wanted{scenario_, request_.vary, request_.seeds, identities_of(request_.run)};
+  fs::create_directories(request_.folder);
+  const auto found = read_record(request_.folder);
+  if (!found && !fs::is_empty(request_.folder))
+    throw UsageError(fmt::format("--output: {} is not empty and holds no evaluation", request_.folder.string()));
+  if (found) {
+    const std::string why = difference(*found, wanted);
+    if (!why.empty()) {
+      throw UsageError(fmt::format("--output: {} holds another evaluation: {}; choose another folder",
+                                   request_.folder.string(), why));
+    }
+    for (const auto seed : found->seeds) {
+      if (std::find(wanted.seeds.begin(), wanted.seeds.end(), seed) == wanted.seeds.end()) wanted.seeds.push_back(seed);
+    }
+    std::sort(wanted.seeds.begin(), wanted.seeds.end());
+  }
+  write_record(request_.folder, wanted);
+  const fs::path lock = request_.folder / fmt::format(".shard-{}-of-{}", request_.shard, request_.shards);
+  lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) throw std::system_error(errno, std::generic_category(), lock.string());
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    throw UsageError(fmt::format("--output: another `constrictor evaluate` is doing shard {} of {} in {}",
+                                 request_.shard, request_.shards, request_.folder.string()));
+  }
+}
+
+std::vector<std::string> Evaluation::arguments(const PlannedRun& run) const {
+  const RunOptions& options = options_[run.variant];
+  std::vector<std::string> words{"run",        options.scenario, "--seed",      std::to_string(run.seed),
+                                 "--manifest", options.manifest, "--in-process"};
+  if (!options.robot.empty()) words.insert(words.end(), {"--robot", options.robot});
+  for (const auto& file : options.config_files) words.insert(words.end(), {"--config", file});
+  if (!options.faults_file.empty()) words.insert(words.end(), {"--faults", options.faults_file.string()});
+  if (options.max_sim_time_s > 0)
+    words.insert(words.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
+  return words;
+}
+
+void Evaluation::start(const PlannedRun& run, std::vector<Job>& jobs) {
+  const fs::path folder = request_.folder / run.folder;
+  fs::remove_all(folder);  // of a run that was interrupted, or ended with an error
+  fs::create_directories(folder);
+  std::vector<std::string> words = arguments(run);
+  words.insert(words.begin(), (program_folder() / "constrictor").string());
+  words.insert(words.end(), {"--no-checkpoints", "--report", folder.string()});
+  jobs.push_back({run, std::make_unique<ChildProcess>(words, run_environment(), folder / "run.log"), Clock::now()});
+}
+
+void Evaluation::finish(Job& job, int status) {
+  const fs::path folder = request_.folder / job.run.folder;
+  const MissionResult result = read_result(folder, status);
+  const bool bulky = request_.keep == "all" || (request_.keep == "failed" && !result.success);
+  if (!bulky) remove_bulk(folder);
+  const nlohmann::json outcome = {{"exit_status", status},
+                                  {"wall_time_s", std::chrono::duration<double>(Clock::now() - job.start).count()}};
+  write_whole(folder / kOutcome, outcome.dump(1) + "\n");
+}
+
+std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const {
+  std::ifstream stream(request_.folder / run.folder / kOutcome);
+  if (!stream) return {};
+  const auto outcome = nlohmann::json::parse(stream, nullptr, false);
+  if (!outcome.is_object() || !outcome.contains("exit_status") || !outcome["exit_status"].is_number_integer())
+    return {};
+  MissionResult result = read_result(request_.folder / run.folder, outcome["exit_status"].get<int>());
+  result.variant = run.variant;
+  result.seed = run.seed;
+  result.folder = run.folder;
+  result.command = "constrictor";
+  for (const auto& word : arguments(run)) result.command += " " + quoted(word);
+  return result;
+}
+
+std::vector<MissionResult> Evaluation::results() const {
+  std::vector<MissionResult> results;
+  for (const auto& run : runs_) {
+    if (auto result = result_of(run)) results.push_back(std::move(*result));
+  }
+  return results;
+}
+
+std::size_t Evaluation::missing() const { return runs_.size() - results().size(); }
+
+int Evaluation::carry_out(const Print& show, const Print& progress) {
+  std::vector<PlannedRun> due;
+  std::size_t done = 0, succeeded = 0;
+  for (std::size_t i = request_.shard - 1; i < runs_.size(); i += request_.shards) {
+    const auto result = result_of(runs_[i]);
+    if (!result || result->error()) {
+      due.push_back(runs_[i]);
+      continue;
+    }
+    ++done;
+    succeeded += result->success ? 1 : 0;
+  }
+  if (done > 0) show(fmt::format("{} runs were done before, {} are left", done, due.size()));
+  const std::size_t before = done, all = done + due.size();
+  const SignalQueue signals;
+  const auto begin = Clock::now();
+  std::vector<Job> jobs;
+  std::size_t next = 0;
+  while (next < due.size() || !jobs.empty()) {
+    while (jobs.size() < request_.jobs && next < due.size()) start(due[next++], jobs);
+    const int signal = signals.wait(500ms);
+    if (signal != 0) {
+      for (auto& job : jobs) job.child->signal(SIGTERM);
+      const auto end = Clock::now() + kEndGrace;
+      for (auto& job : jobs) {
+        while (!job.child->poll() && Clock::now() < end) static_cast<void>(signals.wait(50ms));
+      }
+      return signal;  // the children that still run are killed
+    }
+    for (auto& job : jobs) {
+      const auto& exit = job.child->poll();
+      if (!exit) continue;
+      job.over = true;
+      const int status = exit->code().value_or(128 + WTERMSIG(exit->wait_status));
+      finish(job, status);
+      const MissionResult result = *result_of(job.run);
+      ++done;
+      succeeded += result.success ? 1 : 0;
+      const std::string& variant = variants_[job.run.variant].name;
+      show(fmt::format("seed {}{}: {}", job.run.seed, variants_.size() > 1 ? " with " + variant : "",
+                       result.success ? fmt::format("succeeded in {:.1f} s", result.sim_time_s)
+                                      : (result.error() ? "error: " : "failed: ") + result.reason));
+    }
+    std::erase_if(jobs, [](const Job& job) { return job.over; });
+    const double passed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    std::string line = fmt::format("{} of {} runs done, {} succeeded", done, all, succeeded);
+    if (done > before) {
+      const double each_s = passed_s / static_cast<double>(done - before);
+      line += fmt::format(", about {} left", duration_text(each_s * static_cast<double>(all - done)));
+    }
+    progress(line);
+  }
+  return 0;
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,83 @@
+// An evaluation: many runs, several at a time, in one folder that can be continued.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/evaluate/mission_result.hpp"
+#include "cli/evaluate/variation.hpp"
+#include "cli/launch_plan.hpp"
+
+namespace constrictor::cli {
+
+/// What is evaluated.
+struct EvaluationRequest {
+  RunOptions run;  ///< the options of every run but its seed, its report directory and what is varied
+  std::vector<std::uint64_t> seeds;
+  std::vector<std::string> vary;  ///< as on the command line
+  std::size_t jobs = 1;           ///< runs at a time
+  std::size_t shard = 1;          ///< this call does the runs shard, shard + shards, ...; counted from 1
+  std::size_t shards = 1;
+  std::string keep = "failed";  ///< of which runs figure, journals and logs stay: "all", "failed" or "none"
+  std::filesystem::path folder;
+};
+
+/// One run that belongs to the evaluation.
+struct PlannedRun {
+  std::size_t variant = 0;
+  std::uint64_t seed = 0;
+  std::filesystem::path folder;  ///< relative to that of the evaluation
+};
+
+class Evaluation {
+ public:
+  using Print = std::function<void(const std::string& line)>;
+
+  /// Makes the folder and the files of the variants, and checks all files. An evaluation that is already in the folder
+  /// is continued if it has the same files and options; its seeds may be others. Throws UsageError or
+  /// ConfigurationError.
+  explicit Evaluation(EvaluationRequest request);
+
+  /// All runs, in the order in which they are done: all variants of a seed, then those of the next seed.
+  [[nodiscard]] const std::vector<PlannedRun>& runs() const { return runs_; }
+  [[nodiscard]] const std::vector<Variant>& variants() const { return variants_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return request_.folder; }
+  [[nodiscard]] const std::string& scenario() const { return scenario_; }
+
+  /// Does the runs of this shard that have no result yet. Runs whose result is an error are done again. A run that
+  /// fails stops nothing. `show` receives a line for each run that ended, `progress` the state of the whole.
+  /// Returns 0, or the number of the signal that interrupted it; then the runs that were not over are stopped and will
+  /// be done again.
+  int carry_out(const Print& show, const Print& progress);
+  /// The results that the folder has of runs(), in their order.
+  [[nodiscard]] std::vector<MissionResult> results() const;
+  /// Runs of other shards, or not yet done.
+  [[nodiscard]] std::size_t missing() const;
+
+ private:
+  struct Job;
+  void claim_folder();
+  void start(const PlannedRun& run, std::vector<Job>& jobs);
+  void finish(Job& job, int status);
+  [[nodiscard]] std::vector<std::string> arguments(const PlannedRun& run) const;
+  [[nodiscard]] std::optional<MissionResult> result_of(const PlannedRun& run) const;
+
+  EvaluationRequest request_;
+  std::vector<Variant> variants_;
+  std::vector<RunOptions> options_;  ///< of each variant
+  std::vector<PlannedRun> runs_;
+  std::string scenario_;
+  int lock_ = -1;
+
+ public:
+  ~Evaluation();
+  Evaluation(const Evaluation&) = delete;
+  Evaluation& operator=(const Evaluation&) = delete;
+};
+
+}  // namespace constrictor::cli

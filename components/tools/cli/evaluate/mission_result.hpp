@@ -1,0 +1,62 @@
+// What one run of an evaluation came to, as read from its report directory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace constrictor::cli {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct ObjectResult {
+  std::string colour;
+  bool grasped = false;
+  bool dropped = false;
+  bool in_zone = false;
+  double zone_distance_m = kUnknown;  ///< from the centre of the object to that of its zone; NaN: it has no zone
+};
+
+struct MissionResult {
+  std::size_t variant = 0;  ///< index in the evaluation's variants
+  std::uint64_t seed = 0;
+  std::filesystem::path folder;  ///< relative to that of the evaluation
+  std::string command;           ///< repeats the run
+  int exit_status = -1;          ///< of `constrictor run`: 0 and 1 are outcomes of the mission, others are errors
+  bool success = false;          ///< by ground truth
+  bool believed = false;         ///< the planner ended the mission as succeeded
+  std::string reason;            ///< why it did not succeed
+  double sim_time_s = kUnknown;
+  double wall_time_s = kUnknown;
+  double rms_cross_track_m = kUnknown;
+  double rms_pose_error_m = kUnknown;
+  double cost_of_transport = kUnknown;
+  int recoveries = 0;
+  std::string state_hash;
+  std::vector<ObjectResult> objects;
+  std::map<std::string, double> time_in_state_s;  ///< by state of the planner
+  std::map<std::string, int> troubles;            ///< "grasp: object not between the arms" and how often
+
+  /// The run itself failed, so that nothing is known about the mission.
+  [[nodiscard]] bool error() const { return exit_status != 0 && exit_status != 1; }
+};
+
+/// The phases of a mission that are counted, in their order. A phase counts as reached if all objects have reached it.
+inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", "objects in their zones",
+                                          "mission succeeded"};
+[[nodiscard]] bool reached(const MissionResult& result, std::size_t phase);
+
+/// What `constrictor run` left in `folder`, which ended with `exit_status`. Of a run that wrote no report, only the
+/// status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type stays unknown.
+[[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status);
+
+/// The cause of trouble in an event of a task, without numbers, so that equal causes are counted together; empty if the
+/// event is none: aborted and refused goals, and what was lost.
+[[nodiscard]] std::string trouble_of(const nlohmann::json& event);
+
+}  // namespace constrictor::cli

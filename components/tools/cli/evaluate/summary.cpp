@@ -1,0 +1,150 @@
+#include "cli/evaluate/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace constrictor::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+void add_known(Distribution& distribution, double value) {
+  if (std::isfinite(value)) distribution.values.push_back(value);
+}
+
+ordered_json to_json(const Distribution& distribution) {
+  return {{"count", distribution.values.size()}, {"median", distribution.at(0.5)}, {"p05", distribution.at(0.05)},
+          {"p25", distribution.at(0.25)},        {"p75", distribution.at(0.75)},   {"p95", distribution.at(0.95)}};
+}
+
+/// One field of a CSV file.
+std::string csv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+
+void add(VariantSummary& summary, const MissionResult& result) {
+  ++summary.runs;
+  summary.errors += result.error() ? 1 : 0;
+  summary.false_successes += result.believed && !result.success ? 1 : 0;
+  for (std::size_t phase = 0; phase < std::size(kPhases); ++phase)
+    summary.reached[phase] += reached(result, phase) ? 1 : 0;
+  if (result.error()) return;
+  for (const auto& object : result.objects) {
+    if (object.dropped) add_known(summary.placement_m, object.zone_distance_m);
+  }
+  if (result.success) add_known(summary.sim_time_s, result.sim_time_s);
+  add_known(summary.cross_track_m, result.rms_cross_track_m);
+  add_known(summary.pose_error_m, result.rms_pose_error_m);
+  add_known(summary.cost_of_transport, result.cost_of_transport);
+  add_known(summary.recoveries, result.recoveries);
+  for (const auto& [state, time_s] : result.time_in_state_s) summary.mean_time_in_state_s[state] += time_s;
+  for (const auto& [trouble, count] : result.troubles) summary.troubles[trouble] += count;
+}
+
+}  // namespace
+
+std::vector<VariantSummary> summarise(const std::vector<Variant>& variants, const std::vector<MissionResult>& results) {
+  std::vector<VariantSummary> summaries(variants.size());
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    summaries[i].name = variants[i].name;
+    summaries[i].reached.assign(std::size(kPhases), 0);
+  }
+  for (const auto& result : results) add(summaries.at(result.variant), result);
+  for (auto& summary : summaries) {
+    const auto missions = static_cast<double>(std::max<std::size_t>(summary.runs - summary.errors, 1));
+    for (auto& [state, time_s] : summary.mean_time_in_state_s) time_s /= missions;
+  }
+  return summaries;
+}
+
+ordered_json to_json(const std::vector<VariantSummary>& summaries) {
+  ordered_json list = ordered_json::array();
+  for (const auto& summary : summaries) {
+    ordered_json phases = ordered_json::object();
+    for (std::size_t i = 0; i < std::size(kPhases); ++i) {
+      const Interval interval = wilson_interval(summary.reached[i], summary.runs);
+      phases[kPhases[i]] = {{"runs", summary.reached[i]}, {"wilson_95", {interval.low, interval.high}}};
+    }
+    list.push_back({{"variant", summary.name},
+                    {"runs", summary.runs},
+                    {"errors", summary.errors},
+                    {"false_successes", summary.false_successes},
+                    {"phases", phases},
+                    {"placement_m", to_json(summary.placement_m)},
+                    {"mission_time_s", to_json(summary.sim_time_s)},
+                    {"rms_cross_track_m", to_json(summary.cross_track_m)},
+                    {"rms_pose_error_m", to_json(summary.pose_error_m)},
+                    {"cost_of_transport", to_json(summary.cost_of_transport)},
+                    {"recoveries", to_json(summary.recoveries)},
+                    {"mean_time_in_state_s", summary.mean_time_in_state_s},
+                    {"troubles", summary.troubles}});
+  }
+  return list;
+}
+
+std::string to_csv(const std::vector<Variant>& variants, const std::vector<MissionResult>& results) {
+  std::set<std::string> states;
+  std::size_t objects = 0;
+  for (const auto& result : results) {
+    objects = std::max(objects, result.objects.size());
+    for (const auto& [state, time_s] : result.time_in_state_s) states.insert(state);
+  }
+  std::string text =
+      "variant,seed,exit_status,success,believed,reason,mission_time_s,wall_time_s,recoveries,rms_cross_track_m,"
+      "rms_pose_error_m,cost_of_transport";
+  for (std::size_t i = 1; i <= objects; ++i)
+    text += fmt::format(",object_{0},grasped_{0},dropped_{0},in_zone_{0},zone_distance_{0}_m", i);
+  for (const auto& state : states) text += "," + csv("time in '" + state + "' [s]");
+  text += ",state_hash,folder\r\n";
+  for (const auto& result : results) {
+    text += fmt::format("{},{},{},{:d},{:d},{},{},{},{},{},{},{}", csv(variants.at(result.variant).name), result.seed,
+                        result.exit_status, result.success, result.believed, csv(result.reason), csv(result.sim_time_s),
+                        csv(result.wall_time_s), result.recoveries, csv(result.rms_cross_track_m),
+                        csv(result.rms_pose_error_m), csv(result.cost_of_transport));
+    for (std::size_t i = 0; i < objects; ++i) {
+      if (i >= result.objects.size()) {
+        text += ",,,,,";
+        continue;
+      }
+      const ObjectResult& object = result.objects[i];
+      text += fmt::format(",{},{:d},{:d},{:d},{}", csv(object.colour), object.grasped, object.dropped, object.in_zone,
+                          csv(object.zone_distance_m));
+    }
+    for (const auto& state : states) {
+      const auto found = result.time_in_state_s.find(state);
+      text += "," + (found == result.time_in_state_s.end() ? std::string() : csv(found->second));
+    }
+    text += fmt::format(",{},{}\r\n", csv(result.state_hash), csv(result.folder.string()));
+  }
+  return text;
+}
+
+std::string to_table(const std::vector<VariantSummary>& summaries) {
+  const auto known = [](double value, int decimals) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : std::string("-");
+  };
+  std::size_t width = 8;
+  for (const auto& summary : summaries) width = std::max(width, summary.name.size());
+  std::string text = fmt::format("{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>11}\n", "variant", width,
+                                 "runs", "succeeded", "95 % interval", "errors", "time [s]", "place [m]", "recoveries");
+  for (const auto& summary : summaries) {
+    const Interval interval = wilson_interval(summary.successes(), summary.runs);
+    text +=
+        fmt::format("{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>11}\n", summary.name, width, summary.runs,
+                    summary.successes(), fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high),
+                    summary.errors, known(summary.sim_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
+                    known(summary.recoveries.at(0.5), 1));
+  }
+  return text +
+         "(medians; time: of successful missions; place: distance of dropped objects from the centre of their zone)\n";
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,50 @@
+// What the runs of an evaluation came to together.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/evaluate/mission_result.hpp"
+#include "cli/evaluate/statistics.hpp"
+#include "cli/evaluate/variation.hpp"
+
+namespace constrictor::cli {
+
+/// The values of one figure over the runs in which it is known.
+struct Distribution {
+  std::vector<double> values;
+  [[nodiscard]] double at(double q) const { return quantile(values, q); }
+};
+
+/// The runs of one variant.
+struct VariantSummary {
+  std::string name;
+  std::size_t runs = 0;
+  std::size_t errors = 0;            ///< runs that failed themselves; they count as not successful
+  std::size_t false_successes = 0;   ///< missions that only the robot believed to have succeeded
+  std::vector<std::size_t> reached;  ///< runs that reached each of kPhases
+  Distribution placement_m;          ///< distance of each dropped object from the centre of its zone
+  Distribution sim_time_s;           ///< of successful missions
+  Distribution cross_track_m;
+  Distribution pose_error_m;
+  Distribution cost_of_transport;
+  Distribution recoveries;
+  std::map<std::string, double> mean_time_in_state_s;
+  std::map<std::string, int> troubles;
+
+  [[nodiscard]] std::size_t successes() const { return reached.back(); }
+};
+
+/// One summary for each variant, also for those without a run.
+[[nodiscard]] std::vector<VariantSummary> summarise(const std::vector<Variant>& variants,
+                                                    const std::vector<MissionResult>& results);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<VariantSummary>& summaries);
+/// A row for each run, in the order of `results`; RFC 4180.
+[[nodiscard]] std::string to_csv(const std::vector<Variant>& variants, const std::vector<MissionResult>& results);
+/// A table for the terminal.
+[[nodiscard]] std::string to_table(const std::vector<VariantSummary>& summaries);
+
+}  // namespace constrictor::cli

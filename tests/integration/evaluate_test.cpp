@@ -1,0 +1,143 @@
+// `constrictor evaluate` with toy components: real runs, several at a time, that are interrupted, continued, divided
+// and gathered.
+#include "integration/run_command_fixture.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+class Evaluate : public RunCommand {
+ protected:
+  /// Starts an evaluation of runs of `ticks` ticks in the folder `output`.
+  [[nodiscard]] Process evaluate(long ticks, const std::string& output, std::vector<std::string> more) const {
+    const std::string scenario = std::to_string(ticks) + "_ticks.yaml";
+    if (!fs::exists(dir_ / scenario)) write(scenario, "");
+    std::vector<std::string> arguments = {"evaluate",   (dir_ / scenario).string(),
+                                          "--manifest", (dir_ / "toys.yaml").string(),
+                                          "--output",   (dir_ / output).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return command(arguments);
+  }
+  [[nodiscard]] std::string text(const fs::path& file) const {
+    std::ifstream stream(dir_ / file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  [[nodiscard]] nlohmann::json summary(const std::string& output) const {
+    return nlohmann::json::parse(text(fs::path(output) / "summary.json"), nullptr, false);
+  }
+  /// The state hash of each run that is over, by the run's folder.
+  [[nodiscard]] std::map<std::string, std::string> hashes(const std::string& output) const {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(dir_ / output / "runs")) {
+      if (entry.path().filename() != "outcome.json") continue;
+      const fs::path run = entry.path().parent_path();
+      const auto report = nlohmann::json::parse(text(run / "report.json"), nullptr, false);
+      found[fs::relative(run, dir_ / output)] = report.value("state_hash", "none");
+    }
+    return found;
+  }
+};
+
+TEST_F(Evaluate, DoesEveryRunAsRunDoesItAndContinuesWithOtherSeeds) {
+  Process first = evaluate(60, "e", {"--seeds", "1..3", "--jobs", "2"});
+  ASSERT_EQ(first.wait(60s), exit_status::kOk) << first.output() << first.errors();
+  const auto done = hashes("e");
+  ASSERT_EQ(done.size(), 3u);
+  Process alone = run(60, "alone", {"--in-process", "--seed", "2"});
+  ASSERT_EQ(alone.wait(30s), exit_status::kOk) << alone.errors();
+  EXPECT_EQ(done.at("runs/as_given/seed_0002"), state_hash("alone"));
+  EXPECT_EQ(summary("e").at("variants").at(0).at("runs"), 3);
+  EXPECT_NE(text("e/index.html").find("--seed 3"), std::string::npos) << "the command that repeats the run";
+
+  const auto before = fs::last_write_time(dir_ / "e/runs/as_given/seed_0001/outcome.json");
+  Process second = evaluate(60, "e", {"--seeds", "1..4"});
+  ASSERT_EQ(second.wait(60s), exit_status::kOk) << second.errors();
+  EXPECT_NE(second.output().find("3 runs were done before, 1 are left"), std::string::npos) << second.output();
+  EXPECT_EQ(fs::last_write_time(dir_ / "e/runs/as_given/seed_0001/outcome.json"), before);
+  EXPECT_EQ(hashes("e").size(), 4u);
+  expect_nobody_left();
+}
+
+TEST_F(Evaluate, CtrlCLeavesWhatIsDoneAndTheSameCommandDoesTheRest) {
+  Process evaluation = evaluate(400, "e", {"--seeds", "1..30", "--jobs", "2"});
+  ASSERT_TRUE(evaluation.wait_for("seed 1", 60s)) << evaluation.output() << evaluation.errors();
+  evaluation.signal(SIGINT);
+  ASSERT_EQ(evaluation.wait(30s), 130) << evaluation.errors();
+  EXPECT_NE(evaluation.output().find("interrupted"), std::string::npos);
+  const auto done = hashes("e");
+  EXPECT_GE(done.size(), 1u);
+  EXPECT_LT(done.size(), 30u);
+  EXPECT_EQ(summary("e").at("variants").at(0).at("runs"), done.size());
+  expect_nobody_left();
+
+  const std::string last = std::to_string(done.size() + 2);
+  Process rest = evaluate(400, "e", {"--seeds", "1.." + last, "--jobs", "2"});
+  ASSERT_EQ(rest.wait(60s), exit_status::kOk) << rest.output() << rest.errors();
+  for (const auto& [folder, hash] : done) EXPECT_EQ(hashes("e").at(folder), hash);
+}
+
+TEST_F(Evaluate, PartsOfSeveralMachinesGiveTheSameResultsAsOneWhole) {
+  const std::vector<std::string> both{"--vary", "noise.camera_sd=0,0.5"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), both.begin(), both.end());
+    return more;
+  };
+  for (const auto& [output, options] :
+       {std::pair{"whole", with({"--seeds", "1..3"})}, std::pair{"one", with({"--seeds", "1..3", "--shard", "1/2"})},
+        std::pair{"two", with({"--seeds", "1..3", "--shard", "2/2"})}}) {
+    Process process = evaluate(40, output, options);
+    ASSERT_EQ(process.wait(60s), exit_status::kOk) << output << process.errors();
+  }
+  EXPECT_EQ(hashes("whole").size(), 6u);
+  EXPECT_EQ(hashes("one").size() + hashes("two").size(), 6u);
+  Process merge = evaluate(40, "all", with({"--merge", (dir_ / "one").string(), (dir_ / "two").string()}));
+  ASSERT_EQ(merge.wait(60s), exit_status::kOk) << merge.errors();
+  EXPECT_EQ(hashes("all"), hashes("whole"));
+  EXPECT_EQ(summary("all").at("variants").size(), 2u);
+  EXPECT_EQ(summary("all").at("planned_runs"), 6);
+}
+
+TEST_F(Evaluate, ARunThatFailsStopsNothingAndIsDoneAgain) {
+  // The first run of seed 1 finds a planner that ends with an error.
+  write("script", "#!/bin/sh\nif [ \"$(echo \"$@\" | grep -c -e '--seed 1 ')\" = 1 ] && mkdir " +
+                      (dir_ / "first").string() + "; then exit 78; fi\nexec " + program("toy_host") + " \"$@\"\n");
+  fs::permissions(dir_ / "script", fs::perms::owner_all);
+  std::string manifest = kManifest;
+  for (auto at = manifest.find("toy_host"); at != std::string::npos; at = manifest.find("toy_host", at))
+    manifest.replace(at, 8, (dir_ / "script").string());
+  write("toys.yaml", manifest);
+  Process first = evaluate(40, "e", {"--seeds", "1..2", "--jobs", "1"});
+  EXPECT_EQ(first.wait(60s), exit_status::kSoftware) << first.output();
+  EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 1);
+  EXPECT_EQ(summary("e").at("variants").at(0).at("runs"), 2);
+  Process again = evaluate(40, "e", {"--seeds", "1..2"});
+  EXPECT_EQ(again.wait(60s), exit_status::kOk) << again.output() << again.errors();
+  EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 0);
+}
+
+TEST_F(Evaluate, RefusesWhatItCannotDo) {
+  const auto refused = [&](std::vector<std::string> more, int status, const std::string& reason) {
+    Process process = evaluate(40, "e", std::move(more));
+    EXPECT_EQ(process.wait(30s), status) << reason;
+    EXPECT_NE(process.errors().find(reason), std::string::npos) << process.errors();
+  };
+  refused({"--seeds", "3..1"}, exit_status::kUsage, "--seeds: found '3..1'");
+  refused({"--shard", "3/2"}, exit_status::kUsage, "--shard: found '3/2'");
+  refused({"--vary", "noise"}, exit_status::kUsage, "--vary: found 'noise'");
+  refused({"--vary", "robto:links=1"}, exit_status::kConfiguration, "did you mean 'robot'?");
+  refused({"--merge", dir_.string()}, exit_status::kUsage, "holds no evaluation");
+  Process begun = evaluate(40, "f", {"--seeds", "1"});
+  ASSERT_EQ(begun.wait(30s), exit_status::kOk) << begun.errors();
+  write("40_ticks.yaml", "# changed\n");
+  Process other = evaluate(40, "f", {"--seeds", "1"});
+  EXPECT_EQ(other.wait(30s), exit_status::kUsage);
+  EXPECT_NE(other.errors().find("holds another evaluation: scenario has changed since"), std::string::npos)
+      << other.errors();
+  fs::create_directory(dir_ / "full");
+  write("full/file", "");
+  Process full = evaluate(40, "full", {"--seeds", "1"});
+  EXPECT_EQ(full.wait(30s), exit_status::kUsage);
+  EXPECT_NE(full.errors().find("is not empty and holds no evaluation"), std::string::npos) << full.errors();
+}
+
+}  // namespace
+}  // namespace constrictor::testing

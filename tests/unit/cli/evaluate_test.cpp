@@ -1,0 +1,250 @@
+// The parts of `constrictor evaluate`: its statistics, what it varies, and what it reads from a run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "cli/evaluate/mission_result.hpp"
+#include "cli/evaluate/page.hpp"
+#include "cli/evaluate/statistics.hpp"
+#include "cli/evaluate/summary.hpp"
+#include "cli/evaluate/variation.hpp"
+#include "cli/usage.hpp"
+#include "configuration/configuration.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using nlohmann::json;
+using testing::TemporaryFolder;
+
+// Source: R. G. Newcombe, Two-sided confidence intervals for the single proportion, Statistics in Medicine 17 (1998),
+// table I, method 3.
+TEST(WilsonInterval, HasThePublishedValues) {
+  struct Case {
+    std::size_t successes, trials;
+    double low, high;
+  };
+  for (const auto& [successes, trials, low, high] : {Case{81, 263, 0.2553, 0.3662}, Case{15, 148, 0.0624, 0.1605},
+                                                     Case{0, 20, 0.0, 0.1611}, Case{1, 29, 0.0061, 0.1718}}) {
+    const Interval interval = wilson_interval(successes, trials);
+    EXPECT_NEAR(interval.low, low, 5e-5) << successes << " of " << trials;
+    EXPECT_NEAR(interval.high, high, 5e-5) << successes << " of " << trials;
+    const Interval mirrored = wilson_interval(trials - successes, trials);
+    EXPECT_NEAR(mirrored.low, 1 - interval.high, 1e-12);
+  }
+  EXPECT_EQ(wilson_interval(0, 0).low, 0.0);
+  EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
+}
+
+TEST(Quantile, InterpolatesBetweenTheSortedValues) {
+  // numpy.quantile([3, 1, 4, 1, 5, 9, 2, 6], q)
+  const std::vector<double> values{3, 1, 4, 1, 5, 9, 2, 6};
+  EXPECT_DOUBLE_EQ(quantile(values, 0.5), 3.5);
+  EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);
+  EXPECT_DOUBLE_EQ(quantile(values, 0.95), 7.95);
+  EXPECT_DOUBLE_EQ(quantile(values, 0), 1);
+  EXPECT_DOUBLE_EQ(quantile(values, 1), 9);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+TEST(Seeds, RangesAndListsNameEachSeedOnce) {
+  EXPECT_EQ(parse_seeds("7"), (std::vector<std::uint64_t>{7}));
+  EXPECT_EQ(parse_seeds("3..5,1,4..6"), (std::vector<std::uint64_t>{3, 4, 5, 1, 6}));
+  EXPECT_EQ(parse_seeds("18446744073709551615"), (std::vector<std::uint64_t>{18446744073709551615u}));
+  EXPECT_EQ(parse_seeds("18446744073709551614..18446744073709551615").size(), 2u);
+  for (const char* wrong :
+       {"", "a", "1..", "..3", "5..1", "1,,2", "-1", "1.5", "1..3x", "0..18446744073709551615", "18446744073709551616"})
+    EXPECT_THROW(static_cast<void>(parse_seeds(wrong)), UsageError) << wrong;
+}
+
+TEST(Variations, NameTheirFileTheScenarioByDefault) {
+  const Variation plain = parse_variation("noise.camera_sd=0,0.02");
+  EXPECT_EQ(plain.file, "scenario");
+  EXPECT_EQ(plain.key, "noise.camera_sd");
+  EXPECT_EQ(plain.values, (std::vector<std::string>{"0", "0.02"}));
+  const Variation list = parse_variation("navigation:a.b=[1, 2],{c: [3, 4]}");
+  EXPECT_EQ(list.file, "navigation");
+  EXPECT_EQ(list.values, (std::vector<std::string>{"[1, 2]", "{c: [3, 4]}"}));
+  EXPECT_EQ(parse_variation("objects.0.colour=a:b").file, "scenario") << "a colon in the value names no file";
+  for (const char* wrong : {"", "noise", "=1", "noise=", "noise=1,,2", ":key=1", "robot:=1"})
+    EXPECT_THROW(static_cast<void>(parse_variation(wrong)), UsageError) << wrong;
+}
+
+TEST(Variants, AreAllCombinationsInFoldersOfTheirOwn) {
+  const auto variants = make_variants({parse_variation("a=1,2"), parse_variation("robot:b/c=x,x y")});
+  ASSERT_EQ(variants.size(), 4u);
+  EXPECT_EQ(variants[1].name, "a=1, robot:b/c=x y");
+  std::set<std::string> folders;
+  for (const auto& variant : variants) {
+    folders.insert(variant.folder);
+    EXPECT_EQ(variant.folder.find_first_of("/ :"), std::string::npos) << variant.folder;
+  }
+  EXPECT_EQ(folders.size(), 4u);
+  EXPECT_EQ(make_variants({parse_variation("a=x y,x_y")})[1].folder, "a=x_y_2")
+      << "two names, one spelling as a folder";
+  EXPECT_EQ(make_variants({}).size(), 1u);
+}
+
+TEST(Variants, ChangeOneValueOfACopyOfTheFile) {
+  const TemporaryFolder folder;
+  RunOptions base;
+  base.scenario = "short";
+  const auto options = [&](const std::string& vary) {
+    return options_of(make_variants({parse_variation(vary)}).front(), base, folder.path());
+  };
+  const auto text = [](const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const RunOptions noisy = options("noise.camera_sd=0.5");
+  EXPECT_EQ(std::filesystem::path(noisy.scenario).filename(), "short.yaml") << "the run keeps the scenario's name";
+  EXPECT_EQ(Configuration::load(noisy.scenario).one_line("noise"), "{sensors: true, camera_sd: 0.5}");
+  const std::string original = find_file("short", kScenarios).string();
+  EXPECT_EQ(Configuration::load(noisy.scenario).one_line("mission"), Configuration::load(original).one_line("mission"));
+  EXPECT_EQ(Configuration::load(noisy.scenario).one_line("line"), Configuration::load(original).one_line("line"));
+  EXPECT_NE(text(options("objects.0.mass_kg=0.7").scenario).find("mass_kg: 0.7"), std::string::npos);
+  EXPECT_TRUE(options("navigation:travel.frequency_hz=0.8").scenario == "short");
+  EXPECT_TRUE(options("navigation:travel.frequency_hz=0.8").config_files.front().starts_with("navigation="));
+  for (const char* wrong : {"objects.7.mass_kg=1", "objects.x.mass_kg=1", "name.x=1", "nobody:a=1", "noise=[1"})
+    EXPECT_THROW(static_cast<void>(options(wrong)), ConfigurationError) << wrong;
+}
+
+json event(const std::string& task, const std::string& name, const std::string& detail) {
+  return {{"task", task}, {"event", name}, {"parameters", {{"detail", detail}}}};
+}
+
+TEST(Troubles, AreCountedWithoutTheirNumbers) {
+  EXPECT_EQ(trouble_of(event("grasp", "goal_aborted", "object 3 is -0.25 m away")), "grasp: object # is # m away");
+  EXPECT_EQ(trouble_of(event("follow_line", "line_lost", "")), "follow_line: line_lost");
+  EXPECT_EQ(trouble_of(event("drop", "goal_aborted", "")), "drop: goal_aborted");
+  EXPECT_EQ(trouble_of(event("drop", "goal_succeeded", "")), "");
+  EXPECT_EQ(trouble_of(event("drop", "goal_preempted", "another task")), "");
+  EXPECT_EQ(trouble_of(json(3)), "");
+}
+
+json example_report() {
+  return {{"success", false},
+          {"believed", "succeeded"},
+          {"reason", "green lies 0.51 m from the centre, \"outside\""},
+          {"sim_time_s", 100.0},
+          {"wall_time_s", 9.0},
+          {"recoveries", 2},
+          {"state_hash", "ab"},
+          {"line", {{"rms_cross_track_m", 0.05}}},
+          {"pose_error", {{"rms_m", nullptr}}},
+          {"effort", {{"cost_of_transport", 1.5}}},
+          {"objects",
+           {{{"colour", "green"}, {"grasped", true}, {"dropped", true}, {"in_zone", false}, {"zone_distance_m", 0.51}},
+            {{"colour", "red"}, {"grasped", true}, {"dropped", false}, {"in_zone", false}, {"zone_distance_m", 4.0}}}},
+          {"states",
+           {{{"sim_time_s", 0.0}, {"state", "search"}},
+            {{"sim_time_s", 30.0}, {"state", "grasp"}},
+            {{"sim_time_s", 70.0}, {"state", "search"}}}},
+          {"events", {event("grasp", "goal_aborted", "no"), event("grasp", "goal_aborted", "no")}}};
+}
+
+TEST(MissionResult, IsReadFromTheReport) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "report.json") << example_report();
+  const MissionResult result = read_result(folder.path(), 1);
+  EXPECT_FALSE(result.success);
+  EXPECT_TRUE(result.believed);
+  EXPECT_FALSE(result.error());
+  EXPECT_EQ(result.recoveries, 2);
+  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search"), 60.0);
+  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("grasp"), 40.0);
+  EXPECT_EQ(result.troubles.at("grasp: no"), 2);
+  EXPECT_TRUE(std::isnan(result.rms_pose_error_m));
+  EXPECT_TRUE(reached(result, 0));
+  EXPECT_FALSE(reached(result, 1));
+  EXPECT_FALSE(reached(result, 3));
+}
+
+TEST(MissionResult, WhateverIsInTheReportDoesNoHarm) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(read_result(folder.path(), 70).error());
+  const std::string whole = example_report().dump();
+  for (const char* text : {"", "[]", "null", "{}", "{\"objects\": 3, \"events\": {\"a\": 1}, \"states\": \"x\"}",
+                           "{\"success\": 1, \"recoveries\": 1e300, \"objects\": [null, 3]}"}) {
+    std::ofstream(folder.path() / "report.json") << text;
+    const MissionResult result = read_result(folder.path(), 1);
+    EXPECT_FALSE(result.success) << text;
+    EXPECT_EQ(result.recoveries, 0) << text;
+  }
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    std::ofstream(folder.path() / "report.json") << whole.substr(0, size);
+    EXPECT_EQ(read_result(folder.path(), 1).recoveries, 0) << size;
+  }
+}
+
+class SummaryTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_.path() / "report.json") << example_report();
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      MissionResult result = read_result(folder_.path(), 1);
+      result.seed = seed;
+      result.command = "constrictor run";
+      if (seed == 4) {
+        result = MissionResult();
+        result.seed = 4;
+        result.exit_status = 70;
+      }
+      results_.push_back(std::move(result));
+    }
+    results_[0].success = true;
+    results_[0].sim_time_s = 80.0;
+  }
+  TemporaryFolder folder_;
+  std::vector<Variant> variants_ = make_variants({});
+  std::vector<MissionResult> results_;
+};
+
+TEST_F(SummaryTest, CountsErrorsAsNotSuccessfulAndWhatWasOnlyBelieved) {
+  const VariantSummary summary = summarise(variants_, results_).front();
+  EXPECT_EQ(summary.runs, 4u);
+  EXPECT_EQ(summary.errors, 1u);
+  EXPECT_EQ(summary.successes(), 1u);
+  EXPECT_EQ(summary.false_successes, 2u);
+  EXPECT_EQ(summary.placement_m.values.size(), 3u) << "only of objects that were dropped";
+  EXPECT_DOUBLE_EQ(summary.sim_time_s.at(0.5), 80.0) << "of successful missions";
+  EXPECT_DOUBLE_EQ(summary.mean_time_in_state_s.at("grasp"), 40.0);
+  const auto written = to_json({summary}).at(0);
+  EXPECT_EQ(written.at("phases").at("objects grasped").at("runs"), 3);
+}
+
+TEST_F(SummaryTest, EveryRowOfTheCsvHasAsManyFieldsAsItsHeading) {
+  const std::string text = to_csv(variants_, results_);
+  // A reader of RFC 4180 that knows nothing about the writer.
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && text[i + 1] == '"') rows.back().back() += text[++i];
+    else if (c == '"') quoted = !quoted;
+    else if (!quoted && c == ',') rows.back().emplace_back();
+    else if (!quoted && c == '\r') rows.emplace_back(1, ""), ++i;
+    else rows.back().back() += c;
+  }
+  ASSERT_EQ(rows.size(), 6u);  // heading, four runs, and the nothing behind the last line
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(rows[i].size(), rows[0].size()) << i;
+  EXPECT_EQ(rows[2][5], "green lies 0.51 m from the centre, \"outside\"");
+}
+
+TEST_F(SummaryTest, ThePageShowsTextsAsTheyAre) {
+  PageContent page{"<script>alert(1)</script>", "a & b", 5, variants_, results_};
+  page.results[1].reason = "\x1b[31m<b>";
+  page.variants[0].name = "x<y";
+  const std::string html = make_page(page);
+  EXPECT_EQ(html.find("<script>"), std::string::npos);
+  EXPECT_EQ(html.find("<b>"), std::string::npos);
+  EXPECT_EQ(html.find('\x1b'), std::string::npos);
+  EXPECT_NE(html.find("4 of 5 runs are done"), std::string::npos);
+  EXPECT_NE(html.find("x&lt;y"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace constrictor::cli
