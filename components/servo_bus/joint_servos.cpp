@@ -167,8 +167,10 @@ void JointServos::look_for_one_lost() {
     next_lost_ = index + 1;
     ports_.with(joint.servo.port, news_, [&](serial::BusMaster& bus) {
       if (!bus.ping(joint.servo.id).good()) return;
-      if (const std::string why = bring_up(bus, joint); why.empty())
-        news_.push_back(fmt::format("{} is back", name_of(index)));
+      const std::string why = bring_up(bus, joint);
+      if (why.empty()) news_.push_back(fmt::format("{} is back", name_of(index)));
+      else if (why != joint.reported_failure) news_.push_back(fmt::format("{}: {}", name_of(index), why));
+      joint.reported_failure = why;
     });
     return;
   }

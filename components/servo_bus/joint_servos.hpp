@@ -72,6 +72,7 @@ class JointServos {
     bool seen = false;  ///< in this round
     std::uint8_t reported_errors = 0;
     bool reported_lock = false;
+    std::string reported_failure;  ///< why it could not be brought back
   };
 
   [[nodiscard]] std::string name_of(std::size_t joint) const;

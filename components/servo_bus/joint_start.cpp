@@ -16,6 +16,7 @@ using serial::BusMaster;
 namespace {
 
 constexpr int kTries = 3;
+constexpr double kStartSlack_s = 0.03;  // before the first tick there is time, and a busy computer may be late
 constexpr std::int64_t kTimeBasedProfile = 1 << 2;  // bit of the register drive_mode; the direction stays normal
 
 Answer write(BusMaster& bus, std::uint8_t id, const Register& reg, std::int64_t value) {
@@ -104,6 +105,8 @@ std::string JointServos::bring_up(BusMaster& bus, Joint& joint) {
 
 std::vector<std::string> JointServos::start() {
   std::vector<std::string> failed;
+  for (std::size_t port = 0; port < ports_.size(); ++port)
+    ports_.with(port, news_, [](BusMaster& bus) { bus.set_slack(kStartSlack_s); });
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Joint& joint = joints_[i];
     std::string why = "its port is closed";
@@ -111,7 +114,10 @@ std::vector<std::string> JointServos::start() {
     if (!why.empty()) failed.push_back(fmt::format("{}: {}", name_of(i), why));
   }
   for (std::size_t port = 0; port < ports_.size(); ++port)
-    ports_.with(port, news_, [](BusMaster& bus) { bus.set_return_delay(0.0); });
+    ports_.with(port, news_, [&](BusMaster& bus) {
+      bus.set_return_delay(0.0);
+      bus.set_slack(config_.answer_slack_s);
+    });
   return failed;
 }
 

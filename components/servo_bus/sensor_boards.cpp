@@ -51,7 +51,8 @@ std::optional<msg::ImuState> SensorBoards::imu() {
   if (!plan_.imu) return std::nullopt;
   std::optional<msg::ImuState> state;
   ports_.with(plan_.imu->port, news_, [&](serial::BusMaster& bus) {
-    const serial::Answer answer = bus.read(plan_.imu->id, map::kBegin, map::imu::kEnd - map::kBegin, 2);
+    const serial::Answer answer =
+        bus.read(plan_.imu->id, map::kBegin, map::imu::kEnd - map::kBegin, imu_missing_ ? 1 : 2);
     if (!answer.good()) return;
     const BoardData board(answer.data);
     const auto orientation = unit_quaternion(board);
@@ -87,7 +88,9 @@ msg::ContactState SensorBoards::contacts() {
     }
   };
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
-    bus.fast_sync_read(map::kBegin, map::contact::kEnd - map::kBegin, ids, use);
+    constexpr std::uint16_t kBytes = map::contact::kEnd - map::kBegin;
+    bus.fast_sync_read(map::kBegin, kBytes, ids, use);
+    if (answered < ids.size()) bus.sync_read(map::kBegin, kBytes, ByteView(ids).subspan(answered), use);
   });
   const bool all = answered == ids.size();
   note("one of the contact boards", contacts_missing_, all);

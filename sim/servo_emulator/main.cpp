@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <system_error>
 
 #include "component/data_path.hpp"
@@ -27,6 +29,8 @@ using namespace constrictor;
 using namespace constrictor::servo_emulator;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr int kPriority = 10;  // above all usual processes, below interrupts
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
@@ -79,6 +83,17 @@ class CommandPipe {
   std::string text_;
 };
 
+/// Real servos answer in time however busy the computer is. So the emulator asks for the real-time scheduler.
+void ask_for_real_time(const Log& log) {
+  sched_param parameters{};
+  parameters.sched_priority = kPriority;
+  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return;
+  log.warning(
+      "the real-time scheduler is not allowed ({}): on a busy computer answers may be late; "
+      "`setcap cap_sys_nice+ep` on this program, or an rtprio limit in /etc/security/limits.conf, allows it",
+      ::strerrordesc_np(errno));
+}
+
 int emulate(const Options& options, const Log& log) {
   const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
   fs::create_directories(options.output);
@@ -96,6 +111,7 @@ int emulate(const Options& options, const Log& log) {
   CommandPipe commands(options.output / "servo_emulator.commands");
   log.info("{} servos answer at {} ports in {}", plan.joints.size(), terminals.size(), options.output.string());
 
+  ask_for_real_time(log);
   const auto start = Clock::now();
   const auto now_ns = [&] { return std::chrono::nanoseconds(Clock::now() - start).count(); };
   std::vector<pollfd> waits;

@@ -62,6 +62,7 @@ class BusMaster {
   std::size_t sync_read(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, const Use& use);
   std::size_t fast_sync_read(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, const Use& use);
 
+  void set_slack(double seconds) { slack_s_ = seconds; }
   /// How long a device may wait before it answers. At first the longest time that a servo can be set to.
   void set_return_delay(double seconds) { return_delay_s_ = seconds; }
   [[nodiscard]] const BusCounters& counters() const { return counters_; }

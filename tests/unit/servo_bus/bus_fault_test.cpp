@@ -150,6 +150,42 @@ TEST_F(BusFault, ASuccessorFindsTheServosLockedAndMovesNothing) {
   EXPECT_EQ(bench_.robot->servo(11).get("bus_watchdog"), -1);
 }
 
+/// A fault, and the ticks within which the robot must hold its posture.
+struct Reaction {
+  const char* name;
+  const char* command;
+  int most_ticks;
+};
+
+class BusReaction : public BusFault, public ::testing::WithParamInterface<Reaction> {};
+
+// A servo that does not answer may be asked again in lost_after_ticks = 3 ticks. What a servo reports itself is known
+// with the next reading.
+TEST_P(BusReaction, TheRobotHoldsWithinItsBound) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command(GetParam().command), "");
+  int count = 0;
+  double bus_ms = 0.0;
+  for (; count < 20 && mode() == GateMode::kObeying; ++count) {
+    const std::int64_t before_ns = std::max(bench_.now_ns, next_tick_ns_);
+    ticks(1);
+    bus_ms = std::max(bus_ms, static_cast<double>(bench_.now_ns - before_ns) * 1e-6);
+  }
+  std::printf("%s: holds after %d ticks (%d ms); longest time on the buses in a tick: %.1f ms\n", GetParam().name,
+              count, 20 * count, bus_ms);
+  EXPECT_EQ(mode(), GateMode::kHolding);
+  EXPECT_LE(count, GetParam().most_ticks);
+  EXPECT_LT(bus_ms, 40.0) << "less than half the time of the watchdogs, which must not trip";
+}
+
+INSTANTIATE_TEST_SUITE_P(EachFault, BusReaction,
+                         ::testing::Values(Reaction{"cable", "cable 0 9", 3}, Reaction{"silent", "silent 6", 3},
+                                           Reaction{"overload", "error 8 32", 1}, Reaction{"heat", "error 8 4", 1},
+                                           Reaction{"shock", "error 8 16", 1}, Reaction{"wrong_id", "id 3 77", 3},
+                                           Reaction{"double_id", "id 3 3", 3}, Reaction{"cut", "cut 0 1", 3},
+                                           Reaction{"damage", "damage 0 0.3", 3}),
+                         [](const auto& made) { return std::string(made.param.name); });
+
 TEST_F(BusFault, WithoutContactSensorsTheRobotSaysSo) {
   std::ifstream original(kProject / "deploy/buses/mamba_emulated.yaml");
   std::string text{std::istreambuf_iterator<char>(original), {}};
