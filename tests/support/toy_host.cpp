@@ -8,6 +8,7 @@
 
 #include "../unit/runtime/toy_components.hpp"
 #include "runtime/component_main.hpp"
+#include "runtime/component_replay.hpp"
 #include "runtime/numeric_profile.hpp"
 
 namespace {
@@ -89,6 +90,8 @@ ComponentFactory factory(const std::string& name) {
 
 int main(int argc, char** argv) {
   ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
+  if (argc > 3 && std::string(argv[1]) == "--replay")
+    return replay_main(argv[2], {argv + 3, argv + argc}, [](const std::string& name) { return factory(name); });
   std::vector<ComponentFactory> factories;
   std::istringstream names(argc > 1 ? argv[1] : "");
   for (std::string name; std::getline(names, name, ',');) factories.push_back(factory(name));

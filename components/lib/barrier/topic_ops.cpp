@@ -30,7 +30,7 @@ struct HeaderFinder {
 
 template <class T>
 TopicOps make_ops(const Topic<T>& topic) {
-  TopicOps ops{topic, sizeof(T), nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+  TopicOps ops{topic, sizeof(T), nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
   ops.stamp = [](const void* message, const msg::Header& header, std::uint16_t robot_id) {
     const std::shared_ptr<T> shared = share_copy(*static_cast<const T*>(message));
     shared->header = header;
@@ -56,6 +56,9 @@ TopicOps make_ops(const Topic<T>& topic) {
     std::shared_ptr<const T> shared = parse_shared<T>(bytes);
     return shared ? Sample{shared, &shared->header} : Sample{};
   };
+  ops.difference = [](const void* a, const void* b) {
+    return first_difference(*static_cast<const T*>(a), *static_cast<const T*>(b));
+  };
   return ops;
 }
 
@@ -70,6 +73,16 @@ msg::Header neutral_header(msg::Header header) {
   header.run_id = 0;
   header.epoch = header.incarnation = 0;
   return header;
+}
+
+std::string neutral_message(std::size_t topic_id, std::string bytes) {
+  const auto all = std::as_bytes(std::span(bytes));
+  const auto at = topic_ops(topic_id).header_at(all);
+  if (!at) return bytes;
+  const HeaderBytes header = header_bytes(neutral_header(parse_header(all.subspan(*at).first<kHeaderSize>())));
+  std::memcpy(bytes.data() + *at, header.data(), header.size());
+  std::memset(bytes.data(), 0, sizeof(std::uint16_t));  // the robot id
+  return bytes;
 }
 
 HeaderBytes header_bytes(const msg::Header& header) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "component/ports.hpp"
+#include "constrictor/compare.hpp"
 
 namespace constrictor {
 
@@ -33,6 +34,8 @@ struct TopicOps {
   std::optional<std::size_t> (*header_at)(std::span<const std::byte> bytes);
   /// The inverse of append_bytes; an empty sample if the bytes are not exactly one message.
   Sample (*parse)(std::span<const std::byte> bytes);
+  /// The first field in which two messages differ; nothing if they are equal.
+  std::optional<FieldDifference> (*difference)(const void* a, const void* b);
 };
 
 /// Throws std::out_of_range unless `topic_id` is below topics::kCount.
@@ -41,6 +44,9 @@ const TopicOps& topic_ops(std::size_t topic_id);
 /// The header for hashes that must be equal in all runs with the same result: without the random run id, and without
 /// the numbers of epoch and incarnation.
 [[nodiscard]] msg::Header neutral_header(msg::Header header);
+/// A message, given as canonical bytes, with a neutral header and robot id 0. Bytes that are too short for a header
+/// stay as they are.
+[[nodiscard]] std::string neutral_message(std::size_t topic_id, std::string bytes);
 /// The canonical bytes of a header.
 [[nodiscard]] HeaderBytes header_bytes(const msg::Header& header);
 /// The inverse.

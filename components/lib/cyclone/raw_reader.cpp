@@ -1,153 +1,20 @@
 #include "cyclone/raw_reader.hpp"
 
-#include <dds/ddsi/ddsi_keyhash.h>
 #include <dds/ddsi/ddsi_serdata.h>
-#include <dds/ddsi/ddsi_sertype.h>
-#include <dds/ddsi/q_radmin.h>
 
 #include <array>
-#include <cstring>
-#include <memory>
 #include <vector>
 
-// An application of Cyclone may define types of its own as tables of functions. In the type defined here, a sample is
-// its bytes, and all instances are one. It has no type information, so it matches every writer whose type has the same
-// name.
+#include "cyclone/raw_type.hpp"
+
 namespace constrictor::dds {
-namespace {
-
-/// The Debian library is built with shared memory, its headers without it: the library's structures have a few more
-/// fields at the end.
-using Slack = std::array<void*, 8>;
-
-struct RawType {
-  ddsi_sertype base;
-  Slack slack;
-};
-
-struct RawData {
-  ddsi_serdata base;
-  Slack slack;
-  std::vector<std::uint8_t> bytes;
-};
-
-struct RawDataOps {
-  ddsi_serdata_ops base;
-  Slack slack;
-};
-
-const RawData& raw(const ddsi_serdata* data) { return *reinterpret_cast<const RawData*>(data); }
-
-RawData* make_data(const ddsi_sertype* type, ddsi_serdata_kind kind) {
-  auto data = std::make_unique<RawData>();
-  ddsi_serdata_init(&data->base, type, kind);
-  data->base.hash = 1;
-  return data.release();
-}
-
-ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
-                             std::size_t size) {
-  RawData* data = make_data(type, kind);
-  data->bytes.resize(size);
-  // Fragments may overlap.
-  for (std::uint32_t offset = 0; fragment; fragment = fragment->nextfrag) {
-    if (fragment->maxp1 <= offset) continue;
-    const unsigned char* payload = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
-    const std::size_t end = std::min<std::size_t>(fragment->maxp1, size);
-    if (end > offset) std::memcpy(data->bytes.data() + offset, payload + offset - fragment->min, end - offset);
-    offset = fragment->maxp1;
-  }
-  return &data->base;
-}
-
-ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
-                          const ddsrt_iovec_t* pieces, std::size_t size) {
-  RawData* data = make_data(type, kind);
-  for (ddsrt_msg_iovlen_t i = 0; i < count; ++i) {
-    const auto* bytes = static_cast<const std::uint8_t*>(pieces[i].iov_base);
-    data->bytes.insert(data->bytes.end(), bytes, bytes + pieces[i].iov_len);
-  }
-  data->bytes.resize(size);
-  return &data->base;
-}
-
-ddsi_serdata* untyped(const ddsi_serdata* sample) {
-  RawData* data = make_data(sample->type, SDK_KEY);
-  data->base.type = nullptr;
-  return &data->base;
-}
-
-RawDataOps make_data_ops() {
-  RawDataOps ops{};
-  ops.base.eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; };
-  ops.base.get_size = [](const ddsi_serdata* data) { return static_cast<std::uint32_t>(raw(data).bytes.size()); };
-  ops.base.from_ser = from_fragments;
-  ops.base.from_ser_iov = from_pieces;
-  ops.base.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
-    return &make_data(type, SDK_KEY)->base;
-  };
-  ops.base.from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* { return nullptr; };
-  ops.base.to_ser = [](const ddsi_serdata* data, std::size_t offset, std::size_t size, void* buffer) {
-    std::memcpy(buffer, raw(data).bytes.data() + offset, size);
-  };
-  ops.base.to_ser_ref = [](const ddsi_serdata* data, std::size_t offset, std::size_t size, ddsrt_iovec_t* piece) {
-    piece->iov_base = const_cast<std::uint8_t*>(raw(data).bytes.data()) + offset;
-    piece->iov_len = static_cast<ddsrt_iov_len_t>(size);
-    return ddsi_serdata_ref(data);
-  };
-  ops.base.to_ser_unref = [](ddsi_serdata* data, const ddsrt_iovec_t*) { ddsi_serdata_unref(data); };
-  ops.base.to_sample = [](const ddsi_serdata*, void*, void**, void*) { return false; };
-  ops.base.to_untyped = untyped;
-  ops.base.untyped_to_sample = [](const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) { return false; };
-  ops.base.free = [](ddsi_serdata* data) { delete reinterpret_cast<RawData*>(data); };
-  ops.base.print = [](const ddsi_sertype*, const ddsi_serdata*, char* text, std::size_t size) {
-    if (size > 0) text[0] = '\0';
-    return std::size_t{0};
-  };
-  ops.base.get_keyhash = [](const ddsi_serdata*, ddsi_keyhash* hash, bool) {
-    std::memset(hash->value, 0, sizeof hash->value);
-  };
-  return ops;
-}
-
-const RawDataOps kDataOps = make_data_ops();
-
-ddsi_sertype_ops make_type_ops() {
-  ddsi_sertype_ops ops{};
-  ops.version = ddsi_sertype_v0;
-  ops.free = [](ddsi_sertype* type) {
-    ddsi_sertype_fini(type);
-    delete reinterpret_cast<RawType*>(type);
-  };
-  ops.zero_samples = [](const ddsi_sertype*, void*, std::size_t) {};
-  ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
-  ops.free_samples = [](const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {};
-  ops.equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return a->typekind_no_key == b->typekind_no_key; };
-  ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
-  return ops;
-}
-
-const ddsi_sertype_ops kTypeOps = make_type_ops();
-
-Entity create_topic(dds_entity_t participant, const Endpoint& writer) {
-  auto* type = new RawType{};
-  ddsi_sertype_init(&type->base, writer.type.c_str(), &kTypeOps, &kDataOps.base, !writer.keyed);
-  type->base.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1 | DDS_DATA_REPRESENTATION_FLAG_XCDR2;
-  ddsi_sertype* base = &type->base;
-  const dds_entity_t topic =
-      dds_create_topic_sertype(participant, writer.topic.c_str(), &base, nullptr, nullptr, nullptr);
-  if (topic < 0) ddsi_sertype_unref(base);
-  return Entity(topic, "dds_create_topic_sertype");
-}
-
-}  // namespace
 
 RawReader::RawReader(dds_entity_t participant, const Endpoint& writer, bool history)
     : RawReader(participant, writer,
                 history && writer.qos.transient_local && writer.qos.reliable ? RawQos{true, true} : RawQos{}) {}
 
 RawReader::RawReader(dds_entity_t participant, const Endpoint& writer, RawQos wanted)
-    : topic_(create_topic(participant, writer)) {
+    : topic_(create_raw_topic(participant, writer.topic, writer.type, writer.keyed).entity) {
   const Qos qos = make_qos();
   dds_qset_reliability(qos.get(), wanted.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_durability(qos.get(), wanted.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
@@ -170,7 +37,7 @@ void RawReader::take(const std::function<void(const RawSample&)>& use) const {
     const int count =
         check(dds_takecdr(reader_.get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE), "dds_takecdr");
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) use({raw(data[i]).bytes, infos[i].source_timestamp});
+      if (infos[i].valid_data) use({bytes_of_raw_sample(data[i]), infos[i].source_timestamp});
       ddsi_serdata_unref(data[i]);
     }
     if (count < static_cast<int>(kBatch)) return;

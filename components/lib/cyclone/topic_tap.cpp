@@ -27,7 +27,7 @@ void TopicTap::read(const Endpoint& writer) {
   const auto known = readings_.find(key);
   RawQos offered{writer.qos.reliable, writer.qos.reliable && writer.qos.transient_local, true};
   if (known == readings_.end()) {
-    Reading reading{{writer.topic, writer.type, schema_of(writer)}, offered, nullptr, 0};
+    Reading reading{{writer.topic, writer.type, writer.keyed, schema_of(writer)}, offered, nullptr, 0};
     reading.reader = std::make_unique<RawReader>(participant_, writer, offered);
     check(dds_set_status_mask(reading.reader->get(), DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
     check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");

@@ -17,7 +17,8 @@ class TopicTap {
  public:
   struct Topic {
     std::string name;
-    std::string type;   ///< DDS name, "constrictor::msg::JointState"
+    std::string type;  ///< DDS name, "constrictor::msg::JointState"
+    bool keyed = false;
     Ros2Schema schema;  ///< its name is empty if the type is not known or cannot be expressed
   };
   /// Decides by a topic's name.

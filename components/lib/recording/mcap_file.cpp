@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -66,6 +67,10 @@ void File::truncate(std::uint64_t size) const {
 }
 
 void File::reserve(std::uint64_t offset, std::uint64_t size) const {
+  // fallocate() does not heed the limit of the shell (ulimit -f), but write() does.
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && offset + size > limit.rlim_cur)
+    fail("cannot be written", EFBIG);
   for (;;) {
     if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(size)) == 0)
       return;

@@ -239,6 +239,10 @@ constexpr MessageCodec make_codec() {
             cdr.append(kLittleEndian);
             ToCdr visitor{canonical, cdr, cdr.size()};
             Description<T>::visit(kBlank, visitor);
+            // As DDS sends it: padded to a multiple of 4 bytes, with the number of these bytes in the options.
+            const std::size_t padding = (4 - (cdr.size() - visitor.start) % 4) % 4;
+            cdr.append(padding, '\0');
+            cdr[visitor.start - 1] = static_cast<char>(padding);
             return visitor.ok && visitor.in.empty();
           },
           [](Bytes cdr, std::string& canonical) {

@@ -21,7 +21,10 @@ DomainTap::~DomainTap() {
 }
 
 RecordedChannel channel_of_topic(const dds::TopicTap::Topic& topic) {
-  RecordedChannel channel{topic.name, topic.schema.name, topic.schema.text, {{"dds_type", topic.type}}};
+  RecordedChannel channel{topic.name,
+                          topic.schema.name,
+                          topic.schema.text,
+                          {{"dds_type", topic.type}, {"keyed", topic.keyed ? "yes" : "no"}}};
   if (topic.schema.name.empty()) channel.metadata["no_schema"] = topic.schema.why_not;
   return channel;
 }

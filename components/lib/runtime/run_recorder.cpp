@@ -30,6 +30,13 @@ const char* name_of(RecordedImages images) {
   return images == RecordedImages::kOff ? "off" : "recompute";
 }
 
+/// "camera=3,planner=2".
+std::string latencies(const std::map<std::string, std::uint16_t>& ticks) {
+  std::string text;
+  for (const auto& [name, count] : ticks) text += fmt::format("{}{}={}", text.empty() ? "" : ",", name, count);
+  return text;
+}
+
 std::string versions() {
   std::string text = fmt::format("constrictor: {}\nidl_hash: {}\nnumeric_profile: {}\nlibraries:\n", kVersion,
                                  std::string(msg::kIdlHash), numeric_profile());
@@ -39,6 +46,7 @@ std::string versions() {
 
 RecordedChannel channel_of(std::string_view topic, std::string_view type, mcap::Texts metadata) {
   metadata["dds_type"] = "constrictor::msg::" + std::string(type);
+  metadata.emplace("keyed", "yes");
   return {std::string(topic), schema_name(type), find_codec(type)->schema(), std::move(metadata)};
 }
 
@@ -78,9 +86,9 @@ RunRecorder::~RunRecorder() { finish(); }
 void RunRecorder::make_channels() {
   for (const auto& topic : topics::kInfos)
     members_[topic.id] = channel_of(topic.name, topic.type, {{"writer", std::string(topic.writer)}});
-  tick_ = channel_of(wire::kTick.name, wire::kTick.type, {});
+  tick_ = channel_of(wire::kTick.name, wire::kTick.type, {{"keyed", "no"}});
   tick_done_ = channel_of(wire::kTickDone.name, wire::kTickDone.type, {{"left_out", "checkpoint"}});
-  epoch_start_ = channel_of(wire::kEpochStart.name, wire::kEpochStart.type, {});
+  epoch_start_ = channel_of(wire::kEpochStart.name, wire::kEpochStart.type, {{"keyed", "no"}});
 }
 
 std::unique_ptr<mcap::Writer> RunRecorder::begin() const {
@@ -98,6 +106,7 @@ std::unique_ptr<mcap::Writer> RunRecorder::begin() const {
         {"roster", fmt::format("{}", fmt::join(options.roster, ","))},
         {"robot_id", std::to_string(options.setup.robot_id)},
         {"mission", options.setup.mission},
+        {"latency_ticks", latencies(options.latency_ticks)},
         {"max_sim_time_s", fmt::format("{}", options.max_sim_time_s)},
         {"scenario", options.setup.scenario_file.filename().string()},
         {"config_hash", context_.config_hash}}});

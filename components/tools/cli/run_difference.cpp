@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "barrier/topic_ops.hpp"
 #include "cli/recording/recorded_messages.hpp"
-#include "constrictor/compare.hpp"
 #include "constrictor/topics.hpp"
 #include "runtime/recording_options.hpp"
 
@@ -30,14 +30,6 @@ std::int64_t last_tick(const std::vector<Entry>& log) {
   return last;
 }
 
-template <class T>
-std::optional<FieldDifference> field_difference(const std::string& a, const std::string& b) {
-  const auto left = parse_shared<T>(std::as_bytes(std::span(a)));
-  const auto right = parse_shared<T>(std::as_bytes(std::span(b)));
-  if (!left || !right) return FieldDifference{"", "unreadable", "unreadable"};
-  return first_difference(*left, *right);
-}
-
 RunDifference at(const Entry& entry) {
   const TopicInfo& topic = topics::kInfos[entry.topic];
   return {entry.tick, std::string(topic.writer), std::string(topic.name), "", "", "", entry.sequence_number};
@@ -48,20 +40,16 @@ RunDifference differing(const Entry& a, const Entry& b) {
   difference.a = fmt::format("hash {:016x}", a.hash);
   difference.b = fmt::format("hash {:016x}", b.hash);
   if (a.bytes.empty() || b.bytes.empty()) return difference;
-  std::apply(
-      [&](const auto&... topic) {
-        const auto look = [&](const auto& candidate) {
-          using Message = typename std::decay_t<decltype(candidate)>::message_type;
-          if (candidate.id != a.topic) return;
-          if (const auto field = field_difference<Message>(a.bytes, b.bytes)) {
-            difference.field = field->path;
-            difference.a = field->a;
-            difference.b = field->b;
-          }
-        };
-        (look(topic), ...);
-      },
-      topics::kAll);
+  const TopicOps& ops = topic_ops(a.topic);
+  const Sample left = ops.parse(std::as_bytes(std::span(a.bytes)));
+  const Sample right = ops.parse(std::as_bytes(std::span(b.bytes)));
+  if (!left.message || !right.message) {
+    difference.a = difference.b = "unreadable";
+  } else if (const auto field = ops.difference(left.message.get(), right.message.get())) {
+    difference.field = field->path;
+    difference.a = field->a;
+    difference.b = field->b;
+  }
   return difference;
 }
 

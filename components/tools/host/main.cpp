@@ -8,6 +8,7 @@
 #include "configuration/closest_name.hpp"
 #include "host/known_components.hpp"
 #include "runtime/component_main.hpp"
+#include "runtime/component_replay.hpp"
 #include "runtime/host.hpp"
 #include "runtime/loaded_libraries.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -35,11 +36,21 @@ int main(int argc, char** argv) {
     for (const auto& [name, make] : known_components()) std::printf("%s\n", name.c_str());
     return exit_status::kOk;
   }
+  if (first == "--replay" && argc > 3) {
+    ensure_numeric_environment(argv);
+    std::vector<std::string> names(argv + 3, argv + argc);
+    return replay_main(argv[2], names, [](const std::string& name) -> std::optional<ComponentFactory> {
+      const auto known = known_components().find(name);
+      if (known == known_components().end()) return std::nullopt;
+      return known->second();
+    });
+  }
   if (first[0] == '-') {
     std::printf(
         "usage: constrictor_host NAME[,NAME...] [OPTION...]\n"
         "       constrictor_host --components      # print the names, one per line\n"
         "       constrictor_host --describe        # print numeric profile, libraries, default configurations\n"
+        "       constrictor_host --replay FILE NAME...  # replay components of a recorded run\n"
         "All components have the same options: constrictor_host NAME --help. Components:");
     for (const auto& [name, make] : known_components()) std::printf(" %s", name.c_str());
     std::printf("\n");

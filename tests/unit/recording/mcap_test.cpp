@@ -130,7 +130,7 @@ TEST_F(McapFile, IsCompleteUpToTheFullDisk) {
     };
     for (int i = 0; i < 50; ++i) add();
     writer.close_chunk();
-    const rlimit limit{writer.size() + 30'000, before.rlim_max};
+    const rlimit limit{writer.size() + Writer::kReserve + 30'000, before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
     for (int i = 0; i < 50; ++i) add();
     EXPECT_THROW(writer.close_chunk(), DiskFull);

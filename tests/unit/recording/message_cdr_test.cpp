@@ -68,12 +68,7 @@ TEST_F(MessageCdr, IsThatOfCyclone) {
       T message{};
       Description<T>::visit(message, filler);
       const std::string expected = cyclone.bytes_of(message);
-      std::string found = cdr_of(message);
-      // Cyclone DDS pads the end to a multiple of 4 bytes, and states the padding in the options.
-      ASSERT_LE(expected.size() - found.size(), 3u) << Description<T>::kName;
-      found.resize(expected.size());
-      found[3] = expected[3];
-      ASSERT_EQ(found, expected) << Description<T>::kName;
+      ASSERT_EQ(cdr_of(message), expected) << Description<T>::kName;
 
       const auto header = find_codec(Description<T>::kName)->header(mcap::bytes_of(expected));
       if constexpr (requires { message.header; }) {
@@ -112,7 +107,8 @@ TEST_F(MessageCdr, RefusesBytesThatAreNotOneMessage) {
     const std::string cdr = cdr_of(message);
     const MessageCodec& codec = *find_codec(Description<T>::kName);
     std::string unused;
-    for (std::size_t length = 0; length < cdr.size(); length += 1 + cdr.size() / 64)
+    const std::size_t padding = static_cast<unsigned char>(cdr[3]);
+    for (std::size_t length = 0; length < cdr.size() - padding; length += 1 + cdr.size() / 64)
       EXPECT_FALSE(codec.from_cdr(mcap::bytes_of(std::string_view(cdr).substr(0, length)), unused));
     EXPECT_FALSE(codec.from_cdr(mcap::bytes_of(cdr + "1234"), unused)) << Description<T>::kName;
     std::string big_endian = cdr;

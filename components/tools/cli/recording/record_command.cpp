@@ -4,10 +4,10 @@
 
 #include <chrono>
 #include <deque>
-#include <regex>
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/recording/recording_text.hpp"
+#include "cli/recording/topic_pattern.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/command_error.hpp"
@@ -34,30 +34,12 @@ struct Options {
   bool force = false;
 };
 
-/// "joint_*" as a regular expression. Throws UsageError.
-std::regex pattern_of(const std::string& text) {
-  std::string expression;
-  for (const char character : text) {
-    if (character == '*') expression += ".*";
-    else if (character == '?') expression += '.';
-    else
-      expression += std::isalnum(static_cast<unsigned char>(character)) || character == '_'
-                        ? std::string(1, character)
-                        : std::string("\\") + character;
-  }
-  return std::regex(expression);
-}
-
 /// Which topics are recorded.
 class Choice {
  public:
-  explicit Choice(const Options& options) : images_(options.images == "on") {
-    for (const auto& topic : options.topics) patterns_.push_back(pattern_of(topic));
-  }
+  explicit Choice(const Options& options) : images_(options.images == "on"), patterns_(options.topics) {}
   bool operator()(const std::string& topic) const {
-    if (!patterns_.empty())
-      return std::any_of(patterns_.begin(), patterns_.end(),
-                         [&](const std::regex& one) { return std::regex_match(topic, one); });
+    if (!patterns_.empty()) return patterns_.match(topic);
     // Samples of these two contain the checkpoints of members, which only the run itself can use.
     if (topic == barrier_topics::kTickDone.name || topic == barrier_topics::kResume.name) return false;
     return images_ || std::none_of(topics::kInfos.begin(), topics::kInfos.end(), [&](const TopicInfo& info) {
@@ -67,7 +49,7 @@ class Choice {
 
  private:
   bool images_;
-  std::vector<std::regex> patterns_;
+  TopicPatterns patterns_;
 };
 
 /// The recording of one domain.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <span>
 #include <tuple>
 
 #include "barrier/topic_ops.hpp"
@@ -36,17 +35,6 @@ void for_each_member_message(const fs::path& recording, const std::function<void
                  use(*info->second, *header, message.data);
                },
                nullptr, nullptr});
-}
-
-/// A message without what differs between equal runs: the run id, the numbers of epoch and incarnation, the robot's id.
-std::string neutral(std::uint8_t topic, std::string canonical) {
-  const auto bytes = std::as_bytes(std::span(canonical));
-  const auto at = topic_ops(topic).header_at(bytes);
-  if (!at) return canonical;
-  const auto header = header_bytes(neutral_header(parse_header(bytes.subspan(*at).first<kHeaderSize>())));
-  canonical.replace(*at, header.size(), reinterpret_cast<const char*>(header.data()), header.size());
-  canonical[0] = canonical[1] = '\0';
-  return canonical;
 }
 
 }  // namespace
@@ -91,7 +79,7 @@ std::optional<std::string> recorded_message(const fs::path& recording, std::uint
       [&](const TopicInfo& info, const msg::Header& header, mcap::Bytes cdr) {
         if (info.id != topic || header.sequence_number != sequence_number) return;
         std::string canonical;
-        if (find_codec(info.type)->from_cdr(cdr, canonical)) found = neutral(topic, std::move(canonical));
+        if (find_codec(info.type)->from_cdr(cdr, canonical)) found = neutral_message(topic, std::move(canonical));
       });
   return found;
 }

@@ -1,0 +1,48 @@
+// Replays components of a recorded run, without DDS: each gets the inputs that it had, and its outputs are compared
+// with the recorded ones.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "component/component.hpp"
+
+namespace constrictor {
+
+/// The first difference between what a component wrote in the run and in the replay.
+struct ReplayDifference {
+  std::int64_t tick = 0;
+  std::string topic;
+  std::string field;  ///< empty: one of the two messages is missing, or only pixels that were not recorded differ
+  std::string recorded;
+  std::string replayed;
+};
+
+struct ReplayResult {
+  std::string component;
+  std::uint64_t steps = 0;
+  std::uint64_t messages = 0;  ///< that were compared
+  std::optional<ReplayDifference> difference;
+  std::string stopped;  ///< why the replay ended before the recording; empty: it did not
+};
+
+/// Makes the factory of a component; nothing if there is no such component.
+using FindFactory = std::function<std::optional<ComponentFactory>(const std::string& name)>;
+
+/// Replays `components` in one pass over the recording. A component whose input images were not recorded (--images off
+/// or recompute) is replayed together with the components that make these images. Throws mcap::Error if the recording
+/// cannot be read, and ConfigurationError if it is not that of a run of this release, or if it has no such component.
+[[nodiscard]] std::vector<ReplayResult> replay_components(const std::filesystem::path& recording,
+                                                          const std::vector<std::string>& components,
+                                                          const FindFactory& find);
+
+/// constrictor_host --replay FILE NAME[,NAME...]: prints the results. Returns the exit status: 1 if one differs or was
+/// stopped.
+int replay_main(const std::filesystem::path& recording, const std::vector<std::string>& components,
+                const FindFactory& find);
+
+}  // namespace constrictor

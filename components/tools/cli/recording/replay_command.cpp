@@ -1,0 +1,91 @@
+// `constrictor replay`: a recording onto DDS, or through components.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <optional>
+
+#include "cli/interrupt.hpp"
+#include "cli/launch_plan.hpp"
+#include "cli/recording/player.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> components;
+  std::string speed = "1";
+  PlayOptions play;
+};
+
+/// This process becomes constrictor_host, which contains the components.
+int replay_components(const Options& options) {
+  const std::string program = (program_folder() / "constrictor_host").string();
+  std::vector<std::string> arguments = {program, "--replay", options.file};
+  if (options.components == std::vector<std::string>{"all"}) {
+    for (const auto& name : recorded_roster(options.file)) arguments.push_back(name);
+  } else {
+    arguments.insert(arguments.end(), options.components.begin(), options.components.end());
+  }
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(program.c_str(), pointers.data());
+  std::perror(program.c_str());
+  return exit_status::kSoftware;
+}
+
+int replay(const Options& options) {
+  if (!options.components.empty()) return replay_components(options);
+  PlayOptions play = options.play;
+  play.file = options.file;
+  if (options.speed != "max") play.speed = std::stod(options.speed);
+  return play_recording(play);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  auto* sub = add_subcommand(app, "replay", "replay a recording onto DDS, or repeat a component on its recorded inputs",
+                             action, options, replay);
+  sub->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);
+  auto* component =
+      sub->add_option("--component", options->components,
+                      "repeat this component on its recorded inputs, without DDS, and compare its outputs "
+                      "byte by\nbyte; may be repeated; `all`: every component of the run")
+          ->allow_extra_args(false);
+  const auto of_dds = [&](CLI::Option* option) { return option->excludes(component); };
+  of_dds(sub->add_option("--speed", options->speed, "times the recorded speed, or max: as fast as possible")
+             ->capture_default_str()
+             ->check(CLI::IsMember({"max"}) | number(1e-3, 1e3, "")));
+  of_dds(sub->add_option("--from", options->play.from_s, "[s] begin this long after the first message")
+             ->check(number(0, 1e9, "s")));
+  of_dds(
+      sub->add_option("--topic", options->play.topics,
+                      "replay only these topics; * and ? stand for any characters; may be repeated (default: all but\n"
+                      "commands to a run)")
+          ->allow_extra_args(false));
+  of_dds(sub->add_flag("--paused", options->play.paused, "begin with a pause"));
+  of_dds(sub->add_flag("--stay", options->play.stay,
+                       "stay after the last message until Ctrl-C, so that late readers receive the last samples"));
+  of_dds(
+      sub->add_option("--domain", options->play.domain, "DDS domain, 0 to 229 (default: a free one, which is printed)")
+          ->check(whole_number(0, 229)));
+  sub->footer(help_footer(
+      "Publishes the recorded bytes in a domain without a run: `constrictor topic echo --domain N`, viewers and\n"
+      "programs of your own receive them as they would from the run. Late readers receive the last samples of each\n"
+      "topic, the scene included. On a terminal, the space bar pauses and continues, `s` makes one tick, `q` ends.\n"
+      "With --component, a recording of `run --record` is needed. Images that were not recorded are computed again.",
+      {"constrictor replay runs/NAME/run.mcap --speed 2 --from 60", "constrictor replay run.mcap --topic 'guidance/*'",
+       "constrictor replay run.mcap --component perception", "constrictor replay run.mcap --component all"},
+      "0 done, and all outputs are equal; 1 an output differs; 64 wrong usage; 70 damaged, or the domain has a run;\n"
+      "  78 the recording is of another release, or has no such component",
+      "CYCLONEDDS_URI  DDS configuration"));
+}
+
+}  // namespace constrictor::cli

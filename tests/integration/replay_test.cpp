@@ -1,0 +1,132 @@
+// `constrictor replay` with real processes: recordings through components and onto DDS.
+#include <functional>
+
+#include "constrictor/topics.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "integration/run_command_fixture.hpp"
+#include "recording/mcap_reader.hpp"
+#include "recording/mcap_writer.hpp"
+#include "recording/message_cdr.hpp"
+#include "recording/recording_summary.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using Edit = std::function<bool(const mcap::Channel&, std::string& cdr)>;
+
+class Replay : public RunCommand {
+ protected:
+  Replay() { environment_["XDG_RUNTIME_DIR"] = dir_.string(); }
+  int status_of(const std::vector<std::string>& arguments, const std::string& name = "constrictor") {
+    std::vector<std::string> all = {program(name)};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    Process process(all, environment_);
+    const int status = process.wait(60s).value_or(-1);
+    output_ = process.output() + process.errors();
+    return status;
+  }
+  [[nodiscard]] fs::path recording(const std::string& run) const { return dir_ / run / "run.mcap"; }
+  /// Copies a recording. `edit` may change a message, or leave it out by returning false.
+  static void copy(const fs::path& from, const fs::path& to, const Edit& edit) {
+    mcap::Reader reader(from);
+    mcap::Writer writer(to, reader.contents().profile, reader.contents().library);
+    mcap::Visitor visitor;
+    visitor.attachment = [&](const mcap::Attachment& one) { writer.attach(one); };
+    visitor.metadata = [&](const mcap::Metadata& one) { writer.add_metadata(one); };
+    visitor.message = [&](const mcap::Channel& channel, const mcap::Message& message) {
+      std::string cdr(mcap::text_of(message.data));
+      if (!edit(channel, cdr)) return;
+      const auto id = writer.add_channel(0, channel.topic, channel.message_encoding, channel.metadata);
+      writer.write({id, message.sequence, message.log_time, message.publish_time, mcap::bytes_of(cdr)});
+    };
+    reader.read(visitor);
+    writer.finish();
+  }
+  /// The messages of a recording: "TOPIC SEQUENCE" to the bytes.
+  static std::map<std::string, std::string> messages_of(const fs::path& file) {
+    std::map<std::string, std::string> messages;
+    mcap::Visitor visitor;
+    visitor.message = [&](const mcap::Channel& channel, const mcap::Message& message) {
+      const auto info = std::find_if(topics::kInfos.begin(), topics::kInfos.end(),
+                                     [&](const TopicInfo& one) { return one.name == channel.topic; });
+      if (info == topics::kInfos.end()) return;
+      const auto number = find_codec(info->type)->header(message.data)->sequence_number;
+      messages[channel.topic + " " + std::to_string(number)] = mcap::text_of(message.data);
+    };
+    mcap::Reader(file).read(visitor);
+    return messages;
+  }
+  std::string output_;
+};
+
+TEST_F(Replay, EveryComponentRepeatsARecordedRun) {
+  // Without pixels: camera and perception make them again, and the output hashes show that they are the same.
+  status_of({"run", "case_study", "--max-sim-time", "1", "--in-process", "--report", (dir_ / "r").string(), "--record",
+             "--images", "recompute"});
+  EXPECT_EQ(status_of({"replay", recording("r"), "--component", "all"}), 0) << output_;
+  for (const char* name :
+       {"physics", "camera", "perception", "guidance", "navigation", "control", "input", "planner", "report"}) {
+    EXPECT_NE(("\n" + output_).find(std::string("\n") + name + ": "), std::string::npos) << name << output_;
+  }
+  EXPECT_EQ(std::count(output_.begin(), output_.end(), '\n'), 9) << output_;
+  EXPECT_EQ(output_.find(": 0 steps"), std::string::npos) << output_;
+}
+
+TEST_F(Replay, NamesTheFirstDifferenceOfAComponent) {
+  ASSERT_EQ(run(60, "r", {"--record"}).wait(30s), exit_status::kOk);
+  const auto replay = [&](const fs::path& file) { return status_of({"--replay", file, "control"}, "toy_host"); };
+  EXPECT_EQ(replay(recording("r")), 0) << output_;
+  // One output of tick 40 in the recording is another one.
+  copy(recording("r"), dir_ / "changed.mcap", [](const mcap::Channel& channel, std::string& cdr) {
+    if (channel.topic != topics::kJointCommand.name) return true;
+    msg::JointCommand command = *message_of<msg::JointCommand>(mcap::bytes_of(cdr));
+    if (command.header.tick != 40) return true;
+    command.position_rad[0] += 1.0;
+    cdr = cdr_of(command);
+    return true;
+  });
+  EXPECT_EQ(replay(dir_ / "changed.mcap"), 1);
+  EXPECT_NE(output_.find("first difference: tick 40, topic joint_command, field position_rad[0]"), std::string::npos)
+      << output_;
+  // One input is missing.
+  copy(recording("r"), dir_ / "gap.mcap", [](const mcap::Channel& channel, std::string& cdr) {
+    if (channel.topic != topics::kJointState.name) return true;
+    return message_of<msg::JointState>(mcap::bytes_of(cdr))->header.tick != 30;
+  });
+  EXPECT_EQ(replay(dir_ / "gap.mcap"), 1);
+  EXPECT_NE(output_.find("joint_state"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("is not in the recording"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"info", dir_ / "gap.mcap"}), 1);
+  EXPECT_NE(output_.find("1 of joint_state"), std::string::npos) << output_;
+  // What cannot be replayed is refused with the reason.
+  EXPECT_EQ(status_of({"--replay", recording("r"), "contro"}, "toy_host"), 78);
+  EXPECT_NE(output_.find("did you mean 'control'"), std::string::npos) << output_;
+}
+
+TEST_F(Replay, PublishesTheRecordedBytesAlsoForLateReaders) {
+  ASSERT_EQ(run(75, "r", {"--record", "--in-process"}).wait(30s), exit_status::kOk);
+  const auto original = messages_of(recording("r"));
+  const std::string domain = std::to_string(DomainClaim().domain());
+  Process replay = command({"replay", recording("r"), "--domain", domain, "--stay"});
+  ASSERT_TRUE(replay.wait_for("replaying", 20s)) << replay.errors();
+  EXPECT_EQ(status_of({"replay", recording("r"), "--domain", domain}), 70) << "the domain is in use: " << output_;
+  const std::string first = (dir_ / "first.mcap").string();
+  ASSERT_EQ(status_of({"record", first, "--domain", domain, "--for", "2"}), 0) << output_;
+  ASSERT_TRUE(replay.wait_for("messages of", 20s)) << replay.output();
+  const std::string late = (dir_ / "late.mcap").string();
+  ASSERT_EQ(status_of({"record", late, "--domain", domain, "--for", "0.5"}), 0) << output_;
+  for (const auto& file : {first, late}) {
+    const auto replayed = messages_of(file);
+    for (const auto& [name, bytes] : replayed) {
+      ASSERT_TRUE(original.contains(name)) << name;
+      EXPECT_EQ(bytes, original.at(name)) << name;
+    }
+    EXPECT_TRUE(replayed.contains("joint_state 75")) << file;
+  }
+  EXPECT_GT(messages_of(first).size(), messages_of(late).size());
+  replay.signal(SIGINT);
+  EXPECT_EQ(replay.wait(20s), 0);
+}
+
+}  // namespace
+}  // namespace constrictor::testing
