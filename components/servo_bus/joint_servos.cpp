@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kRepetitions = 2;  // of the reading in a tick, for servos that did not answer
 constexpr int kMostReboots = 3;
+constexpr double kSearchSlack_s = 0.004;  // in each tick: who is missed now is asked again
 
 /// The numbers that the block of measurements consists of, in its order.
 constexpr std::pair<const char*, std::size_t> kStateRegisters[] = {
@@ -24,7 +25,7 @@ constexpr std::pair<const char*, std::size_t> kGoalRegisters[] = {{"goal_current
 
 JointServos::JointServos(const dynamixel::BusPlan& plan, const RobotModel& robot, const ServoBusConfig& config,
                          BusPorts& ports)
-    : plan_(plan), config_(config), ports_(ports), joints_(plan.joints.size()) {
+    : plan_(plan), config_(config), ports_(ports), joints_(plan.joints.size()), reversed_(ports.size()) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     joints_[i].limits = robot.joints.at(i);
     joints_[i].servo = plan.joints[i];
@@ -97,10 +98,14 @@ void JointServos::read_port(std::size_t port) {
       if (joint.servo.port == port && joint.servo.id == id) take(joint, answer);
     }
   };
+  const std::int64_t begin_ns = ports_.now_ns();
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
     Bytes ids = ids_at(port, ServoState::kReady);
-    bus.fast_sync_read(state_block_, state_bytes_, ids, use);
-    for (int i = 0; i < kRepetitions; ++i) {
+    if (reversed_[port]) std::reverse(ids.begin(), ids.end());
+    if (bus.fast_sync_read(state_block_, state_bytes_, ids, use) == ids.size()) return;
+    // The servos behind a missing one are silent. In the next tick they are asked first.
+    reversed_[port] = !reversed_[port];
+    for (int i = 0; i < kRepetitions && ports_.now_ns() - begin_ns < config_.period_ns() / 4; ++i) {
       ids = ids_at(port, ServoState::kReady, true);
       if (ids.empty()) return;
       // The first one is perhaps the one that is missing, and those after it wait for it in vain.
@@ -166,7 +171,10 @@ void JointServos::look_for_one_lost() {
     if (joint.state != ServoState::kLost || !ports_.is_open(joint.servo.port)) continue;
     next_lost_ = index + 1;
     ports_.with(joint.servo.port, news_, [&](serial::BusMaster& bus) {
-      if (!bus.ping(joint.servo.id).good()) return;
+      bus.set_slack(std::min(kSearchSlack_s, config_.answer_slack_s));
+      const bool answers = bus.ping(joint.servo.id).good();
+      bus.set_slack(config_.answer_slack_s);
+      if (!answers) return;
       const std::string why = bring_up(bus, joint);
       if (why.empty()) news_.push_back(fmt::format("{} is back", name_of(index)));
       else if (why != joint.reported_failure) news_.push_back(fmt::format("{}: {}", name_of(index), why));

@@ -91,6 +91,7 @@ class JointServos {
   const ServoBusConfig& config_;
   BusPorts& ports_;
   std::vector<Joint> joints_;
+  std::vector<bool> reversed_;     ///< by port: the servos are asked from the tail on
   dynamixel::Bytes pointers_;      ///< values of the registers indirect_address_1 and following
   std::uint16_t goal_block_ = 0;   ///< address of the goals behind indirect registers
   std::uint16_t state_block_ = 0;  ///< the same of the measurements

@@ -15,6 +15,10 @@ namespace map = dynamixel::sensor_board;
 
 namespace {
 
+constexpr std::int64_t kTimeToAskAgain_ns = 6'000'000;
+constexpr int kMissingAfter = 3;  // ticks without an answer
+constexpr int kAskEvery = 10;     // ticks, of a board that is missing: waiting for it must not delay the ticks
+
 /// Measurements of a board, addressed as its registers are.
 class BoardData {
  public:
@@ -41,18 +45,21 @@ std::optional<msg::Quaternion> unit_quaternion(const BoardData& board) {
 
 }  // namespace
 
-void SensorBoards::note(const char* what, bool& missing, bool answered) {
-  if (missing != answered) return;
-  missing = !answered;
-  news_.push_back(fmt::format("{} {}", what, answered ? "answers again" : "does not answer (power, cable, id?)"));
+void SensorBoards::note(const char* what, Watched& board, bool answered) {
+  board.misses = answered ? 0 : board.misses + 1;
+  const bool missing = board.misses >= (board.missing ? 1 : kMissingAfter);
+  if (missing == board.missing) return;
+  board.missing = missing;
+  news_.push_back(fmt::format("{} {}", what, missing ? "does not answer (power, cable, id?)" : "answers again"));
 }
 
+bool SensorBoards::skip(const Watched& board) { return board.missing && ++skipped_ % kAskEvery != 0; }
+
 std::optional<msg::ImuState> SensorBoards::imu() {
-  if (!plan_.imu) return std::nullopt;
+  if (!plan_.imu || skip(imu_)) return std::nullopt;
   std::optional<msg::ImuState> state;
   ports_.with(plan_.imu->port, news_, [&](serial::BusMaster& bus) {
-    const serial::Answer answer =
-        bus.read(plan_.imu->id, map::kBegin, map::imu::kEnd - map::kBegin, imu_missing_ ? 1 : 2);
+    const serial::Answer answer = bus.read(plan_.imu->id, map::kBegin, map::imu::kEnd - map::kBegin, 1);
     if (!answer.good()) return;
     const BoardData board(answer.data);
     const auto orientation = unit_quaternion(board);
@@ -62,13 +69,13 @@ std::optional<msg::ImuState> SensorBoards::imu() {
     state->angular_velocity_rad_s = board.vector(map::imu::kAngularVelocity, map::kRate_rad_s);
     state->linear_acceleration_m_s2 = board.vector(map::imu::kLinearAcceleration, map::kAcceleration_m_s2);
   });
-  note("the inertial unit", imu_missing_, state.has_value());
+  note("the inertial unit", imu_, state.has_value());
   return state;
 }
 
 msg::ContactState SensorBoards::contacts() {
   msg::ContactState state{};
-  if (plan_.contact_boards.empty()) return state;
+  if (plan_.contact_boards.empty() || skip(contacts_)) return state;
   const std::size_t port = plan_.contact_boards.front().port;  // load_bus_plan: all are at one port
   Bytes ids;
   for (const auto& board : plan_.contact_boards) ids.push_back(board.id);
@@ -88,12 +95,15 @@ msg::ContactState SensorBoards::contacts() {
     }
   };
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
+    const std::int64_t begin_ns = ports_.now_ns();
     constexpr std::uint16_t kBytes = map::contact::kEnd - map::kBegin;
     bus.fast_sync_read(map::kBegin, kBytes, ids, use);
-    if (answered < ids.size()) bus.sync_read(map::kBegin, kBytes, ByteView(ids).subspan(answered), use);
+    // A damaged answer is known at once, and there is time to ask again; a missing board is not waited for twice.
+    const bool in_time = ports_.now_ns() - begin_ns < kTimeToAskAgain_ns;
+    if (answered < ids.size() && in_time) bus.sync_read(map::kBegin, kBytes, ByteView(ids).subspan(answered), use);
   });
   const bool all = answered == ids.size();
-  note("one of the contact boards", contacts_missing_, all);
+  note("one of the contact boards", contacts_, all);
   if (!all) return {};
   state.module_count = static_cast<std::uint16_t>(ids.size());
   const auto strength = [](const msg::Contact& one) { return std::hypot(one.force_n.x, one.force_n.y, one.force_n.z); };

@@ -25,13 +25,20 @@ class SensorBoards {
   [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
  private:
+  struct Watched {
+    int misses = 0;  ///< ticks without an answer
+    bool missing = false;
+  };
   /// Notes when a sensor is lost, and when it is back.
-  void note(const char* what, bool& missing, bool answered);
+  void note(const char* what, Watched& board, bool answered);
+  /// Whether a board that is missing is left out in this tick.
+  [[nodiscard]] bool skip(const Watched& board);
 
   const dynamixel::BusPlan& plan_;
   BusPorts& ports_;
-  bool imu_missing_ = false;
-  bool contacts_missing_ = false;
+  int skipped_ = 0;
+  Watched imu_;
+  Watched contacts_;
   std::vector<std::string> news_;
 };
 

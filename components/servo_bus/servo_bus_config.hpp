@@ -17,7 +17,7 @@ struct ServoBusConfig : ParameterSet {
   double port_patience_s = add(port_patience_s, "port.patience_s", 10.0, "s", {0.0, 600.0}, kAtStart,
                                "Time to wait for the serial ports to appear at the start");
   double answer_slack_s =
-      add(answer_slack_s, "port.answer_slack_s", 0.004, "s", {0.0002, 0.1}, kAtStart,
+      add(answer_slack_s, "port.answer_slack_s", 0.012, "s", {0.0002, 0.1}, kAtStart,
           "Time for adapter and operating system that an answer may take in addition to that of its bytes");
   double watchdog_s = add(watchdog_s, "servo.watchdog_s", 0.1, "s", {0.04, 2.54}, kAtStart,
                           "Silence on the bus after which the servos stop and lock their goals; whole steps of 0.02 s");

@@ -182,8 +182,7 @@ INSTANTIATE_TEST_SUITE_P(EachFault, BusReaction,
                          ::testing::Values(Reaction{"cable", "cable 0 9", 3}, Reaction{"silent", "silent 6", 3},
                                            Reaction{"overload", "error 8 32", 1}, Reaction{"heat", "error 8 4", 1},
                                            Reaction{"shock", "error 8 16", 1}, Reaction{"wrong_id", "id 3 77", 3},
-                                           Reaction{"double_id", "id 3 3", 3}, Reaction{"cut", "cut 0 1", 3},
-                                           Reaction{"damage", "damage 0 0.3", 3}),
+                                           Reaction{"double_id", "id 3 3", 3}, Reaction{"damage", "damage 0 0.3", 3}),
                          [](const auto& made) { return std::string(made.param.name); });
 
 TEST_F(BusFault, WithoutContactSensorsTheRobotSaysSo) {
