@@ -43,6 +43,17 @@ std::optional<msg::Quaternion> unit_quaternion(const BoardData& board) {
   return msg::Quaternion{w / length, v.x / length, v.y / length, v.z / length};
 }
 
+double yaw_of(const msg::Quaternion& q) {
+  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
+}
+
+/// The orientation in a level frame that is turned to the left by `yaw_rad`.
+msg::Quaternion turned_back(const msg::Quaternion& q, double yaw_rad) {
+  const double c = std::cos(0.5 * yaw_rad);
+  const double s = -std::sin(0.5 * yaw_rad);
+  return {c * q.w - s * q.z, c * q.x - s * q.y, c * q.y + s * q.x, c * q.z + s * q.w};
+}
+
 }  // namespace
 
 void SensorBoards::note(const char* what, Watched& board, bool answered) {
@@ -65,7 +76,9 @@ std::optional<msg::ImuState> SensorBoards::imu() {
     const auto orientation = unit_quaternion(board);
     if (!orientation) return;
     state.emplace();
-    state->orientation = *orientation;
+    // A board counts its yaw from when it was switched on, and the messages from the start of the epoch.
+    if (std::isnan(start_yaw_rad_)) start_yaw_rad_ = yaw_of(*orientation);
+    state->orientation = turned_back(*orientation, start_yaw_rad_);
     state->angular_velocity_rad_s = board.vector(map::imu::kAngularVelocity, map::kRate_rad_s);
     state->linear_acceleration_m_s2 = board.vector(map::imu::kLinearAcceleration, map::kAcceleration_m_s2);
   });

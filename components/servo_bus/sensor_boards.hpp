@@ -1,6 +1,7 @@
 // The inertial unit and the contact sensors on the buses (dynamixel/sensor_board.hpp).
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,11 +17,15 @@ class SensorBoards {
   /// Both must outlive this object.
   SensorBoards(const dynamixel::BusPlan& plan, BusPorts& ports) : plan_(plan), ports_(ports) {}
 
-  /// Empty: the robot has no inertial unit, or it did not answer in this tick.
+  /// Empty: the robot has no inertial unit, or it did not answer in this tick. The yaw is relative to the first
+  /// reading.
   [[nodiscard]] std::optional<msg::ImuState> imu();
   /// `module_count` is 0 if the robot has no contact sensors, or if not all of them answered. So no reader takes a
   /// missing contact for an untouched skin.
   [[nodiscard]] msg::ContactState contacts();
+  /// [rad] yaw of the board at the first reading, which a successor needs; NaN before it.
+  [[nodiscard]] double start_yaw_rad() const { return start_yaw_rad_; }
+  void set_start_yaw(double yaw_rad) { start_yaw_rad_ = yaw_rad; }
   /// What happened since the last call, one line each.
   [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
@@ -37,6 +42,7 @@ class SensorBoards {
   const dynamixel::BusPlan& plan_;
   BusPorts& ports_;
   int skipped_ = 0;
+  double start_yaw_rad_ = std::numeric_limits<double>::quiet_NaN();
   Watched imu_;
   Watched contacts_;
   std::vector<std::string> news_;

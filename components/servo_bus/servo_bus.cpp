@@ -159,14 +159,16 @@ void ServoBus::step(const Tick& tick) {
 std::string ServoBus::save() const {
   std::ostringstream stream;
   cereal::PortableBinaryOutputArchive archive(stream);
-  archive(gate_, angles_rad_, torques_nm_);
+  archive(gate_, angles_rad_, torques_nm_, boards_.start_yaw_rad());
   return std::move(stream).str();
 }
 
 void ServoBus::load(const std::string& bytes) {
   std::istringstream stream(bytes);
   cereal::PortableBinaryInputArchive archive(stream);
-  archive(gate_, angles_rad_, torques_nm_);
+  double start_yaw_rad = 0.0;
+  archive(gate_, angles_rad_, torques_nm_, start_yaw_rad);
+  boards_.set_start_yaw(start_yaw_rad);
   continued_ = true;
 }
 
