@@ -125,6 +125,8 @@ TEST_F(Recording, OfAnotherProcessCanBeReadAfterItWasKilled) {
     Process recorder = command({"record", file});
     ASSERT_TRUE(eventually([&] { return fs::exists(file) && fs::file_size(file) > 30'000; })) << recorder.errors();
     EXPECT_EQ(status_of({"record", file}), exit_status::kUsage) << "the file exists";
+    EXPECT_EQ(status_of({"recover", file}), exit_status::kSoftware) << output_;
+    EXPECT_NE(output_.find("another process is writing it"), std::string::npos) << output_;
     recorder.signal(SIGKILL);
     recorder.wait(20s);
   }

@@ -70,6 +70,16 @@ TEST_F(Replay, EveryComponentRepeatsARecordedRun) {
   }
   EXPECT_EQ(std::count(output_.begin(), output_.end(), '\n'), 9) << output_;
   EXPECT_EQ(output_.find(": 0 steps"), std::string::npos) << output_;
+  // The report draws the same figure again.
+  EXPECT_EQ(status_of({"replay", recording("r"), "--component", "report", "--output", (dir_ / "again").string()}), 0)
+      << output_;
+  const auto content = [&](const std::string& file) {
+    std::ifstream stream(dir_ / file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  EXPECT_GT(content("r/figure.png").size(), 10'000u);
+  EXPECT_TRUE(content("r/figure.png") == content("again/figure.png"));
+  EXPECT_EQ(content("r/mission.json"), content("again/mission.json"));
 }
 
 TEST_F(Replay, NamesTheFirstDifferenceOfAComponent) {
@@ -101,6 +111,25 @@ TEST_F(Replay, NamesTheFirstDifferenceOfAComponent) {
   // What cannot be replayed is refused with the reason.
   EXPECT_EQ(status_of({"--replay", recording("r"), "contro"}, "toy_host"), 78);
   EXPECT_NE(output_.find("did you mean 'control'"), std::string::npos) << output_;
+}
+
+TEST_F(Replay, RepeatsRunsAtRealTimePaceAndAfterAReset) {
+  ASSERT_EQ(run(60, "realtime", {"--record", "--pace", "realtime"}).wait(30s), exit_status::kOk);
+  Process launcher = run(200, "reset", {"--record", "--pace", "4x"});
+  ASSERT_TRUE(eventually([&] { return status_of({"reset", "7"}) == 0; })) << output_;
+  ASSERT_EQ(launcher.wait(30s), exit_status::kOk) << launcher.output();
+  for (const char* name : {"realtime", "reset"}) {
+    const RecordingSummary summary = summarise_recording(recording(name));
+    EXPECT_EQ(summary.missing(), 0u) << name;
+    EXPECT_EQ(summary.proven, std::string(name) == "reset");
+    EXPECT_EQ(summary.epochs.size(), std::string(name) == "reset" ? 2u : 1u);
+    EXPECT_EQ(summary.epochs.back().seed, std::string(name) == "reset" ? 7u : 1u);
+    EXPECT_EQ(
+        status_of({"--replay", recording(name), "physics", "navigation", "control", "planner", "report"}, "toy_host"),
+        0)
+        << output_;
+    EXPECT_EQ(output_.find(": 0 steps"), std::string::npos) << output_;
+  }
 }
 
 TEST_F(Replay, PublishesTheRecordedBytesAlsoForLateReaders) {

@@ -91,7 +91,7 @@ ComponentFactory factory(const std::string& name) {
 int main(int argc, char** argv) {
   ensure_numeric_environment(argv);  // may start the program again, which needs all arguments
   if (argc > 3 && std::string(argv[1]) == "--replay")
-    return replay_main(argv[2], {argv + 3, argv + argc}, [](const std::string& name) { return factory(name); });
+    return replay_main({argv + 2, argv + argc}, [](const std::string& name) { return factory(name); });
   std::vector<ComponentFactory> factories;
   std::istringstream names(argc > 1 ? argv[1] : "");
   for (std::string name; std::getline(names, name, ',');) factories.push_back(factory(name));

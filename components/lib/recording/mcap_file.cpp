@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,13 +13,23 @@
 namespace constrictor::mcap {
 
 File::File(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
-  const int flags = mode == Mode::kRead ? O_RDONLY : mode == Mode::kCreate ? O_RDWR | O_CREAT | O_TRUNC : O_RDWR;
+  const int flags = mode == Mode::kRead ? O_RDONLY : mode == Mode::kCreate ? O_RDWR | O_CREAT : O_RDWR;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0600);
   if (descriptor_ < 0) fail("cannot be opened", errno);
   struct stat status {};
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+  const bool regular = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+  // The kernel frees the lock when the process ends in any way.
+  const bool in_use =
+      regular && mode != Mode::kRead && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (!regular || in_use) {
     ::close(descriptor_);
-    throw Error(path_.string() + ": found no regular file, accepted an MCAP file");
+    throw Error(path_.string() + (in_use ? ": another process is writing it; wait until it has ended"
+                                         : ": found no regular file, accepted an MCAP file"));
+  }
+  if (mode == Mode::kCreate && ::ftruncate(descriptor_, 0) != 0) {
+    const int error = errno;
+    ::close(descriptor_);
+    fail("cannot be emptied", error);
   }
 }
 

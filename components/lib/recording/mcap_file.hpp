@@ -23,6 +23,7 @@ class File {
     kCreate,  ///< empty, readable by its owner only
     kChange,  ///< of an existing file
   };
+  /// A file that is written is locked until this object is destroyed: a second writer is refused.
   File(std::filesystem::path path, Mode mode);
   ~File();
   File(const File&) = delete;

@@ -64,7 +64,7 @@ T number_of(const std::string& text) {
 /// What a replay must know before it begins: the first pass over the file.
 class Prepared {
  public:
-  explicit Prepared(const fs::path& recording) : file_(recording) {
+  Prepared(const fs::path& recording, const fs::path& output) : file_(recording), output_(output) {
     mcap::Reader reader(recording);
     std::map<std::string, std::string> attachments;
     reader.read({[this](const auto& channel, const auto& message) { take(channel, message); },
@@ -97,7 +97,7 @@ class Prepared {
     setup.component = component;
     setup.robot_file = folder_.path() / "robot.yaml";
     setup.scenario_file = scenario_;
-    setup.output_dir = folder_.path() / "output";
+    setup.output_dir = output_.empty() ? folder_.path() / "output" : output_;
     setup.mission = entry("mission");
     setup.max_sim_time_s = number_of<double>(entry("max_sim_time_s"));
     setup.robot_id = number_of<std::uint16_t>(entry("robot_id"));
@@ -152,6 +152,7 @@ class Prepared {
   }
 
   fs::path file_;
+  fs::path output_;
   ScratchFolder folder_;
   mcap::Texts entries_;
   fs::path scenario_;
@@ -160,8 +161,9 @@ class Prepared {
 
 class ComponentReplay {
  public:
-  ComponentReplay(const fs::path& recording, const std::vector<std::string>& components, const FindFactory& find)
-      : prepared_(recording), find_(find), wanted_(components) {
+  ComponentReplay(const fs::path& recording, const std::vector<std::string>& components, const FindFactory& find,
+                  const fs::path& output)
+      : prepared_(recording, output), find_(find), wanted_(components), concludes_(!output.empty()) {
     plan_ = std::make_shared<const FaultPlan>(load_fault_plan(prepared_.faults(), prepared_.roster));
     for (const auto& name : components) add(name);
   }
@@ -170,7 +172,10 @@ class ComponentReplay {
     mcap::Reader reader(recording);
     reader.read({[this](const auto& channel, const auto& message) { take(channel, message); }, nullptr, nullptr});
     std::vector<ReplayResult> results;
-    for (const auto& name : wanted_) results.push_back(members_.at(name)->result());
+    for (const auto& name : wanted_) {
+      if (concludes_) members_.at(name)->conclude();
+      results.push_back(members_.at(name)->result());
+    }
     return results;
   }
 
@@ -246,6 +251,7 @@ class ComponentReplay {
   Prepared prepared_;
   const FindFactory& find_;
   std::vector<std::string> wanted_;
+  bool concludes_;
   std::shared_ptr<const FaultPlan> plan_;
   std::map<std::string, std::unique_ptr<ReplayedMember>> members_;
 };
@@ -253,14 +259,18 @@ class ComponentReplay {
 }  // namespace
 
 std::vector<ReplayResult> replay_components(const fs::path& recording, const std::vector<std::string>& components,
-                                            const FindFactory& find) {
-  return ComponentReplay(recording, components, find).run(recording);
+                                            const FindFactory& find, const fs::path& output) {
+  return ComponentReplay(recording, components, find, output).run(recording);
 }
 
-int replay_main(const fs::path& recording, const std::vector<std::string>& components, const FindFactory& find) {
+int replay_main(const std::vector<std::string>& arguments, const FindFactory& find) {
+  const bool keeps = arguments.size() > 3 && arguments[1] == "--output";
+  const std::vector<std::string> components(arguments.begin() + (keeps ? 3 : 1), arguments.end());
   try {
+    fs::path output;
+    if (keeps) fs::create_directories(output = fs::absolute(arguments[2]));
     bool equal = true;
-    for (const auto& result : replay_components(recording, components, find)) {
+    for (const auto& result : replay_components(arguments[0], components, find, output)) {
       fmt::print("{}: {} steps, {} messages", result.component, result.steps, result.messages);
       equal = equal && !result.difference && result.stopped.empty() && result.steps > 0;
       if (const auto& difference = result.difference) {

@@ -36,13 +36,15 @@ using FindFactory = std::function<std::optional<ComponentFactory>(const std::str
 /// Replays `components` in one pass over the recording. A component whose input images were not recorded (--images off
 /// or recompute) is replayed together with the components that make these images. Throws mcap::Error if the recording
 /// cannot be read, and ConfigurationError if it is not that of a run of this release, or if it has no such component.
+/// `output`: a folder in which the components write their files, those at the end of the run included (report draws its
+/// figure); empty: nothing of what they write is kept.
 [[nodiscard]] std::vector<ReplayResult> replay_components(const std::filesystem::path& recording,
                                                           const std::vector<std::string>& components,
-                                                          const FindFactory& find);
+                                                          const FindFactory& find,
+                                                          const std::filesystem::path& output = {});
 
-/// constrictor_host --replay FILE NAME[,NAME...]: prints the results. Returns the exit status: 1 if one differs or was
-/// stopped.
-int replay_main(const std::filesystem::path& recording, const std::vector<std::string>& components,
-                const FindFactory& find);
+/// constrictor_host --replay FILE [--output DIR] NAME...: prints the results. `arguments`: those after --replay.
+/// Returns the exit status: 1 if a component differs or was stopped.
+int replay_main(const std::vector<std::string>& arguments, const FindFactory& find);
 
 }  // namespace constrictor

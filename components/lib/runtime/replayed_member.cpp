@@ -54,7 +54,7 @@ void ReplayedMember::take(const msg::EpochStart& start) {
 
 void ReplayedMember::take(const msg::Tick& tick) {
   if (over() || !member_->in_epoch()) return;
-  ticks_[tick.index] = tick;
+  ticks_[tick.index] = newest_tick_ = tick;
   if (!is_plant_) return;
   add_stops(tick.index);
   static_cast<void>(member_->measure(tick.index, tick.time_ns, tick.period_ns));
@@ -200,6 +200,12 @@ void ReplayedMember::compare(std::uint8_t topic, const std::string& recorded, co
     }
   }
   result_.difference = difference;
+}
+
+void ReplayedMember::conclude() {
+  if (over() || !member_->in_epoch() || member_->last_done() < 0) return;
+  newest_tick_.final_tick = true;
+  member_->on_tick(newest_tick_);
 }
 
 ReplayResult ReplayedMember::result() const {

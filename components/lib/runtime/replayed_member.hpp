@@ -36,6 +36,8 @@ class ReplayedMember : private MemberSink {
   void take_input(std::uint8_t topic, const Sample& sample);
   /// A message that this member wrote in the run.
   void take_output(std::uint8_t topic, const std::string& canonical);
+  /// Lets the component do what it does at the end of a run, after its last step.
+  void conclude();
   [[nodiscard]] ReplayResult result() const;
 
  private:
@@ -59,6 +61,7 @@ class ReplayedMember : private MemberSink {
   std::uint16_t robot_id_;
   bool is_plant_ = false;
   std::map<std::int64_t, msg::Tick> ticks_;
+  msg::Tick newest_tick_{};
   std::deque<TickDone> dones_;  ///< not replayed yet
   std::optional<TickDone> replayed_done_;
   std::array<std::deque<Sample>, topics::kCount> inputs_;         ///< not delivered yet

@@ -198,9 +198,9 @@ void RunRecorder::add(const msg::Tick& tick) {
 
 void RunRecorder::add(const TickDone& done) {
   if (!sink_) return;
-  TickDone light = done;  // without the checkpoint, which only the conductor needs
-  light.state.clear();
-  light.written.clear();
+  // Without the checkpoint, which only the conductor needs.
+  const TickDone light{done.component, done.epoch,       done.incarnation, done.index, done.published,
+                       done.consumed,  done.output_hash, done.end_of_run,  {},         {}};
   std::string none;
   write(tick_done_, dds::to_wire(light, none), static_cast<std::uint32_t>(done.index), done.index * period_ns_);
 }

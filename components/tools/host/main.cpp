@@ -38,8 +38,7 @@ int main(int argc, char** argv) {
   }
   if (first == "--replay" && argc > 3) {
     ensure_numeric_environment(argv);
-    std::vector<std::string> names(argv + 3, argv + argc);
-    return replay_main(argv[2], names, [](const std::string& name) -> std::optional<ComponentFactory> {
+    return replay_main({argv + 2, argv + argc}, [](const std::string& name) -> std::optional<ComponentFactory> {
       const auto known = known_components().find(name);
       if (known == known_components().end()) return std::nullopt;
       return known->second();
@@ -50,7 +49,7 @@ int main(int argc, char** argv) {
         "usage: constrictor_host NAME[,NAME...] [OPTION...]\n"
         "       constrictor_host --components      # print the names, one per line\n"
         "       constrictor_host --describe        # print numeric profile, libraries, default configurations\n"
-        "       constrictor_host --replay FILE NAME...  # replay components of a recorded run\n"
+        "       constrictor_host --replay FILE [--output DIR] NAME...  # replay components of a recorded run\n"
         "All components have the same options: constrictor_host NAME --help. Components:");
     for (const auto& [name, make] : known_components()) std::printf(" %s", name.c_str());
     std::printf("\n");

@@ -45,6 +45,23 @@ TEST_F(McapFile, IsReadableByItsOwnerOnly) {
   EXPECT_EQ(status.st_mode & 0777u, 0600u);  // commands carry the run's token
 }
 
+TEST_F(McapFile, HasOneWriterAtATime) {
+  const Writer writer(file(), "", "test");
+  Reader reader(file());
+  reader.read();
+  const auto refusal = [](const std::function<void()>& open) {
+    try {
+      open();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal([&] { Writer second(reader); }).find("another process is writing it"), std::string::npos);
+  EXPECT_NE(refusal([&] { Writer second(file(), "", ""); }).find("another process is writing it"), std::string::npos);
+  EXPECT_GT(content_of(file()).size(), kMagic.size()) << "it was not emptied";
+}
+
 TEST_F(McapFile, ClosesAChunkThatIsLargeEnough) {
   Writer writer(file(), "", "test");
   const std::uint16_t channel = writer.add_channel(0, "bytes", "cdr");

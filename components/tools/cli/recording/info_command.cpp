@@ -151,7 +151,7 @@ void add_recording_files(CLI::App& app, Action& action) {
   recover_app->add_option("FILE", *file, "recording (MCAP), which is changed")->required()->check(CLI::ExistingFile);
   recover_app->footer(help_footer(
       "Keeps everything up to the last complete chunk before the end or the damage, and writes the indexes and the\n"
-      "summary. The recording of a run that is going on must not be recovered.",
+      "summary. A recording that a process is still writing is refused.",
       {"constrictor recover run.mcap"}, "0 the file is complete now; 64 wrong usage; 70 no MCAP file", "none"));
 }
 

@@ -18,6 +18,7 @@ namespace {
 struct Options {
   std::string file;
   std::vector<std::string> components;
+  std::string output;
   std::string speed = "1";
   PlayOptions play;
 };
@@ -26,6 +27,7 @@ struct Options {
 int replay_components(const Options& options) {
   const std::string program = (program_folder() / "constrictor_host").string();
   std::vector<std::string> arguments = {program, "--replay", options.file};
+  if (!options.output.empty()) arguments.insert(arguments.end(), {"--output", options.output});
   if (options.components == std::vector<std::string>{"all"}) {
     for (const auto& name : recorded_roster(options.file)) arguments.push_back(name);
   } else {
@@ -60,6 +62,9 @@ void add_replay(CLI::App& app, Action& action) {
                       "byte by\nbyte; may be repeated; `all`: every component of the run")
           ->allow_extra_args(false);
   const auto of_dds = [&](CLI::Option* option) { return option->excludes(component); };
+  sub->add_option("--output", options->output,
+                  "keep what the components write in this folder: `--component report` draws the figure of the run")
+      ->needs(component);
   of_dds(sub->add_option("--speed", options->speed, "times the recorded speed, or max: as fast as possible")
              ->capture_default_str()
              ->check(CLI::IsMember({"max"}) | number(1e-3, 1e3, "")));
@@ -82,7 +87,8 @@ void add_replay(CLI::App& app, Action& action) {
       "topic, the scene included. On a terminal, the space bar pauses and continues, `s` makes one tick, `q` ends.\n"
       "With --component, a recording of `run --record` is needed. Images that were not recorded are computed again.",
       {"constrictor replay runs/NAME/run.mcap --speed 2 --from 60", "constrictor replay run.mcap --topic 'guidance/*'",
-       "constrictor replay run.mcap --component perception", "constrictor replay run.mcap --component all"},
+       "constrictor replay run.mcap --component perception", "constrictor replay run.mcap --component all",
+       "constrictor replay run.mcap --component report --output figure_of_run"},
       "0 done, and all outputs are equal; 1 an output differs; 64 wrong usage; 70 damaged, or the domain has a run;\n"
       "  78 the recording is of another release, or has no such component",
       "CYCLONEDDS_URI  DDS configuration"));
