@@ -70,6 +70,13 @@ TEST_F(ServoCommand, AnIdIsChangedOnlyToOneThatNobodyHas) {
   EXPECT_TRUE(says("- {id: 70, zero_steps: 2048}")) << output_;
 }
 
+TEST_F(ServoCommand, ABaudRateIsChanged) {
+  EXPECT_EQ(servo({"baud", "--id", "4", "--to", "12"}), exit_status::kUsage);
+  EXPECT_EQ(servo({"baud", "--id", "4", "--to", "57600"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("servo 4 now has 57600 bit/s")) << output_;
+  EXPECT_EQ(servo({"baud", "--id", "4", "--to", "57600"}), exit_status::kSoftware) << "it no longer hears this rate";
+}
+
 TEST_F(ServoCommand, LimitsAreShownSetAndRefused) {
   EXPECT_EQ(servo({"limits", "--id", "3", "--current", "2.5"}), exit_status::kOk) << output_;
   EXPECT_TRUE(says("servo 3: current 2.50 A, temperature 80 C")) << output_;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -29,6 +30,7 @@ struct Options {
   std::optional<int> id;
   bool all = false;
   std::string state;                               ///< of `torque`: on or off
+  std::uint32_t to_baud = 0;                       ///< of `baud`
   int to = 0;                                      ///< of `id`
   std::optional<double> current_a, temperature_c;  ///< of `limits`
   int rounds = 0;                                  ///< of `monitor`; 0: until it is interrupted
@@ -102,27 +104,45 @@ int torque(const Options& options) {
   return exit_status::kOk;
 }
 
+/// The servo of `id` and `baud`. Throws if it does not answer or its EEPROM is locked.
+FoundServo unlocked_servo(ServoAccess& access, const Options& options) {
+  const FoundServo servo = access.find(static_cast<std::uint8_t>(*options.id));
+  if (access.read(servo, "torque_enable") == 0) return servo;
+  throw std::runtime_error(
+      fmt::format("servo {}: its torque is on, and its EEPROM is locked; first: constrictor servo "
+                  "torque off --port {} --baud {} --id {}",
+                  servo.id, options.port, options.baud, servo.id));
+}
+
 int change_id(const Options& options) {
   ServoAccess access(options.port, options.baud);
-  if (!options.id) throw UsageError("servo id: found no --id, accepted the present id of the servo");
-  const FoundServo servo = access.find(static_cast<std::uint8_t>(*options.id));
   const auto to = static_cast<std::uint8_t>(options.to);
-  if (to == servo.id) return fmt::print("servo {} has this id already\n", to), exit_status::kOk;
-  if (access.answers(to))
+  if (to != *options.id && access.answers(to))
     throw std::runtime_error(fmt::format(
         "--to: found {}, which another device at {} has; accepted an id that nobody has", to, options.port));
-  if (access.read(servo, "torque_enable") != 0)
-    throw std::runtime_error(
-        fmt::format("servo {}: its torque is on, and its EEPROM is locked; first: constrictor servo "
-                    "torque off --port {} --id {}",
-                    servo.id, options.port, servo.id));
+  const FoundServo servo = unlocked_servo(access, options);
   access.write(servo, "id", to);
-  if (!access.answers(to) || access.answers(servo.id))
+  if (!access.answers(to) || (to != servo.id && access.answers(servo.id)))
     throw std::runtime_error(
         fmt::format("servo {}: its id was written, but the servo does not answer as {}: scan the "
                     "port again",
                     servo.id, to));
   fmt::print("servo {} is now servo {}\n", servo.id, to);
+  return exit_status::kOk;
+}
+
+int change_baud(const Options& options) {
+  const auto rate = std::find(std::begin(kBaudRates), std::end(kBaudRates), options.to_baud);
+  {
+    ServoAccess access(options.port, options.baud);
+    access.write(unlocked_servo(access, options), "baud_rate", rate - std::begin(kBaudRates));
+  }
+  if (!ServoAccess(options.port, options.to_baud).answers(static_cast<std::uint8_t>(*options.id)))
+    throw std::runtime_error(
+        fmt::format("servo {}: its baud rate was written, but it does not answer at {} bit/s: try "
+                    "`constrictor servo scan --port {} --every-baud`",
+                    *options.id, options.to_baud, options.port));
+  fmt::print("servo {} now has {} bit/s\n", *options.id, options.to_baud);
   return exit_status::kOk;
 }
 
@@ -187,13 +207,17 @@ int monitor(const Options& options) {
   return exit_status::kOk;
 }
 
+CLI::IsMember known_baud() {
+  return CLI::IsMember(std::vector<std::uint32_t>(std::begin(kBaudRates), std::end(kBaudRates)));
+}
+
 CLI::App* add(CLI::App& group, const std::string& name, const std::string& what, Action& action, bool one_or_all,
               const std::shared_ptr<Options>& options, int (*run)(const Options&)) {
   CLI::App* sub = add_subcommand(group, name, what, action, options, run);
   sub->add_option("--port", options->port, "serial port, for example /dev/ttyUSB0")->required();
   sub->add_option("--baud", options->baud, "[bit/s] baud rate of the servos")
       ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::uint32_t>(std::begin(kBaudRates), std::end(kBaudRates))));
+      ->check(known_baud());
   if (!one_or_all) return sub;
   sub->add_option("--id", options->id, "id of one servo")->check(CLI::Range(0, 252));
   sub->add_flag("--all", options->all, "all servos at the port");
@@ -210,6 +234,9 @@ void add_servo(CLI::App& app, Action& action) {
   CLI::App* id = add(*group, "id", "give a servo another id", action, false, options, change_id);
   id->add_option("--id", options->id, "present id")->required()->check(CLI::Range(0, 252));
   id->add_option("--to", options->to, "new id")->required()->check(CLI::Range(0, 252));
+  CLI::App* baud = add(*group, "baud", "give a servo another baud rate", action, false, options, change_baud);
+  baud->add_option("--id", options->id, "id of the servo")->required()->check(CLI::Range(0, 252));
+  baud->add_option("--to", options->to_baud, "[bit/s] new baud rate")->required()->check(known_baud());
   CLI::App* limit = add(*group, "limits", "show the limits of servos, and set them", action, true, options, limits);
   limit->add_option("--current", options->current_a, "[A] limit of the current, and so of the torque");
   limit->add_option("--temperature", options->temperature_c, "[C] temperature at which the servo shuts down");
