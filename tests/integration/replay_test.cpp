@@ -1,4 +1,9 @@
 // `constrictor replay` with real processes: recordings through components and onto DDS.
+#include <poll.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <functional>
 
 #include "constrictor/topics.hpp"
@@ -155,6 +160,47 @@ TEST_F(Replay, PublishesTheRecordedBytesAlsoForLateReaders) {
   EXPECT_GT(messages_of(first).size(), messages_of(late).size());
   replay.signal(SIGINT);
   EXPECT_EQ(replay.wait(20s), 0);
+}
+
+/// Runs a command on a terminal of its own: types `keys` when `prompt` has appeared, and returns its output.
+std::string on_a_terminal(std::vector<std::string> arguments, const std::string& prompt, const std::string& keys) {
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  int terminal = -1;
+  const pid_t pid = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (pid == 0) {
+    ::execv(pointers[0], pointers.data());
+    ::_exit(127);
+  }
+  std::string output;
+  bool typed = false;
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (std::chrono::steady_clock::now() < end) {
+    pollfd readable{terminal, POLLIN, 0};
+    if (::poll(&readable, 1, 100) <= 0) continue;
+    char buffer[512];
+    const ssize_t count = ::read(terminal, buffer, sizeof buffer);
+    if (count <= 0) break;  // the command has ended
+    output.append(buffer, static_cast<std::size_t>(count));
+    if (typed || output.find(prompt) == std::string::npos) continue;
+    typed = true;
+    EXPECT_EQ(::write(terminal, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+  }
+  ::kill(pid, SIGKILL);
+  ::waitpid(pid, nullptr, 0);
+  ::close(terminal);
+  return output;
+}
+
+TEST_F(Replay, PausesAndMakesSingleTicksAtTheKeyboard) {
+  ASSERT_EQ(run(40, "r", {"--record", "--in-process"}).wait(30s), exit_status::kOk);
+  const std::vector<std::string> arguments = {program("constrictor"), "replay", recording("r"), "--paused", "--topic",
+                                              "barrier/tick"};
+  const std::string stepped = on_a_terminal(arguments, "paused", "sssq");
+  EXPECT_NE(stepped.find("\n3 messages of 1 topics"), std::string::npos) << stepped;
+  const std::string continued = on_a_terminal(arguments, "paused", "s ");
+  EXPECT_NE(continued.find("\n41 messages of 1 topics"), std::string::npos) << continued;  // and the final tick
 }
 
 }  // namespace
