@@ -31,6 +31,10 @@ TEST_F(LongRecording, EveryComponentRepeatsTheCaseStudyAndItsImages) {
     if (std::string(images) == "on") continue;
     EXPECT_EQ(state_hash("on"), state_hash("recompute"));
     EXPECT_EQ(status_of({"diff", (dir_ / "on").string(), report}), 0) << output_;
+    // Every image of the mission, computed again, has the bytes of the recorded one.
+    const std::string restored = (dir_ / "restored.mcap").string();
+    EXPECT_EQ(status_of({"replay", report + "/run.mcap", "--restore", restored}), 0) << output_;
+    EXPECT_EQ(status_of({"diff", (dir_ / "on" / "run.mcap").string(), restored}), 0) << output_;
   }
 }
 

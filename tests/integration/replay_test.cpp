@@ -87,6 +87,26 @@ TEST_F(Replay, EveryComponentRepeatsARecordedRun) {
   EXPECT_EQ(content("r/mission.json"), content("again/mission.json"));
 }
 
+TEST_F(Replay, ComputesTheImagesOfARecordingAgain) {
+  for (const char* images : {"on", "recompute"}) {
+    status_of({"run", "case_study", "--max-sim-time", "0.6", "--in-process", "--report", (dir_ / images).string(),
+               "--record", "--images", images});
+  }
+  const fs::path restored = dir_ / "restored.mcap";
+  EXPECT_EQ(status_of({"replay", recording("recompute"), "--restore", restored.string()}), 0) << output_;
+  // Images were rendered in the one run, and computed from the recording of the other one.
+  const auto whole = messages_of(recording("on"));
+  EXPECT_TRUE(whole.contains("camera/image 3"));
+  EXPECT_GT(whole.at("camera/image 3").size(), 100'000u);
+  EXPECT_EQ(status_of({"diff", recording("on"), restored.string()}), 0) << output_;
+  EXPECT_EQ(messages_of(restored).size(), whole.size());
+  EXPECT_EQ(messages_of(restored).at("camera/image 3").size(), whole.at("camera/image 3").size());
+  EXPECT_EQ(status_of({"info", restored.string()}), 0) << output_;
+  EXPECT_EQ(status_of({"replay", recording("on"), "--restore", (dir_ / "no.mcap").string()}), 78) << output_;
+  EXPECT_NE(output_.find("accepted one with --images recompute"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"replay", recording("recompute"), "--restore", restored.string()}), exit_status::kUsage);
+}
+
 TEST_F(Replay, NamesTheFirstDifferenceOfAComponent) {
   ASSERT_EQ(run(60, "r", {"--record"}).wait(30s), exit_status::kOk);
   const auto replay = [&](const fs::path& file) { return status_of({"--replay", file, "control"}, "toy_host"); };

@@ -43,8 +43,13 @@ using FindFactory = std::function<std::optional<ComponentFactory>(const std::str
                                                           const FindFactory& find,
                                                           const std::filesystem::path& output = {});
 
-/// constrictor_host --replay FILE [--output DIR] NAME...: prints the results. `arguments`: those after --replay.
-/// Returns the exit status: 1 if a component differs or was stopped.
+/// Writes a copy of a recording that was made with --images recompute, with all images: the components that make them
+/// are replayed, and their results returned. Throws as replay_components() does.
+[[nodiscard]] std::vector<ReplayResult> restore_images(const std::filesystem::path& recording,
+                                                       const std::filesystem::path& restored, const FindFactory& find);
+
+/// constrictor_host --replay FILE [--output DIR] NAME..., or --replay FILE --restore OUT: prints the results.
+/// `arguments`: those after --replay. Returns the exit status: 1 if a component differs or was stopped.
 int replay_main(const std::vector<std::string>& arguments, const FindFactory& find);
 
 }  // namespace constrictor

@@ -10,7 +10,7 @@ namespace constrictor {
 enum class RecordedImages {
   kOn,         ///< whole
   kOff,        ///< not at all
-  kRecompute,  ///< without their pixels, which `constrictor replay` computes again
+  kRecompute,  ///< without their pixels, which `constrictor replay --restore` computes again
 };
 
 struct RecordingOptions {

@@ -59,7 +59,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
                                "record all topics of the run's domain in run.mcap, in the report directory");
   run->add_option("--images", options->images,
                   "what --record records of images: on (whole), off (nothing), recompute (without their pixels,\n"
-                  "which `constrictor replay` computes again)")
+                  "which `constrictor replay --restore` computes again)")
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off", "recompute"}))
       ->needs(record);

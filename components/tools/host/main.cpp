@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
         "       constrictor_host --components      # print the names, one per line\n"
         "       constrictor_host --describe        # print numeric profile, libraries, default configurations\n"
         "       constrictor_host --replay FILE [--output DIR] NAME...  # replay components of a recorded run\n"
+        "       constrictor_host --replay FILE --restore OUT  # compute the images of a recording again\n"
         "All components have the same options: constrictor_host NAME --help. Components:");
     for (const auto& [name, make] : known_components()) std::printf(" %s", name.c_str());
     std::printf("\n");

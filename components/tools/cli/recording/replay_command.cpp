@@ -19,6 +19,7 @@ struct Options {
   std::string file;
   std::vector<std::string> components;
   std::string output;
+  std::string restored;
   std::string speed = "1";
   PlayOptions play;
 };
@@ -27,7 +28,8 @@ struct Options {
 int replay_components(const Options& options) {
   const std::string program = (program_folder() / "constrictor_host").string();
   std::vector<std::string> arguments = {program, "--replay", options.file};
-  if (!options.output.empty()) arguments.insert(arguments.end(), {"--output", options.output});
+  if (!options.restored.empty()) arguments.insert(arguments.end(), {"--restore", options.restored});
+  else if (!options.output.empty()) arguments.insert(arguments.end(), {"--output", options.output});
   if (options.components == std::vector<std::string>{"all"}) {
     for (const auto& name : recorded_roster(options.file)) arguments.push_back(name);
   } else {
@@ -42,7 +44,9 @@ int replay_components(const Options& options) {
 }
 
 int replay(const Options& options) {
-  if (!options.components.empty()) return replay_components(options);
+  if (!options.restored.empty() && std::filesystem::exists(options.restored))
+    throw UsageError(fmt::format("--restore: found {}, which exists, accepted a new file", options.restored));
+  if (!options.components.empty() || !options.restored.empty()) return replay_components(options);
   PlayOptions play = options.play;
   play.file = options.file;
   if (options.speed != "max") play.speed = std::stod(options.speed);
@@ -61,7 +65,10 @@ void add_replay(CLI::App& app, Action& action) {
                       "repeat this component on its recorded inputs, without DDS, and compare its outputs "
                       "byte by\nbyte; may be repeated; `all`: every component of the run")
           ->allow_extra_args(false);
-  const auto of_dds = [&](CLI::Option* option) { return option->excludes(component); };
+  auto* restored = sub->add_option("--restore", options->restored,
+                                   "write a copy with the images of a recording that was made with --images recompute")
+                       ->excludes(component);
+  const auto of_dds = [&](CLI::Option* option) { option->excludes(component)->excludes(restored); };
   sub->add_option("--output", options->output,
                   "keep what the components write in this folder: `--component report` draws the figure of the run")
       ->needs(component);
@@ -85,10 +92,13 @@ void add_replay(CLI::App& app, Action& action) {
       "Publishes the recorded bytes in a domain without a run: `constrictor topic echo --domain N`, viewers and\n"
       "programs of your own receive them as they would from the run. Late readers receive the last samples of each\n"
       "topic, the scene included. On a terminal, the space bar pauses and continues, `s` makes one tick, `q` ends.\n"
-      "With --component, a recording of `run --record` is needed. Images that were not recorded are computed again.",
+      "With --component or --restore, a recording of `run --record` is needed. Images that were not recorded are "
+      "computed\n"
+      "again.",
       {"constrictor replay runs/NAME/run.mcap --speed 2 --from 60", "constrictor replay run.mcap --topic 'guidance/*'",
        "constrictor replay run.mcap --component perception", "constrictor replay run.mcap --component all",
-       "constrictor replay run.mcap --component report --output figure_of_run"},
+       "constrictor replay run.mcap --component report --output figure_of_run",
+       "constrictor replay run.mcap --restore with_images.mcap"},
       "0 done, and all outputs are equal; 1 an output differs; 64 wrong usage; 70 damaged, or the domain has a run;\n"
       "  78 the recording is of another release, or has no such component",
       "CYCLONEDDS_URI  DDS configuration"));
