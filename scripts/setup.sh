@@ -5,6 +5,7 @@
 #   tests   what the tests and benchmarks need in addition, Fast DDS with its Java runtime included
 #   tools   what formatting, static analysis and the documentation need in addition
 #   bench   MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
+#   browser Chromium, for the long test of the dashboard's page
 # Example: scripts/setup.sh core tests
 set -euo pipefail
 
@@ -21,6 +22,8 @@ core=(
   libxxhash-dev
   # recordings
   libzstd-dev zlib1g-dev
+  # the web server of the dashboard
+  libboost-dev
   # processes on other hosts
   openssh-client
 )
@@ -38,6 +41,8 @@ tests=(
 command -v npm >/dev/null || tests+=(nodejs npm)
 tools=(clang-format clang-tidy doxygen graphviz shellcheck)
 bench=(libmujoco-dev)
+# for the long tests: the page of the dashboard
+browser=(chromium)
 
 packages=()
 for group in "${@:-core}"; do
@@ -46,8 +51,9 @@ for group in "${@:-core}"; do
     tests) packages+=("${tests[@]}") ;;
     tools) packages+=("${tools[@]}") ;;
     bench) packages+=("${bench[@]}") ;;
-    --help) sed -n '2,8s/^# //p' "$0"; exit 0 ;;
-    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench" >&2; exit 2 ;;
+    browser) packages+=("${browser[@]}") ;;
+    --help) sed -n '2,9s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench, browser" >&2; exit 2 ;;
   esac
 done
 

@@ -14,7 +14,9 @@ if [ "${1:-}" = --all ]; then
   shift
 fi
 
-./scripts/setup.sh core tests
+groups=(core tests)
+if [ "$all" = true ]; then groups+=(browser); fi
+./scripts/setup.sh "${groups[@]}"
 ./scripts/build.sh --tests
 
 # Tests of several processes often wait for simulated time, so twice as many tests as cores run side by side. ctest runs

@@ -9,9 +9,10 @@ constexpr auto kTypeBound = std::chrono::milliseconds(500);  // until a process 
 
 }  // namespace
 
-TopicTap::TopicTap(dds_entity_t participant, Wanted wanted)
+TopicTap::TopicTap(dds_entity_t participant, Wanted wanted, bool everything)
     : participant_(participant),
       wanted_(std::move(wanted)),
+      everything_(everything),
       discovery_(participant),
       wait_set_(dds_create_waitset(participant), "dds_create_waitset") {}
 
@@ -25,7 +26,7 @@ void TopicTap::read(const Endpoint& writer) {
   const std::string key =
       fmt::format("{}\n{}\n{}\n{}", writer.topic, writer.type, writer.keyed, fmt::join(writer.qos.partitions, "\n"));
   const auto known = readings_.find(key);
-  RawQos offered{writer.qos.reliable, writer.qos.reliable && writer.qos.transient_local, true};
+  RawQos offered{writer.qos.reliable, writer.qos.reliable && writer.qos.transient_local, everything_};
   if (known == readings_.end()) {
     Reading reading{{writer.topic, writer.type, writer.keyed, schema_of(writer)}, offered, nullptr, 0};
     reading.reader = std::make_unique<RawReader>(participant_, writer, offered);
@@ -37,7 +38,7 @@ void TopicTap::read(const Endpoint& writer) {
   // A reader that asks for more than a writer offers does not meet it.
   Reading& reading = known->second;
   const RawQos least{reading.qos.reliable && offered.reliable, reading.qos.transient_local && offered.transient_local,
-                     true};
+                     everything_};
   if (least.reliable == reading.qos.reliable && least.transient_local == reading.qos.transient_local) return;
   reading.lost_before += reading.reader->lost();
   reading.reader.reset();

@@ -24,7 +24,9 @@ class TopicTap {
   /// Decides by a topic's name.
   using Wanted = std::function<bool(const std::string&)>;
 
-  TopicTap(dds_entity_t participant, Wanted wanted);
+  /// `everything`: keeps all samples until they are taken, for recorders; else only the last 1,024 of each topic, for
+  /// viewers.
+  TopicTap(dds_entity_t participant, Wanted wanted, bool everything = true);
   /// Begins to read the topics that have got a writer since the last call. Fast if there is no new writer. A topic that
   /// this process may not read (in a secured run) is left out and noted in refused().
   void discover();
@@ -49,6 +51,7 @@ class TopicTap {
 
   dds_entity_t participant_;
   Wanted wanted_;
+  bool everything_;
   Discovery discovery_;
   Entity wait_set_;
   std::map<std::string, Reading> readings_;  ///< by topic, type and key

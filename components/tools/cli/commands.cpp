@@ -39,6 +39,18 @@ int end_over_dds(const RunNote& run) {
   return exit_status::kOk;
 }
 
+/// Replaces this process by another program of this build. Returns only if that fails.
+int become(const char* name, std::vector<std::string> arguments) {
+  const std::filesystem::path program = program_folder() / name;
+  arguments.insert(arguments.begin(), program.string());
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(program.c_str(), pointers.data());
+  std::perror(program.c_str());
+  return exit_status::kSoftware;
+}
+
 }  // namespace
 
 int end_command(std::optional<std::uint32_t> domain) {
@@ -82,20 +94,16 @@ int diff_command(const std::filesystem::path& a, const std::filesystem::path& b)
 }
 
 int host_command(int argc, char** argv) {
-  const std::filesystem::path program = program_folder() / "constrictor_host";
   std::string names;
   int next = 0;
   for (; next < argc && argv[next][0] != '-'; ++next) names += (names.empty() ? "" : ",") + std::string(argv[next]);
-  std::vector<std::string> arguments = {program.string()};
+  std::vector<std::string> arguments;
   if (!names.empty()) arguments.push_back(names);
   arguments.insert(arguments.end(), argv + next, argv + argc);
-  std::vector<char*> pointers;
-  for (auto& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  ::execv(program.c_str(), pointers.data());
-  std::perror(program.c_str());
-  return exit_status::kSoftware;
+  return become("constrictor_host", std::move(arguments));
 }
+
+int dashboard_command(int argc, char** argv) { return become("dashboard", {argv, argv + argc}); }
 
 void add_commands(CLI::App& app, Action& action) {
   auto domain = std::make_shared<std::optional<std::uint32_t>>();
@@ -130,6 +138,14 @@ void add_commands(CLI::App& app, Action& action) {
       "EXIT STATUS\n"
       "  0 equal; 1 different; 64 wrong usage; 70 hashes.bin or run.mcap is missing, damaged, or has no tick\n\n"
       "ENVIRONMENT\n  none");
+
+  app.add_subcommand("dashboard", "show a run in a web browser and in Foxglove")
+      ->footer(
+          "The process becomes the program `dashboard`, which shows its options with `dashboard --help`.\n\n"
+          "EXAMPLES\n  constrictor dashboard\n  constrictor dashboard --port 0\n\n"
+          "EXIT STATUS\n"
+          "  0 the run has ended; 64 wrong usage; 70 no run, or the port cannot be opened; 130 Ctrl-C, 143 SIGTERM\n\n"
+          "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI");
 
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
       ->footer(

@@ -1,4 +1,4 @@
-// The smaller subcommands of `constrictor`: end, diff and host. Each function returns an exit status.
+// The smaller subcommands of `constrictor`: end, diff, host and dashboard. Each function returns an exit status.
 #pragma once
 
 #include <cstdint>
@@ -16,5 +16,8 @@ int diff_command(const std::filesystem::path& a, const std::filesystem::path& b)
 
 /// `constrictor host NAME... [OPTION...]`: replaces this process by constrictor_host, which hosts these components.
 int host_command(int argc, char** argv);
+
+/// `constrictor dashboard [OPTION...]`: replaces this process by the program `dashboard`.
+int dashboard_command(int argc, char** argv);
 
 }  // namespace constrictor::cli

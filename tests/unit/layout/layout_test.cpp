@@ -77,6 +77,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/lib/recording",
                              "components/lib/runtime",
                              "components/tools/cli",
+                             "components/tools/dashboard",
                              "components/tools/ros_bridge",
                              "components/tools/host",
                              "components/control",

@@ -1,0 +1,191 @@
+#include "dashboard/dashboard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "constrictor/reflect.hpp"
+#include "constrictor/text.hpp"
+#include "constrictor/topics.hpp"
+
+namespace constrictor::dashboard {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kShowEvery = 50ms;  // of wall time, however fast the run is
+
+std::uint64_t now_ns() {
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count());
+}
+
+/// Topics that viewers must not see, because their samples contain the token of the run, or are of no use to them,
+/// because they contain the checkpoints of members.
+bool shown(const std::string& topic) {
+  const std::string_view hidden[] = {barrier_topics::kRequest.name, barrier_topics::kRunControl.name,
+                                     topics::kPlannerRequest.name, barrier_topics::kTickDone.name,
+                                     barrier_topics::kResume.name};
+  return std::find(std::begin(hidden), std::end(hidden), topic) == std::end(hidden);
+}
+
+Channel json_channel(const std::string& topic, const std::string& schema_name) {
+  return {0, topic, "json", schema_name, R"({"type":"object"})", "jsonschema"};
+}
+
+Channel image_channel(const std::string& topic) {
+  return {0, topic, "cdr", "sensor_msgs/msg/Image", ros_image_schema(), "ros2msg"};
+}
+
+template <class T>
+dds::Reader<T> newest_of(std::int32_t participant, const Topic<T>& topic) {
+  return dds::Reader<T>::observer(participant, std::string(topic.name));
+}
+
+}  // namespace
+
+struct Dashboard::Readers {
+  explicit Readers(std::int32_t p)
+      // Written once in an epoch: the sample that the writer keeps for late readers is needed.
+      : scene(dds::Reader<msg::SceneDescription>::member(p, std::string(topics::kSceneDescription.name))),
+        world(newest_of(p, topics::kWorldState)),
+        joints(newest_of(p, topics::kJointState)),
+        contacts(newest_of(p, topics::kContactState)),
+        pose(newest_of(p, topics::kRobotPose)),
+        map(newest_of(p, topics::kFieldMap)),
+        mission(dds::Reader<msg::MissionStatus>::member(p, std::string(topics::kMissionStatus.name))),
+        task(newest_of(p, topics::kTaskStatus)),
+        authority(newest_of(p, topics::kAuthority)),
+        stop(newest_of(p, topics::kStopState)),
+        events(dds::Reader<msg::TaskEvent>::member(p, std::string(topics::kTaskEvent.name))),
+        camera(newest_of(p, topics::kCameraImage)),
+        processed(newest_of(p, topics::kProcessedImage)),
+        statuses(dds::Reader<msg::ComponentStatus>::member(p, barrier_topics::kStatus.name)) {}
+
+  dds::Reader<msg::SceneDescription> scene;
+  dds::Reader<msg::WorldState> world;
+  dds::Reader<msg::JointState> joints;
+  dds::Reader<msg::ContactState> contacts;
+  dds::Reader<msg::RobotPose> pose;
+  dds::Reader<msg::FieldMap> map;
+  dds::Reader<msg::MissionStatus> mission;
+  dds::Reader<msg::TaskStatus> task;
+  dds::Reader<msg::Authority> authority;
+  dds::Reader<msg::StopState> stop;
+  dds::Reader<msg::TaskEvent> events;
+  dds::Reader<msg::CameraImage> camera, processed;
+  dds::Reader<msg::ComponentStatus> statuses;
+};
+
+Dashboard::Dashboard(const RunNote& run, WebOptions options)
+    : commands_(run.domain),
+      server_(std::move(options), fmt::format("Constrictor run {}", run.domain), Commands::services(),
+              [this](WebServer::Call call) { commands_.add(std::move(call)); }),
+      monitor_(run, commands_.participant()),
+      tap_(commands_.participant(), shown, false),
+      readers_(std::make_unique<Readers>(commands_.participant())),
+      scene_(server_.add_channel(json_channel("view/scene", "foxglove.SceneUpdate"))),
+      transforms_(server_.add_channel(json_channel("view/transforms", "foxglove.FrameTransforms"))),
+      camera_(server_.add_channel(image_channel("view/camera"))),
+      processed_(server_.add_channel(image_channel("view/processed"))),
+      log_(server_.add_channel(json_channel("view/log", "foxglove.Log"))),
+      state_(server_.add_channel(json_channel("view/state", "constrictor.PageState"))) {}
+
+Dashboard::~Dashboard() = default;
+
+void Dashboard::serve() {
+  tap_.discover();
+  tap_.wait(10ms);
+  tap_.take([this](const dds::TopicTap::Topic& topic, const dds::RawSample& sample) { pass_on(topic, sample); });
+  take_typed();
+  monitor_.poll();
+  if (const auto& state = monitor_.state()) newest_.run = *state;
+  commands_.poll();
+  show();
+  server_.poll();
+}
+
+void Dashboard::pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample& sample) {
+  if (topic.schema.name.empty()) return;  // no viewer could read it
+  const auto [channel, added] = channels_.try_emplace(&topic);
+  if (added) {
+    channel->second = server_.add_channel({0, topic.name, "cdr", topic.schema.name, topic.schema.text, "ros2msg"});
+  }
+  server_.send(channel->second, static_cast<std::uint64_t>(sample.source_time_ns),
+               {reinterpret_cast<const char*>(sample.bytes.data()), sample.bytes.size()});
+}
+
+void Dashboard::take_typed() {
+  const auto keep = [&](const auto& reader, auto& to) {
+    reader.take([&](const auto& message) {
+      if (validate(message)) return;
+      to = message;
+      changed_ = true;
+    });
+  };
+  keep(readers_->scene, newest_.scene);
+  readers_->world.take([&](const msg::WorldState& world) {
+    if (validate(world)) return;
+    const auto& before = newest_.world;
+    // After a reset nothing of the epoch before is shown any more.
+    if (before && (before->header.run_id != world.header.run_id || before->header.epoch != world.header.epoch)) {
+      newest_.start.reset();
+      newest_.pose.reset();
+      newest_.map.reset();
+      newest_.events.clear();
+    }
+    newest_.world = world;
+    changed_ = true;
+  });
+  keep(readers_->joints, newest_.joints);
+  keep(readers_->contacts, newest_.contacts);
+  keep(readers_->pose, newest_.pose);
+  keep(readers_->map, newest_.map);
+  keep(readers_->mission, newest_.mission);
+  keep(readers_->task, newest_.task);
+  keep(readers_->authority, newest_.authority);
+  keep(readers_->stop, newest_.stop);
+  readers_->statuses.take([&](const msg::ComponentStatus& status) {
+    if (!validate(status) && newest_.processes.size() < msg::kMaxMembers)
+      newest_.processes[text_of(status.component)] = status;
+  });
+  readers_->events.take([&](const msg::TaskEvent& event) {
+    if (validate(event)) return;
+    newest_.events.push_back(event);
+    if (newest_.events.size() > Newest::kMostEvents) newest_.events.pop_front();
+    const std::uint64_t time_ns = now_ns();
+    server_.send(log_, time_ns, log_of(event, time_ns).dump());
+  });
+  align(newest_);
+  const auto image = [&](const dds::Reader<msg::CameraImage>& reader, std::uint32_t channel) {
+    const bool wanted = server_.wanted(channel);
+    reader.take([&](const msg::CameraImage& message) {
+      if (!wanted) return;
+      const std::uint64_t time_ns = now_ns();
+      if (const auto cdr = ros_image(message, "head", time_ns)) server_.send(channel, time_ns, *cdr);
+    });
+  };
+  image(readers_->camera, camera_);
+  image(readers_->processed, processed_);
+}
+
+void Dashboard::show() {
+  const auto now = std::chrono::steady_clock::now();
+  // A viewer that comes while the run is paused must see it, too.
+  if (now - shown_ < (changed_ ? kShowEvery : 500ms)) return;
+  shown_ = now;
+  changed_ = false;
+  const std::uint64_t time_ns = now_ns();
+  const auto send = [&](std::uint32_t channel, auto&& make) {
+    if (server_.wanted(channel))
+      server_.send(channel, time_ns, make().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  };
+  send(scene_, [&] { return scene_update(newest_, time_ns); });
+  send(transforms_, [&] { return frame_transforms(newest_, time_ns); });
+  send(state_, [&] { return page_state(newest_); });
+}
+
+}  // namespace constrictor::dashboard

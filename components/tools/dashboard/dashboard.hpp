@@ -1,0 +1,50 @@
+// A run as viewers see it: every topic as it is, and views of the whole scene.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
+#include "cyclone/endpoint.hpp"
+#include "cyclone/topic_tap.hpp"
+#include "dashboard/commands.hpp"
+#include "dashboard/views.hpp"
+#include "dashboard/web_server.hpp"
+
+namespace constrictor::dashboard {
+
+/// An observer outside of the barrier: no member waits for it, and none reads anything from it but the commands of its
+/// viewers.
+class Dashboard {
+ public:
+  Dashboard(const RunNote& run, WebOptions options);
+  ~Dashboard();
+  /// Waits for messages, at most 10 ms, and passes on what has arrived.
+  void serve();
+  /// Why the run is over; empty while it goes on.
+  [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
+  [[nodiscard]] const WebServer& server() const { return server_; }
+
+ private:
+  struct Readers;
+  void pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample& sample);
+  void take_typed();
+  void show();
+
+  Commands commands_;
+  WebServer server_;
+  RunMonitor monitor_;
+  dds::TopicTap tap_;
+  std::unique_ptr<Readers> readers_;
+  std::map<const dds::TopicTap::Topic*, std::uint32_t> channels_;
+  Newest newest_;
+  bool changed_ = false;
+  std::chrono::steady_clock::time_point shown_{};
+  std::uint32_t scene_, transforms_, camera_, processed_, log_, state_;  // channels of the views
+};
+
+}  // namespace constrictor::dashboard

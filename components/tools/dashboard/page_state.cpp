@@ -1,0 +1,171 @@
+// The state that the page shows.
+#include <cmath>
+
+#include "constrictor/constants.hpp"
+#include "dashboard/views.hpp"
+
+namespace constrictor::dashboard {
+namespace {
+
+using nlohmann::json;
+
+template <class T>
+std::string name(const T& group, std::uint8_t value) {
+  return std::string(name_of(group, value));
+}
+
+/// JSON has no NaN.
+json number(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+json line_of(std::size_t count, const double* x_m, const double* y_m) {
+  json points = json::array();
+  for (std::size_t i = 0; i < count; ++i) points.push_back({x_m[i], y_m[i]});
+  return points;
+}
+
+json scene_of(const msg::SceneDescription& scene) {
+  json zones = json::array();
+  for (std::size_t i = 0; i < scene.zone_count; ++i) {
+    const auto& zone = scene.zones[i];
+    zones.push_back({{"colour", name(constants::kColour, zone.colour)},
+                     {"x_m", zone.x_m},
+                     {"y_m", zone.y_m},
+                     {"radius_m", zone.radius_m}});
+  }
+  json obstacles = json::array();
+  for (std::size_t i = 0; i < scene.obstacle_count; ++i) {
+    const auto& obstacle = scene.obstacles[i];
+    obstacles.push_back({{"x_m", obstacle.pose.position_m.x},
+                         {"y_m", obstacle.pose.position_m.y},
+                         {"size_m", {obstacle.size_m.x, obstacle.size_m.y}},
+                         {"box", obstacle.shape == msg::kShapeBox}});
+  }
+  return {{"scenario", scene.scenario},
+          {"seed", scene.seed},
+          {"module_length_m", scene.module_length_m},
+          {"module_radius_m", scene.module_radius_m},
+          {"line", line_of(scene.line_point_count, scene.line_x_m, scene.line_y_m)},
+          {"line_colour", name(constants::kColour, scene.line_colour)},
+          {"line_width_m", scene.line_width_m},
+          {"zones", zones},
+          {"obstacles", obstacles}};
+}
+
+json pose_of(const msg::Pose3& pose) {
+  const auto& q = pose.orientation;
+  return {pose.position_m.x, pose.position_m.y,
+          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)), pose.position_m.z};
+}
+
+json world_of(const Newest& newest) {
+  const msg::WorldState& world = *newest.world;
+  json modules = json::array();
+  for (std::size_t i = 0; i < world.module_count; ++i) modules.push_back(pose_of(world.module_poses[i]));
+  json objects = json::array();
+  for (std::size_t i = 0; newest.scene && i < std::min(world.object_count, newest.scene->object_count); ++i) {
+    const auto& object = newest.scene->objects[i];
+    objects.push_back({{"colour", name(constants::kColour, object.colour)},
+                       {"pose", pose_of(world.object_poses[i])},
+                       {"size_m", {object.size_m.x, object.size_m.y}},
+                       {"box", object.shape == msg::kShapeBox}});
+  }
+  return {{"time_s", static_cast<double>(world.header.time_ns) * 1e-9},
+          {"tick", world.header.tick},
+          {"modules", modules},
+          {"objects", objects}};
+}
+
+json map_of(const Newest& newest) {
+  json objects = json::array();
+  for (std::size_t i = 0; i < newest.map->object_count; ++i) {
+    const auto& object = newest.map->objects[i];
+    objects.push_back({{"handle", object.handle},
+                       {"colour", name(constants::kColour, object.colour)},
+                       {"zone", object.kind == msg::kBlobZone},
+                       {"x_m", number(object.x_m)},
+                       {"y_m", number(object.y_m)},
+                       {"radius_m", number(object.radius_m)},
+                       {"sd_m", number(object.sd_m)},
+                       {"carried", object.carried}});
+  }
+  return {{"line", line_of(newest.map->line_point_count, newest.map->line_x_m, newest.map->line_y_m)},
+          {"objects", objects}};
+}
+
+json processes_of(const Newest& newest) {
+  json list = json::array();
+  for (const auto& [component, status] : newest.processes) {
+    list.push_back({{"component", component},
+                    {"state", name(constants::kComponent, status.state)},
+                    {"host", status.host},
+                    {"pid", status.pid},
+                    {"incarnation", status.incarnation},
+                    {"tick", status.tick},
+                    {"step_p99_us", number(status.step_time_p99_us)},
+                    {"refused", status.refused_count},
+                    {"last_refusal", status.last_refusal}});
+  }
+  return list;
+}
+
+}  // namespace
+
+json page_state(const Newest& newest) {
+  json state = {{"processes", processes_of(newest)}, {"events", json::array()}};
+  if (newest.scene) state["scene"] = scene_of(*newest.scene);
+  if (newest.world) state["world"] = world_of(newest);
+  if (newest.joints) {
+    json torques = json::array();
+    for (std::size_t i = 0; i < newest.joints->joint_count; ++i) torques.push_back(number(newest.joints->torque_nm[i]));
+    state["torque_nm"] = torques;
+  }
+  if (newest.contacts) {
+    json forces = json::array();
+    for (std::size_t i = 0; i < newest.contacts->module_count; ++i) {
+      const auto& f = newest.contacts->force_n[i];
+      forces.push_back({number(f.x), number(f.y)});
+    }
+    state["force_n"] = forces;
+  }
+  if (newest.start) state["start"] = {newest.start->p.x(), newest.start->p.y(), newest.start->yaw_rad};
+  if (newest.pose) state["pose"] = {number(newest.pose->x_m), number(newest.pose->y_m), number(newest.pose->yaw_rad)};
+  if (newest.map) state["map"] = map_of(newest);
+  if (newest.mission) {
+    const auto& mission = *newest.mission;
+    state["mission"] = {{"outcome", name(constants::kMission, mission.outcome)},
+                        {"state", mission.state},
+                        {"object", mission.object_index},
+                        {"objects", mission.object_count},
+                        {"colour", name(constants::kColour, mission.colour)},
+                        {"recoveries", mission.recoveries},
+                        {"reason", mission.reason}};
+  }
+  if (newest.task) {
+    const auto& task = *newest.task;
+    state["task"] = {{"task", name(constants::kTask, task.task)},
+                     {"goal", name(constants::kGoal, task.goal_state)},
+                     {"phase", task.phase},
+                     {"progress", number(task.progress)},
+                     {"reason", task.reason}};
+  }
+  if (newest.authority) {
+    state["authority"] = {{"level", name(constants::kAuthority, newest.authority->level)},
+                          {"source", newest.authority->source}};
+  }
+  if (newest.stop) state["stopped"] = newest.stop->stopped;
+  if (newest.run) {
+    const auto& run = *newest.run;
+    state["run"] = {{"tick", run.tick}, {"paused", run.paused},
+                    {"seed", run.seed}, {"realtime", run.realtime},
+                    {"pace", run.pace}, {"real_time_factor", number(run.real_time_factor)}};
+  }
+  for (const auto& event : newest.events) {
+    json line = log_of(event, 0);
+    state["events"].push_back({{"time_s", static_cast<double>(event.header.time_ns) * 1e-9},
+                               {"trouble", line["level"] == 3},
+                               {"text", line["message"]}});
+  }
+  return state;
+}
+
+}  // namespace constrictor::dashboard

@@ -1,0 +1,163 @@
+#include "dashboard/protocol.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace constrictor::dashboard {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint8_t kMessageData = 1;      // server
+constexpr std::uint8_t kServiceResponse = 3;  // server
+constexpr std::uint8_t kServiceCall = 2;      // client
+constexpr std::size_t kMostItems = 1000;      // in one message of a client
+
+std::string text_of(const json& message) { return message.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+void append(std::string& frame, std::uint64_t number, int bytes) {
+  for (int i = 0; i < bytes; ++i) frame += static_cast<char>(number >> (8 * i) & 0xffu);
+}
+
+std::optional<std::uint32_t> take_u32(std::string_view& frame) {
+  if (frame.size() < 4) return {};
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    number |= static_cast<std::uint32_t>(static_cast<unsigned char>(frame[i])) << (8 * i);
+  frame.remove_prefix(4);
+  return number;
+}
+
+std::optional<std::uint32_t> id_of(const json& value) {
+  if (!value.is_number_unsigned()) return {};
+  const auto number = value.get<std::uint64_t>();
+  if (number > std::numeric_limits<std::uint32_t>::max()) return {};
+  return static_cast<std::uint32_t>(number);
+}
+
+Parsed refused(const std::string& why) { return {{}, why}; }
+
+Parsed parse_subscriptions(const json& list) {
+  Parsed parsed;
+  for (const auto& item : list) {
+    const auto subscription = item.is_object() && item.contains("id") ? id_of(item["id"]) : std::nullopt;
+    const auto channel = item.is_object() && item.contains("channelId") ? id_of(item["channelId"]) : std::nullopt;
+    if (!subscription || !channel) return refused("subscribe: each subscription needs the numbers id and channelId");
+    parsed.actions.emplace_back(Subscribe{*subscription, *channel});
+  }
+  return parsed;
+}
+
+Parsed parse_unsubscriptions(const json& list) {
+  Parsed parsed;
+  for (const auto& item : list) {
+    const auto subscription = id_of(item);
+    if (!subscription) return refused("unsubscribe: subscriptionIds must be numbers");
+    parsed.actions.emplace_back(Unsubscribe{*subscription});
+  }
+  return parsed;
+}
+
+}  // namespace
+
+std::string server_info(const std::string& name, const std::string& session) {
+  return text_of({{"op", "serverInfo"},
+                  {"name", name},
+                  {"capabilities", {"services"}},
+                  {"supportedEncodings", {"json"}},
+                  {"metadata", json::object()},
+                  {"sessionId", session}});
+}
+
+std::string advertise(const std::vector<Channel>& channels) {
+  json list = json::array();
+  for (const auto& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", channel.encoding},
+                    {"schemaName", channel.schema_name},
+                    {"schema", channel.schema},
+                    {"schemaEncoding", channel.schema_encoding}});
+  }
+  return text_of({{"op", "advertise"}, {"channels", list}});
+}
+
+std::string advertise_services(const std::vector<Service>& services) {
+  json list = json::array();
+  for (const auto& service : services) {
+    const json answer = {{"encoding", "json"},
+                         {"schemaName", service.name + "_answer"},
+                         {"schemaEncoding", "jsonschema"},
+                         {"schema", R"({"type":"object","properties":{"text":{"type":"string"}}})"}};
+    json request = answer;
+    request["schemaName"] = service.name + "_request";
+    request["schema"] = service.request_schema;
+    list.push_back({{"id", service.id},
+                    {"name", service.name},
+                    {"type", service.name},
+                    {"request", request},
+                    {"response", answer},
+                    {"requestSchema", service.request_schema},
+                    {"responseSchema", answer["schema"]}});
+  }
+  return text_of({{"op", "advertiseServices"}, {"services", list}});
+}
+
+std::string status(int level, const std::string& message) {
+  return text_of({{"op", "status"}, {"level", level}, {"message", message}});
+}
+
+std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message) {
+  return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
+}
+
+std::string message_data(std::uint32_t subscription, std::uint64_t time_ns, std::string_view payload) {
+  std::string frame;
+  frame.reserve(13 + payload.size());
+  append(frame, kMessageData, 1);
+  append(frame, subscription, 4);
+  append(frame, time_ns, 8);
+  frame += payload;
+  return frame;
+}
+
+std::string service_response(std::uint32_t service, std::uint32_t call, std::string_view json) {
+  std::string frame;
+  append(frame, kServiceResponse, 1);
+  append(frame, service, 4);
+  append(frame, call, 4);
+  append(frame, 4, 4);
+  frame += "json";
+  frame += json;
+  return frame;
+}
+
+Parsed parse_text(std::string_view text) {
+  const json message = json::parse(text, nullptr, false);
+  if (!message.is_object() || !message.contains("op") || !message["op"].is_string())
+    return refused("found no JSON object with the text `op`");
+  const std::string op = message["op"].get<std::string>();
+  const bool subscribes = op == "subscribe";
+  if (!subscribes && op != "unsubscribe")
+    return refused(fmt::format("found op '{}', accepted subscribe, unsubscribe", op.substr(0, 40)));
+  const char* key = subscribes ? "subscriptions" : "subscriptionIds";
+  if (!message.contains(key) || !message[key].is_array() || message[key].size() > kMostItems)
+    return refused(fmt::format("{}: accepted a list `{}` of at most {} items", op, key, kMostItems));
+  return subscribes ? parse_subscriptions(message[key]) : parse_unsubscriptions(message[key]);
+}
+
+Parsed parse_frame(std::string_view frame) {
+  if (frame.empty() || static_cast<std::uint8_t>(frame.front()) != kServiceCall)
+    return refused("found a frame that is not a service call");
+  frame.remove_prefix(1);
+  const auto service = take_u32(frame), call = take_u32(frame), length = take_u32(frame);
+  if (!service || !call || !length || frame.size() < *length) return refused("found a service call that is too short");
+  if (frame.substr(0, *length) != "json") return refused("service call: accepted the encoding json");
+  frame.remove_prefix(*length);
+  json request = frame.empty() ? json::object() : json::parse(frame, nullptr, false);
+  if (!request.is_object()) return refused("service call: accepted a JSON object");
+  return {{ServiceCall{*service, *call, std::move(request)}}, {}};
+}
+
+}  // namespace constrictor::dashboard

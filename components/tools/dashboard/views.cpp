@@ -1,0 +1,283 @@
+#include "dashboard/views.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "constrictor/constants.hpp"
+#include "constrictor/image.hpp"
+
+namespace constrictor::dashboard {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kFullTorque_nm = 5.0;   // shown in the strongest colour
+constexpr double kArrow_m_per_n = 0.02;  // length of the arrow of a contact force
+constexpr double kFlat_m = 0.004;        // height of what lies on the ground
+
+json stamp(std::uint64_t time_ns) { return {{"sec", time_ns / 1'000'000'000}, {"nsec", time_ns % 1'000'000'000}}; }
+
+json point(double x, double y, double z) { return {{"x", x}, {"y", y}, {"z", z}}; }
+
+json pose_of(double x, double y, double z, double yaw_rad = 0) {
+  return {{"position", point(x, y, z)},
+          {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", std::sin(yaw_rad / 2)}, {"w", std::cos(yaw_rad / 2)}}}};
+}
+
+json pose_of(const msg::Pose3& pose) {
+  const auto& q = pose.orientation;
+  return {{"position", point(pose.position_m.x, pose.position_m.y, pose.position_m.z)},
+          {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
+}
+
+json colour(double r, double g, double b, double a = 1) { return {{"r", r}, {"g", g}, {"b", b}, {"a", a}}; }
+
+json colour_of(std::uint8_t named, double alpha = 1) {
+  switch (named) {
+    case msg::kColourGreen:
+      return colour(0.1, 0.6, 0.2, alpha);
+    case msg::kColourRed:
+      return colour(0.8, 0.15, 0.1, alpha);
+    case msg::kColourBlue:
+      return colour(0.1, 0.3, 0.8, alpha);
+    case msg::kColourYellow:
+      return colour(0.9, 0.75, 0.1, alpha);
+    default:
+      return colour(0.5, 0.5, 0.5, alpha);
+  }
+}
+
+/// From grey (no torque) to blue (negative) or orange (positive).
+json torque_colour(double torque_nm) {
+  const double share = std::clamp(torque_nm / kFullTorque_nm, -1.0, 1.0);
+  const double s = std::abs(share);
+  const std::array<double, 3> full = share < 0 ? std::array{0.0, 0.45, 0.7} : std::array{0.84, 0.37, 0.0};
+  return colour(0.62 + s * (full[0] - 0.62), 0.62 + s * (full[1] - 0.62), 0.62 + s * (full[2] - 0.62));
+}
+
+PlanarPose planar(const msg::Pose3& pose) {
+  const auto& q = pose.orientation;
+  return {{pose.position_m.x, pose.position_m.y},
+          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
+}
+
+Eigen::Vector3d rotated(const msg::Quaternion& q, const msg::Vector3& v) {
+  return Eigen::Quaterniond(q.w, q.x, q.y, q.z) * Eigen::Vector3d(v.x, v.y, v.z);
+}
+
+json entity(const char* id, std::uint64_t time_ns) {
+  return {{"timestamp", stamp(time_ns)},
+          {"frame_id", "world"},
+          {"id", id},
+          {"lifetime", {{"sec", 0}, {"nsec", 0}}},
+          {"frame_locked", false},
+          {"metadata", json::array()},
+          {"arrows", json::array()},
+          {"cubes", json::array()},
+          {"spheres", json::array()},
+          {"cylinders", json::array()},
+          {"lines", json::array()},
+          {"triangles", json::array()},
+          {"texts", json::array()},
+          {"models", json::array()}};
+}
+
+json cylinder(json pose, double radius_m, double height_m, json paint) {
+  return {{"pose", std::move(pose)},
+          {"size", point(2 * radius_m, 2 * radius_m, height_m)},
+          {"bottom_scale", 1.0},
+          {"top_scale", 1.0},
+          {"color", std::move(paint)}};
+}
+
+json cube(json pose, const msg::Vector3& size, json paint) {
+  return {{"pose", std::move(pose)}, {"size", point(size.x, size.y, size.z)}, {"color", std::move(paint)}};
+}
+
+json scenery(const msg::SceneDescription& scene, std::uint64_t time_ns) {
+  json ground = entity("scenery", time_ns);
+  json points = json::array();
+  for (std::size_t i = 0; i < scene.line_point_count; ++i)
+    points.push_back(point(scene.line_x_m[i], scene.line_y_m[i], kFlat_m));
+  ground["lines"].push_back({{"type", 0},
+                             {"pose", pose_of(0, 0, 0)},
+                             {"thickness", scene.line_width_m},
+                             {"scale_invariant", false},
+                             {"points", points},
+                             {"color", colour_of(scene.line_colour)},
+                             {"colors", json::array()},
+                             {"indices", json::array()}});
+  for (std::size_t i = 0; i < scene.zone_count; ++i) {
+    const msg::SceneZone& zone = scene.zones[i];
+    ground["cylinders"].push_back(
+        cylinder(pose_of(zone.x_m, zone.y_m, kFlat_m / 2), zone.radius_m, kFlat_m, colour_of(zone.colour, 0.5)));
+  }
+  for (std::size_t i = 0; i < scene.obstacle_count; ++i) {
+    const msg::SceneObstacle& obstacle = scene.obstacles[i];
+    if (obstacle.shape == msg::kShapeBox)
+      ground["cubes"].push_back(cube(pose_of(obstacle.pose), obstacle.size_m, colour(0.4, 0.4, 0.4)));
+    else
+      ground["cylinders"].push_back(
+          cylinder(pose_of(obstacle.pose), obstacle.size_m.x, obstacle.size_m.z, colour(0.4, 0.4, 0.4)));
+  }
+  return ground;
+}
+
+json objects(const msg::SceneDescription& scene, const msg::WorldState& world, std::uint64_t time_ns) {
+  json list = entity("objects", time_ns);
+  for (std::size_t i = 0; i < std::min(scene.object_count, world.object_count); ++i) {
+    const msg::SceneObject& object = scene.objects[i];
+    const json pose = pose_of(world.object_poses[i]);
+    if (object.shape == msg::kShapeBox) list["cubes"].push_back(cube(pose, object.size_m, colour_of(object.colour)));
+    else list["cylinders"].push_back(cylinder(pose, object.size_m.x, object.size_m.z, colour_of(object.colour)));
+  }
+  return list;
+}
+
+json robot(const Newest& newest, std::uint64_t time_ns) {
+  json list = entity("robot", time_ns);
+  const msg::WorldState& world = *newest.world;
+  const msg::Vector3 size{newest.scene->module_length_m, 2 * newest.scene->module_radius_m,
+                          2 * newest.scene->module_radius_m};
+  for (std::size_t i = 0; i < world.module_count; ++i) {
+    // The colour of a module is that of the joint behind it.
+    const bool known = newest.joints && i < newest.joints->joint_count;
+    list["cubes"].push_back(
+        cube(pose_of(world.module_poses[i]), size, torque_colour(known ? newest.joints->torque_nm[i] : 0.0)));
+  }
+  if (!newest.contacts) return list;
+  for (std::size_t i = 0; i < newest.contacts->contact_count; ++i) {
+    const msg::Contact& contact = newest.contacts->contacts[i];
+    if (contact.module_index >= world.module_count) continue;
+    const msg::Pose3& module = world.module_poses[contact.module_index];
+    const Eigen::Vector3d force_n = rotated(module.orientation, contact.force_n);
+    if (force_n.head<2>().norm() < 0.5) continue;  // the weight on the ground is not worth an arrow
+    const Eigen::Vector3d at = Eigen::Vector3d(module.position_m.x, module.position_m.y, module.position_m.z) +
+                               rotated(module.orientation, contact.position_m);
+    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), force_n);
+    list["arrows"].push_back({{"pose",
+                               {{"position", point(at.x(), at.y(), at.z())},
+                                {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}}},
+                              {"shaft_length", kArrow_m_per_n * force_n.norm()},
+                              {"shaft_diameter", 0.01},
+                              {"head_length", 0.03},
+                              {"head_diameter", 0.03},
+                              {"color", colour(0.8, 0.1, 0.5)}});
+  }
+  return list;
+}
+
+json own_map(const Newest& newest, std::uint64_t time_ns) {
+  json list = entity("robot's own map", time_ns);
+  for (std::size_t i = 0; i < newest.map->object_count; ++i) {
+    const msg::MapObject& object = newest.map->objects[i];
+    const Eigen::Vector2d p =
+        newest.start->p + Eigen::Rotation2Dd(newest.start->yaw_rad) * Eigen::Vector2d(object.x_m, object.y_m);
+    const double radius_m = std::isfinite(object.radius_m) ? object.radius_m : 0.05;
+    const bool zone = object.kind == msg::kBlobZone;
+    list["cylinders"].push_back(cylinder(pose_of(p.x(), p.y(), zone ? kFlat_m : 0.1), radius_m, zone ? kFlat_m : 0.2,
+                                         colour_of(object.colour, 0.3)));
+  }
+  return list;
+}
+
+template <class T>
+std::string name(const T& group, std::uint8_t value) {
+  return std::string(name_of(group, value));
+}
+
+}  // namespace
+
+void align(Newest& newest) {
+  if (newest.start || !newest.world || !newest.pose || newest.world->module_count == 0) return;
+  const std::int64_t apart = newest.world->header.tick - newest.pose->header.tick;
+  if (apart < 0 || apart > 5) return;
+  const PlanarPose head = planar(newest.world->module_poses[0]);
+  const double yaw_rad = head.yaw_rad - newest.pose->yaw_rad;
+  newest.start =
+      PlanarPose{head.p - Eigen::Rotation2Dd(yaw_rad) * Eigen::Vector2d(newest.pose->x_m, newest.pose->y_m), yaw_rad};
+}
+
+json scene_update(const Newest& newest, std::uint64_t time_ns) {
+  json entities = json::array();
+  if (newest.scene) entities.push_back(scenery(*newest.scene, time_ns));
+  if (newest.scene && newest.world) {
+    entities.push_back(objects(*newest.scene, *newest.world, time_ns));
+    entities.push_back(robot(newest, time_ns));
+  }
+  if (newest.map && newest.start) entities.push_back(own_map(newest, time_ns));
+  return {{"deletions", json::array()}, {"entities", entities}};
+}
+
+json frame_transforms(const Newest& newest, std::uint64_t time_ns) {
+  json list = json::array();
+  const auto add = [&](const char* child, const json& pose) {
+    list.push_back({{"timestamp", stamp(time_ns)},
+                    {"parent_frame_id", "world"},
+                    {"child_frame_id", child},
+                    {"translation", pose["position"]},
+                    {"rotation", pose["orientation"]}});
+  };
+  if (newest.world && newest.world->module_count > 0) add("head", pose_of(newest.world->module_poses[0]));
+  if (newest.start) {
+    add("start", pose_of(newest.start->p.x(), newest.start->p.y(), 0, newest.start->yaw_rad));
+    if (newest.pose) {
+      const Eigen::Vector2d p = newest.start->p + Eigen::Rotation2Dd(newest.start->yaw_rad) *
+                                                      Eigen::Vector2d(newest.pose->x_m, newest.pose->y_m);
+      add("estimated head", pose_of(p.x(), p.y(), 0, newest.start->yaw_rad + newest.pose->yaw_rad));
+    }
+  }
+  return {{"transforms", list}};
+}
+
+json log_of(const msg::TaskEvent& event, std::uint64_t time_ns) {
+  const bool trouble = event.goal_state == msg::kGoalAborted || event.goal_state == msg::kGoalRefused;
+  std::string text = name(constants::kTask, event.task) + ": " +
+                     (event.event == msg::kEventNone ? "goal " + name(constants::kGoal, event.goal_state)
+                                                     : name(constants::kEvent, event.event));
+  if (event.colour != msg::kColourUnknown) text += " (" + name(constants::kColour, event.colour) + ")";
+  if (event.detail[0] != '\0') text += ": " + std::string(event.detail);
+  return {{"timestamp", stamp(time_ns)},
+          {"level", trouble ? 3 : 2},
+          {"message", text},
+          {"name", "navigation"},
+          {"file", ""},
+          {"line", 0}};
+}
+
+std::optional<std::string> ros_image(const msg::CameraImage& image, const std::string& frame, std::uint64_t time_ns) {
+  if (!image_violation(image).empty()) return {};
+  std::string cdr{"\0\1\0\0", 4};  // little-endian CDR
+  const auto u32 = [&](std::uint32_t value) {
+    while ((cdr.size() - 4) % 4 != 0) cdr += '\0';
+    for (int i = 0; i < 4; ++i) cdr += static_cast<char>(value >> (8 * i) & 0xffu);
+  };
+  const auto text = [&](const std::string& words) {
+    u32(static_cast<std::uint32_t>(words.size() + 1));
+    cdr += words + '\0';
+  };
+  u32(static_cast<std::uint32_t>(time_ns / 1'000'000'000));
+  u32(static_cast<std::uint32_t>(time_ns % 1'000'000'000));
+  text(frame);
+  u32(image.height);
+  u32(image.width);
+  text("rgb8");
+  cdr += '\0';  // is_bigendian
+  u32(3u * image.width);
+  u32(image.data._length);
+  cdr.append(reinterpret_cast<const char*>(image.data._buffer), image.data._length);
+  return cdr;
+}
+
+const char* ros_image_schema() {
+  return "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
+         "uint8[] data\n"
+         "================================================================================\n"
+         "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+         "================================================================================\n"
+         "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+}
+
+}  // namespace constrictor::dashboard
