@@ -48,6 +48,16 @@ void TopicTap::read(const Endpoint& writer) {
   check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");
 }
 
+void TopicTap::expect(const std::string& topic, const std::string& type, bool keyed, bool transient_local) {
+  Endpoint writer;
+  writer.topic = topic;
+  writer.type = type;
+  writer.keyed = keyed;
+  writer.qos.reliable = true;
+  writer.qos.transient_local = transient_local;
+  read(writer);
+}
+
 void TopicTap::discover() {
   if (!discovery_.writers_changed()) return;
   for (const auto& endpoint : discovery_.endpoints()) {

@@ -27,6 +27,9 @@ class TopicTap {
   /// `everything`: keeps all samples until they are taken, for recorders; else only the last 1,024 of each topic, for
   /// viewers.
   TopicTap(dds_entity_t participant, Wanted wanted, bool everything = true);
+  /// Begins to read a topic that has no writer yet, so that it misses nothing of a writer that soon ends. The writers
+  /// must be reliable. `transient_local`: they keep samples for late readers, too. Throws Error.
+  void expect(const std::string& topic, const std::string& type, bool keyed, bool transient_local);
   /// Begins to read the topics that have got a writer since the last call. Fast if there is no new writer. A topic that
   /// this process may not read (in a secured run) is left out and noted in refused().
   void discover();

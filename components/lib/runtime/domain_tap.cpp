@@ -1,5 +1,7 @@
 #include "runtime/domain_tap.hpp"
 
+#include "constrictor/descriptors.hpp"
+#include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
 
 namespace constrictor {
@@ -11,9 +13,17 @@ constexpr std::size_t kMostWaiting = std::size_t{16} << 20;  // [byte] of sample
 }  // namespace
 
 DomainTap::DomainTap(std::uint32_t domain, const std::string& identity, dds::TopicTap::Wanted wanted)
-    : participant_(dds::create_participant(domain, dds::Reach::kLoopback, identity)),
-      tap_(participant_.get(), std::move(wanted)),
-      thread_([this] { loop(); }) {}
+    : participant_(dds::create_participant(domain, dds::Reach::kLoopback, identity)), tap_(participant_.get(), wanted) {
+  // Clients write these, and some of them end as soon as they have been answered.
+  const auto expect = [&](const char* topic, const dds_topic_descriptor_t& type) {
+    const bool kept = topic != std::string_view(barrier_topics::kRequest.name);  // clients write requests volatile
+    if (wanted(topic)) tap_.expect(topic, type.m_typename, type.m_nkeys > 0, kept);
+  };
+#define CONSTRICTOR_UNCOUNTED_TOPIC(constant, Type, name, ...) expect(name, dds::descriptor<msg::Type>());
+#include "constrictor/topic_table.def"
+#undef CONSTRICTOR_UNCOUNTED_TOPIC
+  thread_ = std::thread([this] { loop(); });
+}
 
 DomainTap::~DomainTap() {
   stop_ = true;

@@ -156,6 +156,7 @@ void ReplayedMember::advance() {
     }
     ++result_.steps;
     compare();
+    find_missing(done.index);
     if (!over() && replayed_done_ && replayed_done_->output_hash != done.output_hash) {
       result_.difference = {done.index, "(output hash)", "", "another hash of all that was written",
                             "equal messages, but pixels that are not in the recording differ"};
@@ -181,6 +182,20 @@ void ReplayedMember::compare() {
       recorded.pop_front();
       replayed.pop_front();
     }
+  }
+}
+
+void ReplayedMember::find_missing(std::int64_t tick) {
+  for (std::uint8_t topic = 0; topic < topics::kCount && !over(); ++topic) {
+    // compare() has left at most one of the two lists with messages. The recording may be ahead of the replay.
+    const bool only_recorded = !recorded_[topic].empty();
+    const auto& list = only_recorded ? recorded_[topic] : replayed_[topic];
+    if (list.empty() || (!only_recorded && !pixels_ && is_image(topics::kInfos[topic]))) continue;
+    const Sample sample = topic_ops(topic).parse(std::as_bytes(std::span(list.front())));
+    if (!sample.header || sample.header->tick > tick) continue;
+    const std::string message = fmt::format("message {}", sample.header->sequence_number);
+    result_.difference = {sample.header->tick, std::string(topics::kInfos[topic].name), "",
+                          only_recorded ? message : "no message", only_recorded ? "no message" : message};
   }
 }
 

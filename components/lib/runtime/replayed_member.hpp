@@ -52,6 +52,8 @@ class ReplayedMember : private MemberSink {
   void add_requests(std::int64_t tick);
   void add_stops(std::int64_t tick);
   void compare();
+  /// Notes a message up to this tick that only the run or only the replay has.
+  void find_missing(std::int64_t tick);
   void compare(std::uint8_t topic, const std::string& recorded, const std::string& replayed);
 
   bool pixels_;
