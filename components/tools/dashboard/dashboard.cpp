@@ -33,7 +33,7 @@ bool shown(const std::string& topic) {
 }
 
 Channel json_channel(const std::string& topic, const std::string& schema_name) {
-  return {0, topic, "json", schema_name, R"({"type":"object"})", "jsonschema"};
+  return {0, topic, "json", schema_name, R"({"type":"object","properties":{}})", "jsonschema"};
 }
 
 Channel image_channel(const std::string& topic) {
