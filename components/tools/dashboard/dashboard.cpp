@@ -149,8 +149,9 @@ void Dashboard::take_typed() {
   keep(readers_->authority, newest_.authority);
   keep(readers_->stop, newest_.stop);
   readers_->statuses.take([&](const msg::ComponentStatus& status) {
-    if (!validate(status) && newest_.processes.size() < msg::kMaxMembers)
-      newest_.processes[text_of(status.component)] = status;
+    const std::string component = text_of(status.component);
+    const bool room = newest_.processes.size() < msg::kMaxMembers || newest_.processes.contains(component);
+    if (!validate(status) && room) newest_.processes[component] = status;
   });
   readers_->events.take([&](const msg::TaskEvent& event) {
     if (validate(event)) return;
