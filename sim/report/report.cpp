@@ -11,6 +11,7 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/image.hpp"
 #include "constrictor/json.hpp"
+#include "robot/planar_message.hpp"
 
 namespace constrictor {
 
@@ -19,12 +20,6 @@ using nlohmann::ordered_json;
 namespace {
 
 double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
-
-PlanarPose planar(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {{pose.position_m.x, pose.position_m.y},
-          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
-}
 
 std::filesystem::path in_folder(const std::filesystem::path& folder, const char* name) {
   return folder.empty() ? folder : folder / name;

@@ -14,7 +14,7 @@ TopicTap::TopicTap(dds_entity_t participant, Wanted wanted, bool everything)
       wanted_(std::move(wanted)),
       everything_(everything),
       discovery_(participant),
-      wait_set_(dds_create_waitset(participant), "dds_create_waitset") {}
+      wait_set_(participant) {}
 
 Ros2Schema TopicTap::schema_of(const Endpoint& writer) const {
   auto tree = TypeTree::find(participant_, writer, kTypeBound);
@@ -30,8 +30,7 @@ void TopicTap::read(const Endpoint& writer) {
   if (known == readings_.end()) {
     Reading reading{{writer.topic, writer.type, writer.keyed, schema_of(writer)}, offered, nullptr, 0};
     reading.reader = std::make_unique<RawReader>(participant_, writer, offered);
-    check(dds_set_status_mask(reading.reader->get(), DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
-    check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");
+    wait_set_.attach(reading.reader->get());
     readings_.emplace(key, std::move(reading));
     return;
   }
@@ -44,8 +43,7 @@ void TopicTap::read(const Endpoint& writer) {
   reading.reader.reset();
   reading.qos = least;
   reading.reader = std::make_unique<RawReader>(participant_, writer, least);
-  check(dds_set_status_mask(reading.reader->get(), DDS_DATA_AVAILABLE_STATUS), "dds_set_status_mask");
-  check(dds_waitset_attach(wait_set_.get(), reading.reader->get(), 0), "dds_waitset_attach");
+  wait_set_.attach(reading.reader->get());
 }
 
 void TopicTap::expect(const std::string& topic, const std::string& type, bool keyed, bool transient_local) {
@@ -70,9 +68,7 @@ void TopicTap::discover() {
   }
 }
 
-void TopicTap::wait(std::chrono::milliseconds bound) const {
-  check(dds_waitset_wait(wait_set_.get(), nullptr, 0, DDS_MSECS(bound.count())), "dds_waitset_wait");
-}
+void TopicTap::wait(std::chrono::milliseconds bound) const { wait_set_.wait(bound); }
 
 void TopicTap::take(const std::function<void(const Topic&, const RawSample&)>& use) const {
   for (const auto& [key, reading] : readings_) {

@@ -10,6 +10,7 @@
 
 #include "cyclone/raw_reader.hpp"
 #include "cyclone/type_tree.hpp"
+#include "cyclone/wait_set.hpp"
 
 namespace constrictor::dds {
 
@@ -56,7 +57,7 @@ class TopicTap {
   Wanted wanted_;
   bool everything_;
   Discovery discovery_;
-  Entity wait_set_;
+  WaitSet wait_set_;
   std::map<std::string, Reading> readings_;  ///< by topic, type and key
   std::map<std::string, std::string> refused_;
 };

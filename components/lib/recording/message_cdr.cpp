@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "constrictor/topics.hpp"
@@ -19,6 +20,19 @@ constexpr std::size_t kMostPadding = 3;  // [byte] after a message, so that its 
 
 // Both visitors see a message's fields in order. They look at the types of the fields only, and move the values from
 // one form of bytes to the other one.
+
+/// A number, a structure, or an array of them.
+template <class Visitor, class T>
+void move_value(Visitor& visitor, const T& value) {
+  if constexpr (Described<T>) {
+    Description<T>::visit(value, visitor);
+  } else if constexpr (std::is_array_v<T> && Described<std::remove_extent_t<T>>) {
+    for (const auto& item : value) Description<std::remove_extent_t<T>>::visit(item, visitor);
+  } else {
+    visitor.align(sizeof(std::remove_extent_t<T>));
+    visitor.move(sizeof(T));
+  }
+}
 
 struct ToCdr {
   Bytes in;
@@ -48,21 +62,7 @@ struct ToCdr {
   }
   template <class T>
   void operator()(const FieldInfo&, const T& value) {
-    if constexpr (Described<T>) {
-      Description<T>::visit(value, *this);
-    } else {
-      align(sizeof(T));
-      move(sizeof(T));
-    }
-  }
-  template <class T, std::size_t N>
-  void operator()(const FieldInfo& info, const T (&values)[N]) {
-    if constexpr (Described<T>) {
-      for (const T& value : values) (*this)(info, value);
-    } else {
-      align(sizeof(T));
-      move(sizeof(values));
-    }
+    move_value(*this, value);
   }
   template <std::size_t N>
   void operator()(const FieldInfo&, const char (&)[N]) {
@@ -104,21 +104,7 @@ struct FromCdr {
   }
   template <class T>
   void operator()(const FieldInfo&, const T& value) {
-    if constexpr (Described<T>) {
-      Description<T>::visit(value, *this);
-    } else {
-      align(sizeof(T));
-      move(sizeof(T));
-    }
-  }
-  template <class T, std::size_t N>
-  void operator()(const FieldInfo& info, const T (&values)[N]) {
-    if constexpr (Described<T>) {
-      for (const T& value : values) (*this)(info, value);
-    } else {
-      align(sizeof(T));
-      move(sizeof(values));
-    }
+    move_value(*this, value);
   }
   template <std::size_t N>
   void operator()(const FieldInfo&, const char (&)[N]) {

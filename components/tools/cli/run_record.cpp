@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/checkpoint_file.hpp"
 #include "runtime/run_store.hpp"
@@ -56,13 +57,7 @@ void write_run_record(const fs::path& folder, const RunRecord& record) {
                      {"config_files", options.config_files},
                      {"secure", options.secure.string()},
                      {"faults", options.faults_file.string()}};
-  const fs::path beside = folder / "run.json.part";
-  {
-    std::ofstream file(beside);
-    file << json.dump(1) << "\n";
-    if (!file.flush()) throw std::runtime_error("cannot write " + beside.string());
-  }
-  fs::rename(beside, folder / kFile);
+  write_whole(folder / kFile, json.dump(1) + "\n");
 }
 
 RunRecord read_run_record(const fs::path& folder) {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <stdexcept>
 #include <system_error>
 
+#include "cli/whole_file.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -30,12 +30,7 @@ std::uint32_t IncarnationFile::next() {
   std::uint32_t last = 0;
   std::ifstream(file_) >> last;
   const std::uint32_t next = last < kLargestIncarnation ? last + 1 : 1;
-  const std::filesystem::path fresh = file_.string() + ".new";
-  std::ofstream file(fresh);
-  file << next << '\n';
-  if (!file.flush()) throw std::runtime_error(fmt::format("cannot write {}", fresh.string()));
-  file.close();
-  std::filesystem::rename(fresh, file_);  // at once: after a loss of power there is the old file or the new one
+  write_whole(file_, fmt::format("{}\n", next));
   return next;
 }
 

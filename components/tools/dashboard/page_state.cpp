@@ -3,16 +3,12 @@
 
 #include "constrictor/constants.hpp"
 #include "dashboard/views.hpp"
+#include "robot/planar_message.hpp"
 
 namespace constrictor::dashboard {
 namespace {
 
 using nlohmann::json;
-
-template <class T>
-std::string name(const T& group, std::uint8_t value) {
-  return std::string(name_of(group, value));
-}
 
 /// JSON has no NaN.
 json number(double value) { return std::isfinite(value) ? json(value) : json(); }
@@ -27,7 +23,7 @@ json scene_of(const msg::SceneDescription& scene) {
   json zones = json::array();
   for (std::size_t i = 0; i < scene.zone_count; ++i) {
     const auto& zone = scene.zones[i];
-    zones.push_back({{"colour", name(constants::kColour, zone.colour)},
+    zones.push_back({{"colour", name_of(constants::kColour, zone.colour)},
                      {"x_m", zone.x_m},
                      {"y_m", zone.y_m},
                      {"radius_m", zone.radius_m}});
@@ -45,16 +41,15 @@ json scene_of(const msg::SceneDescription& scene) {
           {"module_length_m", scene.module_length_m},
           {"module_radius_m", scene.module_radius_m},
           {"line", line_of(scene.line_point_count, scene.line_x_m, scene.line_y_m)},
-          {"line_colour", name(constants::kColour, scene.line_colour)},
+          {"line_colour", name_of(constants::kColour, scene.line_colour)},
           {"line_width_m", scene.line_width_m},
           {"zones", zones},
           {"obstacles", obstacles}};
 }
 
 json pose_of(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {pose.position_m.x, pose.position_m.y,
-          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)), pose.position_m.z};
+  const PlanarPose flat = planar(pose);
+  return {flat.p.x(), flat.p.y(), flat.yaw_rad, pose.position_m.z};
 }
 
 json world_of(const Newest& newest) {
@@ -64,7 +59,7 @@ json world_of(const Newest& newest) {
   json objects = json::array();
   for (std::size_t i = 0; newest.scene && i < std::min(world.object_count, newest.scene->object_count); ++i) {
     const auto& object = newest.scene->objects[i];
-    objects.push_back({{"colour", name(constants::kColour, object.colour)},
+    objects.push_back({{"colour", name_of(constants::kColour, object.colour)},
                        {"pose", pose_of(world.object_poses[i])},
                        {"size_m", {object.size_m.x, object.size_m.y}},
                        {"box", object.shape == msg::kShapeBox}});
@@ -80,7 +75,7 @@ json map_of(const Newest& newest) {
   for (std::size_t i = 0; i < newest.map->object_count; ++i) {
     const auto& object = newest.map->objects[i];
     objects.push_back({{"handle", object.handle},
-                       {"colour", name(constants::kColour, object.colour)},
+                       {"colour", name_of(constants::kColour, object.colour)},
                        {"zone", object.kind == msg::kBlobZone},
                        {"x_m", number(object.x_m)},
                        {"y_m", number(object.y_m)},
@@ -96,7 +91,7 @@ json processes_of(const Newest& newest) {
   json list = json::array();
   for (const auto& [component, status] : newest.processes) {
     list.push_back({{"component", component},
-                    {"state", name(constants::kComponent, status.state)},
+                    {"state", name_of(constants::kComponent, status.state)},
                     {"host", status.host},
                     {"pid", status.pid},
                     {"incarnation", status.incarnation},
@@ -132,24 +127,24 @@ json page_state(const Newest& newest) {
   if (newest.map) state["map"] = map_of(newest);
   if (newest.mission) {
     const auto& mission = *newest.mission;
-    state["mission"] = {{"outcome", name(constants::kMission, mission.outcome)},
+    state["mission"] = {{"outcome", name_of(constants::kMission, mission.outcome)},
                         {"state", mission.state},
                         {"object", mission.object_index},
                         {"objects", mission.object_count},
-                        {"colour", name(constants::kColour, mission.colour)},
+                        {"colour", name_of(constants::kColour, mission.colour)},
                         {"recoveries", mission.recoveries},
                         {"reason", mission.reason}};
   }
   if (newest.task) {
     const auto& task = *newest.task;
-    state["task"] = {{"task", name(constants::kTask, task.task)},
-                     {"goal", name(constants::kGoal, task.goal_state)},
+    state["task"] = {{"task", name_of(constants::kTask, task.task)},
+                     {"goal", name_of(constants::kGoal, task.goal_state)},
                      {"phase", task.phase},
                      {"progress", number(task.progress)},
                      {"reason", task.reason}};
   }
   if (newest.authority) {
-    state["authority"] = {{"level", name(constants::kAuthority, newest.authority->level)},
+    state["authority"] = {{"level", name_of(constants::kAuthority, newest.authority->level)},
                           {"source", newest.authority->source}};
   }
   if (newest.stop) state["stopped"] = newest.stop->stopped;

@@ -7,6 +7,7 @@
 
 #include "constrictor/constants.hpp"
 #include "constrictor/image.hpp"
+#include "robot/planar_message.hpp"
 
 namespace constrictor::dashboard {
 namespace {
@@ -55,12 +56,6 @@ json torque_colour(double torque_nm) {
   const double s = std::abs(share);
   const std::array<double, 3> full = share < 0 ? std::array{0.0, 0.45, 0.7} : std::array{0.84, 0.37, 0.0};
   return colour(0.62 + s * (full[0] - 0.62), 0.62 + s * (full[1] - 0.62), 0.62 + s * (full[2] - 0.62));
-}
-
-PlanarPose planar(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {{pose.position_m.x, pose.position_m.y},
-          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
 }
 
 Eigen::Vector3d rotated(const msg::Quaternion& q, const msg::Vector3& v) {
@@ -173,19 +168,13 @@ json own_map(const Newest& newest, std::uint64_t time_ns) {
   json list = entity("robot's own map", time_ns);
   for (std::size_t i = 0; i < newest.map->object_count; ++i) {
     const msg::MapObject& object = newest.map->objects[i];
-    const Eigen::Vector2d p =
-        newest.start->p + Eigen::Rotation2Dd(newest.start->yaw_rad) * Eigen::Vector2d(object.x_m, object.y_m);
+    const Eigen::Vector2d p = newest.start->to_parent({object.x_m, object.y_m});
     const double radius_m = std::isfinite(object.radius_m) ? object.radius_m : 0.05;
     const bool zone = object.kind == msg::kBlobZone;
     list["cylinders"].push_back(cylinder(pose_of(p.x(), p.y(), zone ? kFlat_m : 0.1), radius_m, zone ? kFlat_m : 0.2,
                                          colour_of(object.colour, 0.3)));
   }
   return list;
-}
-
-template <class T>
-std::string name(const T& group, std::uint8_t value) {
-  return std::string(name_of(group, value));
 }
 
 }  // namespace
@@ -196,8 +185,7 @@ void align(Newest& newest) {
   if (apart < 0 || apart > 5) return;
   const PlanarPose head = planar(newest.world->module_poses[0]);
   const double yaw_rad = head.yaw_rad - newest.pose->yaw_rad;
-  newest.start =
-      PlanarPose{head.p - Eigen::Rotation2Dd(yaw_rad) * Eigen::Vector2d(newest.pose->x_m, newest.pose->y_m), yaw_rad};
+  newest.start = PlanarPose{head.p - turned({newest.pose->x_m, newest.pose->y_m}, yaw_rad), yaw_rad};
 }
 
 json scene_update(const Newest& newest, std::uint64_t time_ns) {
@@ -224,8 +212,7 @@ json frame_transforms(const Newest& newest, std::uint64_t time_ns) {
   if (newest.start) {
     add("start", pose_of(newest.start->p.x(), newest.start->p.y(), 0, newest.start->yaw_rad));
     if (newest.pose) {
-      const Eigen::Vector2d p = newest.start->p + Eigen::Rotation2Dd(newest.start->yaw_rad) *
-                                                      Eigen::Vector2d(newest.pose->x_m, newest.pose->y_m);
+      const Eigen::Vector2d p = newest.start->to_parent({newest.pose->x_m, newest.pose->y_m});
       add("estimated head", pose_of(p.x(), p.y(), 0, newest.start->yaw_rad + newest.pose->yaw_rad));
     }
   }
@@ -234,10 +221,11 @@ json frame_transforms(const Newest& newest, std::uint64_t time_ns) {
 
 json log_of(const msg::TaskEvent& event, std::uint64_t time_ns) {
   const bool trouble = event.goal_state == msg::kGoalAborted || event.goal_state == msg::kGoalRefused;
-  std::string text = name(constants::kTask, event.task) + ": " +
-                     (event.event == msg::kEventNone ? "goal " + name(constants::kGoal, event.goal_state)
-                                                     : name(constants::kEvent, event.event));
-  if (event.colour != msg::kColourUnknown) text += " (" + name(constants::kColour, event.colour) + ")";
+  std::string text =
+      std::string(name_of(constants::kTask, event.task)) + ": " +
+      (event.event == msg::kEventNone ? "goal " + std::string(name_of(constants::kGoal, event.goal_state))
+                                      : name_of(constants::kEvent, event.event));
+  if (event.colour != msg::kColourUnknown) text += " (" + std::string(name_of(constants::kColour, event.colour)) + ")";
   if (event.detail[0] != '\0') text += ": " + std::string(event.detail);
   return {{"timestamp", stamp(time_ns)},
           {"level", trouble ? 3 : 2},

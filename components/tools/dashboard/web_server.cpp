@@ -96,12 +96,6 @@ void WebServer::poll() {
 
 std::uint16_t WebServer::port() const { return impl_->acceptor.local_endpoint().port(); }
 bool WebServer::on_this_host_only() const { return impl_->acceptor.local_endpoint().address().is_loopback(); }
-std::size_t WebServer::clients() const { return impl_->sessions.size(); }
 std::uint64_t WebServer::dropped() const { return impl_->dropped; }
-std::size_t WebServer::queued() const {
-  std::size_t sum = 0;
-  for (const auto& session : impl_->sessions) sum += session->queued();
-  return sum;
-}
 
 }  // namespace constrictor::dashboard

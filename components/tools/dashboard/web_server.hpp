@@ -51,11 +51,8 @@ class WebServer {
 
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] bool on_this_host_only() const;
-  [[nodiscard]] std::size_t clients() const;
   /// Messages that slow clients have lost.
   [[nodiscard]] std::uint64_t dropped() const;
-  /// [byte] waiting for all clients.
-  [[nodiscard]] std::size_t queued() const;
 
  private:
   std::shared_ptr<Impl> impl_;

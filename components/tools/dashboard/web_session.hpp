@@ -55,7 +55,6 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Sends the message to each subscription of the channel. The oldest ones are dropped if the client is too slow.
   void send_data(std::uint32_t channel, std::uint64_t time_ns, std::string_view payload);
   [[nodiscard]] bool wants(std::uint32_t channel) const;
-  [[nodiscard]] std::size_t queued() const { return queued_bytes_; }
   void close();
 
  private:

@@ -19,6 +19,7 @@
 #include "cli/run_record.hpp"
 #include "cli/signal_queue.hpp"
 #include "cli/usage.hpp"
+#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kOutcome = "outcome.json";  // written last: its presence shows that the run is over
+constexpr const char* kOutcome = "outcome.json";  // its presence shows that the run is over
 constexpr auto kEndGrace = 10s;                   // for a run that is interrupted
 
 fs::path folder_of(const Variant& variant, std::uint64_t seed) {
@@ -139,14 +140,15 @@ void Evaluation::start(const PlannedRun& run, std::vector<Job>& jobs) {
   jobs.push_back({run, std::make_unique<ChildProcess>(words, run_environment(), folder / "run.log"), Clock::now()});
 }
 
-void Evaluation::finish(Job& job, int status) {
+MissionResult Evaluation::finish(const Job& job, int status) {
   const fs::path folder = request_.folder / job.run.folder;
-  const MissionResult result = read_result(folder, status);
-  const bool bulky = request_.keep == "all" || (request_.keep == "failed" && !result.success);
-  if (!bulky) remove_bulk(folder);
   const nlohmann::json outcome = {{"exit_status", status},
                                   {"wall_time_s", std::chrono::duration<double>(Clock::now() - job.start).count()}};
   write_whole(folder / kOutcome, outcome.dump(1) + "\n");
+  MissionResult result = *result_of(job.run);
+  const bool bulky = request_.keep == "all" || (request_.keep == "failed" && !result.success);
+  if (!bulky) remove_bulk(folder);
+  return result;
 }
 
 std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const {
@@ -171,8 +173,6 @@ std::vector<MissionResult> Evaluation::results() const {
   }
   return results;
 }
-
-std::size_t Evaluation::missing() const { return runs_.size() - results().size(); }
 
 int Evaluation::carry_out(const Print& show, const Print& progress) {
   std::vector<PlannedRun> due;
@@ -208,8 +208,7 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
       if (!exit) continue;
       job.over = true;
       const int status = exit->code().value_or(128 + WTERMSIG(exit->wait_status));
-      finish(job, status);
-      const MissionResult result = *result_of(job.run);
+      const MissionResult result = finish(job, status);
       ++done;
       succeeded += result.success ? 1 : 0;
       const std::string& variant = variants_[job.run.variant].name;

@@ -56,14 +56,13 @@ class Evaluation {
   int carry_out(const Print& show, const Print& progress);
   /// The results that the folder has of runs(), in their order.
   [[nodiscard]] std::vector<MissionResult> results() const;
-  /// Runs of other shards, or not yet done.
-  [[nodiscard]] std::size_t missing() const;
 
  private:
   struct Job;
   void claim_folder();
   void start(const PlannedRun& run, std::vector<Job>& jobs);
-  void finish(Job& job, int status);
+  /// Notes the end of a run and removes what is not to be kept of it.
+  MissionResult finish(const Job& job, int status);
   [[nodiscard]] std::vector<std::string> arguments(const PlannedRun& run) const;
   [[nodiscard]] std::optional<MissionResult> result_of(const PlannedRun& run) const;
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <sstream>
 
+#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
 #include "constrictor/sha256.hpp"
 #include "runtime/version.hpp"
@@ -45,16 +46,6 @@ std::map<std::string, std::string> identities_of(const RunOptions& options) {
   for (const auto& component : plan.roster)
     identities["configuration of " + component] = hash_of(config_file_of(component, plan));
   return identities;
-}
-
-void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path beside = file.string() + ".part";
-  {
-    std::ofstream stream(beside, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write {}", beside.string()));
-  }
-  fs::rename(beside, file);
 }
 
 void write_record(const fs::path& folder, const EvaluationRecord& record) {

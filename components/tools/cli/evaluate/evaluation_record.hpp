@@ -24,9 +24,6 @@ struct EvaluationRecord {
 /// What every result of an evaluation depends on, beside seed and variant.
 [[nodiscard]] std::map<std::string, std::string> identities_of(const RunOptions& options);
 
-/// Writes the file as a whole: after a loss of power there is the old one or the new one. Throws std::runtime_error.
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
 void write_record(const std::filesystem::path& folder, const EvaluationRecord& record);
 /// Empty if the folder holds no evaluation. Throws ConfigurationError if its file is damaged.
 [[nodiscard]] std::optional<EvaluationRecord> read_record(const std::filesystem::path& folder);
