@@ -1,38 +1,22 @@
 // Decodes CDR by a described type. Source: OMG DDS-XTypes 1.3, section 7.4 (XCDR1 and XCDR2).
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "constrictor/text.hpp"
+#include "cyclone/primitives.hpp"
+#include "cyclone/sample_visitor.hpp"
 #include "cyclone/type_node.hpp"
-#include "cyclone/type_tree.hpp"
 
 namespace constrictor::dds {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kind = TypeNode::Kind;
-
-// DDS_XTypes_TK_...
-enum Primitive : std::uint8_t {
-  kBoolean = 1,
-  kByte = 2,
-  kInt16 = 3,
-  kInt32 = 4,
-  kInt64 = 5,
-  kUint16 = 6,
-  kUint32 = 7,
-  kUint64 = 8,
-  kFloat32 = 9,
-  kFloat64 = 10,
-  kChar8 = 16
-};
+using namespace primitives;
 
 class Decoder {
  public:
-  explicit Decoder(std::span<const std::uint8_t> bytes) {
+  Decoder(std::span<const std::uint8_t> bytes, SampleVisitor& visitor) : visitor_(visitor) {
     if (bytes.size() < 4) damaged("no encapsulation header");
     const unsigned id = static_cast<unsigned>(bytes[0] << 8 | bytes[1]);
     if (id > 0x0b) damaged("unknown encapsulation");
@@ -42,33 +26,30 @@ class Decoder {
     bytes_ = bytes.subspan(4);
   }
 
-  Json value(const TypeNode& type) {
+  void value(const TypeNode& type) {
     switch (type.kind) {
       case Kind::kPrimitive:
-        return primitive(type.primitive);
-      case Kind::kString:
-        return string();
-      case Kind::kEnum: {
-        const std::int64_t number = primitive(type.primitive).get<std::int64_t>();
-        const auto literal = type.literals.find(number);
-        return literal == type.literals.end() ? Json(number) : Json(literal->second);
-      }
       case Kind::kBitmask:
         return primitive(type.primitive);
+      case Kind::kString:
+        return visitor_.text(string());
+      case Kind::kEnum:
+        static_cast<void>(enumerator(type));
+        return;
       case Kind::kSequence: {
         if (xcdr2_ && !type.element->is_primitive()) number<std::uint32_t>();
-        return elements(*type.element, number<std::uint32_t>());
+        const std::uint32_t count = number<std::uint32_t>();
+        if (count > bytes_.size()) damaged("a sequence longer than its sample");
+        return elements(*type.element, std::span(&count, 1));
       }
-      case Kind::kArray: {
+      case Kind::kArray:
         if (xcdr2_ && !type.element->is_primitive()) number<std::uint32_t>();
-        return array(type, 0);
-      }
+        return elements(*type.element, type.bounds);
       case Kind::kStruct:
         return structure(type);
       case Kind::kUnion:
         return choice(type);
     }
-    return nullptr;
   }
 
  private:
@@ -93,16 +74,40 @@ class Decoder {
     std::memcpy(&value, raw.data(), sizeof(T));
     return value;
   }
-  template <class T>
-  Json real() {
-    const T value = number<T>();
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
+  void primitive(std::uint8_t kind) {
+    switch (kind) {
+      case kBoolean:
+        return visitor_.boolean(number<std::uint8_t>() != 0);
+      case kByte:
+        return visitor_.natural(number<std::uint8_t>());
+      case kInt16:
+        return visitor_.whole(number<std::int16_t>());
+      case kInt32:
+        return visitor_.whole(number<std::int32_t>());
+      case kInt64:
+        return visitor_.whole(number<std::int64_t>());
+      case kUint16:
+        return visitor_.natural(number<std::uint16_t>());
+      case kUint32:
+        return visitor_.natural(number<std::uint32_t>());
+      case kUint64:
+        return visitor_.natural(number<std::uint64_t>());
+      case kFloat32:
+        return visitor_.real(static_cast<double>(number<float>()));
+      case kFloat64:
+        return visitor_.real(number<double>());
+      case kChar8:
+        return visitor_.text(std::string(1, static_cast<char>(number<std::uint8_t>())));
+      default:
+        damaged("a primitive type that is not decoded");
+    }
   }
-  Json primitive(std::uint8_t kind) {
+  std::int64_t whole_number(std::uint8_t kind) {
     switch (kind) {
       case kBoolean:
         return number<std::uint8_t>() != 0;
       case kByte:
+      case kChar8:
         return number<std::uint8_t>();
       case kInt16:
         return number<std::int16_t>();
@@ -115,18 +120,19 @@ class Decoder {
       case kUint32:
         return number<std::uint32_t>();
       case kUint64:
-        return number<std::uint64_t>();
-      case kFloat32:
-        return real<float>();
-      case kFloat64:
-        return real<double>();
-      case kChar8:
-        return std::string(1, static_cast<char>(number<std::uint8_t>()));
+        return static_cast<std::int64_t>(number<std::uint64_t>());
       default:
-        damaged("a primitive type that is not decoded");
+        damaged("an enumeration or union of a type that is not decoded");
     }
   }
-  Json string() {
+  std::int64_t enumerator(const TypeNode& type) {
+    const std::int64_t number = whole_number(type.primitive);
+    const auto literal = type.literals.find(number);
+    if (literal == type.literals.end()) visitor_.whole(number);
+    else visitor_.text(literal->second);
+    return number;
+  }
+  std::string string() {
     const std::uint32_t length = number<std::uint32_t>();
     need(length);
     if (length == 0) return "";  // some vendors omit the terminating zero of an empty string
@@ -134,17 +140,34 @@ class Decoder {
     at_ += length;
     return printable(std::move(text));
   }
-  Json elements(const TypeNode& type, std::uint32_t count) {
-    if (count > bytes_.size()) damaged("a sequence longer than its sample");
-    Json list = Json::array();
-    for (std::uint32_t i = 0; i < count; ++i) list.push_back(value(type));
-    return list;
+  void elements(const TypeNode& type, std::span<const std::uint32_t> dimensions) {
+    const std::size_t size = type.is_primitive() ? size_of_number(type.primitive) : 0;
+    if (size > 0) return numbers(type.primitive, size, dimensions);
+    visitor_.begin_list(dimensions.front());
+    for (std::uint32_t i = 0; i < dimensions.front(); ++i) {
+      if (dimensions.size() == 1) value(type);
+      else elements(type, dimensions.subspan(1));
+    }
+    visitor_.end_list();
   }
-  Json array(const TypeNode& type, std::size_t dimension) {
-    if (dimension + 1 == type.bounds.size()) return elements(*type.element, type.bounds[dimension]);
-    Json list = Json::array();
-    for (std::uint32_t i = 0; i < type.bounds[dimension]; ++i) list.push_back(array(type, dimension + 1));
-    return list;
+  void numbers(std::uint8_t kind, std::size_t size, std::span<const std::uint32_t> dimensions) {
+    std::size_t count = 1;
+    for (const std::uint32_t dimension : dimensions) {
+      count *= dimension;
+      if (count > bytes_.size()) damaged("shorter than its type requires");
+    }
+    if (count > 0) align(size);
+    need(count * size);
+    std::span<const std::uint8_t> bytes = bytes_.subspan(at_, count * size);
+    if ((swap_ && size > 1) || kind == kBoolean) {
+      scratch_.assign(bytes.begin(), bytes.end());
+      for (std::size_t i = 0; kind == kBoolean && i < scratch_.size(); ++i) scratch_[i] = scratch_[i] != 0;
+      for (auto at = scratch_.begin(); swap_ && at != scratch_.end(); at += static_cast<std::ptrdiff_t>(size))
+        std::reverse(at, at + static_cast<std::ptrdiff_t>(size));
+      bytes = scratch_;
+    }
+    at_ += count * size;
+    visitor_.numbers({kind, dimensions, bytes});
   }
   /// Position after the value, from its delimiter header; without such a header, the end of the sample.
   std::size_t delimited(const TypeNode& type) {
@@ -153,24 +176,25 @@ class Decoder {
     need(size);
     return at_ + size;
   }
-  Json structure(const TypeNode& type) {
-    Json object = Json::object();
+  void structure(const TypeNode& type) {
+    visitor_.begin_struct(type);
     const bool framed = xcdr2_ && type.extensibility != TypeNode::Extensibility::kFinal;
     const std::size_t end = delimited(type);
     if (type.extensibility == TypeNode::Extensibility::kMutable) {
       if (!xcdr2_) damaged("mutable types in XCDR1 are not decoded");
-      mutable_members(type, end, object);
+      mutable_members(type, end);
     } else {
       for (const auto& member : type.members) {
         if (framed && at_ >= end) break;  // the writer has an older version of the type
-        if (member.optional && number<std::uint8_t>() == 0) object[member.name] = nullptr;
-        else object[member.name] = value(*member.type);
+        visitor_.member(member.name);
+        if (member.optional && number<std::uint8_t>() == 0) visitor_.absent();
+        else value(*member.type);
       }
     }
     if (framed) at_ = end;
-    return object;
+    visitor_.end_struct();
   }
-  void mutable_members(const TypeNode& type, std::size_t end, Json& object) {
+  void mutable_members(const TypeNode& type, std::size_t end) {
     constexpr std::uint32_t kSizes[] = {1, 2, 4, 8};
     while (at_ + 4 <= end) {
       const std::uint32_t header = number<std::uint32_t>();
@@ -183,23 +207,19 @@ class Decoder {
       const std::size_t next = at_ + size;
       need(size);
       for (const auto& member : type.members) {
-        if (member.id == (header & 0x0fffffff)) object[member.name] = value(*member.type);
+        if (member.id != (header & 0x0fffffff)) continue;
+        visitor_.member(member.name);
+        value(*member.type);
       }
       at_ = next;
     }
   }
-  Json choice(const TypeNode& type) {
+  void choice(const TypeNode& type) {
+    visitor_.begin_struct(type);
     const bool framed = xcdr2_ && type.extensibility != TypeNode::Extensibility::kFinal;
     const std::size_t end = delimited(type);
-    const Json shown = value(*type.element);
-    std::int64_t label = 0;
-    if (shown.is_string()) {
-      for (const auto& [number, name] : type.element->literals) {
-        if (name == shown.get<std::string>()) label = number;
-      }
-    } else {
-      label = shown.is_boolean() ? shown.get<bool>() : shown.get<std::int64_t>();
-    }
+    visitor_.member("_d");
+    const std::int64_t label = discriminator(*type.element);
     const TypeNode::Member* chosen = nullptr;
     for (const auto& member : type.members) {
       if (member.is_default && !chosen) chosen = &member;
@@ -208,23 +228,34 @@ class Decoder {
         break;
       }
     }
-    Json object = Json::object();
-    object["_d"] = shown;
-    if (chosen) object[chosen->name] = value(*chosen->type);
+    if (chosen) {
+      visitor_.member(chosen->name);
+      value(*chosen->type);
+    }
     if (framed) at_ = end;
-    return object;
+    visitor_.end_struct();
+  }
+  std::int64_t discriminator(const TypeNode& type) {
+    if (type.kind == Kind::kEnum) return enumerator(type);
+    const std::int64_t label = whole_number(type.primitive);
+    if (type.primitive == kBoolean) visitor_.boolean(label != 0);
+    else if (type.primitive == kChar8) visitor_.text(std::string(1, static_cast<char>(label)));
+    else visitor_.whole(label);
+    return label;
   }
 
+  SampleVisitor& visitor_;
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;
   bool swap_ = false;
   bool xcdr2_ = false;
+  std::vector<std::uint8_t> scratch_;  ///< numbers in the byte order of this machine
 };
 
 }  // namespace
 
-Json decode(const TypeNode& type, std::span<const std::uint8_t> bytes) { return Decoder(bytes).value(type); }
-
-Json TypeTree::decode(std::span<const std::uint8_t> bytes) const { return dds::decode(*root_, bytes); }
+void decode(const TypeNode& type, std::span<const std::uint8_t> bytes, SampleVisitor& visitor) {
+  Decoder(bytes, visitor).value(type);
+}
 
 }  // namespace constrictor::dds

@@ -30,6 +30,7 @@ struct TypeNode {
   std::vector<Member> members;              ///< of structures (those of the base first) and unions
   std::shared_ptr<const TypeNode> element;  ///< of collections; of unions: the discriminator
   std::vector<std::uint32_t> bounds;        ///< of arrays: their dimensions
+  std::uint32_t most = 0;                   ///< of texts and sequences: the largest length; 0: without a limit
   std::map<std::int64_t, std::string> literals;
 
   /// XCDR2 puts the size of a collection before it, unless its elements are primitive.
@@ -38,5 +39,8 @@ struct TypeNode {
 
 /// Decodes one sample, as TypeTree::decode() does. Throws std::runtime_error if the bytes are not one sample of `type`.
 nlohmann::ordered_json decode(const TypeNode& type, std::span<const std::uint8_t> bytes);
+
+/// Encodes a sample, as TypeTree::encode() does. Throws std::invalid_argument.
+std::vector<std::uint8_t> encode(const TypeNode& type, const nlohmann::ordered_json& value);
 
 }  // namespace constrictor::dds

@@ -52,11 +52,12 @@ class Resolver {
       case DDS_XTypes_TI_STRING8_SMALL:
       case DDS_XTypes_TI_STRING8_LARGE:
         node->kind = Kind::kString;
+        node->most = id._d == DDS_XTypes_TI_STRING8_SMALL ? id._u.string_sdefn.bound : id._u.string_ldefn.bound;
         return node;
       case DDS_XTypes_TI_PLAIN_SEQUENCE_SMALL:
-        return sequence(*id._u.seq_sdefn.element_identifier);
+        return sequence(*id._u.seq_sdefn.element_identifier, id._u.seq_sdefn.bound);
       case DDS_XTypes_TI_PLAIN_SEQUENCE_LARGE:
-        return sequence(*id._u.seq_ldefn.element_identifier);
+        return sequence(*id._u.seq_ldefn.element_identifier, id._u.seq_ldefn.bound);
       case DDS_XTypes_TI_PLAIN_ARRAY_SMALL: {
         const auto& bounds = id._u.array_sdefn.array_bound_seq;
         return array(*id._u.array_sdefn.element_identifier, {bounds._buffer, bounds._buffer + bounds._length});
@@ -78,9 +79,10 @@ class Resolver {
   }
 
  private:
-  NodePtr sequence(const Identifier& element) {
+  NodePtr sequence(const Identifier& element, std::uint32_t most) {
     auto made = std::make_shared<TypeNode>();
     made->kind = Kind::kSequence;
+    made->most = most;
     made->element = node(element);
     return made;
   }
@@ -124,7 +126,7 @@ class Resolver {
         union_(object._u.union_type, *made);
         return made;
       case DDS_XTypes_TK_SEQUENCE:
-        return sequence(object._u.sequence_type.element.common.type);
+        return sequence(object._u.sequence_type.element.common.type, object._u.sequence_type.header.common.bound);
       case DDS_XTypes_TK_ARRAY: {
         const auto& bounds = object._u.array_type.header.common.bound_seq;
         return array(object._u.array_type.element.common.type, {bounds._buffer, bounds._buffer + bounds._length});

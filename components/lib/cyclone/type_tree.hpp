@@ -11,12 +11,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "cyclone/discovery.hpp"
 
 namespace constrictor::dds {
 
 struct TypeNode;
+class SampleVisitor;
 
 /// A type in the language of ROS 2's message files.
 struct Ros2Schema {
@@ -39,6 +41,17 @@ class TypeTree {
   /// Decodes a sample (with its encapsulation header; XCDR1 or XCDR2, either byte order) to all of its fields in order.
   /// NaN and infinities become null. Throws std::runtime_error if the bytes are not one sample of this type.
   [[nodiscard]] nlohmann::ordered_json decode(std::span<const std::uint8_t> bytes) const;
+  /// The same, but passes each value on, and NaN and infinities as they are.
+  void decode(std::span<const std::uint8_t> bytes, SampleVisitor& visitor) const;
+  /// The bytes of a sample in XCDR1, little-endian, with their encapsulation header. Fields that `value` leaves out are
+  /// 0, false or empty. Accepted are numbers, texts and lists as decode() makes them, null for NaN, binary values for
+  /// bytes, and names for enumerations. Of this project's types, also names of constants ("blue"), and lists that are
+  /// shorter than their array, whose length goes to the field ..._count if `value` leaves that out; and what the IDL
+  /// does not accept is refused (ranges, NaN). Throws std::invalid_argument that names the field, what was found and
+  /// what is accepted.
+  [[nodiscard]] std::vector<std::uint8_t> encode(const nlohmann::ordered_json& value) const;
+  /// The type itself.
+  [[nodiscard]] const TypeNode& root() const { return *root_; }
   /// The type as IDL-like text.
   [[nodiscard]] std::string text() const;
   /// The type for recordings. Enumerations are integers, arrays have one dimension, names are in lower case.

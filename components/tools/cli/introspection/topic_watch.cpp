@@ -12,6 +12,7 @@
 #include "constrictor/json.hpp"
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
+#include "cyclone/kept_samples.hpp"
 #include "cyclone/raw_reader.hpp"
 #include "cyclone/type_tree.hpp"
 #include "cyclone/wait_set.hpp"
@@ -98,7 +99,8 @@ std::optional<dds::Endpoint> wait_for_writer(const DomainView& view, const Watch
 }
 
 /// Calls `use` for each sample until it returns false, the user interrupts, `for_s` has passed, or no sample has
-/// arrived for the timeout. `begin` is called once, when a writer was found.
+/// arrived for the timeout. `begin` is called once, when a writer was found. `history`: begins with the samples that
+/// the writers keep for late readers; if a number of samples is wanted, with the newest of them.
 template <class Use, class Begin>
 int watch(const ViewOptions& options, const WatchOptions& watched, bool history, Begin&& begin, Use&& use) {
   const DomainView view(options);
@@ -112,13 +114,28 @@ int watch(const ViewOptions& options, const WatchOptions& watched, bool history,
   const auto start = Clock::now();
   auto last = start;
   bool more = true;
+  std::optional<dds::KeptSamples> kept;
+  if (history && watched.count > 0) kept.emplace(dds::KeptSamples::now_ns());
+  std::vector<std::uint8_t> newest;
   while (more && !interrupted()) {
-    wait_set.wait(100ms);
+    wait_set.wait(kept ? dds::KeptSamples::kQuiet : 100ms);
     const auto now = Clock::now();
+    const auto pass_on = [&](const dds::RawSample& sample) {
+      if (more) more = use(sample, std::chrono::duration<double>(now - start).count());
+    };
+    const auto pass_newest_on = [&] {
+      if (!kept || !kept->complete(now)) return;
+      kept.reset();
+      pass_on({newest, 0});
+    };
     reader.take([&](const dds::RawSample& sample) {
       last = now;
-      if (more) more = use(sample, std::chrono::duration<double>(now - start).count());
+      if (!kept) return pass_on(sample);
+      kept->arrived(sample.source_time_ns, now);
+      newest.assign(sample.bytes.begin(), sample.bytes.end());
+      pass_newest_on();
     });
+    pass_newest_on();
     if (watched.for_s > 0 && now - start > std::chrono::duration<double>(watched.for_s)) {
       if (last == start)
         std::fprintf(stderr, "topic: no sample of '%s' within %g s\n", watched.topic.c_str(), watched.for_s);
