@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Makes the Debian packages constrictor and constrictor-dev in build/packages. Installs what the build needs.
+# Makes the Debian packages constrictor, constrictor-dev and python3-constrictor in build/packages. Installs what the
+# build needs.
 # Usage: scripts/package.sh
 # Then: apt install ./build/packages/constrictor_*.deb
 set -euo pipefail
 cd "$(dirname "$0")/.."
-if [ "${1:-}" = --help ]; then sed -n '2,4s/^# //p' "$0"; exit 0; fi
+if [ "${1:-}" = --help ]; then sed -n '2,5s/^# //p' "$0"; exit 0; fi
 if [ $# -gt 0 ]; then echo "package: there is no option \"$1\"; accepted: --help" >&2; exit 2; fi
 
 scripts/setup.sh core

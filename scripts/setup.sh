@@ -26,10 +26,14 @@ core=(
   libboost-dev
   # processes on other hosts
   openssh-client
+  # the Python package
+  python3-dev pybind11-dev python3-numpy
 )
 tests=(
   # GoogleTest and Google Benchmark; OpenCV's image files, against which our PNG files are compared
   libgtest-dev libbenchmark-dev libopencv-imgcodecs-dev
+  # tests of the Python package
+  python3-pytest
   # a terminal for `constrictor teleop`, shells for the completion of `constrictor`
   tmux zsh fish
   # runs on several hosts, made of network namespaces

@@ -30,9 +30,29 @@ set(CONSTRICTOR_COMMON_HEADERS
 add_library(constrictor_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 target_link_libraries(constrictor_precompiled PRIVATE constrictor_options)
 target_precompile_headers(constrictor_precompiled PRIVATE ${CONSTRICTOR_COMMON_HEADERS})
+# The same for libraries of position-independent code, because g++ refuses headers that were compiled otherwise.
+add_library(constrictor_precompiled_pic OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+set_target_properties(constrictor_precompiled_pic PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_link_libraries(constrictor_precompiled_pic PRIVATE constrictor_options)
+target_precompile_headers(constrictor_precompiled_pic PRIVATE ${CONSTRICTOR_COMMON_HEADERS})
 function(constrictor_precompile target)
-  if(CONSTRICTOR_PCH)
+  if(NOT CONSTRICTOR_PCH)
+    return()
+  endif()
+  get_target_property(pic ${target} POSITION_INDEPENDENT_CODE)
+  if(pic)
+    target_precompile_headers(${target} REUSE_FROM constrictor_precompiled_pic)
+  else()
     target_precompile_headers(${target} REUSE_FROM constrictor_precompiled)
+  endif()
+endfunction()
+
+# constrictor_position_independent(TARGET): the static library can be a part of a shared one, as the Python module
+# needs. The option makes the code as fast as without, because no function of it is replaced at run time.
+function(constrictor_position_independent target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   endif()
 endfunction()
 
@@ -105,10 +125,14 @@ function(constrictor_check_layer name)
   endforeach()
 endfunction()
 
-# constrictor_library(NAME SOURCES ... LINK ...): a static library of the project, with its folder as its include root.
+# constrictor_library(NAME [PIC] SOURCES ... LINK ...): a static library of the project, with its folder as its include
+# root. PIC: see constrictor_position_independent().
 function(constrictor_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "PIC" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
+  if(ARG_PIC)
+    constrictor_position_independent(${name})
+  endif()
   constrictor_check_layer(${name} ${ARG_LINK})
   target_link_libraries(${name} PUBLIC constrictor_options ${ARG_LINK})
   constrictor_include_root(root)

@@ -4,6 +4,7 @@
 #   PREFIX/share/constrictor      configurations, robots, scenarios, manifests, idl/, examples/
 #   PREFIX/etc/constrictor        files of this host; /etc/constrictor for the prefix /usr
 #   PREFIX/lib/systemd, PREFIX/share/{bash-completion,zsh,fish}   the service, and the completion of the shells
+#   PREFIX/lib/python3/dist-packages/constrictor   the Python package (component `python`)
 #   PREFIX/include/constrictor, PREFIX/lib   the libraries for find_package(Constrictor)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

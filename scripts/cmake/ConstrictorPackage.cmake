@@ -1,6 +1,7 @@
-# `cpack --config build/release/CPackConfig.cmake`: two Debian packages, below /usr.
+# `cpack --config build/release/CPackConfig.cmake`: three Debian packages, below /usr.
 #   constrictor       what a run needs
 #   constrictor-dev   headers, libraries and examples for programs of one's own
+#   python3-constrictor   the Python package
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Constrictor)
 set(CPACK_PACKAGE_CONTACT "The Constrictor developers <constrictor@localhost>")
@@ -9,6 +10,9 @@ set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_SET_DESTDIR ON)  # for /etc, which is not below the prefix
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL runtime dev)
+if(TARGET constrictor_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -28,4 +32,18 @@ libfmt-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev, libzstd-dev, nlohmann-js
 set(CPACK_COMPONENT_DEV_DESCRIPTION
     "Headers, libraries, IDL files and examples for components, planners and clients
  of one's own: find_package(Constrictor).")
+
+if(TARGET constrictor_python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-constrictor)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # The module works with this version of Python only.
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \
+python3 (<< ${Python_VERSION_MAJOR}.${next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "constrictor, python3-matplotlib")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+      "Joins runs of Constrictor from Python: topics as dictionaries and arrays, tasks,
+ parameters, and the time of the run.")
+endif()
 include(CPack)

@@ -63,20 +63,23 @@ class Package : public ::testing::Test {
 TEST_F(Package, IsInstalledRunAndRemoved) {
   run({"/usr/bin/cpack", "--config", CONSTRICTOR_BUILD "/CPackConfig.cmake", "-B",
        (dir_.path() / "packages").string()});
-  const fs::path runtime = package("constrictor"), dev = package("constrictor-dev");
+  const fs::path runtime = package("constrictor"), dev = package("constrictor-dev"),
+                 python = package("python3-constrictor");
   ASSERT_FALSE(runtime.empty());
   ASSERT_FALSE(dev.empty());
+  ASSERT_FALSE(python.empty());
   // Every package that it names exists, and its versions are those of this distribution.
-  const std::string plan =
-      run({"/usr/bin/apt-get", "install", "--simulate", "--no-install-recommends", runtime.string(), dev.string()});
+  const std::string plan = run({"/usr/bin/apt-get", "install", "--simulate", "--no-install-recommends",
+                                runtime.string(), dev.string(), python.string()});
   EXPECT_NE(plan.find("Inst constrictor "), std::string::npos) << plan;
 
-  dpkg({"--install", runtime.string(), dev.string()});
+  dpkg({"--install", runtime.string(), dev.string(), python.string()});
   const std::set<std::string> installed = files();
   for (const char* file :
        {"usr/bin/constrictor", "usr/libexec/constrictor/physics", "etc/constrictor/example.conf",
         "usr/lib/systemd/system/constrictor@.service", "usr/share/constrictor/deploy/case_study.yaml",
-        "usr/share/bash-completion/completions/constrictor", "usr/lib/cmake/Constrictor/ConstrictorConfig.cmake"})
+        "usr/share/bash-completion/completions/constrictor", "usr/lib/cmake/Constrictor/ConstrictorConfig.cmake",
+        "usr/lib/python3/dist-packages/constrictor/py.typed"})
     EXPECT_TRUE(installed.contains(file)) << file;
 
   // A run from the package, with a manifest of this host that is found by its name.
@@ -95,6 +98,12 @@ TEST_F(Package, IsInstalledRunAndRemoved) {
   EXPECT_EQ(report["reason"], "time limit of 4 s");
   EXPECT_EQ(report["processes"].size(), 2u);
 
+  // The Python package that was installed, not that of the build tree.
+  const std::string packages = root_ / "usr/lib/python3/dist-packages";
+  EXPECT_EQ(run({"/usr/bin/python3", "-B", "-c", "import constrictor; print(constrictor.__file__, constrictor.runs())"},
+                {{"PYTHONPATH", packages}, {"XDG_RUNTIME_DIR", (dir_.path() / "home").string()}}),
+            packages + "/constrictor/__init__.py []\n");
+
   // The unit names a program that exists, and systemd understands it.
   const std::string unit = root_ / "usr/lib/systemd/system/constrictor@.service";
   if (fs::exists("/usr/bin/systemd-analyze")) {
@@ -109,7 +118,7 @@ TEST_F(Package, IsInstalledRunAndRemoved) {
   }
 
   // What a user has added stays; everything else goes, the files in /etc only with --purge.
-  dpkg({"--remove", "constrictor-dev", "constrictor"});
+  dpkg({"--remove", "python3-constrictor", "constrictor-dev", "constrictor"});
   EXPECT_TRUE(files().contains("etc/constrictor/example.conf"));
   dpkg({"--purge", "constrictor-dev", "constrictor"});
   std::set<std::string> left = files();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <thread>
 #include <utility>
 
@@ -28,16 +27,24 @@ constexpr const char* kNoAnswerText =
 }  // namespace
 
 struct RequestClient::Endpoints {
-  Endpoints(std::uint32_t number, std::chrono::nanoseconds lease, bool by_hand)
+  Endpoints(std::uint32_t number, std::optional<dds::Domain> joined, dds_entity_t here, std::chrono::nanoseconds lease,
+            bool by_hand)
       : domain_number(number),
-        domain(number),
-        authority(dds::Reader<msg::Authority>::member(domain.participant(), std::string(topics::kAuthority.name))),
-        answer(dds::Reader<msg::RequestAnswer>::member(domain.participant(), std::string(topics::kRequestAnswer.name))),
-        stops(dds::Reader<msg::StopState>::member(domain.participant(), std::string(topics::kStopState.name))),
-        stop(domain.participant(), barrier_topics::kEmergencyStop),
-        request(domain.participant(), lease.count(), by_hand) {}
+        own(std::move(joined)),
+        participant(here),
+        authority(dds::Reader<msg::Authority>::member(participant, std::string(topics::kAuthority.name))),
+        answer(dds::Reader<msg::RequestAnswer>::member(participant, std::string(topics::kRequestAnswer.name))),
+        stops(dds::Reader<msg::StopState>::member(participant, std::string(topics::kStopState.name))),
+        stop(participant, barrier_topics::kEmergencyStop),
+        request(participant, lease.count(), by_hand) {}
+  static std::unique_ptr<Endpoints> join(std::uint32_t number, std::chrono::nanoseconds lease, bool by_hand) {
+    dds::Domain joined(number);
+    const dds_entity_t here = joined.participant();
+    return std::make_unique<Endpoints>(number, std::move(joined), here, lease, by_hand);
+  }
   std::uint32_t domain_number;
-  dds::Domain domain;
+  std::optional<dds::Domain> own;  ///< empty: the participant is the caller's
+  dds_entity_t participant;
   dds::Reader<msg::Authority> authority;
   dds::Reader<msg::RequestAnswer> answer;
   dds::Reader<msg::StopState> stops;
@@ -46,12 +53,18 @@ struct RequestClient::Endpoints {
   std::optional<GoalReader> goals;
 };
 
-RequestClient::RequestClient(std::uint32_t domain, RequestClientOptions options)
-    : options_(std::move(options)),
-      endpoints_(std::make_unique<Endpoints>(domain, options_.lease, options_.lease_by_hand)),
-      sequence_(first_sequence_number()) {
-  if (!options_.key) options_.key = run_key(domain);
+RequestClient::RequestClient(std::unique_ptr<Endpoints> endpoints, RequestClientOptions options)
+    : options_(std::move(options)), endpoints_(std::move(endpoints)), sequence_(first_sequence_number()) {
+  if (!options_.key) options_.key = run_key(endpoints_->domain_number);
 }
+
+RequestClient::RequestClient(std::uint32_t domain, RequestClientOptions options)
+    : RequestClient(Endpoints::join(domain, options.lease, options.lease_by_hand), options) {}
+
+RequestClient::RequestClient(std::int32_t participant, std::uint32_t domain, RequestClientOptions options)
+    : RequestClient(
+          std::make_unique<Endpoints>(domain, std::nullopt, participant, options.lease, options.lease_by_hand),
+          options) {}
 
 RequestClient::~RequestClient() = default;
 
@@ -203,7 +216,7 @@ void RequestClient::flush() const { endpoints_->request.flush(std::chrono::nanos
 
 std::uint32_t RequestClient::domain() const { return endpoints_->domain_number; }
 
-std::int32_t RequestClient::participant() const { return endpoints_->domain.participant(); }
+std::int32_t RequestClient::participant() const { return endpoints_->participant; }
 
 void RequestClient::take_authority() {
   endpoints_->authority.take([this](const msg::Authority& authority) { authority_.take(authority); });
@@ -273,21 +286,6 @@ RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::
     if (WaitClock::now() > end) return Answer::kNone;
     std::this_thread::sleep_for(kPoll);
   }
-}
-
-msg::TaskParameters no_parameters() {
-  msg::TaskParameters parameters{};
-  parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
-  return parameters;
-}
-
-msg::Request task_request(std::uint8_t task) {
-  msg::Request request{};
-  request.kind = msg::kRequestTask;
-  request.command = msg::kCommandStart;
-  request.task = task;
-  request.parameters = no_parameters();
-  return request;
 }
 
 }  // namespace constrictor

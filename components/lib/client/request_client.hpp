@@ -45,6 +45,8 @@ class RequestClient {
  public:
   /// Joins the DDS domain of a run (find_domain()). A process joins each domain once.
   RequestClient(std::uint32_t domain, RequestClientOptions options);
+  /// The same on a participant that this process already has in `domain`. It must outlive this object.
+  RequestClient(std::int32_t participant, std::uint32_t domain, RequestClientOptions options);
   ~RequestClient();
 
   /// Waits until `input` reads requests and its first Authority message has arrived. Returns false if that does not
@@ -112,6 +114,7 @@ class RequestClient {
 
  private:
   struct Endpoints;
+  RequestClient(std::unique_ptr<Endpoints> endpoints, RequestClientOptions options);
   void take_authority();
   void take_stop_states();
   void send_to_plant(const msg::Request& stop) const;

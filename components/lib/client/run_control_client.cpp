@@ -39,22 +39,23 @@ struct RunControlClient::Endpoints {
 };
 
 RunControlClient::RunControlClient(std::unique_ptr<Endpoints> endpoints, std::uint32_t domain,
-                                   std::chrono::seconds bound, std::function<bool()> interrupted)
+                                   std::chrono::seconds bound, std::function<bool()> interrupted,
+                                   std::optional<RunKey> key)
     : endpoints_(std::move(endpoints)),
       domain_(domain),
       bound_(bound),
       interrupted_(std::move(interrupted)),
       source_(unique_source("control")),
       sequence_(first_sequence_number()),
-      key_(run_key(domain)) {}
+      key_(key ? std::move(*key) : run_key(domain)) {}
 
 RunControlClient::RunControlClient(std::uint32_t domain, std::chrono::seconds bound, std::function<bool()> interrupted)
-    : RunControlClient(std::make_unique<Endpoints>(domain), domain, bound, std::move(interrupted)) {}
+    : RunControlClient(std::make_unique<Endpoints>(domain), domain, bound, std::move(interrupted), {}) {}
 
 RunControlClient::RunControlClient(std::int32_t participant, std::uint32_t domain, std::chrono::seconds bound,
-                                   std::function<bool()> interrupted)
+                                   std::function<bool()> interrupted, std::optional<RunKey> key)
     : RunControlClient(std::make_unique<Endpoints>(Endpoints::OnParticipant{participant}), domain, bound,
-                       std::move(interrupted)) {}
+                       std::move(interrupted), std::move(key)) {}
 
 RunControlClient::~RunControlClient() = default;
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/command_error.hpp"
@@ -23,9 +24,10 @@ class RunControlClient {
   /// while a function waits; the wait ends when it returns true.
   explicit RunControlClient(std::uint32_t domain, std::chrono::seconds bound = std::chrono::seconds(10),
                             std::function<bool()> interrupted = {});
-  /// The same on a participant that this process already has. The participant must outlive this object.
+  /// The same on a participant that this process already has. The participant must outlive this object. `key`: empty:
+  /// the one that run_key() finds.
   RunControlClient(std::int32_t participant, std::uint32_t domain, std::chrono::seconds bound,
-                   std::function<bool()> interrupted = {});
+                   std::function<bool()> interrupted = {}, std::optional<RunKey> key = {});
   ~RunControlClient();
 
   /// Each returns the state of the run right after the command was obeyed.
@@ -46,7 +48,7 @@ class RunControlClient {
  private:
   struct Endpoints;
   RunControlClient(std::unique_ptr<Endpoints> endpoints, std::uint32_t domain, std::chrono::seconds bound,
-                   std::function<bool()> interrupted);
+                   std::function<bool()> interrupted, std::optional<RunKey> key);
   msg::RunState send(std::uint8_t command);
   msg::RunState wait_for_tick(std::uint64_t run_id, std::int64_t tick);
 

@@ -33,5 +33,14 @@ TEST_F(ExampleRun, ARunFromThePrefixUsesTheFilesOfThePrefix) {
   EXPECT_NE(launcher.output().find("4.0 s simulated"), std::string::npos) << launcher.output() << launcher.errors();
 }
 
+TEST_F(ExampleRun, ThePythonPackageOfThePrefixIsImported) {
+  const std::string folder = CONSTRICTOR_PREFIX "/lib/python3/dist-packages";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "this build has no Python package";
+  Process python({"/usr/bin/python3", "-B", "-c", "import constrictor; print(constrictor.__file__)"},
+                 {{"PYTHONPATH", folder}});
+  EXPECT_EQ(python.wait(30s), 0) << python.errors();
+  EXPECT_EQ(python.output(), folder + "/constrictor/__init__.py\n");
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -106,8 +106,8 @@ std::vector<std::string> long_files(const fs::path& root) {
 std::vector<std::string> long_lines(const fs::path& root) {
   const std::vector<std::string> tops = {"idl",      "components", "sim",     "deploy",
                                          "examples", "tests",      "scripts", ".github"};
-  const std::vector<std::string> extensions = {".hpp", ".cpp", ".idl",  ".def", ".txt", ".cmake",
-                                               ".in",  ".sh",  ".yaml", ".yml", ".md"};
+  const std::vector<std::string> extensions = {".hpp", ".cpp",  ".idl", ".def", ".txt", ".cmake", ".in",
+                                               ".sh",  ".yaml", ".yml", ".md",  ".py",  ".pyi"};
   std::vector<fs::path> files = files_below(root, tops, extensions);
   for (const auto& entry : fs::directory_iterator(root)) {
     const std::string extension = entry.path().extension().string();

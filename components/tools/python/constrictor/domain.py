@@ -1,0 +1,249 @@
+"""A DDS domain and the samples of its topics."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import threading
+import weakref
+from types import TracebackType
+from typing import Any, Dict, Iterator, Optional, Type, TypeVar
+
+from . import _native
+from .errors import Error, WaitTimeoutError
+
+#: A sample: nested dictionaries by the fields' names. Numbers are int and float (NaN: unknown), texts are str, arrays
+#: of numbers are NumPy arrays of their type, arrays of structures are lists.
+Message = Dict[str, Any]
+
+# A process joins a DDS domain once. The domains that this process has joined, with those who joined them.
+_joined: "weakref.WeakValueDictionary[int, Domain]" = weakref.WeakValueDictionary()
+_lock = threading.RLock()
+
+_Self = TypeVar("_Self", bound="Domain")
+
+
+def domain_from_environment(domain: Optional[int]) -> Optional[int]:
+    """Returns ``domain``, or $CONSTRICTOR_DOMAIN if it is None, or None."""
+    if domain is None:
+        text = os.environ.get("CONSTRICTOR_DOMAIN", "")
+        if not text:
+            return None
+        if not text.isdigit():
+            raise ValueError(f"CONSTRICTOR_DOMAIN: found '{text}', accepted a whole number from 0 to 229")
+        domain = int(text)
+    if not 0 <= domain <= 229:
+        raise ValueError(f"run: found {domain}, accepted a DDS domain from 0 to 229")
+    return domain
+
+
+class Subscription:
+    """The samples of one topic, as dictionaries, in the order of their arrival.
+
+    Iterate over it: the loop ends when the run ends. Or call :meth:`next` and :meth:`newest`, with a bound on the wait.
+    No subscription delays the run: if samples arrive faster than they are taken, the newest ``depth`` stay.
+    """
+
+    def __init__(self, native: _native.Subscription, timeout: Optional[float]) -> None:
+        self._native = native
+        self._timeout = timeout
+
+    @property
+    def topic(self) -> str:
+        """The name of the topic."""
+        return self._native.topic
+
+    @property
+    def type(self) -> str:
+        """The IDL type of the samples, ``constrictor::msg::JointState``."""
+        return self._native.type
+
+    @property
+    def dropped(self) -> int:
+        """How many samples newer ones have replaced before they were taken."""
+        return self._native.dropped
+
+    def next(self, timeout: Optional[float] = None) -> Message:
+        """Returns the next sample; waits at most ``timeout`` seconds for it (None: until the run ends).
+
+        Raises WaitTimeoutError, and Error if the run has ended or the subscription was closed.
+        """
+        try:
+            return self._native.next(timeout)
+        except StopIteration as end:
+            raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
+
+    def newest(self, timeout: Optional[float] = None) -> Message:
+        """Returns the newest sample and discards older ones; waits for one if none has arrived since the last call.
+
+        Raises what :meth:`next` raises.
+        """
+        try:
+            return self._native.newest(timeout)
+        except StopIteration as end:
+            raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
+
+    def take(self) -> list[Message]:
+        """Returns all samples that have arrived since the last call, without waiting."""
+        return self._native.take()
+
+    def close(self) -> None:
+        """Ends the subscription."""
+        self._native.close()
+
+    def __iter__(self) -> Iterator[Message]:
+        return self
+
+    def __next__(self) -> Message:
+        return self._native.next(self._timeout)
+
+    def __enter__(self) -> Subscription:
+        return self
+
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
+
+
+class _Latest:
+    """The newest sample of a topic."""
+
+    def __init__(self, subscription: Subscription) -> None:
+        self.subscription = subscription
+        self._kept: Optional[Message] = None
+
+    def get(self, timeout: Optional[float]) -> Message:
+        kept = self._kept
+        try:
+            kept = self.subscription.newest(timeout if kept is None else 0.0)
+        except WaitTimeoutError:
+            if kept is None:
+                raise
+        self._kept = kept
+        return kept
+
+
+class Domain:
+    """A DDS domain: its topics, of any type, also of other programs. :func:`observe` makes one.
+
+    It may be used from several threads; while one waits, the others go on.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        with _lock:
+            wanted = options.get("domain")
+            self._refuse_second(wanted)
+            session = _native.Session(**options)
+            self._session = session
+            self._latest: Dict[tuple[str, bool, bool], _Latest] = {}
+            self._latest_lock = threading.Lock()
+            self._subscriptions: "weakref.WeakSet[Subscription]" = weakref.WeakSet()
+            _joined[session.domain] = self
+
+    @staticmethod
+    def _refuse_second(domain: Optional[int]) -> None:
+        candidates = [domain] if domain is not None else [run["domain"] for run in _native.live_runs()]
+        if domain is None and len(candidates) != 1:
+            return
+        other = _joined.get(candidates[0])
+        if other is not None and not other.closed:
+            raise Error(
+                f"this process has already joined DDS domain {candidates[0]}, and DDS allows that only once; use the "
+                "object that join() or observe() has returned, or call its close() first"
+            )
+
+    @property
+    def domain(self) -> int:
+        """The number of the DDS domain."""
+        return self._session.domain
+
+    @property
+    def closed(self) -> bool:
+        """True after :meth:`close`."""
+        return self._session.closed
+
+    def topics(self) -> dict[str, dict[str, Any]]:
+        """Returns the topics that have a reader or writer: type, number of writers, number of readers."""
+        return self._session.topics()
+
+    def subscribe(
+        self,
+        topic: str,
+        *,
+        timeout: Optional[float] = None,
+        history: bool = False,
+        depth: int = 256,
+        names: bool = True,
+        whole: bool = False,
+    ) -> Subscription:
+        """Begins to read a topic, of any type that its writer describes.
+
+        timeout: [s] the longest wait of an iteration for the next sample; then WaitTimeoutError. None: no bound.
+        history: begin with the samples that the writers keep for late readers; for events, answers and ``authority``.
+        depth: number of samples that wait until they are taken. An image has 0.2 to 1 MB.
+        names: fields that hold a constant get its name, ``"blue"``, instead of its number.
+        whole: arrays keep all elements. Otherwise they lose those that their field ``..._count`` does not count.
+
+        Raises Error if there is no such topic, or if its writer does not describe its type.
+        """
+        native = _native.Subscription(self._session, topic, history=history, depth=depth, names=names, whole=whole)
+        subscription = Subscription(native, timeout)
+        self._subscriptions.add(subscription)
+        return subscription
+
+    def latest(
+        self, topic: str, timeout: Optional[float] = 5.0, *, names: bool = True, whole: bool = False
+    ) -> Message:
+        """Returns the newest sample of a topic that has arrived, also if an earlier call has returned it.
+
+        The first call begins to read the topic, and waits up to ``timeout`` seconds for a sample. Raises
+        WaitTimeoutError, and what :meth:`subscribe` raises.
+        """
+        key = (topic, names, whole)
+        with self._latest_lock:
+            latest = self._latest.get(key)
+            if latest is None:
+                latest = _Latest(self.subscribe(topic, history=True, depth=1, names=names, whole=whole))
+                self._latest[key] = latest
+        return latest.get(timeout)
+
+    def close(self) -> None:
+        """Leaves the domain. Subscriptions end."""
+        # A process can join the domain again only after all that it read there is gone.
+        for subscription in list(self._subscriptions):
+            subscription.close()
+        self._latest.clear()
+        self._session.close()
+
+    def __enter__(self: _Self) -> _Self:
+        return self
+
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
+
+
+def observe(domain: Optional[int] = None) -> Domain:
+    """Opens a DDS domain to read its topics, also one without a run: a replay, or other programs.
+
+    domain: its number; None: $CONSTRICTOR_DOMAIN, or that of the only run on this host.
+    """
+    return Domain(
+        domain=domain_from_environment(domain),
+        directory="",
+        observe=True,
+        name="python",
+        as_operator=False,
+        detached=False,
+        token="",
+        token_file="",
+    )
+
+
+@atexit.register
+def _leave_all() -> None:
+    """A program that ends without close() leaves its runs in order, too."""
+    for domain in list(_joined.values()):
+        domain.close()
