@@ -16,6 +16,8 @@ core=(
   cyclonedds-dev cyclonedds-tools libssl-dev libcereal-dev nlohmann-json3-dev
   # physics, rendering, vision, mathematics
   libode-dev libosmesa6-dev libopencv-core-dev libopencv-imgproc-dev libpng-dev libeigen3-dev
+  # real cameras: their streams, their pictures, their calibration
+  libopencv-videoio-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
   # configuration, command line, text, logs
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
   # checksums of checkpoints
@@ -30,8 +32,8 @@ core=(
   python3-dev pybind11-dev python3-numpy
 )
 tests=(
-  # GoogleTest and Google Benchmark; OpenCV's image files, against which our PNG files are compared
-  libgtest-dev libbenchmark-dev libopencv-imgcodecs-dev
+  # GoogleTest and Google Benchmark
+  libgtest-dev libbenchmark-dev
   # tests of the Python package
   python3-pytest
   # a terminal for `constrictor teleop`, shells for the completion of `constrictor`

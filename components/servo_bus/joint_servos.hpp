@@ -66,7 +66,7 @@ class JointServos {
     dynamixel::JointServo servo;
     ServoState state = ServoState::kLost;
     JointReading reading;
-    std::int64_t current_limit = 0;  ///< register of the servo
+    std::int64_t current_limit = 0;  ///< largest goal: of the register, and of servo.load_share
     int misses = 0;                  ///< rounds without an answer
     int reboots = 0;
     bool seen = false;  ///< in this round

@@ -79,7 +79,9 @@ std::string JointServos::bring_up(BusMaster& bus, Joint& joint) {
     write(bus, id, model.at("status_return_level"), 2);  // without it there may be no answer to this very write
     const bool tripped = read(bus, id, model.at("bus_watchdog")) == dynamixel::kWatchdogTripped;
     configure(bus, joint, tripped);
-    joint.current_limit = read(bus, id, model.at("current_limit"));
+    const double bearable_a = config_.load_share * model.stall_current_a;
+    joint.current_limit = std::min(read(bus, id, model.at("current_limit")),
+                                   static_cast<std::int64_t>(bearable_a / model.current_unit_a));
     const std::int64_t position = read(bus, id, model.at("present_position"));
     const double angle_rad = joint.servo.angle_rad(model, position);
     if (angle_rad < joint.limits.min_rad - config_.start_tolerance_rad ||

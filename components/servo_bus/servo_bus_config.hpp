@@ -25,6 +25,9 @@ struct ServoBusConfig : ParameterSet {
                              "A servo that does not answer for so long is lost: the robot holds its posture");
   bool reboot_on_error = add(reboot_on_error, "servo.reboot_on_error", false,
                              "Start a servo anew that has shut down with a hardware error, at most three times");
+  double load_share =
+      add(load_share, "servo.load_share", 0.75, "", {0.05, 1.0}, kAtStart,
+          "Largest share of the stall current that is asked for: a servo shuts down when it bears more for long");
   double start_tolerance_rad =
       add(start_tolerance_rad, "servo.start_tolerance_rad", 0.2, "rad", {0.0, 3.0}, kAtStart,
           "The robot does not start if a joint is further than this beyond its limits: its zero or direction is wrong");

@@ -86,6 +86,7 @@ set(CONSTRICTOR_LAYERS
   "components/lib/log => idl"
   "components/lib/dynamixel => components/lib/configuration"
   "components/lib/robot => idl|components/lib/configuration"
+  "components/lib/video => components/lib/(configuration|robot)"
   "components/lib/component => idl|components/lib/configuration"
   "components/lib/plant => idl|components/lib/(component|robot)"
   "components/lib/serial => components/lib/dynamixel"
@@ -98,6 +99,7 @@ set(CONSTRICTOR_LAYERS
   "components/tools/host => .*"
   "components/tools/.* => idl|components/lib/.*"
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
+  "components/video_capture => idl|components/lib/(component|configuration|robot|video)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
   "sim/.* => idl|components/lib/(component|configuration|dynamixel|plant|robot)|sim/.*"
   "tests/.* => .*")

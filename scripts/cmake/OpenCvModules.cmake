@@ -1,6 +1,7 @@
-# Imported targets opencv_core and opencv_imgproc, made from the packages libopencv-core-dev and libopencv-imgproc-dev.
+# Imported targets for the modules of OpenCV that are used, made from the packages libopencv-MODULE-dev.
 # find_package(OpenCV) is not used because Debian ships its configuration files in libopencv-dev only, which needs the
-# packages of all modules (471 packages).
+# packages of all modules (471 packages). videoio loads FFmpeg and GStreamer, 240 libraries in all: only the programs
+# that read a camera link it.
 find_path(CONSTRICTOR_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4)
 mark_as_advanced(CONSTRICTOR_OPENCV_INCLUDE)
 
@@ -20,6 +21,6 @@ endfunction()
 
 constrictor_opencv_module(core)
 constrictor_opencv_module(imgproc opencv_core)
-if(CONSTRICTOR_TESTS)
-  constrictor_opencv_module(imgcodecs opencv_core opencv_imgproc)  # reads our PNG files independently
-endif()
+constrictor_opencv_module(imgcodecs opencv_core opencv_imgproc)
+constrictor_opencv_module(videoio opencv_core opencv_imgproc opencv_imgcodecs)
+constrictor_opencv_module(calib3d opencv_core opencv_imgproc)

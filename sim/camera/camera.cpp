@@ -1,22 +1,9 @@
 #include "sim/camera/camera.hpp"
 
-#include <cmath>
-
 #include "sim/render/image_message.hpp"
 #include "sim/render/scene_from_messages.hpp"
 
 namespace constrictor {
-
-Eigen::Isometry3d camera_mount(const CameraModel& camera) {
-  const double c = std::cos(camera.tilt_rad);
-  const double s = std::sin(camera.tilt_rad);
-  Eigen::Isometry3d X_HC = Eigen::Isometry3d::Identity();
-  X_HC.linear().col(0) = -Eigen::Vector3d::UnitY();
-  X_HC.linear().col(1) = Eigen::Vector3d(-s, 0.0, -c);
-  X_HC.linear().col(2) = Eigen::Vector3d(c, 0.0, -s);
-  X_HC.translation() = camera.p_HC;
-  return X_HC;
-}
 
 PinholeCamera camera_intrinsics(const CameraModel& camera) {
   return make_pinhole(camera.width, camera.height, camera.horizontal_fov_rad);

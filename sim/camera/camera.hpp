@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "component/component.hpp"
+#include "robot/camera_mount.hpp"
 #include "robot/robot_model.hpp"
 #include "sim/camera/camera_config.hpp"
 #include "sim/render/frame_count.hpp"
@@ -12,9 +13,6 @@
 #include "sim/render/renderer.hpp"
 
 namespace constrictor {
-
-/// X_HC: pose of the camera (z along the view, x right, y down) in the head (x forward, y left, z up).
-[[nodiscard]] Eigen::Isometry3d camera_mount(const CameraModel& camera);
 
 /// The intrinsics of the robot's camera, with the identity as its pose.
 [[nodiscard]] PinholeCamera camera_intrinsics(const CameraModel& camera);

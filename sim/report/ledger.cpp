@@ -121,4 +121,19 @@ std::string ObjectLedger::shortfall(const msg::SceneDescription& scene, const ms
   return fmt::format("{}", fmt::join(faults, "; "));
 }
 
+void BelievedLedger::on_event(const msg::TaskEvent& event) {
+  if (event.event == msg::kEventObjectGrasped) {
+    const auto same = std::find_if(objects.begin(), objects.end(), [&](const BelievedObject& one) {
+      return one.colour == event.colour && !one.dropped;
+    });
+    held = static_cast<std::int32_t>(same - objects.begin());
+    if (same == objects.end()) objects.push_back({event.colour, true, false});
+  } else if (event.event == msg::kEventObjectGraspLost) {
+    held = -1;
+  } else if (event.event == msg::kEventDroppingDone) {
+    if (held >= 0) objects[static_cast<std::size_t>(held)].dropped = true;
+    held = -1;
+  }
+}
+
 }  // namespace constrictor::report

@@ -61,4 +61,29 @@ struct ObjectLedger {
                                      const msg::WorldState& world) const;
 };
 
+/// What the robot believes of an object: from the events of its tasks alone.
+struct BelievedObject {
+  std::uint8_t colour = msg::kColourUnknown;
+  bool grasped = false;
+  bool dropped = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(colour, grasped, dropped);
+  }
+};
+
+/// Follows the objects without ground truth. An object that was lost and grasped again is the same one.
+struct BelievedLedger {
+  std::vector<BelievedObject> objects;  ///< in the order in which they were grasped first
+  std::int32_t held = -1;               ///< index of the object in the grip; -1: none
+
+  void on_event(const msg::TaskEvent& event);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(objects, held);
+  }
+};
+
 }  // namespace constrictor::report

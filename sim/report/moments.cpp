@@ -57,12 +57,12 @@ std::vector<Moment> figure_rows(const std::vector<Moment>& moments) {
 }
 
 void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-                      const msg::WorldState& world) {
+                      const msg::WorldState* world) {
   if (moments.size() >= kMostMoments) return;
   if (!moments.empty() && moments.back().tick == moment.tick) return;  // that moment has the same pictures
   const MomentFiles files(folder, moment);
   std::filesystem::remove(files.scene);
-  save_world(files.world, world);
+  if (world != nullptr) save_world(files.world, *world);
   if (camera != nullptr) {
     save(files.camera, *camera);
     moment.camera_exposure = camera->exposure_tick;

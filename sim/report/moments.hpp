@@ -50,11 +50,11 @@ struct MomentFiles {
 struct MomentAlbum {
   std::vector<Moment> moments;
 
-  /// Images given to this class must have the right number of bytes (image_violation()). `camera` may be null. Moments
-  /// after the first 100 are ignored, so that the state stays small. A picture of the scene that an earlier run left
-  /// for this tick is removed.
+  /// Images given to this class must have the right number of bytes (image_violation()). `camera` and `world` may be
+  /// null. Moments after the first 100 are ignored, so that the state stays small. A picture of the scene that an
+  /// earlier run left for this tick is removed.
   void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-           const msg::WorldState& world);
+           const msg::WorldState* world);
   void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image);
   /// Saves the newest processed image for all moments that still have none, because no further images arrive after the
   /// end of the run.

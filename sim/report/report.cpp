@@ -31,6 +31,8 @@ Report::Report(Wiring& wiring, const Setup& setup) : Report(wiring, setup, load_
 
 Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
     : ConfiguredComponent(wiring, setup),
+      scenario_(setup.scenario_file.stem().string()),
+      seed_(setup.seed),
       plant_limit_s_(setup.max_sim_time_s),
       folder_(setup.output_dir),
       yaw_joints_(robot.yaw_joints()),
@@ -42,9 +44,12 @@ Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
       parameters_(in_folder(folder_, "parameters.jsonl")) {}
 
 void Report::step(const Tick& tick) {
-  if (state_.finished || !world_ || !scene_) return;
-  read_line();
-  follow_truth();
+  if (state_.finished) return;
+  if (truth()) {
+    read_line();
+    follow_truth();
+  }
+  follow_line();
   follow_effort(tick);
   follow_mission(tick);
   follow_events();
@@ -62,8 +67,8 @@ void Report::step(const Tick& tick) {
 }
 
 void Report::conclude(const Tick& last) {
-  if (state_.finished || !world_ || !scene_) return;
-  read_line();  // a process that was restarted in the last tick has not read it in a step
+  if (state_.finished) return;
+  if (truth()) read_line();  // a process that was restarted in the last tick has not read it in a step
   if (state_.mission_end_tick < 0) {
     // No component steps in the run's final tick: at the plant's time limit, the last step was one period earlier.
     const bool at_limit = plant_limit_s_ > 0 && last.time_s() + 1.5 * last.period_s() >= plant_limit_s_;
@@ -89,13 +94,8 @@ void Report::follow_truth() {
   state_.heads.push_back(head);
   if (state_.heads.size() > kHeadsKept) state_.heads.pop_front();
 
-  const bool following = task_ && task_->task == msg::kTaskFollowLine && task_->goal_state == msg::kGoalRunning;
-  if (following) {
+  if (following_line()) {
     if (const auto distance = report::cross_track_m(head.X.p, line_m_)) state_.cross_track.add(*distance);
-    if (line_ && line_.fresh()) {
-      ++state_.percepts_following;
-      state_.percepts_visible += line_->visible ? 1 : 0;
-    }
   }
   if (pose_ && pose_.fresh()) {
     for (const report::PoseAtTick& then : state_.heads) {
@@ -107,6 +107,16 @@ void Report::follow_truth() {
   }
 }
 
+bool Report::following_line() const {
+  return task_ && task_->task == msg::kTaskFollowLine && task_->goal_state == msg::kGoalRunning;
+}
+
+void Report::follow_line() {
+  if (!following_line() || !line_ || !line_.fresh()) return;
+  ++state_.percepts_following;
+  state_.percepts_visible += line_->visible ? 1 : 0;
+}
+
 void Report::follow_effort(const Tick& tick) {
   if (joints_) {
     double power_w = 0.0;
@@ -114,6 +124,7 @@ void Report::follow_effort(const Tick& tick) {
       power_w += std::abs(joints_->torque_nm[i] * joints_->velocity_rad_s[i]);
     state_.effort.add_work(power_w, tick.period_s());
   }
+  if (!truth()) return;
   Eigen::Vector2d centre_m(0, 0);
   for (std::size_t i = 0; i < world_->module_count; ++i)
     centre_m += planar(world_->module_poses[i]).p / static_cast<double>(world_->module_count);
@@ -138,7 +149,8 @@ void Report::follow_mission(const Tick& tick) {
 
 void Report::follow_events() {
   for (const msg::TaskEvent& event : task_events_) {
-    state_.ledger.on_event(event, *scene_, *world_);
+    if (truth()) state_.ledger.on_event(event, *scene_, *world_);
+    state_.believed.on_event(event);
     const std::string name = event.event == msg::kEventNone
                                  ? "goal_" + std::string(name_of(constants::kGoal, event.goal_state))
                                  : name_of(constants::kEvent, event.event);
@@ -177,7 +189,7 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.colour = colour;
   moment.state = state_.mission_state;
   const bool has_camera = camera_ && image_violation(*camera_).empty();
-  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, *world_);
+  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, world_ ? &*world_ : nullptr);
 }
 
 void Report::follow_images() {
@@ -231,6 +243,7 @@ std::string Report::failure() const {
     case msg::kMissionRunning:
       return state_.run_end_reason;
     case msg::kMissionSucceeded:
+      if (!truth()) return {};
       return state_.ledger.sequence.empty() ? line_shortfall() : state_.ledger.shortfall(*scene_, *world_);
     default:
       return "the planner gave up: " + (state_.mission_reason.empty() ? "it gave no reason" : state_.mission_reason);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct ReportState {
   report::PoseAtTick start;              ///< X_WM: pose of the head at the start of the run
   std::deque<report::PoseAtTick> heads;  ///< true poses of the last ticks: an estimate may belong to an earlier tick
   report::ObjectLedger ledger;
+  report::BelievedLedger believed;  ///< used if there is no ground truth
   report::MomentAlbum album;
   std::uint64_t torques_length = 0;  ///< [byte] length of each journal
   std::uint64_t events_length = 0;
@@ -46,8 +48,8 @@ struct ReportState {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(cross_track, pose_error_m, pose_error_rad, effort, percepts_following, percepts_visible, start, heads,
-            ledger, album, torques_length, events_length, states_length, parameters_length, mission_state, mission,
-            mission_reason, recoveries, mission_end_tick, run_end_reason, finished);
+            ledger, believed, album, torques_length, events_length, states_length, parameters_length, mission_state,
+            mission, mission_reason, recoveries, mission_end_tick, run_end_reason, finished);
   }
 };
 
@@ -56,7 +58,8 @@ struct ReportState {
 /// Pictures of the scene are drawn from saved world states when the run ends. Without an output directory it judges the
 /// mission and ends the run, but writes nothing. It ends the run `settle_s` after the end of the mission, or at
 /// `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same files, and they give this
-/// end as the reason.
+/// end as the reason. Without ground truth (a real robot, or emulated hardware), success is what the robot believes,
+/// and the figures that need ground truth are unknown.
 class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
@@ -65,8 +68,12 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
 
  private:
   Report(Wiring& wiring, const Setup& setup, const RobotModel& robot);
+  /// Whether the world is known, as it is in a simulation.
+  [[nodiscard]] bool truth() const { return world_ && scene_; }
   void read_line();
   void follow_truth();
+  [[nodiscard]] bool following_line() const;
+  void follow_line();
   void follow_effort(const Tick& tick);
   void follow_events();
   void follow_parameters(const Tick& tick);
@@ -76,7 +83,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   void add_moment(std::int64_t tick, double time_s, std::uint8_t event, std::uint8_t colour);
   /// Records that the run ends while the mission is running: the report shows `reason`, and the figure gets a last row.
   void end_early(const Tick& tick, const std::string& reason);
-  /// True if the planner ended the mission successfully and ground truth agrees.
+  /// True if the planner ended the mission successfully and ground truth, if it is known, agrees.
   [[nodiscard]] bool success() const;
   /// Why the mission did not succeed; empty on success.
   [[nodiscard]] std::string failure() const;
@@ -85,8 +92,12 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   // Defined in report_files.cpp.
   void write_files(const Tick& tick);
   [[nodiscard]] std::string mission_json(const Tick& tick) const;
+  [[nodiscard]] nlohmann::ordered_json objects_json() const;
+  [[nodiscard]] std::string scenario() const;
   void draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const;
 
+  std::string scenario_;  // name of the scenario file, without folder and ending
+  std::uint64_t seed_;
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never
   std::filesystem::path folder_;
   std::vector<std::size_t> yaw_joints_;

@@ -54,30 +54,48 @@ std::string caption_of(const report::Moment& moment, bool mission_ended) {
 
 }  // namespace
 
+std::string Report::scenario() const { return scene_ ? std::string(scene_->scenario) : scenario_; }
+
+ordered_json Report::objects_json() const {
+  ordered_json objects = ordered_json::array();
+  if (!truth()) {
+    for (const report::BelievedObject& object : state_.believed.objects) {
+      objects.push_back({{"colour", name_of(constants::kColour, object.colour)},
+                         {"grasped", object.grasped},
+                         {"dropped", object.dropped},
+                         {"in_zone", nullptr},
+                         {"zone_distance_m", nullptr}});
+    }
+    return objects;
+  }
+  for (std::size_t i = 0; i < state_.ledger.objects.size(); ++i) {
+    const report::ObjectRecord& record = state_.ledger.objects[i];
+    const report::ZoneVerdict verdict = report::judge_zone(*scene_, *world_, i);
+    objects.push_back({{"colour", name_of(constants::kColour, scene_->objects[i].colour)},
+                       {"grasped", record.grasped},
+                       {"dropped", record.dropped},
+                       {"in_zone", verdict.in_zone},
+                       {"zone_distance_m", verdict.distance_m}});
+  }
+  return objects;
+}
+
 std::string Report::mission_json(const Tick& tick) const {
   ordered_json json;
   json["success"] = success();
-  json["seed"] = scene_->seed;
-  json["scenario"] = scene_->scenario;
+  json["judged_by"] = truth() ? "ground truth" : "the robot";
+  json["seed"] = scene_ ? scene_->seed : seed_;
+  json["scenario"] = scenario();
   json["sim_time_s"] = tick.time_s();
   json["ticks"] = tick.index;
-  json["state_hash"] = hex(world_->state_hash);
+  json["state_hash"] = world_ ? ordered_json(hex(world_->state_hash)) : ordered_json();
   json["reason"] = failure();
   json["mission"] = success() ? "succeeded" : state_.mission == msg::kMissionRunning ? "unfinished" : "failed";
   json["believed"] = state_.mission == msg::kMissionSucceeded ? "succeeded"
                      : state_.mission == msg::kMissionRunning ? "unfinished"
                                                               : "failed";
   json["recoveries"] = state_.recoveries;
-  json["objects"] = ordered_json::array();
-  for (std::size_t i = 0; i < state_.ledger.objects.size(); ++i) {
-    const report::ObjectRecord& record = state_.ledger.objects[i];
-    const report::ZoneVerdict verdict = report::judge_zone(*scene_, *world_, i);
-    json["objects"].push_back({{"colour", name_of(constants::kColour, scene_->objects[i].colour)},
-                               {"grasped", record.grasped},
-                               {"dropped", record.dropped},
-                               {"in_zone", verdict.in_zone},
-                               {"zone_distance_m", verdict.distance_m}});
-  }
+  json["objects"] = objects_json();
   const double visible = state_.percepts_following > 0 ? static_cast<double>(state_.percepts_visible) /
                                                              static_cast<double>(state_.percepts_following)
                                                        : std::nan("");
@@ -88,7 +106,7 @@ std::string Report::mission_json(const Tick& tick) const {
                         {"rms_rad", state_.pose_error_rad.rms()},
                         {"max_m", state_.pose_error_m.max()}};
   json["effort"] = {{"work_j", state_.effort.work_j},
-                    {"distance_m", state_.effort.distance_m},
+                    {"distance_m", truth() ? state_.effort.distance_m : std::nan("")},
                     {"cost_of_transport", state_.effort.cost_of_transport(mass_kg_)}};
   json["events"] = lines_of(events_.read(state_.events_length));
   json["states"] = lines_of(states_.read(state_.states_length));
@@ -113,8 +131,8 @@ void Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& mo
   }
   const std::string outcome = success() ? "succeeded" : "did not succeed";
   const report::FigureHeading heading{"Line following and whole-body grasping",
-                                      fmt::format("scenario {}, seed {}: {} after {:.1f} s",
-                                                  std::string(scene_->scenario), scene_->seed, outcome, tick.time_s()),
+                                      fmt::format("scenario {}, seed {}: {} after {:.1f} s", scenario(),
+                                                  scene_ ? scene_->seed : seed_, outcome, tick.time_s()),
                                       failure()};
   const cv::Mat figure = report::draw_figure(heading, rows, report::parse_torques(torques_.read(state_.torques_length)),
                                              config_.torque_window_s);
@@ -125,7 +143,7 @@ void Report::write_files(const Tick& tick) {
   if (folder_.empty()) return;
   if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_);
   const std::vector<report::Moment> moments = report::figure_rows(state_.album.moments);
-  report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_);
+  if (scene_) report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_);
   draw_figure(tick, moments);
   // mission.json is written last: its presence shows that the other files are complete.
   report::replace_file(folder_ / "mission.json", mission_json(tick));

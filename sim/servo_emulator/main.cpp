@@ -1,23 +1,22 @@
 // servo_emulator: answers on pseudo-terminals as the servos and boards of a robot would, and moves the robot in the
 // simulated world in real time.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sched.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
-#include <system_error>
+#include <fstream>
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "log/log.hpp"
+#include "plant/real_time.hpp"
 #include "robot/robot_model.hpp"
+#include "sim/emulation/command_pipe.hpp"
+#include "sim/emulation/shared_world.hpp"
+#include "sim/emulation/verdict.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "sim/servo_emulator/emulated_robot.hpp"
 #include "sim/servo_emulator/pseudo_terminal.hpp"
@@ -43,62 +42,13 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-/// A named pipe from which the emulator reads commands.
-class CommandPipe {
- public:
-  explicit CommandPipe(fs::path file) : file_(std::move(file)) {
-    fs::remove(file_);
-    // Both ends are open, so that the pipe does not end when a writer closes it.
-    if (::mkfifo(file_.c_str(), 0600) != 0 ||
-        (descriptor_ = ::open(file_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) < 0)
-      throw std::system_error(errno, std::generic_category(), file_.string());
-  }
-  ~CommandPipe() {
-    ::close(descriptor_);
-    std::error_code ignored;
-    fs::remove(file_, ignored);
-  }
-  CommandPipe(const CommandPipe&) = delete;
-  CommandPipe& operator=(const CommandPipe&) = delete;
-  [[nodiscard]] int descriptor() const { return descriptor_; }
-
-  /// Calls `use` for each whole line that has arrived.
-  template <class Use>
-  void read(Use&& use) {
-    char buffer[512];
-    for (ssize_t count = 0; (count = ::read(descriptor_, buffer, sizeof buffer)) > 0;) {
-      text_.append(buffer, static_cast<std::size_t>(count));
-      for (auto end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
-        use(text_.substr(0, end));
-        text_.erase(0, end + 1);
-      }
-      if (text_.size() > kLongest) text_.clear();
-    }
-  }
-
- private:
-  static constexpr std::size_t kLongest = 4096;
-  fs::path file_;
-  int descriptor_ = -1;
-  std::string text_;
-};
-
-/// Real servos answer in time however busy the computer is. So the emulator asks for the real-time scheduler.
-void ask_for_real_time(const Log& log) {
-  sched_param parameters{};
-  parameters.sched_priority = kPriority;
-  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return;
-  log.warning(
-      "the real-time scheduler is not allowed ({}): on a busy computer answers may be late; "
-      "`setcap cap_sys_nice+ep` on this program, or an rtprio limit in /etc/security/limits.conf, allows it",
-      ::strerrordesc_np(errno));
-}
-
 int emulate(const Options& options, const Log& log) {
   const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
   fs::create_directories(options.output);
   EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
   WorldFile world(options.output / "world.jsonl", robot.world());
+  emulation::SharedWorldWriter shared(options.output / "world.state");
+  const auto sequence = emulation::mission_sequence(options.scenario);
   std::vector<std::unique_ptr<PseudoTerminal>> terminals;
   for (const auto& port : plan.ports) {
     if (fs::path(port.device).is_absolute())
@@ -108,10 +58,12 @@ int emulate(const Options& options, const Log& log) {
                       options.bus.string(), port.device));
     terminals.push_back(std::make_unique<PseudoTerminal>(options.output / port.device));
   }
-  CommandPipe commands(options.output / "servo_emulator.commands");
+  emulation::CommandPipe commands(options.output / "servo_emulator.commands");
   log.info("{} servos answer at {} ports in {}", plan.joints.size(), terminals.size(), options.output.string());
 
-  ask_for_real_time(log);
+  // Real servos answer in time however busy the computer is.
+  if (const std::string refusal = prefer_this_process(kPriority); !refusal.empty())
+    log.warning("on a busy computer answers may be late: {}", refusal);
   const auto start = Clock::now();
   const auto now_ns = [&] { return std::chrono::nanoseconds(Clock::now() - start).count(); };
   std::vector<pollfd> waits;
@@ -138,13 +90,17 @@ int emulate(const Options& options, const Log& log) {
       if (refusal.empty()) log.info("obeys '{}'", line);
       else log.warning("refuses a command: {}", refusal);
     });
-    if (robot.advance_to(now_ns()) > 0) world.note(robot.world(), robot.left_out_ns());
+    if (robot.advance_to(now_ns()) > 0) {
+      shared.write(robot.world());
+      world.note(robot.world(), robot.left_out_ns());
+    }
     for (std::size_t i = 0; i < terminals.size(); ++i) {
       auto& outgoing = robot.line(i).outgoing();
       for (; !outgoing.empty() && outgoing.front().at_ns <= now_ns(); outgoing.pop_front())
         terminals[i]->write(outgoing.front().bytes);
     }
   }
+  std::ofstream(options.output / "truth.json") << emulation::verdict_json(robot.world(), sequence, robot.left_out_ns());
   log.info("ends after {:.1f} s", robot.world().time_s());
   return 0;
 }
@@ -160,7 +116,8 @@ int main(int argc, char** argv) {
   app.add_option("--bus", options.bus, "bus file (YAML): the servos, their ids and ports")->check(CLI::ExistingFile);
   app.add_option("--seed", options.seed, "seed of the scenario and of the noise");
   app.add_option("--output", options.output,
-                 "folder in which the ports, the pipe servo_emulator.commands and the file world.jsonl are made")
+                 "folder in which the ports, the pipe servo_emulator.commands, and the files world.jsonl,\nworld.state "
+                 "and truth.json are made")
       ->capture_default_str();
   app.footer(
       "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"

@@ -14,6 +14,7 @@
 #include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
+#include "constrictor/topics.hpp"
 #include "runtime/numeric_profile.hpp"
 #include "runtime/pacer.hpp"
 
@@ -130,6 +131,13 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   if (manifest.real_time && options.pace != "lockstep" && options.pace != "realtime")
     throw UsageError(fmt::format("--pace: found {}, accepted realtime: the plant of manifest {} follows the wall clock",
                                  options.pace, options.manifest));
+  for (const auto& process : manifest.processes) {
+    const auto& hosted = process.components;
+    const bool camera = std::find(hosted.begin(), hosted.end(), topics::kCameraImage.writer) != hosted.end();
+    if (options.record && options.images == "recompute" && camera && !process.program.empty())
+      throw UsageError(fmt::format(
+          "--images: found recompute, accepted on or off: the images of {} cannot be computed again", process.program));
+  }
   for (const auto& companion : manifest.beside) require_program(companion.program, "beside");
   if (!options.scenario.empty()) manifest.scenario_file = find_file(options.scenario, kScenarios);
   if (!options.robot.empty()) manifest.robot_file = find_file(options.robot, kRobots);

@@ -224,10 +224,12 @@ class Launcher {
     }
     if (options_.record) outcome.recording = recording_report(report_dir_);
     if (!outcome.recording.is_null()) display_.print(outcome.recording["text"].get<std::string>());
+    companions_.reset();  // emulated devices write what really happened when they end
     const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records(), hosts_.report());
     display_.print(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
                                verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")",
                                verdict.sim_time_s, wall_time_s, (report_dir_ / "report.json").string()));
+    if (!verdict.truth.empty()) display_.print(verdict.truth);
     return verdict.success ? exit_status::kOk : status;
   }
 

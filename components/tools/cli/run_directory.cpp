@@ -30,8 +30,8 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
   } else {
     fs::create_directories(dir);
   }
-  for (const char* old :
-       {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json", kRecordingFile, kOpenChunkFile})
+  for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json", "truth.json",
+                          kRecordingFile, kOpenChunkFile})
     fs::remove(dir / old);
   remove_checkpoints(dir);
   return fs::absolute(dir);

@@ -40,7 +40,9 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   std::ifstream mission_file(report_dir / "mission.json");
   Json mission = Json::parse(mission_file, nullptr, false);
   if (!mission.is_object()) mission = Json::object();
-  const RunVerdict verdict = judge(outcome, view, mission);
+  RunVerdict verdict = judge(outcome, view, mission);
+  std::ifstream truth_file(report_dir / "truth.json");
+  const Json truth = Json::parse(truth_file, nullptr, false);
 
   // Every report has these keys, in this order; those of the mission are null if no report component took part.
   Json report = Json::object();
@@ -77,6 +79,12 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                                  {"config_hash", hello.config_hash},
                                  {"component_hash", hello.component_hash},
                                  {"numeric_profile", hello.numeric_profile}});
+  }
+  if (truth.is_object()) {
+    report["truth"] = truth;
+    const std::string reason = truth.value("reason", std::string());
+    verdict.truth = truth.value("success", false) ? "in the emulated world, the mission has succeeded"
+                                                  : "in the emulated world, the mission has not succeeded: " + reason;
   }
   if (!hosts.is_null()) report["hosts"] = hosts;
   if (!outcome.recording.is_null()) report["recording"] = outcome.recording;

@@ -49,7 +49,7 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
   EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
   EXPECT_EQ(names_of(kManifests),
             (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live", "case_study_mx106",
-                                      "emulated_servos", "manual", "two_hosts"}));
+                                      "emulated_hardware", "emulated_servos", "manual", "two_hosts"}));
 }
 
 TEST_F(LaunchPlanTest, ARealPlantFollowsTheWallClock) {
@@ -61,6 +61,16 @@ TEST_F(LaunchPlanTest, ARealPlantFollowsTheWallClock) {
   EXPECT_EQ(std::count(line.begin(), line.end(), "--realtime"), 1);
   options_.pace = "2x";
   EXPECT_THROW(static_cast<void>(make_launch_plan(options_)), UsageError);
+}
+
+TEST_F(LaunchPlanTest, ImagesOfARealCameraCannotBeComputedAgain) {
+  options_.manifest = "emulated_hardware";
+  options_.record = true;
+  EXPECT_EQ(make_launch_plan(options_).manifest.beside.size(), 2u);
+  options_.images = "recompute";
+  EXPECT_THROW(static_cast<void>(make_launch_plan(options_)), UsageError);
+  options_.manifest = "case_study";
+  static_cast<void>(make_launch_plan(options_));
 }
 
 TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "host/known_components.hpp"
+#include "video_capture/video_capture.hpp"
 
 namespace constrictor {
 namespace {
@@ -98,13 +99,14 @@ std::string content_of(const std::filesystem::path& file) {
 
 std::vector<DerivedFile> derived_files(const std::filesystem::path& root) {
   std::vector<DerivedFile> files;
-  for (const auto& [name, make] : known_components()) {
-    const ComponentFactory factory = make();
+  std::vector<ComponentFactory> factories = {make_video_capture_factory()};  // it is not a part of constrictor_host
+  for (const auto& [name, make] : known_components()) factories.push_back(make());
+  for (const ComponentFactory& factory : factories) {
     if (!factory.parameters) continue;
     const auto rows = factory.parameters({});
     if (rows.empty()) continue;
     const auto folder = factory.default_config.parent_path();
-    files.push_back({root / factory.default_config, yaml_text(name, folder.string(), rows), {}});
+    files.push_back({root / factory.default_config, yaml_text(factory.name, folder.string(), rows), {}});
     const auto readme = root / folder / "README.md";
     DerivedFile documented{readme, with_table(content_of(readme), markdown_table(rows)), {}};
     if (documented.text.empty()) {

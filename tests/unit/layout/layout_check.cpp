@@ -151,8 +151,8 @@ std::vector<std::string> symbol_violations(const Library& library) {
   // The runtime and the programs on top of it are there to talk DDS and to look at the clock.
   const bool talks_dds = library.folder == "components/lib/cyclone" || library.folder == "components/lib/runtime" ||
                          library.folder == "components/lib/client" || library.folder == "components/tools/cli";
-  // A serial port has answers to wait for; it gives the time to the driver as an argument.
-  const bool waits_for_devices = library.folder == "components/lib/serial";
+  // A serial port has answers to wait for, and a frame has an age; they give the time to the driver as an argument.
+  const bool waits_for_devices = library.folder == "components/lib/serial" || library.folder == "components/lib/video";
   if (talks_dds || waits_for_devices || library.folder == "idl") return {};
   static const std::array<const char*, 12> kForbidden = {"clock_gettime",
                                                          "gettimeofday",

@@ -40,6 +40,8 @@ Outcome report_of(const Story& story, const std::vector<std::int64_t>& restarts 
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.output_dir = folder.path() / "run";
   setup.max_sim_time_s = early.plant_limit_s;
+  setup.scenario_file = "/somewhere/blind_story.yaml";  // only its name is used, and only without ground truth
+  setup.seed = 12;
   std::map<std::string, std::filesystem::path> config_files;
   if (!configuration.empty()) {
     report::replace_file(configurations.path() / "report.yaml", configuration);
@@ -70,6 +72,7 @@ TEST(Report, FiguresAreThoseOfTheScript) {
   const Outcome outcome = report_of(story);
   const json& mission = outcome.mission;
   EXPECT_EQ(mission["success"], true);
+  EXPECT_EQ(mission["judged_by"], "ground truth");
   EXPECT_EQ(mission["seed"], 11);
   EXPECT_EQ(mission["scenario"], "story");
   EXPECT_NEAR(mission["line"]["rms_cross_track_m"], story.offset_m, 1e-9);
@@ -245,6 +248,43 @@ TEST(Report, EndsTheRunWithoutAnOutputFolder) {
   run.advance(2000);
   EXPECT_TRUE(run.ended());
   EXPECT_LT(run.tick(), 600);
+}
+
+TEST(Report, WithoutGroundTruthTellsWhatTheRobotBelieves) {
+  Story story;
+  story.truth = false;
+  const Outcome outcome = report_of(story, {100, 321});
+  const json& mission = outcome.mission;
+  EXPECT_EQ(mission["success"], true);
+  EXPECT_EQ(mission["judged_by"], "the robot");
+  EXPECT_EQ(mission["believed"], "succeeded");
+  EXPECT_EQ(mission["scenario"], "blind_story");
+  EXPECT_EQ(mission["seed"], 12);
+  const json green = {
+      {"colour", "green"}, {"grasped", true}, {"dropped", true}, {"in_zone", nullptr}, {"zone_distance_m", nullptr}};
+  ASSERT_EQ(mission["objects"].size(), 2U);
+  EXPECT_EQ(mission["objects"][0], green);
+  EXPECT_EQ(mission["objects"][1]["colour"], "red");
+  for (const auto& unknown :
+       {mission["state_hash"], mission["line"]["rms_cross_track_m"], mission["pose_error"]["rms_m"],
+        mission["effort"]["distance_m"], mission["effort"]["cost_of_transport"]})
+    EXPECT_TRUE(unknown.is_null()) << unknown;
+  EXPECT_NEAR(mission["line"]["visible_fraction"], 0.75, 0.02);
+  EXPECT_EQ(mission["events"].size(), test::scripted_events().size());
+  EXPECT_EQ(outcome.files.count("run/figure.png"), 1U);
+  EXPECT_GT(
+      outcome.files.count("run/snapshots/0000121_camera.png") + outcome.files.count("run/snapshots/0000120_camera.png"),
+      0U);
+  for (const auto& [name, content] : outcome.files) EXPECT_EQ(name.find("_scene"), std::string::npos) << name;
+}
+
+TEST(Report, WithoutGroundTruthAMissionThatFailedHasFailed) {
+  Story story;
+  story.truth = false;
+  story.mission_end = msg::kMissionFailed;
+  const Outcome outcome = report_of(story);
+  EXPECT_EQ(outcome.mission["success"], false);
+  EXPECT_EQ(outcome.mission["reason"], "the planner gave up: more than 60 recoveries");
 }
 
 }  // namespace

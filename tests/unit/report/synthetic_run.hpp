@@ -28,6 +28,7 @@ struct Story {
   std::uint8_t mission_end = msg::kMissionSucceeded;  ///< what the planner announces then
   std::uint16_t objects_in_mission = 2;
   double line_length_m = 10.0;
+  bool truth = true;                        ///< whether the plant publishes ground truth
   std::int64_t torn_from_tick = 1'000'000;  ///< from this tick on images have fewer bytes than their size requires
 };
 
@@ -66,6 +67,16 @@ class StoryPlant : public testing::PlantBase {
         world_(wiring.output(topics::kWorldState)),
         joints_(wiring.output(topics::kJointState)) {}
   void sample(const Tick& tick) override {
+    if (story_.truth) write_truth(tick);
+    msg::JointState joints{};
+    joints.joint_count = 23;
+    for (int i = 0; i < 23; i += 2)
+      joints.torque_nm[i] = 3.0 * std::sin(0.3 * i + 2.0 * tick.time_s()) * (tick.index > 120 ? 1.5 : 1.0);
+    joints_.write(joints);
+  }
+
+ private:
+  void write_truth(const Tick& tick) {
     if (tick.index == 0) write_scene();
     msg::WorldState world{};
     world.module_count = kModules;
@@ -90,14 +101,7 @@ class StoryPlant : public testing::PlantBase {
     world.state_hash[0] = static_cast<std::uint8_t>(tick.index & 0xFF);
     world.state_hash[31] = 0xAB;
     world_.write(world);
-    msg::JointState joints{};
-    joints.joint_count = 23;
-    for (int i = 0; i < 23; i += 2)
-      joints.torque_nm[i] = 3.0 * std::sin(0.3 * i + 2.0 * tick.time_s()) * (tick.index > 120 ? 1.5 : 1.0);
-    joints_.write(joints);
   }
-
- private:
   void write_scene() {
     const auto scene = std::make_unique<msg::SceneDescription>();
     *scene = {};

@@ -64,6 +64,17 @@ TEST_F(DrivenRobot, TheTorqueLimitOfTheCommandIsThatOfTheServo) {
   EXPECT_NEAR(static_cast<double>(servo.get("goal_current")) * 0.00269 * 7.3 / 4.4, 1.3, 0.005);
 }
 
+TEST_F(DrivenRobot, NeverAsksForALoadThatServosShutDownAt) {
+  command_ = [](std::int64_t, msg::JointCommand& command) {
+    command.torque_limit_nm[4] = 7.0;
+    return true;
+  };
+  start();
+  ticks(20);
+  const double asked_a = static_cast<double>(bench_.robot->servo(4).get("goal_current")) * 0.00269;
+  EXPECT_NEAR(asked_a, 0.75 * 4.4, 0.003);
+}
+
 TEST_F(DrivenRobot, AbsurdAndMissingCommandsAreRefusedAndThePostureIsHeld) {
   command_ = bend(0.2);
   start();

@@ -1,0 +1,13 @@
+// Where the camera of the robot file is.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "robot/robot_model.hpp"
+
+namespace constrictor {
+
+/// X_HC: pose of the camera (z along the view, x right, y down) in the head (x forward, y left, z up).
+[[nodiscard]] Eigen::Isometry3d camera_mount(const CameraModel& camera);
+
+}  // namespace constrictor

@@ -1,0 +1,173 @@
+// camera_emulator: serves what the camera of the emulated robot sees, as multipart JPEG over HTTP, in real time.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <deque>
+#include <fstream>
+
+#include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
+#include "log/log.hpp"
+#include "sim/camera_emulator/emulated_camera.hpp"
+#include "sim/camera_emulator/stream_server.hpp"
+#include "sim/emulation/command_pipe.hpp"
+#include "sim/emulation/shared_world.hpp"
+#include "sim/scenario_loader/scenario_file.hpp"
+
+namespace {
+
+using namespace constrictor;
+using namespace constrictor::camera_emulator;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTick_s = 0.02;  // in which the robot file counts the camera's period
+constexpr auto kLongestWait = std::chrono::milliseconds(20);
+
+volatile std::sig_atomic_t g_stop = 0;
+void on_signal(int) { g_stop = 1; }
+
+struct Options {
+  fs::path robot = data_path("components/lib/robot/mamba.yaml");
+  fs::path scenario = data_path("sim/scenarios/case_study.yaml");
+  fs::path output = ".";
+  fs::path world;
+  std::uint64_t seed = 1;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;
+  double frame_rate_hz = 0.0;
+  CameraSettings settings{1, 90, {false, false, false, false, 0.0, 0.02, 0.0, 0.0}};
+};
+
+/// Writes the address of the stream as a whole, so that a reader never sees half of it.
+void announce(const fs::path& file, const std::string& address) {
+  const fs::path next = file.string() + ".new";
+  std::ofstream stream(next, std::ios::trunc);
+  stream << address << "\n";
+  stream.close();
+  if (!stream) throw std::runtime_error(fmt::format("cannot write {}", next.string()));
+  fs::rename(next, file);
+}
+
+int emulate(const Options& options, const Log& log) {
+  const RobotModel robot = load_robot(options.robot);
+  const Scenario scenario = load_scenario(options.scenario, options.seed);
+  fs::create_directories(options.output);
+  EmulatedCamera camera(robot, scenario, options.seed, options.settings);
+  emulation::SharedWorldReader world(options.world.empty() ? options.output / "world.state" : options.world,
+                                     robot.module_count, scenario.objects.size());
+  StreamServer server(options.address, options.port);
+  emulation::CommandPipe commands(options.output / "camera_emulator.commands");
+  const fs::path url = options.output / "camera_emulator.url";
+  const std::string address = fmt::format("http://{}:{}/stream", options.address, server.port());
+  announce(url, address);
+  log.info("serves {} x {} pixels at {}", robot.camera.width * options.settings.scale,
+           robot.camera.height * options.settings.scale, address);
+
+  const double rate_hz =
+      options.frame_rate_hz > 0.0 ? options.frame_rate_hz : 1.0 / (kTick_s * robot.camera.period_ticks);
+  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
+  struct Waiting {
+    Clock::time_point at;
+    Jpeg jpeg;
+  };
+  std::deque<Waiting> waiting;
+  Clock::time_point next_exposure = Clock::now();
+  bool seen = false;
+  const pid_t parent = ::getppid();
+  while (!g_stop && ::getppid() == parent) {  // whoever started it must not leave it behind
+    commands.read([&](const std::string& line) {
+      const std::string refusal = camera.command(line);
+      if (refusal.empty()) log.info("obeys '{}'", line);
+      else log.warning("refuses a command: {}", refusal);
+      server.switch_on(!camera.faults().off);
+    });
+    const auto now = Clock::now();
+    if (now >= next_exposure) {
+      next_exposure += period;
+      if (next_exposure < now) next_exposure = now + period;  // a slow host leaves frames out
+      if (const auto snapshot = world.read()) {
+        if (!std::exchange(seen, true)) log.info("sees the world");
+        const EmulatedFrame frame = camera.expose(snapshot->world);
+        // A later frame never overtakes an earlier one.
+        auto at = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.delay_s));
+        if (!waiting.empty()) at = std::max(at, waiting.back().at);
+        if (frame.jpeg) waiting.push_back({at, frame.jpeg});
+      }
+    }
+    for (; !waiting.empty() && waiting.front().at <= Clock::now(); waiting.pop_front()) {
+      if (!camera.faults().silent && !camera.faults().off) server.send(waiting.front().jpeg);
+    }
+    auto end = std::min(next_exposure, Clock::now() + kLongestWait);
+    if (!waiting.empty()) end = std::min(end, waiting.front().at);
+    server.serve_until(end);
+  }
+  std::error_code ignored;
+  fs::remove(url, ignored);
+  log.info("ends");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"camera_emulator: serves what the camera of the emulated robot sees, as multipart JPEG over HTTP."};
+  app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--seed", options.seed, "seed of the scenario and of the noise");
+  app.add_option("--output", options.output,
+                 "folder in which camera_emulator.url and the pipe camera_emulator.commands are made")
+      ->capture_default_str();
+  app.add_option("--world", options.world,
+                 "file in which servo_emulator keeps its world (default: world.state in --output)");
+  app.add_option("--address", options.address, "IP address to listen on")->capture_default_str();
+  app.add_option("--port", options.port, "TCP port; 0: a free one")->capture_default_str();
+  app.add_option("--rate", options.frame_rate_hz, "[Hz] frames in a second; 0: as in the robot file")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 120.0));
+  app.add_option("--scale", options.settings.scale, "times the width and height of the robot file")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 4));
+  app.add_option("--quality", options.settings.jpeg_quality, "of the JPEG pictures")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100));
+  app.add_option("--delay", options.settings.usual.delay_s, "[s] from the exposure until a frame is sent")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--jitter", options.settings.usual.jitter_s, "[s] up to so much is added to the delay of each frame")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--drop", options.settings.usual.drop, "probability that a frame is never sent")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  app.footer(
+      "It draws the world of a servo_emulator with the same robot, scenario and seed, and sends no frame before that\n"
+      "runs. It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
+      "EXAMPLES\n  servo_emulator --output /tmp/robot &\n  camera_emulator --output /tmp/robot --port 8080\n"
+      "  ffplay http://127.0.0.1:8080/stream\n  echo 'blur 3' > /tmp/robot/camera_emulator.commands\n\n"
+      "EXIT STATUS\n  0 it was ended; 64 wrong usage; 70 it failed; 78 wrong configuration");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  const Log log("camera_emulator");
+  try {
+    return emulate(options, log);
+  } catch (const ConfigurationError& error) {
+    log.error("configuration: {}", error.what());
+    return 78;
+  } catch (const std::exception& error) {
+    log.error("{}", error.what());
+    return 70;
+  }
+}

@@ -1,0 +1,28 @@
+// A named pipe from which an emulator reads commands, one a line.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace constrictor::emulation {
+
+class CommandPipe {
+ public:
+  /// Replaces the file. Throws std::system_error.
+  explicit CommandPipe(std::filesystem::path file);
+  ~CommandPipe();
+  CommandPipe(const CommandPipe&) = delete;
+  CommandPipe& operator=(const CommandPipe&) = delete;
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  /// Calls `use` for each whole line that has arrived. Never waits.
+  void read(const std::function<void(const std::string& line)>& use);
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::string text_;
+};
+
+}  // namespace constrictor::emulation
