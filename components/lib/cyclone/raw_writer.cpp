@@ -27,4 +27,8 @@ int RawWriter::readers() const {
   return check(dds_get_matched_subscriptions(writer_.get(), nullptr, 0), "dds_get_matched_subscriptions");
 }
 
+bool RawWriter::flush(std::chrono::milliseconds bound) const {
+  return dds_wait_for_acks(writer_.get(), DDS_MSECS(bound.count())) == DDS_RETCODE_OK;
+}
+
 }  // namespace constrictor::dds

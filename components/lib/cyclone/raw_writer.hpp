@@ -2,6 +2,7 @@
 // with.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -23,6 +24,9 @@ class RawWriter {
   /// Writes a sample with its encapsulation header. Never blocks. Throws Error.
   void write(std::span<const std::uint8_t> cdr) const;
   [[nodiscard]] int readers() const;
+  /// Waits until the reliable readers have acknowledged everything that was written. False if they have not within
+  /// `bound`.
+  [[nodiscard]] bool flush(std::chrono::milliseconds bound) const;
 
  private:
   RawTopic topic_;

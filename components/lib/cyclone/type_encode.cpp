@@ -85,18 +85,21 @@ class Encoder {
         std::max(field && field->info.has_range ? field->info.min : -INFINITY, static_cast<double>(Limits::min()));
     const double most =
         std::min(field && field->info.has_range ? field->info.max : INFINITY, static_cast<double>(Limits::max()));
-    const auto accepted = [&] { return fmt::format("a whole number from {:.0f} to {:.0f}", least, most); };
+    const ConstantGroup* group = field ? field->info.constants : nullptr;
+    const auto accepted = [&] {
+      if (!group) return fmt::format("a whole number from {:.0f} to {:.0f}", least, most);
+      const auto names = names_of(*group, static_cast<std::uint8_t>(least));
+      const auto count = std::min(names.size(), static_cast<std::size_t>(most - least) + 1);
+      return fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count), ", "));
+    };
     if (!given) {
       if (least > 0.0) wrong(path, std::string("nothing"), accepted());
       return put<T>(0);
     }
-    if (field && field->info.constants) {
-      const ConstantGroup& group = *field->info.constants;
-      if (value.is_string()) {
-        const auto constant = value_of(group, value.get<std::string>());
-        if (!constant) wrong(path, value, listed(group));
-        return put(static_cast<T>(*constant));
-      }
+    if (group && value.is_string()) {
+      const auto constant = value_of(*group, value.get<std::string>());
+      if (!constant || *constant < least || *constant > most) wrong(path, value, accepted());
+      return put(static_cast<T>(*constant));
     }
     const bool integral = value.is_number_integer() ||
                           (value.is_number_float() && value.get<double>() == std::trunc(value.get<double>()));

@@ -98,9 +98,10 @@ TEST_F(TypeEncode, RefusalsNameTheFieldWhatWasFoundAndWhatIsAccepted) {
   EXPECT_EQ(refusal("Request", R"({"level": 1, "task": "fly"})"),
             "task: found \"fly\", accepted none, follow_line, search_object, track_object, pregrasp, grasp, drop, "
             "rotate, explore, follow_path");
-  EXPECT_EQ(refusal("Request", R"({})"), "level: found nothing, accepted a whole number from 1 to 3");
-  EXPECT_EQ(refusal("Request", R"({"level": 4})"), "level: found 4, accepted a whole number from 1 to 3");
-  EXPECT_EQ(refusal("Request", R"({"level": 2.5})"), "level: found 2.5, accepted a whole number from 1 to 3");
+  EXPECT_EQ(refusal("Request", R"({})"), "level: found nothing, accepted planner, external, operator");
+  EXPECT_EQ(refusal("Request", R"({"level": 4})"), "level: found 4, accepted planner, external, operator");
+  EXPECT_EQ(refusal("Request", R"({"level": "none"})"), "level: found \"none\", accepted planner, external, operator");
+  EXPECT_EQ(refusal("Request", R"({"level": 2.5})"), "level: found 2.5, accepted planner, external, operator");
   EXPECT_EQ(refusal("Request", R"({"level": 2, "robot_id": 65536})"),
             "robot_id: found 65536, accepted a whole number from 0 to 65535");
   EXPECT_EQ(refusal("Request", R"({"level": 2, "robot_id": -1})"),
