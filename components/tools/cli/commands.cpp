@@ -103,6 +103,8 @@ int host_command(int argc, char** argv) {
   return become("constrictor_host", std::move(arguments));
 }
 
+int camera_command(int argc, char** argv) { return become("camera_setup", {argv, argv + argc}); }
+
 int dashboard_command(int argc, char** argv) { return become("dashboard", {argv, argv + argc}); }
 
 void add_commands(CLI::App& app, Action& action) {
@@ -146,6 +148,19 @@ void add_commands(CLI::App& app, Action& action) {
           "EXIT STATUS\n"
           "  0 the run has ended; 64 wrong usage; 70 no run, or the port cannot be opened; 130 Ctrl-C, 143 SIGTERM\n\n"
           "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI");
+
+  app.add_subcommand("camera", "set a new camera up: show, calibrate, mount, colours")
+      ->footer(
+          "The process becomes the program `camera_setup`, which shows its options with `constrictor camera "
+          "--help`.\n\n"
+          "EXAMPLES\n"
+          "  constrictor camera show --source /dev/video0 --out picture.png\n"
+          "  constrictor camera calibrate --source http://10.0.0.7:8080/stream --square 0.024 --out camera.yaml\n\n"
+          "EXIT STATUS\n"
+          "  0 done; 1 it did not succeed, with what to do; 64 wrong usage; 70 the source cannot be read; 78 a file "
+          "is\n"
+          "  wrong; 130 Ctrl-C\n\n"
+          "ENVIRONMENT\n  CONSTRICTOR_DATA   directory of the default files");
 
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
       ->footer(

@@ -1,4 +1,5 @@
-// The smaller subcommands of `constrictor`: end, diff, host and dashboard. Each function returns an exit status.
+// The smaller subcommands of `constrictor`: end, diff, host, camera and dashboard. Each function returns an exit
+// status.
 #pragma once
 
 #include <cstdint>
@@ -19,5 +20,6 @@ int host_command(int argc, char** argv);
 
 /// `constrictor dashboard [OPTION...]`: replaces this process by the program `dashboard`.
 int dashboard_command(int argc, char** argv);
+int camera_command(int argc, char** argv);  ///< becomes camera_setup
 
 }  // namespace constrictor::cli

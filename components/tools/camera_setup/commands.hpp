@@ -1,0 +1,44 @@
+// What the subcommands of `constrictor camera` do. Each returns the exit status.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "component/data_path.hpp"
+#include "video/video_device.hpp"
+
+namespace constrictor::camera_setup {
+
+/// The signal that ends the program; 0: none has arrived.
+extern volatile std::sig_atomic_t g_signal;
+
+/// The user has to do something else.
+class Failed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Options {
+  std::string source;
+  video::DeviceRequest device;
+  std::string board = "9x6";
+  double square_m = 0.025;
+  std::filesystem::path out;
+  std::string calibration;
+  std::filesystem::path robot = data_path("components/lib/robot/mamba.yaml");
+  std::size_t views = 20;  ///< of the board that are collected from a live source
+  double largest_error_px = 1.0;
+  std::vector<double> at_m;
+  double yaw_deg = 0.0;
+  std::vector<std::string> samples;
+};
+
+int show(const Options& options);
+int calibrate(const Options& options);
+int mount(const Options& options);
+int colours(const Options& options);
+
+}  // namespace constrictor::camera_setup
