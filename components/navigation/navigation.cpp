@@ -134,6 +134,7 @@ void Navigation::start_goal(const msg::TaskCommand& command, TaskInput input) {
 void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
   state_.task->step(input, state_.grip, output);
   state_.goal.phase = output.phase;
+  if (output.direction != msg::kDirectionNone) state_.goal.parameters.direction = output.direction;
   state_.goal.progress = std::max(state_.goal.progress, std::clamp(output.progress, 0.0, 1.0));
   for (const EventRecord& record : output.events) {
     write_event(record.event, msg::kGoalRunning, record.colour, record.handle, "");

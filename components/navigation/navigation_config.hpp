@@ -201,12 +201,12 @@ struct GraspConfig : NavigationSection {
   double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, kAtStart,
                             "The body begins to move after the arc has slid this far");
   double wrap_speed_min_m_s =
-      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.08, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
+      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.16, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
   double wrap_speed_max_m_s =
       add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
   double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
                                    "Time constant of the low-pass on the body's speed");
-  Gait wrap = add(wrap, "wrap", {0.5, 0.4, 1.07}, kAtStart, "Gait of the wrap");
+  Gait wrap = add(wrap, "wrap", {0.7, 0.45, 1.07}, kAtStart, "Gait of the wrap");
   Gait seat = add(seat, "seat", {1.0, 0.5, 1.07}, kAtStart, "Gait that drives the base to the object");
   Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, kAtStart, "Gait of the squeeze");
   double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, kAtStart,
@@ -231,24 +231,28 @@ struct GraspConfig : NavigationSection {
 };
 
 struct DropConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance to the course [m]");
-  double fix_course_m = add(fix_course_m, "fix_course_m", 0.35, "m", bounds::kLength, kWhileRunning,
+  PidGains steering = add(steering, "steering", {5.0, 1.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance to the course [m]");
+  Gait gait = add(gait, "gait", {1.1, 0.6, 1.07}, kAtStart, "Gait of the last stretch to the zone");
+  double slow_m = add(slow_m, "slow_m", 1.6, "m", bounds::kLength, kAtStart,
+                      "Length of this last stretch, for the object; before it, the gait is that of carrying");
+  double fix_course_m = add(fix_course_m, "fix_course_m", 0.8, "m", bounds::kLength, kWhileRunning,
                             "The course over the zone stays fixed when the object is nearer to its centre");
-  double brake_m = add(brake_m, "brake_m", 0.08, "m", bounds::kLength, kAtStart,
+  double brake_m = add(brake_m, "brake_m", 0.02, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the course this far ahead");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
-  double open_s = add(open_s, "open_s", 4.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  Gait back = add(back, "back", {2.0, 0.42, 1.07}, kAtStart, "Gait by which the open U leaves the object");
   double back_m =
-      add(back_m, "back_m", 1.3, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
+      add(back_m, "back_m", 1.15, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =
       add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of each backing off");
   double clear_m =
       add(clear_m, "clear_m", 0.6, "m", bounds::kLength, kAtStart,
           "Distance by which the straight robot backs off then, so that its turns do not reach the object");
-  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.3, "rad/s", bounds::kSpeed,
+  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.8, "rad/s", bounds::kSpeed,
                                      kAtStart, "Speed of each joint when the body straightens");
   double approach_timeout_s =
       add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, kAtStart,
@@ -257,7 +261,7 @@ struct DropConfig : NavigationSection {
 
 struct NavigationConfig : NavigationSection {
   Gait travel = add(travel, "travel", {0.7, 0.5, 1.07}, kWhileRunning, "Gait without an object");
-  Gait carry = add(carry, "carry", {1.1, 0.6, 1.07}, kWhileRunning, "Gait with an object in the U");
+  Gait carry = add(carry, "carry", {1.1, 0.8, 1.2}, kWhileRunning, "Gait with an object in the U");
   Gait creep = add(creep, "creep", {0.4, 0.35, 1.07}, kWhileRunning, "Small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,
                                        "The robot stands still when joints, contacts or pose are older than this");

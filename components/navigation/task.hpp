@@ -51,10 +51,11 @@ struct TaskOutput {
   msg::DesiredTrajectory desired{};  ///< the caller fills in motion_id
   bool new_motion = false;           ///< the motion starts again, although its method is the same as before
   std::vector<EventRecord> events;
-  std::uint8_t state = msg::kGoalRunning;  ///< kGoalSucceeded and kGoalAborted end the goal with this step
-  std::string reason;                      ///< why the goal was aborted
-  double progress = 0.0;                   ///< 0 to 1
-  const char* phase = "";                  ///< name of the present part of the task, for people
+  std::uint8_t state = msg::kGoalRunning;        ///< kGoalSucceeded and kGoalAborted end the goal with this step
+  std::string reason;                            ///< why the goal was aborted
+  double progress = 0.0;                         ///< 0 to 1
+  std::uint8_t direction = msg::kDirectionNone;  ///< the task has chosen this direction, which its goal left open
+  const char* phase = "";                        ///< name of the present part of the task, for people
   double cross_track_m = std::numeric_limits<double>::quiet_NaN();  ///< [m] head from the path; NaN: no path
 
   void emit(std::uint8_t event, std::uint8_t colour = msg::kColourUnknown, std::uint16_t handle = 0) {

@@ -70,9 +70,10 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
 
 // An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
-  const auto end =
-      config_.sequence.begin() + std::min<std::ptrdiff_t>(memory_.object_index, std::ssize(config_.sequence));
-  if (std::find(config_.sequence.begin(), end, blob.colour) == end) return false;
+  bool any = false;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i)
+    any = any || (config_.sequence[i] == blob.colour && (memory_.delivered >> i & 1u) != 0);
+  if (!any) return false;
   if (!inputs.pose || !inputs.map) return false;
   const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
   const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
@@ -150,7 +151,15 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     case msg::kTaskNone:
       choose_search(inputs, wanted);
       break;
+    case msg::kTaskExplore:  // of kApproachAnew; each time another way round
+      parameters.direction = memory_.failures % 3 == 2   ? msg::kDirectionBackwards
+                             : memory_.failures % 3 == 0 ? msg::kDirectionLeft
+                                                         : msg::kDirectionRight;
+      break;
     default:
+      // After a failure, the robot passes the object on the other side.
+      if (wanted.task == msg::kTaskPregrasp && memory_.failures > 0 && memory_.side != msg::kDirectionNone)
+        parameters.direction = memory_.side == msg::kDirectionLeft ? msg::kDirectionRight : msg::kDirectionLeft;
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
       break;

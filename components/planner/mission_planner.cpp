@@ -27,26 +27,31 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
-  note_deliveries(inputs);
+  note_drops(inputs);
   if (!may_command(inputs)) return std::nullopt;
-  if (memory_.state == kDone) return std::nullopt;
+  if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   memory_.active_s += elapsed_s;
   // Navigation's report about a held object and the state change at different ticks, so a short contradiction is
   // normal.
   const bool contradicts = inputs.status && memory_.requested && inputs.status->goal_id == kGoalBase + memory_.goals &&
                            inputs.status->carrying != holding();
   memory_.contradiction_s = contradicts ? memory_.contradiction_s + elapsed_s : 0.0;
+  if (inputs.status && memory_.state == kDrop && inputs.status->carrying) memory_.released_tick = inputs.tick;
+  if (inputs.status && memory_.state == kPregrasp && inputs.status->goal_id == kGoalBase + memory_.goals &&
+      inputs.status->parameters.direction != msg::kDirectionNone)
+    memory_.side = inputs.status->parameters.direction;
   count_percepts(inputs);
   if (memory_.requested) {
     if (const auto to = next(inputs)) enter(*to);
   }
-  if (memory_.state == kFailed && memory_.goals > 0) {  // no state will end the running task any more
+  const bool over = memory_.state == kDone || memory_.state == kFailed;
+  if (over && memory_.goals > 0) {  // no state will end the running task any more
     WantedTask cancel;
     cancel.goal_id = memory_.goals;
     cancel.command = msg::kCommandCancel;
     return cancel;
   }
-  if (memory_.requested || memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
+  if (memory_.requested || over) return std::nullopt;
   memory_.requested = true;
   memory_.requested_s = memory_.active_s;
   return task_of_state(inputs);
@@ -58,6 +63,10 @@ void MissionPlanner::enter(MissionState state) {
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
   }
   if (state == kGrasp) memory_.direction_known = true;
+  if (row_of(state).holding) {
+    memory_.dropped = false;
+    memory_.released_tick = -1;
+  }
   if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
   memory_.requested = false;
@@ -84,14 +93,15 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
 // The robot may be anywhere after a suspension: the mission continues with a search.
 void MissionPlanner::resume(const PlannerInputs& inputs) {
   memory_.suspended = false;
-  skip_delivered();
-  if (!config_.sequence.empty() && memory_.object_index >= config_.sequence.size()) {
-    enter(kDone);
+  if (!config_.sequence.empty() && !choose_object()) {
+    enter(end_of_sequence());
     return;
   }
   const bool carrying = inputs.status ? inputs.status->carrying : holding();
   if (carrying) {
     enter(kSearchLine);
+  } else if (memory_.dropped) {
+    enter(kInspect);
   } else if (!turns(memory_.state)) {
     enter(kSearchLineOrObject);
   } else {
@@ -111,29 +121,8 @@ MissionState MissionPlanner::recover(MissionState to) {
                 name_of(memory_.state));
   }
   ++memory_.recoveries;
-  return to;
-}
-
-MissionState MissionPlanner::delivered() {
-  memory_.delivered |= std::uint32_t{1} << memory_.object_index;
-  skip_delivered();
-  return memory_.object_index >= config_.sequence.size() ? kDone : kTurnRound;
-}
-
-void MissionPlanner::skip_delivered() {
-  while (memory_.object_index < config_.sequence.size() && (memory_.delivered >> memory_.object_index & 1u) != 0)
-    ++memory_.object_index;
-}
-
-void MissionPlanner::note_deliveries(const PlannerInputs& inputs) {
-  for (const auto* event : inputs.events) {
-    if (event->event != msg::kEventDroppingDone) continue;
-    for (std::size_t i = memory_.object_index; i < config_.sequence.size(); ++i) {
-      if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;
-      memory_.delivered |= std::uint32_t{1} << i;
-      break;
-    }
-  }
+  const bool lost_object = to == kSearchObject && memory_.state != kSearchObject;
+  return lost_object ? try_differently() : to;
 }
 
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
@@ -145,7 +134,7 @@ std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
     if (!own && !loss) continue;
     if (const auto to = next_by_event(*event, inputs)) return to;
     if (!own) continue;
-    if (const auto to = next_by_goal_state(event->goal_state)) return to;
+    if (const auto to = next_by_goal_state(event->goal_state, inputs)) return to;
   }
   if (const auto to = next_by_status(inputs)) return to;
   if (const auto to = next_by_percepts(inputs)) return to;
@@ -176,13 +165,14 @@ std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inp
   return recover(kTurnRound);
 }
 
-std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state) {
+std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs) {
   const StateRow& row = row_of(memory_.state);
-  if (goal_state == msg::kGoalSucceeded) return memory_.state == kDrop ? delivered() : row.succeeded;
   const bool failed =
       goal_state == msg::kGoalAborted || goal_state == msg::kGoalRefused || goal_state == msg::kGoalCancelled;
-  if (!failed) return std::nullopt;
-  return turns(memory_.state) ? row.failed : recover(row.failed);
+  if (goal_state != msg::kGoalSucceeded && !failed) return std::nullopt;
+  if (memory_.state == kInspect) return after_inspection(inputs);
+  if (!failed) return memory_.state == kDrop ? after_drop(inputs) : row.succeeded;
+  return turns(memory_.state) || memory_.state == kApproachAnew ? row.failed : recover(row.failed);
 }
 
 std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& inputs) {
@@ -193,7 +183,7 @@ std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& 
     if (memory_.active_s - memory_.requested_s > kPatience_s) return recover(memory_.state);
     return std::nullopt;
   }
-  if (const auto to = next_by_goal_state(status.goal_state)) return to;
+  if (const auto to = next_by_goal_state(status.goal_state, inputs)) return to;
   // During grasp and drop, `carrying` changes within the state.
   if (memory_.contradiction_s < kPatience_s || memory_.state == kGrasp || memory_.state == kDrop) return std::nullopt;
   return recover(status.carrying ? kSearchLine : kSearchObject);
@@ -212,6 +202,16 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
                                         : std::nullopt;  // otherwise the search turns towards the wanted direction
     case kFollowLine:
       return object ? std::optional(kTrackObject) : std::nullopt;
+    case kInspect:
+    case kSearchObject:
+    case kTrackObject: {
+      // A dropped object that was not seen at first may stand on its zone all the same.
+      if (memory_.released_tick < 0) return std::nullopt;
+      const Delivery verdict = dropped_object(inputs).verdict;
+      if (verdict == Delivery::kOnZone) return delivered();
+      const bool outside = memory_.state == kInspect && verdict == Delivery::kOutside;
+      return outside ? std::optional(recover(kSearchObject)) : std::nullopt;
+    }
     case kSearchLine:
       if (zone) return kDrop;
       if (line) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);
@@ -249,6 +249,10 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);
+  if (memory_.state == kInspect)
+    return in_state_s > config_.inspect_s ? std::optional(after_inspection(inputs)) : std::nullopt;
+  if (memory_.state == kApproachAnew)
+    return in_state_s > config_.approach_anew_s ? std::optional(row.failed) : std::nullopt;
   if (turns(memory_.state))
     return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;

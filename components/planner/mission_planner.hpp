@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "planner/delivery.hpp"
 #include "planner/line_trail.hpp"
 #include "planner/mission_state.hpp"
 #include "planner/planner_config.hpp"
@@ -19,6 +20,7 @@ namespace constrictor {
 /// The inputs of one step. A pointer is null until its first message has arrived.
 struct PlannerInputs {
   double time_s = 0.0;                     ///< simulated or robot time
+  std::int64_t tick = 0;                   ///< of this step; images and landmarks name ticks, too
   const msg::LinePercept* line = nullptr;  ///< newest
   const msg::ObjectPercepts* objects = nullptr;
   bool new_percepts = false;  ///< `line` and `objects` come from a new image
@@ -58,8 +60,15 @@ struct MissionMemory {
   double line_ended_s = -1e9;    ///< active time of the last end of the line
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
-  std::uint16_t object_index = 0;  ///< the first object of the sequence that is not delivered
-  std::uint32_t delivered = 0;     ///< bit i: object i of the sequence was dropped, by the planner or another source
+  std::uint16_t object_index = 0;  ///< the first object of the sequence that is neither delivered nor put aside
+  std::uint32_t delivered = 0;     ///< bit i: object i of the sequence was seen on its zone, or dropped by others
+  std::uint32_t aside = 0;         ///< bit i: object i was put aside after too many failures
+  bool second_pass = false;        ///< the objects that were put aside are tried once more
+  int failures = 0;                ///< approaches, grasps, transports and drops of the present object that failed
+  std::uint8_t side = msg::kDirectionNone;  ///< on which the last pregrasp passed the object: left or right
+  bool dropped = false;                     ///< the planner's drop is done, and its result is not yet decided
+  std::uint16_t dropped_handle = 0;         ///< of the dropped object; 0: unknown
+  std::int64_t released_tick = -1;  ///< last tick in which the body still held the object of the newest drop; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
@@ -76,7 +85,8 @@ struct MissionMemory {
   void serialize(Archive& archive) {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
-            object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason);
+            object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
+            aside, second_pass, failures, side, dropped, dropped_handle, released_tick);
   }
 };
 
@@ -97,15 +107,29 @@ class MissionPlanner {
   // The next state, by cause; empty: the state stays.
   [[nodiscard]] std::optional<MissionState> next(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs);
-  [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state);
+  [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_status(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_percepts(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
+  /// The state after the drop: the next object if the map shows the dropped object on its zone, another attempt if the
+  /// map shows it elsewhere, otherwise a look at it.
+  [[nodiscard]] MissionState after_drop(const PlannerInputs& inputs);
+  /// The state after this look: what is still uncertain is decided by the likelier case, and an object that was not
+  /// seen is searched for.
+  [[nodiscard]] MissionState after_inspection(const PlannerInputs& inputs);
   [[nodiscard]] MissionState delivered();
-  /// Counts every dropped object as delivered: dropped by the planner, by an operator or by an external planner.
-  void note_deliveries(const PlannerInputs& inputs);
-  void skip_delivered();
+  [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
+  /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
+  /// delivered unless the map shows them outside their zone.
+  void note_drops(const PlannerInputs& inputs);
+  /// Selects the next object. False if none is left.
+  bool choose_object();
+  /// The state at the end of the sequence: failed if an object was put aside for good.
+  [[nodiscard]] MissionState end_of_sequence();
+  /// Counts a failure with the present object. Returns the state of the next attempt, which differs from the last one,
+  /// or puts the object aside and returns the state in which the next one is looked for.
+  [[nodiscard]] MissionState try_differently();
   /// Counts a recovery and returns `to`; returns kFailed if there were too many.
   [[nodiscard]] MissionState recover(MissionState to);
   [[nodiscard]] MissionState fail(const std::string& reason);

@@ -19,12 +19,14 @@ enum class MissionState : std::uint8_t {
   kSearchLine,  ///< with the object: explore and turn until the line or the drop zone is seen
   kTransport,   ///< with the object: follow the line until the drop zone is found
   kDrop,
-  kTurnRound,  ///< without an object, facing away from the objects: turn
-  kTurnBack,   ///< with the object, facing away from the drop zones: turn
+  kInspect,       ///< after the drop: look whether the object stands on its zone
+  kApproachAnew,  ///< after several failures with an object: leave its neighbourhood before the next approach
+  kTurnRound,     ///< without an object, facing away from the objects: turn
+  kTurnBack,      ///< with the object, facing away from the drop zones: turn
   kDone,
   kFailed,
 };
-constexpr std::size_t kMissionStates = 13;
+constexpr std::size_t kMissionStates = 15;
 
 /// The state that follows an event of navigation.
 struct EventTransition {

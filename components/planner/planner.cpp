@@ -12,6 +12,7 @@ Planner::Planner(Wiring& wiring, const Setup& setup)
 void Planner::step(const Tick& tick) {
   PlannerInputs inputs;
   inputs.time_s = tick.time_s();
+  inputs.tick = tick.index;
   inputs.line = field_.line.get();
   inputs.objects = field_.objects.get();
   inputs.new_percepts = field_.objects.has_value() && field_.objects.fresh();

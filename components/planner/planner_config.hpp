@@ -33,6 +33,14 @@ struct PlannerConfig : ParameterSet {
   double on_zone_m =
       add(on_zone_m, "on_zone_m", 0.6, "m", {0, 5}, kAtStart,
           "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.05, 5}, kAtStart,
+                             "Radius of a zone of which no image has shown the whole width");
+  double inspect_s = add(inspect_s, "inspect_s", 20.0, "s", {1, 600}, kAtStart,
+                         "Longest time of the look at a dropped object; then the likelier case counts");
+  double approach_anew_s = add(approach_anew_s, "approach_anew_s", 6.0, "s", {1, 600}, kAtStart,
+                               "Time for which the robot leaves an object before it approaches it in another way");
+  int attempts = add(attempts, "attempts", 5, "", {1, 100}, kAtStart,
+                     "Failures with an object after which it is put aside, and tried once more at the end");
   double remembered_range_m = add(remembered_range_m, "remembered_range_m", 2.5, "m", {0.3, 100}, kAtStart,
                                   "A search returns to an object or zone of the map that is nearer than this");
   double aligned_rad = add(aligned_rad, "aligned_rad", 1.0, "rad", {0.05, 1.5}, kAtStart,

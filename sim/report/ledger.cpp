@@ -30,6 +30,10 @@ void ObjectLedger::on_mission(const msg::MissionStatus& mission) {
   if (sequence.size() < mission.object_count) sequence.resize(mission.object_count, msg::kColourUnknown);
   if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown)
     sequence[mission.object_index] = mission.colour;
+  const bool same = !attempted.empty() && attempted.back() == mission.object_index;
+  if (mission.object_index >= sequence.size() || same) return;
+  std::erase(attempted, mission.object_index);
+  attempted.push_back(mission.object_index);
 }
 
 std::int32_t ObjectLedger::nearest(std::uint8_t colour, double reach_m, const msg::SceneDescription& scene,
@@ -100,19 +104,25 @@ std::string ObjectLedger::shortfall(const msg::SceneDescription& scene, const ms
     faults.push_back(
         fmt::format("{} objects were dropped, the mission has {}", dropped_objects.size(), sequence.size()));
   }
-  auto next = sequence.begin();
+  std::vector<std::uint8_t> order;  // colours by their last attempts, then those that were never announced
+  for (const std::uint16_t index : attempted) order.push_back(sequence[index]);
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    if (std::find(attempted.begin(), attempted.end(), i) == attempted.end()) order.push_back(sequence[i]);
+  }
+  auto next = order.begin();
   for (const std::size_t object : dropped_objects) {
     const std::string colour = name_of(constants::kColour, colour_of(object));
     const ZoneVerdict verdict = judge_zone(scene, world, object);
     if (std::isnan(verdict.distance_m)) {
       faults.push_back("no zone has the colour " + colour);
     } else if (!verdict.in_zone) {
-      faults.push_back(fmt::format("{} lies {:.2f} m from the centre of its zone (radius {:.2f} m)", colour,
-                                   verdict.distance_m, verdict.radius_m));
+      faults.push_back(
+          fmt::format("{} was believed delivered, but lies {:.2f} m from the centre of its zone (radius {:.2f} m)",
+                      colour, verdict.distance_m, verdict.radius_m));
     }
     if (objects[object].by_others) continue;
-    const auto place = std::find(next, sequence.end(), colour_of(object));
-    if (place == sequence.end()) {
+    const auto place = std::find(next, order.end(), colour_of(object));
+    if (place == order.end()) {
       faults.push_back(colour + " was dropped out of order");
     } else {
       next = place + 1;

@@ -33,9 +33,10 @@ struct ZoneVerdict {
 
 /// Follows the objects through the events of the tasks. Ground truth decides which object an event is about.
 struct ObjectLedger {
-  std::vector<ObjectRecord> objects;   ///< in the order of the scene
-  std::int32_t held = -1;              ///< index of the object in the robot's grip; -1: none
-  std::vector<std::uint8_t> sequence;  ///< colours in the mission's order; kColourUnknown: not yet announced
+  std::vector<ObjectRecord> objects;     ///< in the order of the scene
+  std::int32_t held = -1;                ///< index of the object in the robot's grip; -1: none
+  std::vector<std::uint8_t> sequence;    ///< colours in the mission's order; kColourUnknown: not yet announced
+  std::vector<std::uint16_t> attempted;  ///< indices of the sequence in the order of their last attempts
 
   void start(const msg::SceneDescription& scene);
   void on_mission(const msg::MissionStatus& mission);
@@ -43,13 +44,13 @@ struct ObjectLedger {
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
   /// The reasons, in words, why the mission is not complete; empty if it is complete. A mission is complete if every
   /// object of the sequence was dropped and lies in the zone of its colour. The objects that the built-in planner
-  /// dropped must have been dropped in the order of the sequence; an operator or an external planner may use another
-  /// order.
+  /// dropped must have been dropped in the order of the sequence, apart from those that it put aside and announced
+  /// again later; an operator or an external planner may use another order.
   [[nodiscard]] std::string shortfall(const msg::SceneDescription& scene, const msg::WorldState& world) const;
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(objects, held, sequence);
+    archive(objects, held, sequence, attempted);
   }
 
  private:

@@ -10,19 +10,20 @@
 namespace constrictor {
 namespace {
 
-enum class Need { kLineColour, kObjectColour, kDropZoneColour, kDirection, kLeftOrRight, kPath };
+enum class Need { kLineColour, kObjectColour, kDropZoneColour, kDirection, kLeftOrRight, kSideIfAny, kPath };
 
 struct Row {
   std::uint8_t task;
   Need need;
 };
 
-/// One row for each parameter without which a task cannot run. A task without a row needs none.
+/// One row for each parameter that a task needs or checks. A task without a row needs none.
 constexpr std::array kNeeds = {
     Row{msg::kTaskFollowLine, Need::kLineColour},    Row{msg::kTaskSearchObject, Need::kObjectColour},
     Row{msg::kTaskTrackObject, Need::kObjectColour}, Row{msg::kTaskPregrasp, Need::kObjectColour},
     Row{msg::kTaskDrop, Need::kDropZoneColour},      Row{msg::kTaskRotate, Need::kLeftOrRight},
     Row{msg::kTaskExplore, Need::kDirection},        Row{msg::kTaskFollowPath, Need::kPath},
+    Row{msg::kTaskPregrasp, Need::kSideIfAny},
 };
 
 std::string colour_problem(const char* what, std::uint8_t colour) {
@@ -65,6 +66,9 @@ std::string problem(Need need, const msg::TaskParameters& parameters, const msg:
       return direction_problem(parameters.direction, false);
     case Need::kLeftOrRight:
       return direction_problem(parameters.direction, true);
+    case Need::kSideIfAny:
+      return parameters.direction == msg::kDirectionNone ? std::string{}
+                                                         : direction_problem(parameters.direction, true);
     case Need::kPath:
       return path_problem(path);
   }

@@ -65,6 +65,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
       state_.p_MO = object.p_M();
       state_.radius_m = object.radius_m;
     }
+    output.direction = state_.side > 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
     output.progress = std::min(0.95, 0.2 * state_.phase + 0.1 * state_.attempts);
     run_phase<Pregrasp, 5>(
         *this, {&Pregrasp::bend_away, &Pregrasp::advance, &Pregrasp::settle, &Pregrasp::touch, &Pregrasp::unbend},
@@ -89,8 +90,11 @@ class Pregrasp : public StatefulTask<PregraspState> {
     return std::atan2(d.y(), d.x()) - side * std::asin(aside);
   }
 
-  /// The side on which other objects leave more room for passing and wrapping; the nearer side if both leave enough.
+  /// The side of the body on which the object is passed, +1 left, -1 right: the side that the goal names. Otherwise the
+  /// side on which other objects leave more room for passing and wrapping; the nearer side if both leave enough.
   [[nodiscard]] double choose_side(const TaskInput& input) const {
+    if (input.parameters.direction == msg::kDirectionLeft) return 1.0;
+    if (input.parameters.direction == msg::kDirectionRight) return -1.0;
     const PregraspConfig& config = input.config.pregrasp;
     double room_m[2] = {1e9, 1e9};
     for (const int option : {0, 1}) {

@@ -167,7 +167,8 @@ void add_task(CLI::App& app, Action& action) {
            {"object-handle",
             "of search_object, track_object, pregrasp: which object of that colour, 1 to 65535 (default: any)"},
            {"drop-zone-colour", "of drop: " + colours},
-           {"direction", "of rotate: left, right; of explore: " + direction_words()},
+           {"direction", "of rotate: left, right; of explore: " + direction_words() +
+                             "; of pregrasp: the side of the object, left or right (default: the nearer with room)"},
            {"timeout-s",
             "[s] of rotate: end it after this simulated time, up to 3600 (default: rotate until another request)"}}) {
     start_app->add_option(std::string("--") + name, options->parameters[name], text);

@@ -65,6 +65,9 @@ TEST_F(PlannerTest, ADropByThePlannerCountsAsDeliveredEvenIfAuthorityChangesAtTh
   steps(100);
   authority_.level = msg::kAuthorityNone;
   step();
+  EXPECT_EQ(memory_.state, kInspect) << "nothing shows yet where the object stands";
+  map_dropped(msg::kColourGreen, 0.1);
+  step();
   EXPECT_EQ(memory_.object_index, 1) << "red is next";
 }
 

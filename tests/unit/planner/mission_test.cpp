@@ -111,8 +111,6 @@ TEST_F(PlannerTest, IgnoresAnObjectOnItsZoneAfterADropOfItsColour) {
   carry();
   drop(msg::kColourGreen);
   map_.object_count = 1;
-  map_.objects[0].kind = msg::kBlobZone;
-  map_.objects[0].colour = msg::kColourGreen;
   map_.objects[0].x_m = pose_.x_m + 1.0;
   map_.objects[0].y_m = pose_.y_m;
   see_line(true);

@@ -83,18 +83,26 @@ TEST_F(PlannerTest, RecoversALostObjectPregraspAndGrasp) {
   succeed(msg::kEventObjectFound);
   EXPECT_EQ(memory_.state, kTrackObject);
   abort(msg::kEventObjectLost);
+  EXPECT_EQ(memory_.state, kApproachAnew) << "not the same again";
+  EXPECT_EQ(last_.task, msg::kTaskExplore);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionBackwards);
+  steps(310);  // approach_anew_s is 6 s
   EXPECT_EQ(memory_.state, kSearchObject);
   succeed(msg::kEventObjectFound);
   succeed(msg::kEventObjectReached);
   EXPECT_EQ(memory_.state, kPregrasp);
   abort(msg::kEventObjectPregraspLost);
+  EXPECT_EQ(memory_.state, kApproachAnew);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionLeft);
+  succeed(msg::kEventNone);
   EXPECT_EQ(memory_.state, kSearchObject);
   succeed(msg::kEventObjectFound);
   succeed(msg::kEventObjectReached);
   succeed(msg::kEventObjectPregrasped);
   EXPECT_EQ(memory_.state, kGrasp);
   abort(msg::kEventObjectGraspLost);
-  EXPECT_EQ(memory_.state, kSearchObject);
+  EXPECT_EQ(memory_.state, kApproachAnew);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionRight);
   EXPECT_EQ(memory_.recoveries, 4);
 }
 

@@ -36,6 +36,7 @@ class PlannerTest : public ::testing::Test {
   std::optional<WantedTask> step(const std::vector<msg::TaskEvent>& events = {}) {
     PlannerInputs inputs;
     inputs.time_s = time_s_ += 0.02;
+    inputs.tick = ++tick_;
     inputs.line = &line_;
     inputs.objects = &objects_;
     inputs.new_percepts = true;
@@ -154,7 +155,15 @@ class PlannerTest : public ::testing::Test {
     EXPECT_EQ(last_.task, msg::kTaskFollowLine);
     drive(4.0);
   }
-  void drop(std::uint8_t colour) {
+  /// The map shows an object of this colour `offset_m` from the centre of its zone, of 0.4 m radius. Both places have
+  /// this standard deviation; the object was seen in this tick.
+  void map_dropped(std::uint8_t colour, double offset_m, double sd_m = 0.03) {
+    map_.object_count = 2;
+    map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, sd_m, false, false, tick_};
+    map_.objects[1] = {2, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, sd_m, false, false, tick_};
+  }
+  /// Drops the object until the robot has backed off, and says nothing of where it stands.
+  void release(std::uint8_t colour) {
     see(colour, msg::kBlobZone, 0.8);
     steps(4);
     EXPECT_EQ(memory_.state, MissionState::kDrop);
@@ -164,6 +173,11 @@ class PlannerTest : public ::testing::Test {
     status_.carrying = false;
     steps(200);  // the robot backs off
     EXPECT_EQ(memory_.state, MissionState::kDrop);
+  }
+  /// Drops the object, which the robot then sees in the middle of its zone.
+  void drop(std::uint8_t colour) {
+    release(colour);
+    map_dropped(colour, 0.1);
     succeed(msg::kEventDroppingDone);
   }
 
@@ -179,6 +193,7 @@ class PlannerTest : public ::testing::Test {
   bool with_status_ = true;
   WantedTask last_;
   double time_s_ = 0.0;
+  std::int64_t tick_ = 0;
 };
 
 }  // namespace constrictor

@@ -129,7 +129,8 @@ TEST(Report, DoesNotSucceedWithAnObjectOutsideItsZone) {
   const json mission = report_of(story).mission;
   EXPECT_EQ(mission["success"], false);
   EXPECT_EQ(mission["mission"], "failed");
-  EXPECT_EQ(mission["reason"], "red lies 0.31 m from the centre of its zone (radius 0.30 m)");
+  EXPECT_EQ(mission["reason"],
+            "red was believed delivered, but lies 0.31 m from the centre of its zone (radius 0.30 m)");
   EXPECT_EQ(mission["mission"], "failed");
   EXPECT_EQ(mission["believed"], "succeeded");
   EXPECT_EQ(mission["objects"][0]["in_zone"], true);

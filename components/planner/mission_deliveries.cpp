@@ -1,0 +1,108 @@
+// How the mission planner decides whether an object is delivered, and what it does with one that resists.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "constrictor/constants.hpp"
+#include "planner/mission_planner.hpp"
+
+namespace constrictor {
+
+using enum MissionState;
+
+DeliveryView MissionPlanner::dropped_object(const PlannerInputs& inputs) const {
+  if (!inputs.map) return {};
+  return view_delivery(*inputs.map, colour(), memory_.dropped_handle, memory_.released_tick, config_.zone_radius_m);
+}
+
+void MissionPlanner::note_drops(const PlannerInputs& inputs) {
+  for (const auto* event : inputs.events) {
+    if (event->event != msg::kEventDroppingDone) continue;
+    if (event->goal_id >> 48 == msg::kAuthorityPlanner) {
+      memory_.dropped = true;
+      memory_.dropped_handle = event->object_handle;
+      continue;
+    }
+    constexpr std::int64_t kAnySighting = std::numeric_limits<std::int64_t>::min() / 2;
+    const bool outside =
+        inputs.map &&
+        view_delivery(*inputs.map, event->colour, event->object_handle, kAnySighting, config_.zone_radius_m).verdict ==
+            Delivery::kOutside;
+    if (outside) continue;
+    for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+      if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;
+      memory_.delivered |= std::uint32_t{1} << i;
+      break;
+    }
+  }
+}
+
+MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
+  switch (dropped_object(inputs).verdict) {
+    case Delivery::kOnZone:
+      return delivered();
+    case Delivery::kOutside:
+      return recover(kSearchObject);
+    default:
+      return kInspect;
+  }
+}
+
+MissionState MissionPlanner::after_inspection(const PlannerInputs& inputs) {
+  const DeliveryView view = dropped_object(inputs);
+  const bool likely = view.verdict == Delivery::kUncertain && view.offset_m <= view.radius_m;
+  return likely || view.verdict == Delivery::kOnZone ? delivered() : recover(kSearchObject);
+}
+
+MissionState MissionPlanner::delivered() {
+  memory_.delivered |= std::uint32_t{1} << memory_.object_index;
+  memory_.dropped = false;
+  memory_.released_tick = -1;
+  return choose_object() ? kTurnRound : end_of_sequence();
+}
+
+bool MissionPlanner::choose_object() {
+  const auto next_open = [this] {
+    std::size_t i = 0;
+    while (i < config_.sequence.size() && ((memory_.delivered | memory_.aside) >> i & 1u) != 0) ++i;
+    return i;
+  };
+  std::size_t next = next_open();
+  const bool any_aside = (memory_.aside & ~memory_.delivered) != 0;
+  if (next == config_.sequence.size() && any_aside && !memory_.second_pass) {
+    memory_.second_pass = true;
+    memory_.aside = 0;
+    next = next_open();
+  }
+  if (next != memory_.object_index) {
+    memory_.failures = 0;
+    memory_.side = msg::kDirectionNone;
+  }
+  memory_.object_index = static_cast<std::uint16_t>(next);
+  return next < config_.sequence.size();
+}
+
+MissionState MissionPlanner::end_of_sequence() {
+  std::string left;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    if ((memory_.delivered >> i & 1u) != 0) continue;
+    left += (left.empty() ? "" : ", ") + std::string(name_of(constants::kColour, config_.sequence[i]));
+  }
+  if (left.empty()) return kDone;
+  return fail(fmt::format("not delivered: {}; put aside after {} failures, tried once more, failed in state {}", left,
+                          config_.attempts, name_of(memory_.state)));
+}
+
+MissionState MissionPlanner::try_differently() {
+  ++memory_.failures;
+  memory_.dropped = false;
+  const int allowed = memory_.second_pass ? 1 : config_.attempts;
+  if (memory_.failures < allowed) return memory_.failures > 1 ? kApproachAnew : kSearchObject;
+  memory_.aside |= std::uint32_t{1} << memory_.object_index;
+  memory_.failures = 0;
+  memory_.side = msg::kDirectionNone;
+  memory_.released_tick = -1;
+  return choose_object() ? kSearchLineOrObject : end_of_sequence();
+}
+
+}  // namespace constrictor
