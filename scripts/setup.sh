@@ -34,8 +34,8 @@ core=(
 tests=(
   # GoogleTest and Google Benchmark
   libgtest-dev libbenchmark-dev
-  # tests of the Python package
-  python3-pytest
+  # tests of the Python package, and of the manual pages
+  python3-pytest mandoc
   # a terminal for `constrictor teleop`, shells for the completion of `constrictor`
   tmux zsh fish
   # runs on several hosts, made of network namespaces

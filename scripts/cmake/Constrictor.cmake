@@ -127,6 +127,19 @@ function(constrictor_check_layer name)
   endforeach()
 endfunction()
 
+# constrictor_git_revision(PROGRAM): the program contains kGitRevision and kGitDate, see runtime/git_revision.hpp.
+# For few programs, because they are linked again after each commit.
+set(CONSTRICTOR_GIT_REVISION ${PROJECT_BINARY_DIR}/generated/git_revision.cpp)
+add_custom_target(constrictor_git_revision
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFILE=${CONSTRICTOR_GIT_REVISION}
+          -P ${PROJECT_SOURCE_DIR}/scripts/cmake/git_revision.cmake
+  BYPRODUCTS ${CONSTRICTOR_GIT_REVISION} COMMENT "")
+function(constrictor_git_revision program)
+  target_sources(${program} PRIVATE ${CONSTRICTOR_GIT_REVISION})
+  set_source_files_properties(${CONSTRICTOR_GIT_REVISION} PROPERTIES GENERATED ON SKIP_PRECOMPILE_HEADERS ON)
+  add_dependencies(${program} constrictor_git_revision)
+endfunction()
+
 # constrictor_library(NAME [PIC] SOURCES ... LINK ...): a static library of the project, with its folder as its include
 # root. PIC: see constrictor_position_independent().
 function(constrictor_library name)

@@ -4,6 +4,7 @@
 #   PREFIX/share/constrictor      configurations, robots, scenarios, manifests, idl/, examples/
 #   PREFIX/etc/constrictor        files of this host; /etc/constrictor for the prefix /usr
 #   PREFIX/lib/systemd, PREFIX/share/{bash-completion,zsh,fish}   the service, and the completion of the shells
+#   PREFIX/share/man               the manual pages
 #   PREFIX/lib/python3/dist-packages/constrictor   the Python package (component `python`)
 #   PREFIX/include/constrictor, PREFIX/lib   the libraries for find_package(Constrictor)
 include(GNUInstallDirs)
@@ -76,6 +77,18 @@ foreach(entry IN LISTS COMPLETIONS)
     execute_process(COMMAND ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/constrictor completion ${shell}
                     OUTPUT_FILE \"\${folder}/${name}\" COMMAND_ERROR_IS_FATAL ANY)")
 endforeach()
+
+# The manual pages, from the help of the command that was built.
+install(CODE "
+  set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")
+  file(GLOB old \"\${folder}/constrictor*.1.gz\")
+  if(old)
+    file(REMOVE \${old})
+  endif()
+  execute_process(COMMAND ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/constrictor man-pages \"\${folder}\"
+                  COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB pages \"\${folder}/constrictor*.1\")
+  execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)")
 
 # Libraries to build against, as Constrictor::messages and so on.
 set(PUBLIC_LIBRARIES options messages log component barrier faults cyclone recording client runtime

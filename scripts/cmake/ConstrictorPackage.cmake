@@ -38,9 +38,12 @@ if(TARGET constrictor_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   # The module works with this version of Python only.
-  math(EXPR next "${Python_VERSION_MINOR} + 1")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \
-python3 (<< ${Python_VERSION_MAJOR}.${next}), python3-numpy")
+  get_property(version GLOBAL PROPERTY CONSTRICTOR_PYTHON_VERSION)
+  list(GET version 0 major)
+  list(GET version 1 minor)
+  math(EXPR next "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= ${major}.${minor}), python3 (<< ${major}.${next}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "constrictor, python3-matplotlib")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
       "Joins runs of Constrictor from Python: topics as dictionaries and arrays, tasks,

@@ -78,8 +78,8 @@ TEST_F(Package, IsInstalledRunAndRemoved) {
   for (const char* file :
        {"usr/bin/constrictor", "usr/libexec/constrictor/physics", "etc/constrictor/example.conf",
         "usr/lib/systemd/system/constrictor@.service", "usr/share/constrictor/deploy/case_study.yaml",
-        "usr/share/bash-completion/completions/constrictor", "usr/lib/cmake/Constrictor/ConstrictorConfig.cmake",
-        "usr/lib/python3/dist-packages/constrictor/py.typed"})
+        "usr/share/bash-completion/completions/constrictor", "usr/share/man/man1/constrictor-topic.1.gz",
+        "usr/lib/cmake/Constrictor/ConstrictorConfig.cmake", "usr/lib/python3/dist-packages/constrictor/py.typed"})
     EXPECT_TRUE(installed.contains(file)) << file;
 
   // A run from the package, with a manifest of this host that is found by its name.

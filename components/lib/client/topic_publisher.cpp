@@ -94,10 +94,10 @@ struct TopicPublisher::Parts {
 };
 
 TopicPublisher::TopicPublisher(std::int32_t participant, std::uint32_t domain, std::string topic,
-                               const std::string& type, std::string source)
+                               const std::string& type, std::string source, std::optional<RunKey> key)
     : topic_(std::move(topic)),
       source_(std::move(source)),
-      key_(run_key(domain)),
+      key_(key ? std::move(*key) : run_key(domain)),
       sequence_(first_sequence_number()),
       parts_(std::make_unique<Parts>(participant)) {
   const auto endpoints = settled_endpoints(parts_->discovery);

@@ -28,9 +28,9 @@ class TopicPublisher {
   /// Looks for endpoints of the topic until discovery has settled (at most 1.5 s), to learn its type. `type`: the name
   /// of the type where the topic has no endpoint ("JointState" or "constrictor::msg::JointState"); empty: that of the
   /// endpoints, or of the table of topics. Throws CommandError if the topic must not be written, or its type is not
-  /// known. `participant` must outlive this object.
+  /// known. `participant` must outlive this object. `source`, `key`: of commands; an empty key is found by run_key().
   TopicPublisher(std::int32_t participant, std::uint32_t domain, std::string topic, const std::string& type,
-                 std::string source);
+                 std::string source, std::optional<RunKey> key = {});
   ~TopicPublisher();
 
   /// The message with what clients need not give: on `request/v2`, `run_control/v2` and `emergency_stop`, the fields

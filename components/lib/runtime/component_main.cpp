@@ -19,7 +19,7 @@
 #include "runtime/host.hpp"
 #include "runtime/numeric_profile.hpp"
 #include "runtime/pacer.hpp"
-#include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 namespace constrictor {
 namespace {
@@ -92,7 +92,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
 
   CLI::App app{"Constrictor component " + names + ": takes part in a run on Cyclone DDS."};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag("--version", [&names] { return version_text(names); });
   app.add_option("--domain", options.domain, "DDS domain of the run")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229));

@@ -8,8 +8,9 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
+#include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
-#include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 namespace {
 
@@ -17,10 +18,13 @@ using namespace constrictor;
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag(
+      "--version", [] { return version_text("constrictor", kGitRevision); },
+      "print the release, the git revision, the hash of the IDL files and Cyclone DDS's version");
   app.require_subcommand(1);
   cli::Action action;
   for (const auto add : cli::kSubcommands) add(app, action);
+  cli::add_man_pages(app, action, kGitDate);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -34,6 +34,8 @@ void add_replay(CLI::App& app, Action& action);       ///< replay
 void add_recording_files(CLI::App& app, Action& action);  ///< info, recover
 void add_agent(CLI::App& app, Action& action);            ///< agent
 void add_completion(CLI::App& app, Action& action);       ///< completion
+/// man-pages; `date` of the release, for the pages, or empty.
+void add_man_pages(CLI::App& app, Action& action, const std::string& date);
 
 inline constexpr std::array kSubcommands{
     add_run,  add_evaluate, add_serve,           add_list,  add_robot,  add_commands, add_run_control, add_teleop,

@@ -13,7 +13,7 @@
 #include "component/data_path.hpp"
 #include "dashboard/dashboard.hpp"
 #include "runtime/host.hpp"
-#include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 namespace {
 
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   std::string token_file;
   dashboard::WebOptions web;
   CLI::App app{"Shows a run in a web browser and in Foxglove."};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag("--version", [] { return version_text("dashboard"); });
   app.add_option("--run", run, "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229));

@@ -9,16 +9,17 @@
 #include "host/known_components.hpp"
 #include "runtime/component_main.hpp"
 #include "runtime/component_replay.hpp"
+#include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
 #include "runtime/loaded_libraries.hpp"
 #include "runtime/numeric_profile.hpp"
-#include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 int main(int argc, char** argv) {
   using namespace constrictor;
   const std::string first = argc > 1 ? argv[1] : "--help";
   if (first == "--version") {
-    std::printf("%s\n", kVersion);
+    std::printf("%s\n", version_text("constrictor_host", kGitRevision).c_str());
     return exit_status::kOk;
   }
   if (first == "--describe") {

@@ -8,6 +8,7 @@
 #include "client/run_registry.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
+#include "python/publisher.hpp"
 #include "python/python_sample.hpp"
 #include "python/session.hpp"
 #include "python/subscription.hpp"
@@ -188,6 +189,19 @@ void add_subscription(py::module_& module) {
       .def_property_readonly("dropped", &Subscription::dropped);
 }
 
+void add_publisher(py::module_& module) {
+  py::class_<Publisher>(module, "Publisher")
+      .def(py::init<const std::shared_ptr<Session>&, const std::string&, const std::string&>(), py::arg("session"),
+           py::arg("topic"), py::arg("type"))
+      .def("publish", &Publisher::publish, py::arg("message"))
+      .def("wait_for_reader", &Publisher::wait_for_reader, py::arg("timeout"))
+      .def("flush", &Publisher::flush, py::arg("timeout"))
+      .def("close", &Publisher::close)
+      .def_property_readonly("readers", &Publisher::readers)
+      .def_property_readonly("topic", &Publisher::topic)
+      .def_property_readonly("type", &Publisher::type);
+}
+
 py::dict names_of_groups() {
   py::dict made;
   const auto add = [&](const char* key, const ConstantGroup& group, std::uint8_t first) {
@@ -210,6 +224,7 @@ PYBIND11_MODULE(_native, module) {
   py::register_local_exception_translator(translate);
   add_session(module);
   add_subscription(module);
+  add_publisher(module);
   module.def("live_runs", [] {
     py::list list;
     for (const auto& run : constrictor::live_runs()) list.append(to_dict(run));

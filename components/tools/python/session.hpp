@@ -65,6 +65,8 @@ class Session {
   [[nodiscard]] std::uint32_t domain() const { return domain_; }
   [[nodiscard]] const std::optional<RunNote>& note() const { return note_; }
   [[nodiscard]] std::string source() const { return source_; }
+  /// Run id and token of the requests; empty in a domain without a run.
+  [[nodiscard]] const std::optional<RunKey>& key() const { return request_options_.key; }
   /// The DDS participant; subscriptions keep it until they end.
   [[nodiscard]] std::shared_ptr<dds::Domain> participant() const;
   /// Why the run is over, for people, also after close(); empty while it goes on, and in a domain without a run.

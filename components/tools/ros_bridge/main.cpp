@@ -8,7 +8,7 @@
 #include "component/data_path.hpp"
 #include "ros_bridge/bridge.hpp"
 #include "runtime/host.hpp"
-#include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 namespace {
 volatile std::sig_atomic_t g_stop = 0;
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
       (localhost && std::string(localhost) == "1") || (range && std::string(range) == "LOCALHOST");
 
   CLI::App app{"Shows the robot to ROS 2 (rt/clock, joint_states, tf, imu, odom, camera) and takes rt/cmd_vel."};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag("--version", [] { return version_text("ros_bridge"); });
   app.add_option("--domain", options.domain, "DDS domain of the run, as `constrictor run` prints it")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229))

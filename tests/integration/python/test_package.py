@@ -98,6 +98,32 @@ def test_iterations_have_bounds_and_miss_nothing(run):
         run.subscribe("joint_stat")
 
 
+def test_messages_are_published_checked(run):
+    with pytest.raises(constrictor.RefusedError, match="belongs to physics of the run"):
+        run.publisher("joint_state")
+    with pytest.raises(constrictor.Error, match="needs the name of its type"):
+        run.publisher("posture")
+    publisher = run.publisher("posture", type="JointState")
+    with pytest.raises(TimeoutError, match="no reader of 'posture' within 0.1 s"):
+        publisher.wait_for_reader(timeout=0.1)
+    echo = subprocess.Popen(
+        [COMMAND, "topic", "echo", "posture", "--json", "--timeout", "20", "-n", "1"], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        publisher.wait_for_reader(timeout=20)
+        with pytest.raises(ValueError, match="there is no field 'positions'"):
+            publisher.publish({"positions": []})
+        with pytest.raises(ValueError, match=r"position_rad\[1\]: found null, accepted a finite number"):
+            publisher.publish({"position_rad": np.array([0.0, np.nan])})
+        publisher.publish({"robot_id": 3, "position_rad": np.array([0.25, -1.0])})
+        assert publisher.flush()
+        shown = json.loads(echo.communicate(timeout=20)[0])
+    finally:
+        echo.kill()
+        echo.wait()
+    assert shown["robot_id"] == 3 and shown["joint_count"] == 2 and shown["position_rad"][:2] == [0.25, -1.0]
+
+
 def test_parameters_are_read_set_and_refused(run):
     name = "navigation.travel.frequency_hz"
     assert run.get_parameter(name) == 0.7

@@ -44,7 +44,8 @@ std::string remote_command(const HostPlan& host, const std::string& token, bool 
   // The text contains no single quote, because the login shell, which may be any, receives it as one quoted word.
   return fmt::format(
       "exec sh -c 'for program in {}; do [ -f \"$program\" ] && [ -x \"$program\" ] || continue; "
-      "version=$(\"$program\" --version 2>/dev/null); [ \"$version\" = {} ] && exec \"$program\" agent --token {}{}; "
+      "version=$(\"$program\" --version 2>/dev/null | sed -n \"1s/^constrictor //;1p\"); [ \"$version\" = {} ] && exec "
+      "\"$program\" agent --token {}{}; "
       "found=\"$found $program is $version;\"; done; "
       "printf \"{{\\\"op\\\": \\\"no release\\\", \\\"text\\\": \\\"%s\\\"}}\\n\" \"$found\"'",
       places, kVersion, token, attach ? " --attach" : "");

@@ -14,7 +14,7 @@ after Ctrl-C.
 from __future__ import annotations
 
 from ._native import __version__
-from .domain import Domain, Message, Subscription, observe
+from .domain import Domain, Message, Publisher, Subscription, observe
 from .errors import Error, NoAnswerError, NoRunError, RefusedError, WaitTimeoutError
 from .names import COLOURS, DIRECTIONS, EVENTS, MOTIONS, TASKS
 from .run import Goal, GoalEnd, Run, RunNote, join, runs
@@ -31,6 +31,7 @@ __all__ = [
     "Message",
     "NoAnswerError",
     "NoRunError",
+    "Publisher",
     "RefusedError",
     "Run",
     "RunNote",

@@ -106,6 +106,55 @@ class Subscription:
         self.close()
 
 
+class Publisher:
+    """Publishes messages on one topic, checked against its type. Made by Domain.publisher()."""
+
+    def __init__(self, native: _native.Publisher) -> None:
+        self._native = native
+
+    @property
+    def topic(self) -> str:
+        """The name of the topic."""
+        return self._native.topic
+
+    @property
+    def type(self) -> str:
+        """The IDL type of the messages."""
+        return self._native.type
+
+    @property
+    def readers(self) -> int:
+        """How many readers receive what is published."""
+        return self._native.readers
+
+    def publish(self, message: Message) -> None:
+        """Publishes a dictionary. Fields that it leaves out are zero, None is NaN, constants may be given by name.
+
+        Raises ValueError that names the field, what was found and what is accepted.
+        """
+        self._native.publish(message)
+
+    def wait_for_reader(self, timeout: Optional[float] = 5.0) -> None:
+        """Waits until the topic has a reader. Raises WaitTimeoutError."""
+        self._native.wait_for_reader(timeout)
+
+    def flush(self, timeout: float = 2.0) -> bool:
+        """Waits until all reliable readers have what was published; returns False if they have not in time."""
+        return self._native.flush(timeout)
+
+    def close(self) -> None:
+        """Ends the publisher. Late readers then receive nothing any more."""
+        self._native.close()
+
+    def __enter__(self) -> Publisher:
+        return self
+
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
+
+
 class _Latest:
     """The newest sample of a topic."""
 
@@ -139,6 +188,7 @@ class Domain:
             self._latest: Dict[tuple[str, bool, bool], _Latest] = {}
             self._latest_lock = threading.Lock()
             self._subscriptions: "weakref.WeakSet[Subscription]" = weakref.WeakSet()
+            self._publishers: "weakref.WeakSet[Publisher]" = weakref.WeakSet()
             _joined[session.domain] = self
 
     @staticmethod
@@ -208,11 +258,23 @@ class Domain:
                 self._latest[key] = latest
         return latest.get(timeout)
 
+    def publisher(self, topic: str, type: str = "") -> Publisher:
+        """Makes a publisher of a topic of another program, of a new one, or of the topics on which clients command.
+
+        type: of a topic that nobody reads or writes yet, for example ``"JointState"``.
+        Raises RefusedError if the topic belongs to a run in this domain, and Error if its type is not known.
+        """
+        publisher = Publisher(_native.Publisher(self._session, topic, type))
+        self._publishers.add(publisher)
+        return publisher
+
     def close(self) -> None:
-        """Leaves the domain. Subscriptions end."""
-        # A process can join the domain again only after all that it read there is gone.
+        """Leaves the domain. Subscriptions and publishers end."""
+        # A process can join the domain again only after all that it read and wrote there is gone.
         for subscription in list(self._subscriptions):
             subscription.close()
+        for publisher in list(self._publishers):
+            publisher.close()
         self._latest.clear()
         self._session.close()
 

@@ -1,0 +1,21 @@
+#include "runtime/version_text.hpp"
+
+#include <fmt/format.h>
+
+#include "constrictor/messages.hpp"
+#include "runtime/loaded_libraries.hpp"
+#include "runtime/version.hpp"
+
+namespace constrictor {
+
+std::string version_text(const std::string& program, const std::string& git_revision) {
+  std::string text = fmt::format("{} {}\n", program, kVersion);
+  if (!git_revision.empty()) text += fmt::format("git {}\n", git_revision);
+  text += fmt::format("IDL {}", msg::kIdlHash);
+  for (const auto& [name, version] : loaded_libraries()) {
+    if (name == "cyclonedds") text += fmt::format("\nCyclone DDS {}", version);
+  }
+  return text;
+}
+
+}  // namespace constrictor
