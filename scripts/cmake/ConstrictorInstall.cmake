@@ -38,7 +38,10 @@ foreach(folder components sim components/tools)
   list(APPEND PROGRAMS ${found})
 endforeach()
 install(TARGETS ${PROGRAMS} RUNTIME DESTINATION ${LIBEXEC})
-add_custom_target(programs DEPENDS ${PROGRAMS})  # what a run needs: no tests, no benchmarks
+add_custom_target(programs DEPENDS ${PROGRAMS})  # what is installed: no tests, no benchmarks
+if(TARGET constrictor_python)
+  add_dependencies(programs constrictor_python)
+endif()
 install(CODE "
   set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
   file(MAKE_DIRECTORY \"\${bin}\")

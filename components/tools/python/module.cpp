@@ -122,7 +122,6 @@ void add_session(py::module_& module) {
       .def("over", &Session::over, Free())
       .def("state", [](Session& session) { return to_dict(released(&Session::state, session)); })
       .def("authority", &authority_of)
-      .def("holds_authority", &Session::holds_authority, Free())
       .def("components", [](Session& session) { return to_python(released(&Session::components, session)); })
       .def("topics", [](Session& session) { return to_python(released(list_topics, session)); })
       .def("take", &Session::take, Free())

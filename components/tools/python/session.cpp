@@ -102,8 +102,8 @@ void Session::leave_run() {
   }
 }
 
-std::shared_ptr<dds::Domain> Session::participant() const {
-  if (!participant_) throw CommandError("the run was left: close() was called, or its `with` block has ended");
+std::shared_ptr<dds::Domain> Session::participant() {
+  const Turn turn(*this);
   return participant_;
 }
 
@@ -197,13 +197,6 @@ msg::Authority Session::authority() {
   const Turn turn(*this);
   client().poll();
   return *client_->authority();
-}
-
-bool Session::holds_authority() {
-  const Turn turn(*this);
-  if (!client_) return false;
-  client_->poll();
-  return client_->holds_authority();
 }
 
 Json Session::components() {

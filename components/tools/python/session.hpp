@@ -68,14 +68,13 @@ class Session {
   /// Run id and token of the requests; empty in a domain without a run.
   [[nodiscard]] const std::optional<RunKey>& key() const { return request_options_.key; }
   /// The DDS participant; subscriptions keep it until they end.
-  [[nodiscard]] std::shared_ptr<dds::Domain> participant() const;
+  [[nodiscard]] std::shared_ptr<dds::Domain> participant();
   /// Why the run is over, for people, also after close(); empty while it goes on, and in a domain without a run.
   std::string over();
   /// The newest RunState; waits up to 3 s for the first. Throws WaitTimeout.
   msg::RunState state();
   /// The newest Authority message; waits for it as connecting does.
   msg::Authority authority();
-  bool holds_authority();
   nlohmann::ordered_json components();
 
   void take();

@@ -13,7 +13,20 @@ after Ctrl-C.
 
 from __future__ import annotations
 
-from ._native import __version__
+try:
+    from ._native import __version__
+except ModuleNotFoundError as error:
+    if error.name != __name__ + "._native":
+        raise
+    import pathlib as _pathlib
+    import sys as _sys
+
+    _built = [file.name for file in _pathlib.Path(__file__).parent.glob("_native.*.so")]
+    raise ImportError(
+        f"constrictor: this is Python {_sys.version_info.major}.{_sys.version_info.minor} ({_sys.executable}), but the "
+        f"package was built for {', '.join(_built) or 'no Python yet (build it: scripts/build.sh)'}; "
+        "use Debian's Python, /usr/bin/python3"
+    ) from None
 from .domain import Domain, Message, Publisher, Subscription, observe
 from .errors import Error, NoAnswerError, NoRunError, RefusedError, WaitTimeoutError
 from .names import COLOURS, DIRECTIONS, EVENTS, MOTIONS, TASKS
