@@ -62,6 +62,8 @@ TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
                                    {{"topic", ""}, "echo", "teleop"},
                                    {{"topic", "echo", ""}, "joint_state", "hz"},
                                    {{"topic", "echo", "--ti"}, "--timeout", "--count"},
+                                   {{"topic", "find", ""}, "JointState", "joint_state"},
+                                   {{"topic", "pub", "joint_state", "--type", "J"}, "JointState", "CameraImage"},
                                    {{"task", "wait", "--"}, "--event", "--line-colour"},
                                    {{"task", "wait", "--"}, "--end", "--path"},
                                    {{"task", "wait", "--event", ""}, "line_lost", "--timeout"},

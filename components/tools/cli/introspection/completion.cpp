@@ -56,6 +56,17 @@ std::string topic_words() {
   return words;
 }
 
+std::string type_words() {
+  std::string words;
+  std::vector<std::string_view> known;
+  for (const auto& info : topics::kInfos) {
+    if (std::count(known.begin(), known.end(), info.type) > 0) continue;
+    known.push_back(info.type);
+    words += (words.empty() ? "" : " ") + std::string(info.type);
+  }
+  return words;
+}
+
 std::string component_words() {
   std::string words;
   std::vector<std::string_view> known;
@@ -79,12 +90,14 @@ Values values_of_path(const std::string& path) {
   if (path == "node info" || path == "host") return {component_words(), ""};
   if (path == "list") return {"scenarios robots manifests components", ""};
   if (path == "run" || path == "check") return {"", names_command("scenarios")};
+  if (path == "topic find") return {type_words(), ""};
   if (path.rfind("topic ", 0) == 0 && path != "topic list") return {topic_words(), ""};
   return {};
 }
 
 /// Values of an option. An option name has the same meaning in all subcommands.
 Values values_of_option(const std::string& name) {
+  if (name == "type") return {type_words(), ""};
   if (name == "event") return {typed(event_words()), ""};
   if (name == "direction") return {typed(direction_words()), ""};
   if (name.size() > 7 && name.compare(name.size() - 7, 7, "-colour") == 0) return {typed(colour_words()), ""};
