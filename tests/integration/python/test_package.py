@@ -55,6 +55,20 @@ def test_a_run_is_found_by_itself_by_number_and_by_directory(launched):
         joined.state()
 
 
+def test_a_run_is_left_when_nothing_refers_to_it(launched):
+    for message in constrictor.join().subscribe("joint_state", timeout=20):
+        break  # the subscription has kept the run
+    first = constrictor.join(name="first")
+    first.take()
+    source = first.source
+    del first
+    second = constrictor.join()
+    assert second.authority()["source"] != source
+    second.close()
+    second.close()
+    assert message["joint_count"] == 23
+
+
 def test_samples_are_dictionaries_with_arrays(run):
     state = run.latest("joint_state", timeout=20)
     assert state["joint_count"] == 23

@@ -44,9 +44,10 @@ class Subscription:
     No subscription delays the run: if samples arrive faster than they are taken, the newest ``depth`` stay.
     """
 
-    def __init__(self, native: _native.Subscription, timeout: Optional[float]) -> None:
+    def __init__(self, native: _native.Subscription, timeout: Optional[float], owner: Optional[Domain]) -> None:
         self._native = native
         self._timeout = timeout
+        self._owner = owner  # which leaves the domain when nothing refers to it any more
 
     @property
     def topic(self) -> str:
@@ -109,8 +110,9 @@ class Subscription:
 class Publisher:
     """Publishes messages on one topic, checked against its type. Made by Domain.publisher()."""
 
-    def __init__(self, native: _native.Publisher) -> None:
+    def __init__(self, native: _native.Publisher, owner: Domain) -> None:
         self._native = native
+        self._owner = owner  # which leaves the domain when nothing refers to it any more
 
     @property
     def topic(self) -> str:
@@ -238,7 +240,9 @@ class Domain:
         Raises Error if there is no such topic, or if its writer does not describe its type.
         """
         native = _native.Subscription(self._session, topic, history=history, depth=depth, names=names, whole=whole)
-        subscription = Subscription(native, timeout)
+        return self._noted(Subscription(native, timeout, self))
+
+    def _noted(self, subscription: Subscription) -> Subscription:
         self._subscriptions.add(subscription)
         return subscription
 
@@ -254,7 +258,8 @@ class Domain:
         with self._latest_lock:
             latest = self._latest.get(key)
             if latest is None:
-                latest = _Latest(self.subscribe(topic, history=True, depth=1, names=names, whole=whole))
+                native = _native.Subscription(self._session, topic, history=True, depth=1, names=names, whole=whole)
+                latest = _Latest(self._noted(Subscription(native, None, None)))
                 self._latest[key] = latest
         return latest.get(timeout)
 
@@ -264,7 +269,7 @@ class Domain:
         type: of a topic that nobody reads or writes yet, for example ``"JointState"``.
         Raises RefusedError if the topic belongs to a run in this domain, and Error if its type is not known.
         """
-        publisher = Publisher(_native.Publisher(self._session, topic, type))
+        publisher = Publisher(_native.Publisher(self._session, topic, type), self)
         self._publishers.add(publisher)
         return publisher
 
@@ -277,6 +282,10 @@ class Domain:
             publisher.close()
         self._latest.clear()
         self._session.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_publishers"):  # else joining failed
+            self.close()
 
     def __enter__(self: _Self) -> _Self:
         return self

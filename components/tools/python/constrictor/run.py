@@ -43,8 +43,9 @@ class GoalEnd:
 class Goal:
     """A task that was started. The robot works on it whether somebody waits for it or not."""
 
-    def __init__(self, session: _native.Session, goal: int, task: str) -> None:
-        self._session = session
+    def __init__(self, run: Run, goal: int, task: str) -> None:
+        self._run = run  # which leaves the run when nothing refers to it any more
+        self._session = run._session
         self.id = goal  #: as on the topics task/event and task/status
         self.task = task
 
@@ -184,7 +185,7 @@ class Run(Domain):
             timeout_s=timeout_s,
             path=[(float(x), float(y)) for x, y in path],
         )
-        return Goal(self._session, goal, task)
+        return Goal(self, goal, task)
 
     # --- safety ---
 
