@@ -8,21 +8,29 @@
 namespace constrictor {
 namespace {
 
-const msg::MapObject* find_object(std::span<const msg::MapObject> landmarks, std::uint8_t colour,
-                                  std::uint16_t handle) {
-  const msg::MapObject* newest = nullptr;
-  for (const msg::MapObject& landmark : landmarks) {
-    if (landmark.kind != msg::kBlobObject || landmark.colour != colour || landmark.carried) continue;
-    if (handle != 0 && landmark.handle == handle) return &landmark;
-    if (!newest || landmark.last_seen_tick > newest->last_seen_tick) newest = &landmark;
-  }
-  return newest;
+// The release itself counts as a sighting of the carried object, and reaches the map some ticks later.
+constexpr std::int64_t kReleaseTicks = 25;
+
+std::span<const msg::MapObject> landmarks_of(const msg::FieldMap& map) {
+  return {map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects)};
 }
 
-const msg::MapObject* nearest_zone(std::span<const msg::MapObject> landmarks, const msg::MapObject& object,
-                                   double& offset_m) {
+/// The most precise landmark that may be the dropped object and was seen since; null: there is none.
+const msg::MapObject* find_object(const msg::FieldMap& map, const DroppedObject& dropped) {
+  const msg::MapObject* best = nullptr;
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.kind != msg::kBlobObject || landmark.colour != dropped.colour || landmark.carried) continue;
+    const bool may_be = dropped.handle == 0 || landmark.handle == dropped.handle ||
+                        landmark.handle > std::max(dropped.newest_handle, dropped.handle);
+    if (!may_be || landmark.last_seen_tick <= dropped.released_tick + kReleaseTicks) continue;
+    if (!best || landmark.sd_m < best->sd_m) best = &landmark;
+  }
+  return best;
+}
+
+const msg::MapObject* nearest_zone(const msg::FieldMap& map, const msg::MapObject& object, double& offset_m) {
   const msg::MapObject* zone = nullptr;
-  for (const msg::MapObject& landmark : landmarks) {
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
     if (landmark.kind != msg::kBlobZone || landmark.colour != object.colour) continue;
     const double distance_m = std::hypot(landmark.x_m - object.x_m, landmark.y_m - object.y_m);
     if (zone && distance_m >= offset_m) continue;
@@ -34,23 +42,26 @@ const msg::MapObject* nearest_zone(std::span<const msg::MapObject> landmarks, co
 
 }  // namespace
 
-DeliveryView view_delivery(const msg::FieldMap& map, std::uint8_t colour, std::uint16_t handle,
-                           std::int64_t released_tick, double zone_radius_m) {
-  // The release itself counts as a sighting of the carried object, and reaches the map some ticks later.
-  constexpr std::int64_t kReleaseTicks = 25;
-  const std::span landmarks(map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects));
+DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
+                           double zone_radius_m) {
   DeliveryView view{Delivery::kUnseen, std::numeric_limits<double>::quiet_NaN(), zone_radius_m};
-  const msg::MapObject* object = find_object(landmarks, colour, handle);
+  const msg::MapObject* object = find_object(map, dropped);
   if (!object) return view;
-  const msg::MapObject* zone = nearest_zone(landmarks, *object, view.offset_m);
+  const msg::MapObject* zone = nearest_zone(map, *object, view.offset_m);
   if (!zone) return view;
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;
-  if (object->last_seen_tick <= released_tick + kReleaseTicks) return view;
+  if (object->sd_m > seen_sd_m) return view;
   const double sd_m = std::hypot(object->sd_m, zone->sd_m);
   view.verdict = view.offset_m + sd_m <= view.radius_m  ? Delivery::kOnZone
                  : view.offset_m - sd_m > view.radius_m ? Delivery::kOutside
                                                         : Delivery::kUncertain;
   return view;
+}
+
+std::uint16_t newest_handle(const msg::FieldMap& map) {
+  std::uint16_t newest = 0;
+  for (const msg::MapObject& landmark : landmarks_of(map)) newest = std::max(newest, landmark.handle);
+  return newest;
 }
 
 }  // namespace constrictor

@@ -21,12 +21,26 @@ struct DeliveryView {
   double radius_m = 0.0;  ///< of the zone
 };
 
-/// Compares the object's place with the nearest zone of its colour. The object is the landmark with `handle` (0, or a
-/// handle that the map does not have: the object of the colour that was seen last). It counts as seen if an image after
-/// `released_tick` shows it. The standard deviations of both places are taken into account: the verdict is kOnZone if
-/// the object's centre lies inside the zone by one standard deviation, kOutside if it lies outside by one.
-/// `zone_radius_m`: of a zone whose radius the map does not know.
-[[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, std::uint8_t colour, std::uint16_t handle,
-                                         std::int64_t released_tick, double zone_radius_m);
+/// Which object was dropped, and what counts as having seen it.
+struct DroppedObject {
+  std::uint8_t colour = msg::kColourUnknown;
+  std::uint16_t handle = 0;  ///< of the object; 0: unknown
+  /// Highest handle of the map at the release. The map gives the object a new, higher handle if it is seen too far from
+  /// where the robot let it go.
+  std::uint16_t newest_handle = 0;
+  std::int64_t released_tick = -1;  ///< last tick in which the body held the object
+};
+
+/// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
+/// shows it, and if the standard deviation of its place is at most `seen_sd_m` [m]: a part of an object at the image's
+/// border does not tell where its centre is. Of several landmarks that may be the object, the most precise one counts;
+/// without a handle, every object of the colour may be it. The standard deviations of object and zone are taken into
+/// account: the verdict is kOnZone if the object's centre lies inside the zone by one standard deviation, kOutside if
+/// it lies outside by one. `zone_radius_m`: [m] radius of a zone whose radius the map does not know.
+[[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
+                                         double zone_radius_m);
+
+/// The highest handle in the map; 0 if it is empty.
+[[nodiscard]] std::uint16_t newest_handle(const msg::FieldMap& map);
 
 }  // namespace constrictor

@@ -12,7 +12,8 @@ using enum MissionState;
 
 DeliveryView MissionPlanner::dropped_object(const PlannerInputs& inputs) const {
   if (!inputs.map) return {};
-  return view_delivery(*inputs.map, colour(), memory_.dropped_handle, memory_.released_tick, config_.zone_radius_m);
+  const DroppedObject dropped{colour(), memory_.dropped_handle, memory_.newest_handle, memory_.released_tick};
+  return view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
 }
 
 void MissionPlanner::note_drops(const PlannerInputs& inputs) {
@@ -23,11 +24,12 @@ void MissionPlanner::note_drops(const PlannerInputs& inputs) {
       memory_.dropped_handle = event->object_handle;
       continue;
     }
+    // The planner does not know when the other source let the object go: every sighting counts.
     constexpr std::int64_t kAnySighting = std::numeric_limits<std::int64_t>::min() / 2;
+    const DroppedObject dropped{event->colour, event->object_handle, event->object_handle, kAnySighting};
     const bool outside =
         inputs.map &&
-        view_delivery(*inputs.map, event->colour, event->object_handle, kAnySighting, config_.zone_radius_m).verdict ==
-            Delivery::kOutside;
+        view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m).verdict == Delivery::kOutside;
     if (outside) continue;
     for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
       if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;

@@ -68,6 +68,7 @@ struct MissionMemory {
   std::uint8_t side = msg::kDirectionNone;  ///< on which the last pregrasp passed the object: left or right
   bool dropped = false;                     ///< the planner's drop is done, and its result is not yet decided
   std::uint16_t dropped_handle = 0;         ///< of the dropped object; 0: unknown
+  std::uint16_t newest_handle = 0;          ///< highest handle of the map at the release
   std::int64_t released_tick = -1;  ///< last tick in which the body still held the object of the newest drop; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
@@ -86,7 +87,7 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
-            aside, second_pass, failures, side, dropped, dropped_handle, released_tick);
+            aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick);
   }
 };
 

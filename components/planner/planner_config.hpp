@@ -35,6 +35,9 @@ struct PlannerConfig : ParameterSet {
           "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
   double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.05, 5}, kAtStart,
                              "Radius of a zone of which no image has shown the whole width");
+  double seen_sd_m =
+      add(seen_sd_m, "seen_sd_m", 0.12, "m", {0.01, 5}, kAtStart,
+          "A dropped object was seen when the standard deviation of its place in the map is at most this");
   double inspect_s = add(inspect_s, "inspect_s", 20.0, "s", {1, 600}, kAtStart,
                          "Longest time of the look at a dropped object; then the likelier case counts");
   double approach_anew_s = add(approach_anew_s, "approach_anew_s", 6.0, "s", {1, 600}, kAtStart,

@@ -39,6 +39,17 @@ class DeliveryTest : public PlannerTest {
     ASSERT_EQ(memory_.state, kTrackObject);
     ASSERT_EQ(last_.parameters.object_colour, colour);
   }
+  /// A further object, `offset_m` from the centre of the zone of map_dropped().
+  void add_object(std::uint16_t handle, double offset_m, double sd_m) {
+    map_.objects[map_.object_count] = map_.objects[1];
+    msg::MapObject& object = map_.objects[map_.object_count++];
+    object.handle = handle;
+    object.x_m = pose_.x_m + offset_m;
+    object.sd_m = sd_m;
+  }
+  [[nodiscard]] Delivery verdict(std::uint16_t handle, std::uint16_t newest = 2) const {
+    return view_delivery(map_, {msg::kColourGreen, handle, newest, -100}, 0.12, 0.3).verdict;
+  }
   std::vector<std::uint8_t> asked_;
 };
 
@@ -104,22 +115,34 @@ TEST_F(DeliveryTest, AnUnseenObjectIsSearchedForAndCountsWhenItIsSeenOnItsZone) 
 
 TEST_F(DeliveryTest, WithoutAKnownRadiusTheConfiguredOneCounts) {
   map_dropped(msg::kColourGreen, 0.35, 0.01);
-  const auto verdict = [this] { return view_delivery(map_, msg::kColourGreen, 0, -100, 0.3).verdict; };
-  EXPECT_EQ(verdict(), Delivery::kOnZone);
+  EXPECT_EQ(verdict(0), Delivery::kOnZone);
   map_.objects[0].radius_m = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(verdict(), Delivery::kOutside);
+  EXPECT_EQ(verdict(0), Delivery::kOutside);
   map_.objects[0].colour = msg::kColourRed;
-  EXPECT_EQ(verdict(), Delivery::kUnseen) << "the map has no zone of this colour";
+  EXPECT_EQ(verdict(0), Delivery::kUnseen) << "the map has no zone of this colour";
 }
 
 TEST_F(DeliveryTest, TheHandleTellsObjectsOfOneColourApart) {
   map_dropped(msg::kColourGreen, 0.1);
-  map_.objects[2] = map_.objects[1];
-  map_.objects[2].handle = 3;
-  map_.objects[2].x_m += 2.0;
-  map_.object_count = 3;
-  EXPECT_EQ(view_delivery(map_, msg::kColourGreen, 2, -100, 0.3).verdict, Delivery::kOnZone);
-  EXPECT_EQ(view_delivery(map_, msg::kColourGreen, 3, -100, 0.3).verdict, Delivery::kOutside);
+  add_object(3, 2.0, 0.01);
+  EXPECT_EQ(verdict(2, 3), Delivery::kOnZone);
+  EXPECT_EQ(verdict(3, 3), Delivery::kOutside);
+}
+
+// The object left the open body farther than the map expected: the map keeps the old landmark and adds a new one.
+TEST_F(DeliveryTest, AMorePreciseNewLandmarkIsTheDroppedObject) {
+  map_dropped(msg::kColourGreen, 0.7, 0.1);
+  EXPECT_EQ(verdict(2, 2), Delivery::kOutside);
+  add_object(5, 0.1, 0.04);
+  EXPECT_EQ(verdict(2, 2), Delivery::kOnZone);
+  EXPECT_EQ(verdict(2, 5), Delivery::kOutside) << "landmark 5 was there before the release: another object";
+}
+
+TEST_F(DeliveryTest, AGlimpseOfAnObjectWhosePlaceIsUncertainIsNotASighting) {
+  map_dropped(msg::kColourGreen, 0.1, 0.05);
+  EXPECT_EQ(verdict(2), Delivery::kOnZone);
+  map_.objects[1].sd_m = 0.2;
+  EXPECT_EQ(verdict(2), Delivery::kUnseen);
 }
 
 TEST_F(DeliveryTest, AnObjectThatAnOperatorDroppedOutsideItsZoneIsNotDelivered) {
