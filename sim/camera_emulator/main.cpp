@@ -7,14 +7,17 @@
 #include <csignal>
 #include <deque>
 #include <fstream>
+#include <optional>
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "log/log.hpp"
 #include "sim/camera_emulator/emulated_camera.hpp"
+#include "sim/camera_emulator/run_world.hpp"
 #include "sim/camera_emulator/stream_server.hpp"
 #include "sim/emulation/command_pipe.hpp"
 #include "sim/emulation/shared_world.hpp"
+#include "sim/physics/scene_description.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 
 namespace {
@@ -35,6 +38,7 @@ struct Options {
   fs::path scenario = data_path("sim/scenarios/case_study.yaml");
   fs::path output = ".";
   fs::path world;
+  std::optional<std::uint32_t> run;
   std::uint64_t seed = 1;
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;
@@ -59,6 +63,14 @@ int emulate(const Options& options, const Log& log) {
   EmulatedCamera camera(robot, scenario, options.seed, options.settings);
   emulation::SharedWorldReader world(options.world.empty() ? options.output / "world.state" : options.world,
                                      robot.module_count, scenario.objects.size());
+  std::optional<RunWorld> run;
+  if (options.run) run.emplace(*options.run);
+  const msg::SceneDescription scene = scene_description(scenario, robot);
+  const auto look = [&]() -> std::optional<msg::WorldState> {
+    if (run) return run->read(scene);
+    if (const auto snapshot = world.read()) return snapshot->world;
+    return {};
+  };
   StreamServer server(options.address, options.port);
   emulation::CommandPipe commands(options.output / "camera_emulator.commands");
   const fs::path url = options.output / "camera_emulator.url";
@@ -89,9 +101,9 @@ int emulate(const Options& options, const Log& log) {
     if (now >= next_exposure) {
       next_exposure += period;
       if (next_exposure < now) next_exposure = now + period;  // a slow host leaves frames out
-      if (const auto snapshot = world.read()) {
+      if (const auto now_there = look()) {
         if (!std::exchange(seen, true)) log.info("sees the world");
-        const EmulatedFrame frame = camera.expose(snapshot->world);
+        const EmulatedFrame frame = camera.expose(*now_there);
         // A later frame never overtakes an earlier one.
         auto at = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.delay_s));
         if (!waiting.empty()) at = std::max(at, waiting.back().at);
@@ -124,6 +136,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--world", options.world,
                  "file in which servo_emulator keeps its world (default: world.state in --output)");
+  app.add_option("--run", options.run, "DDS domain of a simulated run, whose world is drawn instead of --world")
+      ->check(CLI::Range(0, 229));
   app.add_option("--address", options.address, "IP address to listen on")->capture_default_str();
   app.add_option("--port", options.port, "TCP port; 0: a free one")->capture_default_str();
   app.add_option("--rate", options.frame_rate_hz, "[Hz] frames in a second; 0: as in the robot file")

@@ -42,7 +42,12 @@ void Conductor::on_hello(const Hello& hello) {
   ours.numeric_profile = options_.numeric_profile;
   if (const auto what = difference(hello, ours)) return refuse(*what);
   if (const auto why = latency_violation(hello)) return refuse(*why);
-  if (member.hello_received && hello.component_hash != member.hello.component_hash) {
+  const bool differs = member.hello_received && hello.component_hash != member.hello.component_hash;
+  if (differs && replaces(hello.component_hash)) {
+    if (const auto why = replacement_violation(member.hello, hello)) return refuse(*why);
+    // It begins anew, because it does not understand the memory of its predecessor.
+    if (epoch_) member.state = std::make_shared<const std::string>(kBeginAnew);
+  } else if (differs) {
     return refuse(
         fmt::format("its configuration or scenario file differs from the one that the run began with: found "
                     "hash {}, the run has {}",
@@ -77,6 +82,20 @@ std::optional<std::string> Conductor::latency_violation(const Hello& hello) cons
     all.push_back(other.hello);
   }
   return depth_violation(all, options_.plant);
+}
+
+std::optional<std::string> Conductor::replacement_violation(const Hello& before, const Hello& hello) const {
+  if (!options_.realtime || hello.component == options_.plant)
+    return "--replace: accepted at real-time pace, for members other than the plant: in lock-step the run would not "
+           "stay repeatable";
+  for (const auto& topic : topics::kInfos) {
+    if (before.writes.contains(topic.id) && !hello.writes.contains(topic.id))
+      return fmt::format(
+          "--replace: found a component that does not write {}, accepted one that writes what its "
+          "predecessor wrote",
+          topic.name);
+  }
+  return {};
 }
 
 void Conductor::send_resume(const MemberState& member) {

@@ -133,6 +133,8 @@ class Conductor {
   [[nodiscard]] std::int64_t newest_due(const MemberState& member, std::int64_t tick) const;
   /// Why the latencies do not suit the depths of the topics; empty if they do, or if another member has not joined yet.
   [[nodiscard]] std::optional<std::string> latency_violation(const Hello& hello) const;
+  /// Why `hello` may not take the place of a member with another configuration; empty: it may.
+  [[nodiscard]] std::optional<std::string> replacement_violation(const Hello& before, const Hello& hello) const;
   void clear_epoch_state();
   void send_resume(const MemberState& member);
 

@@ -136,6 +136,7 @@ class Member {
   void write(OutputPort& port, const void* message);
   [[nodiscard]] std::string state_bytes() const;
   void restore(const std::string& state);
+  void count_on(const std::vector<std::pair<const TopicInfo*, Sample>>& outputs);
 
   ComponentFactory factory_;
   Setup setup_;

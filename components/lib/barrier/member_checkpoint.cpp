@@ -1,4 +1,5 @@
 // The part of Member that saves its state after a step, and continues from a saved state.
+#include <algorithm>
 #include <cereal/types/array.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
@@ -27,12 +28,22 @@ void Member::on_resume(const Resume& resume) {
   build(resume.seed);
   epoch_ = resume.epoch;
   last_done_ = newest_tick_ = resume.index;
+  if (resume.state == kBeginAnew) count_on(outputs);
   // The plant has measured before its first step, so that its state is older than its last step but not empty.
-  if (resume.index >= 0 || !resume.state.empty()) restore(resume.state);
+  else if (resume.index >= 0 || !resume.state.empty()) restore(resume.state);
   // The dead process's writers are gone, and with them their history. Readers that have not received it, or that start
   // later, receive it from the new writers.
   for (const auto& [topic, sample] : outputs) sink_.publish(*topic, sample);
   replay_early();
+}
+
+/// For a component that takes the place of another one: it begins anew, but the numbers of its samples go on.
+void Member::count_on(const std::vector<std::pair<const TopicInfo*, Sample>>& outputs) {
+  for (const auto& [topic, sample] : outputs) {
+    for (auto& port : outputs_) {
+      if (port->slot.topic->id == topic->id) port->count = std::max(port->count, sample.header->sequence_number);
+    }
+  }
 }
 
 std::string Member::state_bytes() const {

@@ -40,7 +40,8 @@ std::string shown(const std::string& text) {
   return hash ? text.substr(0, 12) + "..." : text;
 }
 
-constexpr std::size_t kHashDigits = 28;  // of each hash: both parts fit into the 64 characters of Hello.component_hash
+constexpr std::size_t kHashDigits = 28;  // of each hash: all parts fit into the 64 characters of Hello.component_hash
+constexpr const char* kReplaces = " r";
 
 }  // namespace
 
@@ -53,6 +54,10 @@ std::string scenario_part(const std::string& component_hash) {
   if (!component_hash.starts_with(kScenario) || end == std::string::npos) return {};
   return component_hash.substr(kScenario.size(), end - kScenario.size());
 }
+
+std::string replacing(const std::string& component_hash) { return component_hash + kReplaces; }
+
+bool replaces(const std::string& component_hash) { return component_hash.ends_with(kReplaces); }
 
 std::optional<std::string> difference(const Hello& hello, const Hello& ours) {
   std::string all;

@@ -43,6 +43,12 @@ struct Hello {
 std::string component_hash(const std::string& scenario, const std::string& configuration);
 /// The part of a Hello.component_hash that stands for the scenario file; empty if it was not made by component_hash().
 std::string scenario_part(const std::string& component_hash);
+/// The same hash for a member that takes the place of one with another configuration, at real-time pace.
+std::string replacing(const std::string& component_hash);
+/// In place of the state of its predecessor, which such a member does not understand: it begins anew.
+inline constexpr std::string_view kBeginAnew = "begin anew";
+/// Whether a hash is one of replacing().
+bool replaces(const std::string& component_hash);
 
 /// Compares IDL hash, release, configuration hash, scenario and numeric profile, which all members of a run have in
 /// common. Release and scenario are compared only if both are known. Returns all that differ, with both values; empty

@@ -116,6 +116,9 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   app.add_option("--incarnation", options.incarnation,
                  "1 at the first start of the process in the run, and one more at each restart")
       ->check(CLI::Range(1u, 1'000'000u));
+  app.add_flag("--replace", options.replace,
+               "take the place of components with another configuration or of another program, and begin anew; in runs "
+               "at real-time pace only");
   app.add_option("--run-id", options.run_id,
                  "number of the run that this process belongs to; 0: the first run that begins in the domain");
   app.add_option("--token-file", token_file,

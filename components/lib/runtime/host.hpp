@@ -29,6 +29,7 @@ struct HostOptions {
   std::vector<std::string> roster;  ///< every member of the run, in this or another process
   std::string plant = "physics";    ///< the member that is the plant
   std::uint32_t incarnation = 1;    ///< incarnation of this process
+  bool replace = false;             ///< the components take the place of ones with another configuration
   std::uint64_t run_id = 0;         ///< the launcher's number of the run; 0: the first run in the domain; plant: random
   std::string token;            ///< of the run, which clients and members must know; empty: nothing is asked of them
   double pace = 0.0;            ///< plant only: at most this many times real time; 0: no limit

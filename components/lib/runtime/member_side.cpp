@@ -76,7 +76,7 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
   hello.release = kVersion;
   hello.idl_hash = std::string(msg::kIdlHash);
   hello.config_hash = context_.config_hash;
-  hello.component_hash = local.config_hash;
+  hello.component_hash = context_.options.replace ? replacing(local.config_hash) : local.config_hash;
   hello.numeric_profile = numeric_profile();
   hello.timing = member.timing();
   hello.reads = member.reads();

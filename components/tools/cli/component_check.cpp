@@ -56,6 +56,16 @@ HostOutput run_host(std::vector<std::string> arguments, const std::string& progr
   return {*host.poll(), last_lines(output.path(), 0, kMostLines)};
 }
 
+/// Throws what a failed check has found.
+void expect_clean(const HostOutput& output) {
+  if (output.exit.clean()) return;
+  const std::string errors =
+      (output.lines.size() > 1 ? "\n  " : "") + fmt::format("{}", fmt::join(output.lines, "\n  "));
+  const int code = output.exit.code().value_or(exit_status::kSoftware);
+  if (code == exit_status::kConfiguration || code == exit_status::kUsage) throw ConfigurationError(errors);
+  throw std::runtime_error("the check of the components failed: " + output.exit.describe() + ": " + errors);
+}
+
 }  // namespace
 
 std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process) {
@@ -100,13 +110,23 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
   arguments.insert(arguments.end(), configs.begin(), configs.end());
-  const HostOutput output = run_host(std::move(arguments));
-  if (output.exit.clean()) return;
-  const std::string errors =
-      (output.lines.size() > 1 ? "\n  " : "") + fmt::format("{}", fmt::join(output.lines, "\n  "));
-  const int code = output.exit.code().value_or(exit_status::kSoftware);
-  if (code == exit_status::kConfiguration || code == exit_status::kUsage) throw ConfigurationError(errors);
-  throw std::runtime_error("the check of the components failed: " + output.exit.describe() + ": " + errors);
+  expect_clean(run_host(std::move(arguments)));
+}
+
+void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,
+                   const std::string& program, const std::filesystem::path& config) {
+  if (::access((program_folder() / program).c_str(), X_OK) != 0)
+    throw ConfigurationError(
+        fmt::format("--program: found {}, accepted an executable file", (program_folder() / program).string()));
+  const std::string component = process.components.front();
+  std::vector<std::string> arguments = {component,    "--check",
+                                        "--robot",    plan.manifest.robot_file.string(),
+                                        "--scenario", plan.manifest.scenario_file.string(),
+                                        "--seed",     std::to_string(options.seed),
+                                        "--plant",    plan.manifest.plant,
+                                        "--roster",   fmt::format("{}", fmt::join(plan.roster, ","))};
+  if (!config.empty()) arguments.insert(arguments.end(), {"--config", component + "=" + config.string()});
+  expect_clean(run_host(std::move(arguments), program));
 }
 
 }  // namespace constrictor::cli

@@ -64,6 +64,10 @@ struct LaunchPlan {
 /// whose files are wrong.
 void check_components(const RunOptions& options, const LaunchPlan& plan);
 
+/// The same for one process that gets another program. `config`: of its component; empty: the default.
+void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,
+                   const std::string& program, const std::filesystem::path& config);
+
 /// The topics that a process of the plan uses, as its program prints them with --topics. Throws ConfigurationError if
 /// the program does not print them.
 [[nodiscard]] std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan,

@@ -19,6 +19,7 @@
 #include "cli/run_report.hpp"
 #include "cli/signal_queue.hpp"
 #include "cli/supervisor.hpp"
+#include "cli/swap.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
 #include "configuration/configuration.hpp"
@@ -66,7 +67,9 @@ class Launcher {
         observer_(claim_.domain(), run_id_),
         supervisor_(
             plan_.manifest,
-            recorded(make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file())),
+            recorded(
+                with_swaps(make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file()),
+                           report_dir_)),
             run_environment(), report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
             [this](const auto&... process) { return hosts_.start(process...); }) {}
 

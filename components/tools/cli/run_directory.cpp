@@ -6,6 +6,7 @@
 
 #include "cli/run_command.hpp"
 #include "cli/run_record.hpp"
+#include "cli/swap.hpp"
 #include "runtime/recording_options.hpp"
 
 namespace constrictor::cli {
@@ -34,6 +35,7 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
                           kRecordingFile, kOpenChunkFile})
     fs::remove(dir / old);
   remove_checkpoints(dir);
+  remove_swaps(dir);
   return fs::absolute(dir);
 }
 
