@@ -74,6 +74,8 @@ struct GripConfig : ParameterSet {
                               "Mean closing torque of the base below which a held object may be lost");
   double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,
                                   "Share of time with a touch of the base below which a held object may be lost");
+  double untouched_share = add(untouched_share, "untouched_share", 0.05, "", bounds::kShare, kWhileRunning,
+                               "Share of time with a touch of the base below which it is lost whatever the torque");
   double lost_filter_s =
       add(lost_filter_s, "lost_filter_s", 1.0, "s", bounds::kTime, kAtStart, "Time constant of the low-pass on both");
   double lost_after_s = add(lost_after_s, "lost_after_s", 2.0, "s", bounds::kTime, kWhileRunning,

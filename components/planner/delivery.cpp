@@ -44,17 +44,18 @@ const msg::MapObject* nearest_zone(const msg::FieldMap& map, const msg::MapObjec
 
 DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                            double zone_radius_m) {
-  DeliveryView view{Delivery::kUnseen, std::numeric_limits<double>::quiet_NaN(), zone_radius_m};
+  DeliveryView view{Delivery::kUnseen, false, std::numeric_limits<double>::quiet_NaN(), zone_radius_m};
   const msg::MapObject* object = find_object(map, dropped);
   if (!object) return view;
   const msg::MapObject* zone = nearest_zone(map, *object, view.offset_m);
   if (!zone) return view;
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;
-  if (object->sd_m > seen_sd_m) return view;
+  view.precise = object->sd_m <= seen_sd_m;
   const double sd_m = std::hypot(object->sd_m, zone->sd_m);
-  view.verdict = view.offset_m + sd_m <= view.radius_m  ? Delivery::kOnZone
-                 : view.offset_m - sd_m > view.radius_m ? Delivery::kOutside
-                                                        : Delivery::kUncertain;
+  view.verdict = !view.precise                           ? Delivery::kUncertain
+                 : view.offset_m + sd_m <= view.radius_m ? Delivery::kOnZone
+                 : view.offset_m - sd_m > view.radius_m  ? Delivery::kOutside
+                                                         : Delivery::kUncertain;
   return view;
 }
 

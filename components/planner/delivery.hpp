@@ -9,7 +9,7 @@ namespace constrictor {
 
 enum class Delivery : std::uint8_t {
   kUnseen,     ///< no image has shown the object, or its zone, since the drop
-  kUncertain,  ///< seen, but the uncertainty of the map spans the border of the zone
+  kUncertain,  ///< seen, but the map is too uncertain, or its uncertainty spans the border of the zone
   kOnZone,
   kOutside,
 };
@@ -17,6 +17,7 @@ enum class Delivery : std::uint8_t {
 /// A dropped object and the nearest zone of its colour.
 struct DeliveryView {
   Delivery verdict = Delivery::kUnseen;
+  bool precise = false;   ///< the standard deviation of the object's place is at most `seen_sd_m`
   double offset_m = 0.0;  ///< between the centres of object and zone; NaN: one of them is not in the map
   double radius_m = 0.0;  ///< of the zone
 };
@@ -32,11 +33,12 @@ struct DroppedObject {
 };
 
 /// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
-/// shows it, and if the standard deviation of its place is at most `seen_sd_m` [m]: a part of an object at the image's
-/// border does not tell where its centre is. Of several landmarks that may be the object, the most precise one counts;
-/// without a handle, every object of the colour may be it. The standard deviations of object and zone are taken into
-/// account: the verdict is kOnZone if the object's centre lies inside the zone by one standard deviation, kOutside if
-/// it lies outside by one. `zone_radius_m`: [m] radius of a zone whose radius the map does not know.
+/// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
+/// an object at the image's border does not tell where its centre is. Of several landmarks that may be the object, the
+/// most precise one counts; without a handle, every object of the colour may be it. The standard deviations of object
+/// and zone are taken into account: the verdict is kOnZone if the object's centre lies inside the zone by one standard
+/// deviation, kOutside if it lies outside by one. `zone_radius_m`: [m] radius of a zone whose radius the map does not
+/// know.
 [[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                                          double zone_radius_m);
 

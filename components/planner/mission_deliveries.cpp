@@ -50,9 +50,10 @@ MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
   }
 }
 
-MissionState MissionPlanner::after_inspection(const PlannerInputs& inputs) {
+MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs& inputs) {
   const DeliveryView view = dropped_object(inputs);
-  const bool likely = view.verdict == Delivery::kUncertain && view.offset_m <= view.radius_m;
+  const bool seen = in_view || view.precise;
+  const bool likely = seen && view.verdict == Delivery::kUncertain && view.offset_m <= view.radius_m;
   return likely || view.verdict == Delivery::kOnZone ? delivered() : recover(kSearchObject);
 }
 

@@ -173,7 +173,7 @@ std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal
   const bool failed =
       goal_state == msg::kGoalAborted || goal_state == msg::kGoalRefused || goal_state == msg::kGoalCancelled;
   if (goal_state != msg::kGoalSucceeded && !failed) return std::nullopt;
-  if (memory_.state == kInspect) return after_inspection(inputs);
+  if (memory_.state == kInspect) return after_inspection(!failed, inputs);
   if (!failed) return memory_.state == kDrop ? after_drop(inputs) : row.succeeded;
   return turns(memory_.state) || memory_.state == kApproachAnew ? row.failed : recover(row.failed);
 }
@@ -253,7 +253,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   }
   const StateRow& row = row_of(memory_.state);
   if (memory_.state == kInspect)
-    return in_state_s > config_.inspect_s ? std::optional(after_inspection(inputs)) : std::nullopt;
+    return in_state_s > config_.inspect_s ? std::optional(after_inspection(false, inputs)) : std::nullopt;
   if (memory_.state == kApproachAnew)
     return in_state_s > config_.approach_anew_s ? std::optional(row.failed) : std::nullopt;
   if (turns(memory_.state))

@@ -117,8 +117,9 @@ class MissionPlanner {
   /// map shows it elsewhere, otherwise a look at it.
   [[nodiscard]] MissionState after_drop(const PlannerInputs& inputs);
   /// The state after this look: what is still uncertain is decided by the likelier case, and an object that was not
-  /// seen is searched for.
-  [[nodiscard]] MissionState after_inspection(const PlannerInputs& inputs);
+  /// seen is searched for. `in_view`: the look has ended because the object stayed in view. All places of the map are
+  /// then as good as the robot's own, even if that is uncertain.
+  [[nodiscard]] MissionState after_inspection(bool in_view, const PlannerInputs& inputs);
   [[nodiscard]] MissionState delivered();
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
   /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as

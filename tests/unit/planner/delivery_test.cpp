@@ -142,7 +142,33 @@ TEST_F(DeliveryTest, AGlimpseOfAnObjectWhosePlaceIsUncertainIsNotASighting) {
   map_dropped(msg::kColourGreen, 0.1, 0.05);
   EXPECT_EQ(verdict(2), Delivery::kOnZone);
   map_.objects[1].sd_m = 0.2;
-  EXPECT_EQ(verdict(2), Delivery::kUnseen);
+  EXPECT_EQ(verdict(2), Delivery::kUncertain);
+  map_.objects[1].x_m += 5.0;
+  EXPECT_EQ(verdict(2), Delivery::kUncertain);
+}
+
+// The robot is so uncertain of its own place that nothing in its map is precise.
+TEST_F(DeliveryTest, AnUncertainObjectThatStaysInViewIsJudgedByTheMap) {
+  for (const double offset_m : {0.1, 0.7}) {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+    release_green();
+    map_dropped(msg::kColourGreen, offset_m, 0.3);
+    steps(20);
+    ASSERT_EQ(memory_.state, kInspect);
+    map_dropped(msg::kColourGreen, offset_m, 0.3);
+    succeed(msg::kEventObjectFound);
+    EXPECT_EQ(memory_.state, offset_m < 0.4 ? kTurnRound : kSearchObject);
+  }
+}
+
+TEST_F(DeliveryTest, AnUncertainObjectThatIsOnlyGlimpsedIsSearchedFor) {
+  release_green();
+  map_dropped(msg::kColourGreen, 0.1, 0.3);
+  for (int i = 0; i < 1100 && memory_.state == kInspect; ++i) step();
+  EXPECT_EQ(memory_.state, kSearchObject);
 }
 
 TEST_F(DeliveryTest, AnObjectThatAnOperatorDroppedOutsideItsZoneIsNotDelivered) {
