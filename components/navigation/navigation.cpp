@@ -147,7 +147,7 @@ void Navigation::monitor_grip(const TaskInput& input, TaskOutput& output) {
   if (!grip.carrying || !grip_sense_.lost(input.joints, input.touches, input.tick.dt_s(), grip)) return;
   grip.carrying = false;
   write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle,
-              "torque and touch of the base are below their thresholds");
+              "the base touches no object, by its touches and its torque");
   if (state_.task) end_goal(msg::kGoalAborted, "object grasp lost");
   stand(grip, output);
 }

@@ -158,7 +158,8 @@ TEST_F(GraspEvents, ReportsGraspLostByTorqueAndTouchWhenACarriedObjectIsTakenAwa
               held_nm, thrown_s, object_touched_s, lost.time_s, torque_nm);
   EXPECT_GT(lost.time_s, thrown_s);
   EXPECT_GT(lost.time_s, object_touched_s + 2.0) << "navigation's `lost_after_s`";
-  EXPECT_LT(std::copysign(1.0, held_nm) * torque_nm, 0.75);  // `lost_torque_nm`
+  // The wave of the gait loads the empty base, too, but less than the object did.
+  EXPECT_LT(std::copysign(1.0, held_nm) * torque_nm, 0.8 * std::abs(held_nm));
   EXPECT_GT(lost.head.distance_m(lost.object), 0.5);
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
 }
