@@ -245,10 +245,10 @@ struct DropConfig : NavigationSection {
                            "The robot steers towards the point of the course this far ahead");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
-  double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
-  Gait back = add(back, "back", {2.0, 0.42, 1.07}, kAtStart, "Gait by which the open U leaves the object");
+  double open_s = add(open_s, "open_s", 4.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  Gait back = add(back, "back", {0.7, 0.5, 1.07}, kAtStart, "Gait by which the open U leaves the object");
   double back_m =
-      add(back_m, "back_m", 1.15, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
+      add(back_m, "back_m", 1.3, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =
       add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of each backing off");
   double clear_m =
