@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <span>
 
+#include "robot/landmarks.hpp"
+
 namespace constrictor {
 namespace {
 
-std::span<const msg::MapObject> landmarks_of(const TaskInput& input) {
+std::span<const msg::MapObject> known_landmarks(const TaskInput& input) {
   if (!input.map) return {};
-  return {input.map->objects, std::min<std::size_t>(input.map->object_count, msg::kMaxMapObjects)};
+  return landmarks_of(*input.map);
 }
 
 }  // namespace
@@ -17,7 +19,7 @@ std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour) {
   if (colour >= msg::kColourCount || !input.sightings.objects[colour].known) return 0;
   std::uint16_t handle = 0;
   double nearest_m = input.config.object.jump_m;
-  for (const auto& landmark : landmarks_of(input)) {
+  for (const auto& landmark : known_landmarks(input)) {
     if (landmark.kind != msg::kBlobObject || landmark.colour != colour) continue;
     const double apart_m = (Eigen::Vector2d(landmark.x_m, landmark.y_m) - input.sightings.objects[colour].p_M()).norm();
     if (apart_m >= nearest_m) continue;
@@ -39,7 +41,7 @@ std::string handle_refusal(const TaskInput& input) {
     return landmark.kind == msg::kBlobObject && landmark.handle == named &&
            (colour == msg::kColourUnknown || landmark.colour == colour);
   };
-  const auto landmarks = landmarks_of(input);
+  const auto landmarks = known_landmarks(input);
   if (named == 0 || std::any_of(landmarks.begin(), landmarks.end(), meant)) return {};
   return "object_handle: found " + std::to_string(named) + ", accepted 0 or an object of this colour in the map";
 }

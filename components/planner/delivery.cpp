@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
+
+#include "robot/landmarks.hpp"
 
 namespace constrictor {
 namespace {
 
 // The release itself counts as a sighting of the carried object, and reaches the map some ticks later.
 constexpr std::int64_t kReleaseTicks = 25;
-
-std::span<const msg::MapObject> landmarks_of(const msg::FieldMap& map) {
-  return {map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects)};
-}
 
 /// The most precise landmark that may be the dropped object and was seen since; null: there is none.
 const msg::MapObject* find_object(const msg::FieldMap& map, const DroppedObject& dropped) {
@@ -28,18 +25,6 @@ const msg::MapObject* find_object(const msg::FieldMap& map, const DroppedObject&
   return best;
 }
 
-const msg::MapObject* nearest_zone(const msg::FieldMap& map, const msg::MapObject& object, double& offset_m) {
-  const msg::MapObject* zone = nullptr;
-  for (const msg::MapObject& landmark : landmarks_of(map)) {
-    if (landmark.kind != msg::kBlobZone || landmark.colour != object.colour) continue;
-    const double distance_m = std::hypot(landmark.x_m - object.x_m, landmark.y_m - object.y_m);
-    if (zone && distance_m >= offset_m) continue;
-    zone = &landmark;
-    offset_m = distance_m;
-  }
-  return zone;
-}
-
 }  // namespace
 
 DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
@@ -47,8 +32,9 @@ DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& droppe
   DeliveryView view{Delivery::kUnseen, false, std::numeric_limits<double>::quiet_NaN(), zone_radius_m};
   const msg::MapObject* object = find_object(map, dropped);
   if (!object) return view;
-  const msg::MapObject* zone = nearest_zone(map, *object, view.offset_m);
+  const msg::MapObject* zone = nearest_landmark(map, object->colour, msg::kBlobZone, object->x_m, object->y_m);
   if (!zone) return view;
+  view.offset_m = std::hypot(zone->x_m - object->x_m, zone->y_m - object->y_m);
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;
   view.precise = object->sd_m <= seen_sd_m;
   const double sd_m = std::hypot(object->sd_m, zone->sd_m);

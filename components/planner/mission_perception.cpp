@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "planner/mission_planner.hpp"
+#include "robot/landmarks.hpp"
 #include "robot/planar.hpp"
 
 namespace constrictor {
@@ -19,21 +20,6 @@ const msg::Blob* nearest(const msg::ObjectPercepts& percepts, Accept accept) {
     const auto& blob = percepts.blobs[i];
     if (!std::isfinite(blob.range_m) || !std::isfinite(blob.bearing_rad) || !accept(blob)) continue;
     if (!best || blob.range_m < best->range_m) best = &blob;
-  }
-  return best;
-}
-
-const msg::MapObject* nearest_landmark(const msg::FieldMap& map, std::uint8_t colour, std::uint8_t kind, double x_m,
-                                       double y_m) {
-  const msg::MapObject* best = nullptr;
-  double best_m = 0.0;
-  for (std::size_t i = 0; i < std::min<std::size_t>(map.object_count, msg::kMaxMapObjects); ++i) {
-    const auto& landmark = map.objects[i];
-    if (landmark.colour != colour || landmark.kind != kind) continue;
-    const double distance_m = std::hypot(landmark.x_m - x_m, landmark.y_m - y_m);
-    if (best && distance_m >= best_m) continue;
-    best = &landmark;
-    best_m = distance_m;
   }
   return best;
 }
@@ -173,8 +159,7 @@ std::uint8_t MissionPlanner::side_for(double turn_rad, const PlannerInputs& inpu
   double aside_m = 0.0;  // lateral position of the nearest zone, positive left
   double nearest_m = kBeside_m;
   if (!holding() && inputs.map && inputs.pose && std::abs(turn_rad) > kEitherWay_rad) {
-    for (std::size_t i = 0; i < std::min<std::size_t>(inputs.map->object_count, msg::kMaxMapObjects); ++i) {
-      const auto& landmark = inputs.map->objects[i];
+    for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
       const double dx_m = landmark.x_m - inputs.pose->x_m;
       const double dy_m = landmark.y_m - inputs.pose->y_m;
       const double distance_m = std::hypot(dx_m, dy_m);

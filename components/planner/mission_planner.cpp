@@ -205,16 +205,17 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
                                         : std::nullopt;  // otherwise the search turns towards the wanted direction
     case kFollowLine:
       return object ? std::optional(kTrackObject) : std::nullopt;
-    case kInspect:
-    case kSearchObject:
-    case kTrackObject: {
-      // A dropped object that was not seen at first may stand on its zone all the same.
+    case kInspect: {
       if (memory_.released_tick < 0) return std::nullopt;
-      const Delivery verdict = dropped_object(inputs).verdict;
-      if (verdict == Delivery::kOnZone) return delivered();
-      const bool outside = memory_.state == kInspect && verdict == Delivery::kOutside;
-      return outside ? std::optional(recover(kSearchObject)) : std::nullopt;
+      const MissionState to = after_drop(inputs);
+      return to == kInspect ? std::nullopt : std::optional(to);
     }
+    case kSearchObject:
+    case kTrackObject:
+      // A dropped object that was not seen at first may stand on its zone all the same.
+      return memory_.released_tick >= 0 && dropped_object(inputs).verdict == Delivery::kOnZone
+                 ? std::optional(delivered())
+                 : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
       if (line) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);

@@ -152,7 +152,7 @@ void ServoBus::step(const Tick& tick) {
   if (held_ && !hold) gate_.begin_at_posture();
   held_ = hold;
   servos_.command(gate_.setpoints(tick, angles_rad_, hold));
-  if (bus_time_ns_ > 0) record_.add_round(bus_time_ns_ + ports_.now_ns() - before_ns);
+  if (bus_time_ns_ > 0) record_.add_duration(bus_time_ns_ + ports_.now_ns() - before_ns);
   if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
 }
 

@@ -126,7 +126,7 @@ void VideoCapture::step_live(const Tick& tick) {
       refuse(fmt::format("camera/image: found a frame of {:.2f} s ago, accepted at most {:.2f} s (stream.late_after_s)",
                          age_s, config_.late_after_s));
     } else {
-      record_.add_age(frame->age_ns);
+      record_.add_duration(frame->age_ns);
       publish(tick, frame->bgr, std::max<std::int64_t>(0, tick.index - std::llround(age_s / tick.period_s())));
     }
   }

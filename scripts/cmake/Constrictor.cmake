@@ -101,6 +101,7 @@ set(CONSTRICTOR_LAYERS
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
   "components/video_capture => idl|components/lib/(component|configuration|robot|video)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
+  "sim/emulation => idl|components/lib/(configuration|log)|sim/.*"
   "sim/.* => idl|components/lib/(component|configuration|dynamixel|plant|robot)|sim/.*"
   "tests/.* => .*")
 

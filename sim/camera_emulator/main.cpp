@@ -1,21 +1,18 @@
 // camera_emulator: serves what the camera of the emulated robot sees, as multipart JPEG over HTTP, in real time.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <deque>
-#include <fstream>
 #include <optional>
 
 #include "component/data_path.hpp"
-#include "configuration/configuration.hpp"
-#include "log/log.hpp"
+#include "configuration/whole_file.hpp"
 #include "sim/camera_emulator/emulated_camera.hpp"
 #include "sim/camera_emulator/run_world.hpp"
 #include "sim/camera_emulator/stream_server.hpp"
-#include "sim/emulation/command_pipe.hpp"
+#include "sim/emulation/emulator_process.hpp"
 #include "sim/emulation/shared_world.hpp"
 #include "sim/physics/scene_description.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
@@ -30,9 +27,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kTick_s = 0.02;  // in which the robot file counts the camera's period
 constexpr auto kLongestWait = std::chrono::milliseconds(20);
 
-volatile std::sig_atomic_t g_stop = 0;
-void on_signal(int) { g_stop = 1; }
-
 struct Options {
   fs::path robot = data_path("components/lib/robot/mamba.yaml");
   fs::path scenario = data_path("sim/scenarios/case_study.yaml");
@@ -46,17 +40,8 @@ struct Options {
   CameraSettings settings{1, 90, {false, false, false, false, 0.0, 0.02, 0.0, 0.0}};
 };
 
-/// Writes the address of the stream as a whole, so that a reader never sees half of it.
-void announce(const fs::path& file, const std::string& address) {
-  const fs::path next = file.string() + ".new";
-  std::ofstream stream(next, std::ios::trunc);
-  stream << address << "\n";
-  stream.close();
-  if (!stream) throw std::runtime_error(fmt::format("cannot write {}", next.string()));
-  fs::rename(next, file);
-}
-
-int emulate(const Options& options, const Log& log) {
+void emulate(const Options& options, const Log& log) {
+  ::signal(SIGPIPE, SIG_IGN);  // a viewer may leave while it is sent a frame
   const RobotModel robot = load_robot(options.robot);
   const Scenario scenario = load_scenario(options.scenario, options.seed);
   fs::create_directories(options.output);
@@ -75,7 +60,7 @@ int emulate(const Options& options, const Log& log) {
   emulation::CommandPipe commands(options.output / "camera_emulator.commands");
   const fs::path url = options.output / "camera_emulator.url";
   const std::string address = fmt::format("http://{}:{}/stream", options.address, server.port());
-  announce(url, address);
+  write_whole(url, address + "\n");
   log.info("serves {} x {} pixels at {}", robot.camera.width * options.settings.scale,
            robot.camera.height * options.settings.scale, address);
 
@@ -89,13 +74,11 @@ int emulate(const Options& options, const Log& log) {
   std::deque<Waiting> waiting;
   Clock::time_point next_exposure = Clock::now();
   bool seen = false;
-  const pid_t parent = ::getppid();
-  while (!g_stop && ::getppid() == parent) {  // whoever started it must not leave it behind
-    commands.read([&](const std::string& line) {
-      const std::string refusal = camera.command(line);
-      if (refusal.empty()) log.info("obeys '{}'", line);
-      else log.warning("refuses a command: {}", refusal);
+  while (emulation::runs_on()) {
+    emulation::obey_commands(commands, log, [&](const std::string& line) {
+      std::string refusal = camera.command(line);
       server.switch_on(!camera.faults().off);
+      return refusal;
     });
     const auto now = Clock::now();
     if (now >= next_exposure) {
@@ -120,7 +103,6 @@ int emulate(const Options& options, const Log& log) {
   std::error_code ignored;
   fs::remove(url, ignored);
   log.info("ends");
-  return 0;
 }
 
 }  // namespace
@@ -164,24 +146,5 @@ int main(int argc, char** argv) {
       "EXAMPLES\n  servo_emulator --output /tmp/robot &\n  camera_emulator --output /tmp/robot --port 8080\n"
       "  ffplay http://127.0.0.1:8080/stream\n  echo 'blur 3' > /tmp/robot/camera_emulator.commands\n\n"
       "EXIT STATUS\n  0 it was ended; 64 wrong usage; 70 it failed; 78 wrong configuration");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 64;
-  }
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
-  const Log log("camera_emulator");
-  try {
-    return emulate(options, log);
-  } catch (const ConfigurationError& error) {
-    log.error("configuration: {}", error.what());
-    return 78;
-  } catch (const std::exception& error) {
-    log.error("{}", error.what());
-    return 70;
-  }
+  return emulation::run_emulator("camera_emulator", app, argc, argv, [&](const Log& log) { emulate(options, log); });
 }

@@ -6,8 +6,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
+
+#include "configuration/whole_file.hpp"
 
 namespace constrictor::report {
 namespace {
@@ -56,15 +57,7 @@ std::string Journal::read(std::uint64_t length) const {
 
 void replace_file(const std::filesystem::path& path, std::string_view bytes) {
   std::filesystem::create_directories(path.parent_path());
-  std::filesystem::path beside = path;
-  beside += ".part";
-  {
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.flush();
-    if (!file) throw failure(beside, "cannot be written");
-  }
-  std::filesystem::rename(beside, path);
+  write_whole(path, bytes);
 }
 
 }  // namespace constrictor::report

@@ -2,19 +2,16 @@
 // simulated world in real time.
 #include <fmt/format.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <fstream>
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
-#include "log/log.hpp"
 #include "plant/real_time.hpp"
 #include "robot/robot_model.hpp"
-#include "sim/emulation/command_pipe.hpp"
+#include "sim/emulation/emulator_process.hpp"
 #include "sim/emulation/shared_world.hpp"
 #include "sim/emulation/verdict.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
@@ -31,9 +28,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kPriority = 10;  // above all usual processes, below interrupts
 
-volatile std::sig_atomic_t g_stop = 0;
-void on_signal(int) { g_stop = 1; }
-
 struct Options {
   fs::path robot = data_path("components/lib/robot/mamba.yaml");
   fs::path scenario = data_path("sim/scenarios/case_study.yaml");
@@ -42,7 +36,7 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-int emulate(const Options& options, const Log& log) {
+void emulate(const Options& options, const Log& log) {
   const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
   fs::create_directories(options.output);
   EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
@@ -70,8 +64,7 @@ int emulate(const Options& options, const Log& log) {
   for (const auto& terminal : terminals) waits.push_back({terminal->descriptor(), POLLIN, 0});
   waits.push_back({commands.descriptor(), POLLIN, 0});
   dynamixel::Bytes received;
-  const pid_t parent = ::getppid();
-  while (!g_stop && ::getppid() == parent) {  // whoever started it must not leave it behind
+  while (emulation::runs_on()) {
     std::int64_t due_ns = robot.next_step_ns();
     for (std::size_t i = 0; i < terminals.size(); ++i) {
       if (const auto& outgoing = robot.line(i).outgoing(); !outgoing.empty())
@@ -85,11 +78,7 @@ int emulate(const Options& options, const Log& log) {
       terminals[i]->read(received);
       if (!received.empty()) robot.line(i).receive(received, terminals[i]->baud(), now_ns());
     }
-    commands.read([&](const std::string& line) {
-      const std::string refusal = robot.command(line);
-      if (refusal.empty()) log.info("obeys '{}'", line);
-      else log.warning("refuses a command: {}", refusal);
-    });
+    emulation::obey_commands(commands, log, [&](const std::string& line) { return robot.command(line); });
     if (robot.advance_to(now_ns()) > 0) {
       shared.write(robot.world());
       world.note(robot.world(), robot.left_out_ns());
@@ -102,7 +91,6 @@ int emulate(const Options& options, const Log& log) {
   }
   std::ofstream(options.output / "truth.json") << emulation::verdict_json(robot.world(), sequence, robot.left_out_ns());
   log.info("ends after {:.1f} s", robot.world().time_s());
-  return 0;
 }
 
 }  // namespace
@@ -123,23 +111,5 @@ int main(int argc, char** argv) {
       "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
       "EXAMPLES\n  servo_emulator --output /tmp/robot\n  echo 'cable 0 7' > /tmp/robot/servo_emulator.commands\n\n"
       "EXIT STATUS\n  0 it was ended; 64 wrong usage; 70 it failed; 78 wrong configuration");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 64;
-  }
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
-  const Log log("servo_emulator");
-  try {
-    return emulate(options, log);
-  } catch (const ConfigurationError& error) {
-    log.error("configuration: {}", error.what());
-    return 78;
-  } catch (const std::exception& error) {
-    log.error("{}", error.what());
-    return 70;
-  }
+  return emulation::run_emulator("servo_emulator", app, argc, argv, [&](const Log& log) { emulate(options, log); });
 }

@@ -7,7 +7,6 @@
 #include <cereal/types/deque.hpp>
 #include <cmath>
 #include <deque>
-#include <optional>
 
 #include "navigation/motions.hpp"
 #include "navigation/steering.hpp"

@@ -7,6 +7,7 @@
 
 #include "navigation/motions.hpp"
 #include "navigation/object_handles.hpp"
+#include "robot/landmarks.hpp"
 
 namespace constrictor {
 namespace {
@@ -81,8 +82,7 @@ class SearchObject : public StatefulTask<SearchState> {
     std::optional<Eigen::Vector2d> best;
     if (input.sightings.objects[colour].known) best = input.sightings.objects[colour].p_M();
     if (input.map) {  // the map also follows touches
-      for (std::size_t i = 0; i < std::min<std::size_t>(input.map->object_count, msg::kMaxMapObjects); ++i) {
-        const auto& landmark = input.map->objects[i];
+      for (const msg::MapObject& landmark : landmarks_of(*input.map)) {
         const bool meant = input.parameters.object_handle == 0 || input.parameters.object_handle == landmark.handle;
         if (landmark.kind == msg::kBlobObject && landmark.colour == colour && meant)
           best = Eigen::Vector2d(landmark.x_m, landmark.y_m);

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -14,6 +13,7 @@
 #include "camera_setup/frame_reader.hpp"
 #include "camera_setup/lens.hpp"
 #include "camera_setup/mount.hpp"
+#include "configuration/whole_file.hpp"
 #include "robot/camera_mount.hpp"
 #include "runtime/host.hpp"
 #include "video/rectifier.hpp"
@@ -59,14 +59,12 @@ std::optional<cv::Mat> next(FrameReader& reader) {
   return picture;
 }
 
-/// Writes a file as a whole.
 void write(const fs::path& file, const std::string& text) {
-  const fs::path next_file = file.string() + ".new";
-  std::ofstream stream(next_file, std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (!stream) throw Failed(fmt::format("cannot write {}", next_file.string()));
-  fs::rename(next_file, file);
+  try {
+    write_whole(file, text);
+  } catch (const std::runtime_error& error) {
+    throw Failed(error.what());
+  }
   fmt::print("wrote {}\n", file.string());
 }
 

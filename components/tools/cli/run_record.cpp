@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 #include "runtime/checkpoint_file.hpp"
 #include "runtime/run_store.hpp"
 #include "runtime/version.hpp"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "cli/whole_file.hpp"
+#include "configuration/whole_file.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {

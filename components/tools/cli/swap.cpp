@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli/whole_file.hpp"
+#include "configuration/whole_file.hpp"
 
 namespace constrictor::cli {
 namespace {

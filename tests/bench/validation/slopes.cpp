@@ -67,7 +67,7 @@ void check_direction(Section& section, Plot& plot, const std::string& name, doub
     return std::max(0.0, kG * (std::sin(slope_rad) - mu * std::cos(slope_rad)));
   };
   const double beyond_rad = 1.03 * angle_rad;
-  section.cases.push_back({name + ": acceleration at 1.03 of the friction angle (slides)", "m/s²", expected(beyond_rad),
+  section.cases.push_back({name + ": acceleration at 1.03 of this angle (slides)", "m/s²", expected(beyond_rad),
                            experiment(beyond_rad).acceleration_m_s2.norm(), 0.05});
   section.cases.push_back({name + fmt::format(": acceleration at {:.0f}°", steepest_rad / kDegree), "m/s²",
                            expected(steepest_rad), experiment(steepest_rad).acceleration_m_s2.norm(), 0.01});

@@ -18,7 +18,7 @@
 #include "cli/run_command.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
-#include "cli/whole_file.hpp"
+#include "configuration/whole_file.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
 

@@ -19,8 +19,8 @@
 #include "cli/run_record.hpp"
 #include "cli/signal_queue.hpp"
 #include "cli/usage.hpp"
-#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {

@@ -7,8 +7,8 @@
 #include <span>
 #include <sstream>
 
-#include "cli/whole_file.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 #include "constrictor/sha256.hpp"
 #include "runtime/version.hpp"
 

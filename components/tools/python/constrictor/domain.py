@@ -7,7 +7,7 @@ import os
 import threading
 import weakref
 from types import TracebackType
-from typing import Any, Dict, Iterator, Optional, Type, TypeVar
+from typing import Any, Callable, Dict, Generic, Iterator, Optional, Type, TypeVar, Union
 
 from . import _native
 from .errors import Error, WaitTimeoutError
@@ -20,7 +20,8 @@ Message = Dict[str, Any]
 _joined: "weakref.WeakValueDictionary[int, Domain]" = weakref.WeakValueDictionary()
 _lock = threading.RLock()
 
-_Self = TypeVar("_Self", bound="Domain")
+_Self = TypeVar("_Self", bound="_Closing")
+_Native = TypeVar("_Native", bound=Union[_native.Subscription, _native.Publisher])
 
 
 def domain_from_environment(domain: Optional[int]) -> Optional[int]:
@@ -37,16 +38,26 @@ def domain_from_environment(domain: Optional[int]) -> Optional[int]:
     return domain
 
 
-class Subscription:
-    """The samples of one topic, as dictionaries, in the order of their arrival.
+class _Closing:
+    """What a ``with`` statement closes at its end."""
 
-    Iterate over it: the loop ends when the run ends. Or call :meth:`next` and :meth:`newest`, with a bound on the wait.
-    No subscription delays the run: if samples arrive faster than they are taken, the newest ``depth`` stay.
-    """
+    def close(self) -> None:
+        raise NotImplementedError
 
-    def __init__(self, native: _native.Subscription, timeout: Optional[float], owner: Optional[Domain]) -> None:
+    def __enter__(self: _Self) -> _Self:
+        return self
+
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
+
+
+class _Endpoint(_Closing, Generic[_Native]):
+    """What subscriptions and publishers have in common."""
+
+    def __init__(self, native: _Native, owner: Optional[Domain]) -> None:
         self._native = native
-        self._timeout = timeout
         self._owner = owner  # which leaves the domain when nothing refers to it any more
 
     @property
@@ -56,8 +67,24 @@ class Subscription:
 
     @property
     def type(self) -> str:
-        """The IDL type of the samples, ``constrictor::msg::JointState``."""
+        """The IDL type of the messages, ``constrictor::msg::JointState``."""
         return self._native.type
+
+    def close(self) -> None:
+        """Ends the subscription or the publisher. Late readers then receive nothing from the publisher any more."""
+        self._native.close()
+
+
+class Subscription(_Endpoint[_native.Subscription]):
+    """The samples of one topic, as dictionaries, in the order of their arrival.
+
+    Iterate over it: the loop ends when the run ends. Or call :meth:`next` and :meth:`newest`, with a bound on the wait.
+    No subscription delays the run: if samples arrive faster than they are taken, the newest ``depth`` stay.
+    """
+
+    def __init__(self, native: _native.Subscription, timeout: Optional[float], owner: Optional[Domain]) -> None:
+        super().__init__(native, owner)
+        self._timeout = timeout
 
     @property
     def dropped(self) -> int:
@@ -69,28 +96,18 @@ class Subscription:
 
         Raises WaitTimeoutError, and Error if the run has ended or the subscription was closed.
         """
-        try:
-            return self._native.next(timeout)
-        except StopIteration as end:
-            raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
+        return self._sample(self._native.next, timeout)
 
     def newest(self, timeout: Optional[float] = None) -> Message:
         """Returns the newest sample and discards older ones; waits for one if none has arrived since the last call.
 
         Raises what :meth:`next` raises.
         """
-        try:
-            return self._native.newest(timeout)
-        except StopIteration as end:
-            raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
+        return self._sample(self._native.newest, timeout)
 
     def take(self) -> list[Message]:
         """Returns all samples that have arrived since the last call, without waiting."""
         return self._native.take()
-
-    def close(self) -> None:
-        """Ends the subscription."""
-        self._native.close()
 
     def __iter__(self) -> Iterator[Message]:
         return self
@@ -98,31 +115,18 @@ class Subscription:
     def __next__(self) -> Message:
         return self._native.next(self._timeout)
 
-    def __enter__(self) -> Subscription:
-        return self
-
-    def __exit__(
-        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
-    ) -> None:
-        self.close()
+    def _sample(self, read: Callable[[Optional[float]], Message], timeout: Optional[float]) -> Message:
+        try:
+            return read(timeout)
+        except StopIteration as end:
+            raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
 
 
-class Publisher:
+class Publisher(_Endpoint[_native.Publisher]):
     """Publishes messages on one topic, checked against its type. Made by Domain.publisher()."""
 
     def __init__(self, native: _native.Publisher, owner: Domain) -> None:
-        self._native = native
-        self._owner = owner  # which leaves the domain when nothing refers to it any more
-
-    @property
-    def topic(self) -> str:
-        """The name of the topic."""
-        return self._native.topic
-
-    @property
-    def type(self) -> str:
-        """The IDL type of the messages."""
-        return self._native.type
+        super().__init__(native, owner)
 
     @property
     def readers(self) -> int:
@@ -144,18 +148,6 @@ class Publisher:
         """Waits until all reliable readers have what was published; returns False if they have not in time."""
         return self._native.flush(timeout)
 
-    def close(self) -> None:
-        """Ends the publisher. Late readers then receive nothing any more."""
-        self._native.close()
-
-    def __enter__(self) -> Publisher:
-        return self
-
-    def __exit__(
-        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
-    ) -> None:
-        self.close()
-
 
 class _Latest:
     """The newest sample of a topic."""
@@ -175,7 +167,7 @@ class _Latest:
         return kept
 
 
-class Domain:
+class Domain(_Closing):
     """A DDS domain: its topics, of any type, also of other programs. :func:`observe` makes one.
 
     It may be used from several threads; while one waits, the others go on.
@@ -286,14 +278,6 @@ class Domain:
     def __del__(self) -> None:
         if hasattr(self, "_publishers"):  # else joining failed
             self.close()
-
-    def __enter__(self: _Self) -> _Self:
-        return self
-
-    def __exit__(
-        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
-    ) -> None:
-        self.close()
 
 
 def observe(domain: Optional[int] = None) -> Domain:

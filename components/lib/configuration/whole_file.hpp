@@ -7,18 +7,20 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
-namespace constrictor::cli {
+namespace constrictor {
 
-/// Writes the file at once: after a loss of power there is the old one or the new one. Throws std::runtime_error.
-inline void write_whole(const std::filesystem::path& file, const std::string& text) {
+/// Writes a file beside `file` and renames it, so that readers, also those after a loss of power, see either the old or
+/// the new content. Throws std::runtime_error.
+inline void write_whole(const std::filesystem::path& file, std::string_view content) {
   const std::filesystem::path beside = file.string() + ".part";
   {
     std::ofstream stream(beside, std::ios::binary);
-    stream << text;
+    stream << content;
     if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write {}", beside.string()));
   }
   std::filesystem::rename(beside, file);
 }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor
