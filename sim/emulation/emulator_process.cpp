@@ -22,6 +22,7 @@ bool runs_on() { return !g_stop && ::getppid() == g_parent; }
 int run_emulator(const std::string& name, CLI::App& app, int argc, char** argv,
                  const std::function<void(const Log& log)>& emulate) {
   g_parent = ::getppid();
+  app.set_version_flag("--version", name + " " CONSTRICTOR_VERSION, "print the release");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

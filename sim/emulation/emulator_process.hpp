@@ -17,8 +17,9 @@ namespace constrictor::emulation {
 /// behind. Only inside of run_emulator().
 [[nodiscard]] bool runs_on();
 
-/// The main function of the emulator `name`: reads the command line, calls `emulate` and reports exceptions. Returns
-/// the exit status: 0 after `emulate`, 64 for wrong usage, 78 for a ConfigurationError, 70 for other exceptions.
+/// The main function of the emulator `name`: reads the command line, to which it adds `--version`, calls `emulate` and
+/// reports exceptions. Returns the exit status: 0 after `emulate`, 64 for wrong usage, 78 for a ConfigurationError, 70
+/// for other exceptions.
 [[nodiscard]] int run_emulator(const std::string& name, CLI::App& app, int argc, char** argv,
                                const std::function<void(const Log& log)>& emulate);
 

@@ -1,6 +1,7 @@
 // `constrictor servo` on the pseudo-terminals of emulated servos.
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
+#include "runtime/version.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -30,6 +31,14 @@ class ServoCommand : public CliFixture {
 
   std::optional<Process> emulator_;
 };
+
+TEST(Emulators, NameTheirRelease) {
+  for (const char* name : {"servo_emulator", "camera_emulator"}) {
+    Process process({program(name), "--version"});
+    EXPECT_EQ(process.wait(20s), exit_status::kOk);
+    EXPECT_EQ(process.output(), std::string(name) + " " + kVersion + "\n");
+  }
+}
 
 TEST_F(ServoCommand, ScanListsWhoAnswersAtWhichBaudRate) {
   EXPECT_EQ(servo({"scan"}), exit_status::kOk) << output_;
