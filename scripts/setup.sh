@@ -18,6 +18,8 @@ core=(
   libode-dev libosmesa6-dev libopencv-core-dev libopencv-imgproc-dev libpng-dev libeigen3-dev
   # real cameras: their streams, their pictures, their calibration
   libopencv-videoio-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  # figures and films
+  libcairo2-dev libpango1.0-dev fonts-dejavu-core
   # configuration, command line, text, logs
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
   # checksums of checkpoints

@@ -38,7 +38,8 @@ foreach(folder components sim components/tools)
   list(APPEND PROGRAMS ${found})
 endforeach()
 install(TARGETS ${PROGRAMS} RUNTIME DESTINATION ${LIBEXEC})
-add_custom_target(programs DEPENDS ${PROGRAMS})  # what is installed: no tests, no benchmarks
+install(TARGETS constrictor_figure_module LIBRARY DESTINATION ${LIBEXEC})  # loaded by programs that lie beside it
+add_custom_target(programs DEPENDS ${PROGRAMS} constrictor_figure_module)  # what is installed: no tests, no benchmarks
 if(TARGET constrictor_python)
   add_dependencies(programs constrictor_python)
 endif()

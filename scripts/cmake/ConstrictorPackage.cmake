@@ -20,6 +20,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME constrictor)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/conffiles)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS fonts-dejavu-core)  # of the figures; SHLIBDEPS adds the libraries
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "tmux, openssh-client")
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
     "Physics, camera, perception, guidance, navigation, control and planner of a snake robot

@@ -56,6 +56,15 @@ std::vector<Moment> figure_rows(const std::vector<Moment>& moments) {
   return rows;
 }
 
+std::vector<Moment> merge_end(std::vector<Moment> rows) {
+  constexpr double kSamePictures_s = 2.0;
+  if (rows.size() < 2 || rows.back().event != msg::kEventNone) return rows;
+  if (rows.back().time_s - rows[rows.size() - 2].time_s >= kSamePictures_s) return rows;
+  rows.pop_back();
+  rows.back().ends = true;
+  return rows;
+}
+
 void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
                       const msg::WorldState* world) {
   if (moments.size() >= kMostMoments) return;

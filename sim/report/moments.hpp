@@ -20,6 +20,7 @@ struct Moment {
   std::string state;                  ///< state of the planner
   std::int64_t camera_exposure = -1;  ///< [tick] at which the raw image was exposed; -1: there is no image
   bool has_processed = false;
+  bool ends = false;  ///< set by merge_end(): the mission or the run ended just after it
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -44,6 +45,10 @@ struct MomentFiles {
 /// found several times, the first moment is chosen. If a recovery repeated pregrasped, grasped or dropped, the last one
 /// is chosen.
 [[nodiscard]] std::vector<Moment> figure_rows(const std::vector<Moment>& moments);
+
+/// The rows without an end of the mission or of the run that came less than 2 s after the row before, because it would
+/// show the same pictures again. That row `ends`.
+[[nodiscard]] std::vector<Moment> merge_end(std::vector<Moment> rows);
 
 /// Saves the raw image and the world state of each moment at once, and the processed image of the same exposure when it
 /// arrives. The picture of the scene is drawn after the end of the run (draw_scene_pictures()).

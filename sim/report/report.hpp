@@ -91,10 +91,11 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] std::string line_shortfall() const;
   // Defined in report_files.cpp.
   void write_files(const Tick& tick);
-  [[nodiscard]] std::string mission_json(const Tick& tick) const;
+  [[nodiscard]] std::string mission_json(const Tick& tick, const std::string& figure_error) const;
   [[nodiscard]] nlohmann::ordered_json objects_json() const;
   [[nodiscard]] std::string scenario() const;
-  void draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const;
+  /// Returns why there is no figure.png; empty: there is.
+  [[nodiscard]] std::string draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const;
 
   std::string scenario_;  // name of the scenario file, without folder and ending
   std::uint64_t seed_;

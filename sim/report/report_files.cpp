@@ -10,8 +10,8 @@
 #include "constrictor/image.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/sha256.hpp"
-#include "sim/report/figure.hpp"
-#include "sim/report/png.hpp"
+#include "sim/figure/captions.hpp"
+#include "sim/figure/lazy_figure.hpp"
 #include "sim/report/report.hpp"
 #include "sim/report/scene_pictures.hpp"
 
@@ -34,22 +34,10 @@ ordered_json lines_of(const std::string& journal) {
 
 /// `mission_ended`: whether a moment without an event is the end of the mission or only the end of the run.
 std::string caption_of(const report::Moment& moment, bool mission_ended) {
-  const std::string colour =
-      moment.colour == msg::kColourUnknown ? "" : std::string(name_of(constants::kColour, moment.colour)) + " ";
-  switch (moment.event) {
-    case msg::kEventLineFound:
-      return "line found";
-    case msg::kEventObjectFound:
-      return colour + "object found";
-    case msg::kEventObjectPregrasped:
-      return colour + "object pregrasped";
-    case msg::kEventObjectGrasped:
-      return colour + "object grasped";
-    case msg::kEventDroppingDone:
-      return colour + "object dropped";
-    default:
-      return mission_ended ? "end of the mission" : "end of the run";
-  }
+  const std::string end = mission_ended ? "end of the mission" : "end of the run";
+  if (moment.event == msg::kEventNone) return end;
+  const std::string words = figure::event_caption(moment.event, moment.colour);
+  return moment.ends ? words + ", " + end : words;
 }
 
 }  // namespace
@@ -80,7 +68,7 @@ ordered_json Report::objects_json() const {
   return objects;
 }
 
-std::string Report::mission_json(const Tick& tick) const {
+std::string Report::mission_json(const Tick& tick, const std::string& figure_error) const {
   ordered_json json;
   json["success"] = success();
   json["judged_by"] = truth() ? "ground truth" : "the robot";
@@ -111,32 +99,38 @@ std::string Report::mission_json(const Tick& tick) const {
   json["events"] = lines_of(events_.read(state_.events_length));
   json["states"] = lines_of(states_.read(state_.states_length));
   json["parameters"] = lines_of(parameters_.read(state_.parameters_length));
+  if (!figure_error.empty()) json["figure_error"] = figure_error;
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const {
-  std::vector<report::FigureRow> rows;
-  for (const report::Moment& moment : moments) {
+std::string Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const {
+  std::vector<figure::FileRow> rows;
+  for (const report::Moment& moment : report::merge_end(moments)) {
     const report::MomentFiles files(folder_, moment);
-    report::FigureRow row{moment.time_s,
-                          caption_of(moment, state_.mission_end_tick >= 0),
-                          moment.state,
-                          moment.colour,
-                          files.scene,
-                          {},
-                          {}};
+    figure::FileRow row{moment.time_s,
+                        caption_of(moment, state_.mission_end_tick >= 0),
+                        moment.state,
+                        moment.colour,
+                        files.scene,
+                        {},
+                        {}};
     if (moment.camera_exposure >= 0) row.camera = files.camera;
     if (moment.has_processed) row.processed = files.processed;
     rows.push_back(std::move(row));
   }
   const std::string outcome = success() ? "succeeded" : "did not succeed";
-  const report::FigureHeading heading{"Line following and whole-body grasping",
-                                      fmt::format("scenario {}, seed {}: {} after {:.1f} s", scenario(),
-                                                  scene_ ? scene_->seed : seed_, outcome, tick.time_s()),
-                                      failure()};
-  const cv::Mat figure = report::draw_figure(heading, rows, report::parse_torques(torques_.read(state_.torques_length)),
-                                             config_.torque_window_s);
-  report::replace_file(folder_ / "figure.png", report::encode_png(figure));
+  const figure::Heading heading{figure::kTitle,
+                                fmt::format("scenario {}, seed {}: {} after {:.1f} s", scenario(),
+                                            scene_ ? scene_->seed : seed_, outcome, tick.time_s()),
+                                failure()};
+  const std::string torques = torques_.read(state_.torques_length);
+  try {
+    report::replace_file(folder_ / "figure.png",
+                         figure::draw_png_lazily(heading, rows, torques, config_.torque_window_s));
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 void Report::write_files(const Tick& tick) {
@@ -144,9 +138,9 @@ void Report::write_files(const Tick& tick) {
   if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_);
   const std::vector<report::Moment> moments = report::figure_rows(state_.album.moments);
   if (scene_) report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_);
-  draw_figure(tick, moments);
+  const std::string figure_error = draw_figure(tick, moments);  // the verdict is needed without a figure, too
   // mission.json is written last: its presence shows that the other files are complete.
-  report::replace_file(folder_ / "mission.json", mission_json(tick));
+  report::replace_file(folder_ / "mission.json", mission_json(tick, figure_error));
   // If this process is killed before this line, the restarted process draws all pictures again. If it is killed while
   // it removes world states, their moments keep the pictures that it has drawn.
   report::remove_worlds(folder_);

@@ -7,12 +7,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "sim/report/drawing.hpp"
+#include "bench/validation/drawing.hpp"
 
 namespace constrictor::validation {
 namespace {
-
-using namespace constrictor::report;
 
 constexpr int kPanelWidth = 520;
 constexpr int kPanelHeight = 330;
@@ -144,7 +142,9 @@ cv::Mat draw(const Figure& figure) {
     const auto place = static_cast<int>(i);
     draw_plot(canvas, figure.plots[i], (place % columns) * kPanelWidth, kHeader + (place / columns) * kPanelHeight);
   }
-  return reduced(canvas);
+  cv::Mat rgb;
+  cv::cvtColor(reduced(canvas), rgb, cv::COLOR_BGR2RGB);
+  return rgb;
 }
 
 }  // namespace constrictor::validation

@@ -32,7 +32,7 @@ struct Figure {
   std::vector<Plot> plots;
 };
 
-/// The figure, 8-bit BGR.
+/// The figure, 8 bits, red first, without gaps between its rows.
 [[nodiscard]] cv::Mat draw(const Figure& figure);
 
 }  // namespace constrictor::validation

@@ -129,8 +129,10 @@ void Results::write(const std::filesystem::path& folder) const {
   write_file(folder / "validation.md", markdown());
   write_file(folder / "validation.json", json().dump(2) + "\n");
   for (const Section& section : sections_) {
-    for (const Figure& figure : section.figures)
-      write_file(folder / figure.file, constrictor::report::encode_png(draw(figure)));
+    for (const Figure& figure : section.figures) {
+      const cv::Mat rgb = draw(figure);
+      write_file(folder / figure.file, constrictor::report::encode_png(rgb.cols, rgb.rows, rgb.data));
+    }
   }
 }
 

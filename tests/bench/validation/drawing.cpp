@@ -1,11 +1,11 @@
-#include "sim/report/drawing.hpp"
+#include "bench/validation/drawing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-namespace constrictor::report {
+namespace constrictor::validation {
 
 cv::Mat make_canvas(int width, int height) {
   return {height * kScale, width * kScale, CV_8UC3, cv::Scalar(255, 255, 255)};
@@ -55,4 +55,4 @@ std::string number(double value, int decimals) {
   return buffer;
 }
 
-}  // namespace constrictor::report
+}  // namespace constrictor::validation

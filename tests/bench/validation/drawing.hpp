@@ -1,11 +1,11 @@
-// What the figures of this project have in common: colours, text, and a canvas that is drawn at twice its size and then
+// What the plots have in common: colours, text, and a canvas that is drawn at twice its size and then
 // reduced, which smooths the stroke fonts of OpenCV. All positions and sizes are pixels of the final figure.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace constrictor::report {
+namespace constrictor::validation {
 
 inline constexpr int kScale = 2;
 inline const cv::Scalar kInk(45, 40, 38);  // blue, green, red
@@ -34,4 +34,4 @@ void text(cv::Mat& canvas, const std::string& words, double x, double y, double 
 
 [[nodiscard]] std::string number(double value, int decimals);
 
-}  // namespace constrictor::report
+}  // namespace constrictor::validation

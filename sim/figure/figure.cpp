@@ -1,0 +1,75 @@
+#include "sim/figure/figure.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace constrictor::figure {
+namespace {
+
+constexpr double kMargin = 24.0;
+constexpr double kGap = 10.0;
+constexpr double kPanelHeight = 180.0;
+constexpr double kRowHeight = kPanelHeight + 14.0;
+constexpr std::array<double, 5> kColumnWidths{150, 320, 240, 240, 362};  // caption, scene, camera, processed, torque
+constexpr double kHeaderHeight = 108.0;
+constexpr double kFailureHeight = 24.0;  // of the line that says why the mission did not succeed
+constexpr double kNumbers = 11.0;        // size of the numbers at the axes
+
+void draw_caption(Canvas& canvas, const Row& row, double left, double top) {
+  canvas.fill({left, top, 5.0, kPanelHeight}, display_colour(row.colour));
+  const double x = left + 16.0, width = kColumnWidths[0] - 16.0;
+  canvas.text(number(row.time_s, 1) + " s", {x, top + 20.0}, {19.0, kInk, true});
+  const TextStyle words{14.0};
+  double y = top + 45.0;
+  for (const std::string& line : canvas.wrapped(row.caption, width, words)) {
+    if (y > top + kPanelHeight - 30.0) break;
+    canvas.text(line, {x, y}, words);
+    y += 19.0;
+  }
+  const TextStyle state{12.0, kGreyInk};
+  if (!row.state.empty()) canvas.text(canvas.fitted(row.state, width, state), {x, top + kPanelHeight - 5.0}, state);
+}
+
+}  // namespace
+
+std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, const TorqueSeries& torques,
+                        double window_s, Format format, double scale) {
+  const double header = kHeaderHeight + (heading.failure.empty() ? 0.0 : kFailureHeight);
+  const double height = header + static_cast<double>(rows.size()) * kRowHeight + kMargin - 8.0;
+  Canvas canvas(format, kWidth, height, scale, heading.title + ": " + heading.subtitle);
+
+  std::array<double, kColumnWidths.size()> left{};
+  left[0] = kMargin;
+  for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + kColumnWidths[i - 1] + kGap;
+  const double right = kWidth - kMargin;
+  canvas.text(heading.title, {kMargin, 40.0}, {24.0, kInk, true});
+  const auto fitted_line = [&](const std::string& words, double y, const TextStyle& style) {
+    if (!words.empty()) canvas.text(canvas.fitted(words, right - kMargin, style), {kMargin, y}, style);
+  };
+  fitted_line(heading.subtitle, 65.0, {15.0, kGreyInk});
+  fitted_line(heading.failure, 88.0, {15.0, kRedInk});
+  static constexpr std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Yaw torques [Nm]"};
+  for (std::size_t i = 0; i < kHeadings.size(); ++i)
+    canvas.text(kHeadings[i], {left[i + 1] + (i == 3 ? 30.0 : 0.0), header - 10.0}, {15.0, kInk, true});
+  draw_joint_key(canvas, torques.torque_nm.size(), right, header - 10.0, 12.0);
+
+  TorqueAxes axes;
+  axes.limit_nm = torque_limit(torques);
+  double top = header;
+  for (const Row& row : rows) {
+    draw_caption(canvas, row, left[0], top);
+    draw_picture(canvas, {left[1], top, kColumnWidths[1], kPanelHeight}, row.scene, "no image");
+    draw_picture(canvas, {left[2], top, kColumnWidths[2], kPanelHeight}, row.camera, "no image");
+    draw_picture(canvas, {left[3], top, kColumnWidths[3], kPanelHeight}, row.processed, "no image");
+    // The moment is at four fifths of the window; early in the run the window begins at zero.
+    axes.moment_s = row.time_s;
+    axes.from_s = std::max(0.0, row.time_s - 0.8 * window_s);
+    axes.to_s = axes.from_s + window_s;
+    draw_torques(canvas, {left[4], top - 0.5 * kNumbers, kColumnWidths[4], kPanelHeight + 0.5 * kNumbers}, torques,
+                 axes, kNumbers);
+    top += kRowHeight;
+  }
+  return canvas.finish();
+}
+
+}  // namespace constrictor::figure
