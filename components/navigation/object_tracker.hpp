@@ -36,9 +36,9 @@ struct ObjectTrackerConfig : DebounceConfig {
   double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, kAtStart,
                                "Radius of an object until an image shows its whole width");
   double min_radius_m =
-      add(min_radius_m, "min_radius_m", 0.06, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");
+      add(min_radius_m, "min_radius_m", 0.03, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");
   double max_radius_m =
-      add(max_radius_m, "max_radius_m", 0.12, "m", {0.0, 10.0}, kAtStart, "Largest radius of an object");
+      add(max_radius_m, "max_radius_m", 0.2, "m", {0.0, 10.0}, kAtStart, "Largest radius of an object");
   double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.0, 10.0}, kAtStart,
                              "Radius of a zone until an image shows its whole width");
   double jump_m = add(jump_m, "jump_m", 0.5, "m", {0.0, 10.0}, kWhileRunning,

@@ -1,51 +1,60 @@
 #include "perception/blobs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 
 #include "perception/colour_edge.hpp"
+#include "perception/sight.hpp"
+#include "perception/silhouette.hpp"
 
 namespace constrictor::perception {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPaths = 9;              // number of lines of sight along which an edge is searched
-constexpr double kMaxGapPixels = 3.0;  // widest hole in a region that is passed over
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+constexpr int kPaths = 9;                 // number of lines of sight along which an edge is searched
+constexpr double kMiddle = 0.5;           // share of the width over which these lines are spread
+constexpr double kMaxGapPixels = 3.0;     // widest hole in a region that is passed over
+constexpr double kMeasuredRange_m = 1.5;  // objects that are nearer show their size
+constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than the camera shows no range by its height
 
 /// Measures one region. Azimuths and ranges are relative to the camera; `finish` converts them to the head.
 class Gauge {
  public:
   Gauge(const cv::Mat& rgb, const Regions& regions, std::size_t index, const GroundCamera& camera,
-        const PerceptionConfig& config)
+        const PerceptionConfig& config, const ObjectSizes& sizes)
       : rgb_(rgb),
         regions_(regions),
         region_(regions.regions[index]),
         id_(static_cast<std::uint8_t>(index + 1)),
         camera_(camera),
-        config_(config) {
-    if (region_.standing()) find_sides();
+        config_(config),
+        size_(sizes.of[regions.regions[index].colour]) {
+    if (region_.low) {
+      left_ = region_.left_rad;
+      right_ = region_.right_rad;
+    } else if (region_.standing()) {
+      find_sides();
+    }
   }
 
-  /// The part that stands upright. `on_zone`: a zone of the same colour adjoins its lower edge.
-  std::optional<msg::Blob> object(bool on_zone) const {
+  /// The part that stands upright. `on_zone`: a zone of the same colour adjoins its lower edge. `measured` becomes the
+  /// object's size if the image shows it.
+  std::optional<msg::Blob> object(bool on_zone, ObjectSize& measured) const {
     msg::Blob blob = box(region_.standing_first, region_.standing_last);
-    const double left = left_, right = right_;
-    if (left <= right) return std::nullopt;
+    if (left_ <= right_) return std::nullopt;
     blob.kind = msg::kBlobObject;
     bool cut = false;
-    double range_m = on_zone ? kNan : lower_edge_range(left, right, cut);
+    double range_m = !on_zone ? lower_edge_range(left_, right_, cut) : kNan;
     blob.cut_bottom |= cut;
-    if (!std::isfinite(range_m)) range_m = upper_edge_range(left, right);
-    return finish(blob, left, right, range_m);
+    const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
+    if (!std::isfinite(range_m)) range_m = range_by_size(blob);
+    auto result = finish(blob, left_, right_, range_m);
+    if (whole && result && range_m < kMeasuredRange_m) measure(range_m, result->width_m, measured);
+    return result;
   }
 
   /// The part that lies flat: the whole region, or the part beside the object.
@@ -70,7 +79,8 @@ class Gauge {
     }
     if (left <= right) return std::nullopt;
     msg::Blob blob = box(region_.u_min, region_.u_max);
-    blob.kind = may_be_object(blob, left, right) ? msg::kBlobUndecided : msg::kBlobZone;
+    if (region_.standing()) blob.cut_top = false;  // only the object beside it reaches up there
+    blob.kind = region_.doubtful || may_be_object(blob, left, right) ? msg::kBlobUndecided : msg::kBlobZone;
     bool cut = false;
     const double range_m = lower_edge_range(left, right, cut);
     blob.cut_bottom |= cut;
@@ -114,15 +124,12 @@ class Gauge {
   [[nodiscard]] bool may_be_object(const msg::Blob& blob, double left, double right) const {
     if (blob.cut_top) return true;
     if (blob.cut_left == blob.cut_right) return false;
-    Eigen::Vector2d horizon, down;
-    if (!plane(blob.cut_left ? right : left, horizon, down)) return true;
-    return blob.cut_left ? horizon.x() < 3.0 : horizon.x() > camera_.width() - 3.0;
+    const auto side = vertical_plane(camera_, blob.cut_left ? right : left);
+    if (!side) return true;
+    return blob.cut_left ? side->horizon.x() < 3.0 : side->horizon.x() > camera_.width() - 3.0;
   }
 
-  [[nodiscard]] double azimuth(const Eigen::Vector2d& pixel) const {
-    const Eigen::Vector3d direction = camera_.ray(pixel.x(), pixel.y());
-    return std::atan2(direction.y(), direction.x());
-  }
+  [[nodiscard]] double azimuth(const Eigen::Vector2d& pixel) const { return azimuth_rad(camera_, pixel); }
 
   [[nodiscard]] msg::Blob box(int u_min, int u_max) const {
     msg::Blob blob{};
@@ -164,29 +171,19 @@ class Gauge {
     right_open_ = region_.standing_last == camera_.width() - 1;
   }
 
-  /// The vertical plane of an azimuth in the image: a point on the horizon and the direction downwards.
-  [[nodiscard]] bool plane(double azimuth_rad, Eigen::Vector2d& horizon, Eigen::Vector2d& down) const {
-    const Eigen::Vector3d along(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
-    const auto far = camera_.pixel(Eigen::Vector3d(camera_.position() + 100.0 * along));
-    const auto low = camera_.pixel(Eigen::Vector3d(camera_.position() + along - Eigen::Vector3d(0.0, 0.0, 0.3)));
-    if (!far || !low || (*low - *far).norm() < 1.0) return false;
-    horizon = *far;
-    down = (*low - *far).normalized();
-    return true;
-  }
-
   /// [m] horizontal distance of the lower edge from the camera around the middle azimuth; NaN if cut or hidden.
   /// `cut`: the border of the image or the robot's own head cuts it.
   [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const {
     std::vector<double> ranges;
     int lost = 0, cuts = 0;
     for (int i = 0; i < kPaths; ++i) {
-      const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
-      Eigen::Vector2d start, down;
-      if (!plane(right + share * (left - right), start, down)) continue;
+      const auto plane = vertical_plane(camera_, right + path_share(i, kPaths, kMiddle) * (left - right));
+      if (!plane) continue;
+      auto [start, down] = *plane;
       // If the horizon lies above the image, the walk begins at the border of the image.
       if (start.y() < 0.0 && down.y() > 1e-3) start += (0.01 - start.y()) / down.y() * down;
-      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, down, region_.standing() ? kMaxGapPixels : 1e9);
+      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, down,
+                                  region_.standing() && !region_.low ? kMaxGapPixels : 1e9);
       if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
       if (edge.state == EdgeState::kCut) ++cuts;
       if (edge.state != EdgeState::kSeen) continue;
@@ -199,20 +196,29 @@ class Gauge {
     return median(ranges);
   }
 
-  /// [m] horizontal distance at which the upper edge has the known height of objects; NaN if cut or hidden.
-  [[nodiscard]] double upper_edge_range(double left, double right) const {
-    std::vector<double> ranges;
-    for (int i = 0; i < kPaths; ++i) {
-      const double share = 0.5 + 0.25 * (static_cast<double>(i) / (kPaths - 1) - 0.5) * 2.0;
-      Eigen::Vector2d start, down;
-      if (!plane(right + share * (left - right), start, down)) continue;
-      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, -down, kMaxGapPixels);
-      if (edge.state != EdgeState::kSeen) continue;
-      const Eigen::Vector3d direction = camera_.ray(edge.pixel.x(), edge.pixel.y());
-      const double rise = direction.z() / direction.head<2>().norm();
-      if (rise > 1e-3) ranges.push_back((config_.object_height_m - camera_.height_m()) / rise);
+  /// [m] horizontal distance of an object of known size: by its width, otherwise by its upper edge; NaN if too little
+  /// of it is in view, or if it is not high enough above the camera.
+  [[nodiscard]] double range_by_size(const msg::Blob& blob) const {
+    if (size_.known() && !blob.cut_left && !blob.cut_right) {
+      const double sine = std::sin(0.5 * (left_ - right_));
+      if (sine > 1e-3) return size_.radius_m * (1.0 / sine - 1.0);
     }
-    return ranges.empty() ? kNan : median(ranges);
+    const double above_m = (size_.known() ? size_.height_m : config_.object_height_m) - camera_.height_m();
+    std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
+    if (slopes.empty() || above_m < kLeastAbove_m) return kNan;
+    const double slope = median(slopes);
+    return slope > 1e-3 ? above_m / slope : kNan;
+  }
+
+  /// The size of an object whose foot and sides are in view.
+  void measure(double range_m, double width_m, ObjectSize& size) const {
+    double height_m = region_.height_m;
+    if (!region_.low) {
+      std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
+      if (slopes.empty()) return;
+      height_m = camera_.height_m() + range_m * median(slopes);
+    }
+    size = {0.5 * width_m, height_m, 1};
   }
 
   /// Bearing, range and width of a round object between two tangents, converted from the camera to the head.
@@ -239,6 +245,7 @@ class Gauge {
   std::uint8_t id_;
   const GroundCamera& camera_;
   const PerceptionConfig& config_;
+  const ObjectSize& size_;
   double left_ = 0.0, right_ = 0.0;  ///< azimuths of an object's sides
   bool left_open_ = false, right_open_ = false;
 };
@@ -246,19 +253,30 @@ class Gauge {
 }  // namespace
 
 std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
-                                  const PerceptionConfig& config, std::uint8_t line_colour) {
+                                  const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
+                                  ObjectSizes& measured) {
   std::vector<msg::Blob> blobs;
+  std::array<int, msg::kColourCount> measured_area{};
   for (std::size_t i = 0; i < regions.regions.size(); ++i) {
     const Region& region = regions.regions[i];
     if (region.area < config.min_area_pixels || region.line) continue;
-    const Gauge gauge(rgb, regions, i, camera, config);
+    const Gauge gauge(rgb, regions, i, camera, config, sizes);
+    ObjectSize size;
     if (region.standing()) {
       int flat_pixels = 0;
       bool nearer = false;
       gauge.flat_part(flat_pixels, nearer);
+      // Beside the sides of a high object there are stray pixels of its colour.
+      const int stray = std::min(region.area / 8, 2 * (region.v_max - region.v_min + 1));
       const bool with_zone =
-          region.colour != line_colour && flat_pixels > std::max(2 * config.min_area_pixels, region.area / 8);
-      if (const auto blob = gauge.object(with_zone && nearer)) blobs.push_back(*blob);
+          !region.low && region.colour != line_colour && flat_pixels > std::max(2 * config.min_area_pixels, stray);
+      const bool on_zone = region.on_zone || (with_zone && nearer);
+      if (const auto blob = gauge.object(on_zone, size)) blobs.push_back(*blob);
+      // Of several objects of one colour the nearest one is measured best, and it is the largest in most images.
+      if (size.images > 0 && region.area > measured_area[region.colour]) {
+        measured_area[region.colour] = region.area;
+        measured.of[region.colour] = size;
+      }
       if (with_zone) {
         if (const auto blob = gauge.zone()) blobs.push_back(*blob);
       }

@@ -55,6 +55,7 @@ class GroundCamera {
   [[nodiscard]] const Eigen::Vector3d& position() const { return p_GC_; }
   [[nodiscard]] Eigen::Vector2d position_on_ground() const { return p_GC_.head<2>(); }
   [[nodiscard]] double height_m() const { return p_GC_.z(); }
+  [[nodiscard]] double focal_pixels() const { return fy_; }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] bool inside(const Eigen::Vector2d& pixel) const {

@@ -8,6 +8,8 @@
 #include "perception/blobs.hpp"
 #include "perception/line_fit.hpp"
 #include "perception/line_tracer.hpp"
+#include "perception/low_objects.hpp"
+#include "perception/object_on_zone.hpp"
 #include "perception/picture.hpp"
 #include "perception/regions.hpp"
 
@@ -67,14 +69,17 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
   cv::setNumThreads(1);
 }
 
-Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour) {
+Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
+                                     const ObjectSizes& sizes) {
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
   find_regions(labels_, camera, config_, line_colour, region_buffers_, regions_);
+  mark_low_objects(smooth_, camera, config_, regions_);
+  split_objects_from_zones(smooth_, camera, config_, sizes, regions_);
   const LineTrace trace = trace_line(labels_, regions_, camera, config_, line_colour);
-  const std::vector<msg::Blob> blobs = find_blobs(smooth_, regions_, camera, config_, line_colour);
-
   Percepts percepts;
+  const std::vector<msg::Blob> blobs =
+      find_blobs(smooth_, regions_, camera, config_, line_colour, sizes, percepts.measured);
   percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
   percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
   std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);

@@ -7,6 +7,7 @@
 
 #include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
+#include "perception/object_sizes.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/regions.hpp"
 #include "perception/smoothing.hpp"
@@ -19,6 +20,7 @@ namespace constrictor::perception {
 struct Percepts {
   msg::LinePercept line{};
   msg::ObjectPercepts objects{};
+  ObjectSizes measured{};  ///< the sizes of objects that this image shows
   cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it; valid until the next call of `detect`
 };
 
@@ -28,8 +30,10 @@ class LineAndBlobDetector {
  public:
   explicit LineAndBlobDetector(const PerceptionConfig& config);
 
-  /// `rgb`: CV_8UC3 of the camera's size. The caller fills in exposure_tick and the headers of the percepts.
-  [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour);
+  /// `rgb`: CV_8UC3 of the camera's size. `sizes`: what earlier images have shown. The caller fills in exposure_tick
+  /// and the headers of the percepts.
+  [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
+                                const ObjectSizes& sizes = {});
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 

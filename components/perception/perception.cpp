@@ -77,7 +77,8 @@ void Perception::step(const Tick& tick) {
   const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
   const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_, head_);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
-  perception::Percepts percepts = detector_.detect(rgb, camera, colour);
+  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes);
+  state_.sizes.learn(percepts.measured);
 
   percepts.line.exposure_tick = image_->exposure_tick;
   percepts.objects.exposure_tick = image_->exposure_tick;

@@ -1,6 +1,7 @@
 // The component: images in, percepts and a processed picture out.
 #pragma once
 
+#include <cereal/types/array.hpp>
 #include <cereal/types/deque.hpp>
 #include <cstdint>
 #include <deque>
@@ -27,10 +28,11 @@ struct PerceptionState {
   std::uint64_t images = 0;        ///< number of processed images
   std::uint64_t fingerprint = 0;   ///< of the last image
   int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
+  perception::ObjectSizes sizes;   ///< what the images have shown so far
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, fingerprint, equal_images, parameters);
+    archive(attitudes, line_colour, images, fingerprint, equal_images, sizes, parameters);
   }
 };
 

@@ -31,7 +31,9 @@ struct PerceptionConfig : ParameterSet {
   double line_max_gap_m = add(line_max_gap_m, "line.max_gap_m", 0.35, "m", {0.0, 2.0}, kWhileRunning,
                               "Longest hidden stretch of the line that is bridged");
   double object_height_m = add(object_height_m, "object.height_m", 0.15, "m", {0.02, 2.0}, kWhileRunning,
-                               "Height of objects; gives their range when their lower edge is hidden");
+                               "Height of an object whose height no image has shown yet");
+  double object_max_radius_m = add(object_max_radius_m, "object.max_radius_m", 0.2, "m", {0.02, 2.0}, kWhileRunning,
+                                   "No object is larger: what is wider and below the horizon is a zone");
   int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, kWhileRunning,
                             "Smaller blobs are ignored");
   double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, kWhileRunning,

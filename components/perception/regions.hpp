@@ -17,10 +17,16 @@ struct Region {
   int area = 0;  ///< [pixel]
   int u_min = 0, v_min = 0, u_max = 0, v_max = 0;
   /// First and last column in which the region reaches above the horizon; first > last: there is none. Such a region
-  /// stands upright: flat ground never rises above the horizon, and the camera is lower than the top of every object.
+  /// stands upright, because flat ground never rises above the horizon. Of a low object: its first and last column.
   int standing_first = 0, standing_last = -1;
   int standing_bottom = -1;  ///< lowest row in which the standing part still has most of its width
   bool line = false;         ///< elongated on the ground and of the line's colour
+  // Of a low object, found by mark_low_objects() or split_objects_from_zones():
+  bool low = false;                        ///< stands upright although it does not reach above the horizon
+  bool on_zone = false;                    ///< a part of a zone of the same colour was taken for it
+  bool doubtful = false;                   ///< too small a part is in view to tell a low object from a zone
+  double left_rad = 0.0, right_rad = 0.0;  ///< azimuths of its sides
+  double height_m = 0.0;
 
   [[nodiscard]] bool standing() const { return standing_last > standing_first; }
 };

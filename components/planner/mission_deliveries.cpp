@@ -1,6 +1,7 @@
 // How the mission planner decides whether an object is delivered, and what it does with one that resists.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "constrictor/constants.hpp"
@@ -41,8 +42,11 @@ void MissionPlanner::note_drops(const PlannerInputs& inputs) {
 
 MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
   switch (dropped_object(inputs).verdict) {
-    case Delivery::kOnZone:
-      return delivered();
+    case Delivery::kOnZone: {
+      // After the last object the robot looks a little longer: it may have pushed the others off their zones.
+      const bool looked = memory_.state == kInspect && memory_.active_s - memory_.entered_s >= config_.last_look_s;
+      return at_last_object() && !looked ? kInspect : delivered(inputs);
+    }
     case Delivery::kOutside:
       return recover(kSearchObject);
     default:
@@ -54,14 +58,51 @@ MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs&
   const DeliveryView view = dropped_object(inputs);
   const bool seen = in_view || view.precise;
   const bool likely = seen && view.verdict == Delivery::kUncertain && view.offset_m <= view.radius_m;
-  return likely || view.verdict == Delivery::kOnZone ? delivered() : recover(kSearchObject);
+  return likely || view.verdict == Delivery::kOnZone ? delivered(inputs) : recover(kSearchObject);
 }
 
-MissionState MissionPlanner::delivered() {
+MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.delivered |= std::uint32_t{1} << memory_.object_index;
+  memory_.displaced &= ~memory_.delivered;
+  const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
+  memory_.placed.push_back({memory_.object_index, memory_.dropped_handle, newest, inputs.tick, 0.0});
   memory_.dropped = false;
   memory_.released_tick = -1;
-  return choose_object() ? kTurnRound : end_of_sequence();
+  if (!choose_object()) return end_of_sequence();
+  // What has been pushed off its zone is near.
+  return (memory_.displaced >> memory_.object_index & 1u) != 0 ? kSearchObject : kTurnRound;
+}
+
+bool MissionPlanner::at_last_object() const {
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    if (i != memory_.object_index && (memory_.delivered >> i & 1u) == 0) return false;
+  }
+  return config_.sequence.size() > 1;
+}
+
+void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double elapsed_s) {
+  constexpr double kNoticed_s = 0.4;
+  constexpr double kNear_m = 1.6;  // an object of this colour that is farther from the zone is another one
+  if (!inputs.map) return;
+  const auto off_zone = [&](PlacedObject& object) {
+    const std::uint8_t colour = config_.sequence[object.index];
+    bool all = true;  // of this colour are delivered, so that an object that appears now is one of them
+    for (std::size_t i = 0; i < config_.sequence.size(); ++i)
+      all = all && (config_.sequence[i] != colour || (memory_.delivered >> i & 1u) != 0);
+    constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
+    if (!all && object.handle == 0) return false;
+    const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick};
+    const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
+    const bool outside = view.verdict == Delivery::kOutside && view.offset_m < kNear_m;
+    object.outside_s = outside ? object.outside_s + elapsed_s : 0.0;
+    return object.outside_s > kNoticed_s;
+  };
+  const auto gone = std::find_if(memory_.placed.begin(), memory_.placed.end(), off_zone);
+  if (gone == memory_.placed.end()) return;
+  memory_.delivered &= ~(std::uint32_t{1} << gone->index);
+  memory_.displaced |= std::uint32_t{1} << gone->index;
+  memory_.placed.erase(gone);
+  ++memory_.recoveries;
 }
 
 bool MissionPlanner::choose_object() {

@@ -44,6 +44,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
       inputs.status->parameters.direction != msg::kDirectionNone)
     memory_.side = inputs.status->parameters.direction;
   count_percepts(inputs);
+  watch_placed_objects(inputs, elapsed_s);
   if (memory_.requested) {
     if (const auto to = next(inputs)) enter(*to);
   }
@@ -214,7 +215,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     case kTrackObject:
       // A dropped object that was not seen at first may stand on its zone all the same.
       return memory_.released_tick >= 0 && dropped_object(inputs).verdict == Delivery::kOnZone
-                 ? std::optional(delivered())
+                 ? std::optional(delivered(inputs))
                  : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;

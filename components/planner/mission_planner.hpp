@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cereal/types/string.hpp>
+#include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,6 +46,19 @@ struct Move {
   std::uint8_t direction = msg::kDirectionNone;
 };
 
+/// An object that was seen on its zone. Something may push it off again.
+struct PlacedObject {
+  std::uint16_t index = 0;          ///< in the sequence
+  std::uint16_t handle = 0;         ///< of its landmark; 0: unknown
+  std::uint16_t newest_handle = 0;  ///< highest handle of the map when it was delivered
+  std::int64_t tick = 0;            ///< at which it was delivered
+  double outside_s = 0.0;           ///< time for which the map has shown it outside its zone
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(index, handle, newest_handle, tick, outside_s);
+  }
+};
+
 /// The whole state of the planner.
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
@@ -69,6 +83,8 @@ struct MissionMemory {
   bool dropped = false;                     ///< the planner's drop is done, and its result is not yet decided
   std::uint16_t dropped_handle = 0;         ///< of the dropped object; 0: unknown
   std::uint16_t newest_handle = 0;          ///< highest handle of the map at the release
+  std::vector<PlacedObject> placed;         ///< the delivered objects
+  std::uint32_t displaced = 0;              ///< bit i: object i was delivered, and was then pushed off its zone
   std::int64_t released_tick = -1;  ///< last tick in which the body still held the object of the newest drop; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
@@ -87,7 +103,8 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
-            aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick);
+            aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick, placed,
+            displaced);
   }
 };
 
@@ -120,7 +137,11 @@ class MissionPlanner {
   /// seen is searched for. `in_view`: the look has ended because the object stayed in view. All places of the map are
   /// then as good as the robot's own, even if that is uncertain.
   [[nodiscard]] MissionState after_inspection(bool in_view, const PlannerInputs& inputs);
-  [[nodiscard]] MissionState delivered();
+  [[nodiscard]] MissionState delivered(const PlannerInputs& inputs);
+  /// Counts a delivered object as undelivered again when the map has shown it outside its zone for a while.
+  void watch_placed_objects(const PlannerInputs& inputs, double elapsed_s);
+  /// Whether all objects but the present one are delivered or put aside for good.
+  [[nodiscard]] bool at_last_object() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
   /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
   /// delivered unless the map shows them outside their zone.

@@ -40,6 +40,8 @@ struct PlannerConfig : ParameterSet {
           "A dropped object was seen when the standard deviation of its place in the map is at most this");
   double inspect_s = add(inspect_s, "inspect_s", 20.0, "s", {1, 600}, kAtStart,
                          "Longest time of the look at a dropped object; then the likelier case counts");
+  double last_look_s = add(last_look_s, "last_look_s", 1.0, "s", {0, 600}, kAtStart,
+                           "Shortest look after the last drop: it shows whether the others are still on their zones");
   double approach_anew_s = add(approach_anew_s, "approach_anew_s", 6.0, "s", {1, 600}, kAtStart,
                                "Time for which the robot leaves an object before it approaches it in another way");
   int attempts = add(attempts, "attempts", 5, "", {1, 100}, kAtStart,

@@ -173,12 +173,32 @@ void World::stand_on_bellies() {
   }
 }
 
+// Without it, a cylinder that was knocked over would roll on for ever. The torque grows linearly with slow rates, and
+// never takes more than half of a rate in one step, because more would excite it.
+void World::resist_rolling() {
+  constexpr double kSoft_rad_s = 0.05;
+  constexpr double kMostOfRate = 0.5;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const ScenarioObject& object = scenario_.objects[i];
+    const Vector3d rate = vector_of(dBodyGetAngularVel(objects_[i]));
+    const double rolling_rad_s = std::hypot(rate.x(), rate.y());
+    if (rolling_rad_s < 1e-9) continue;
+    const double lever_m = object.shape == BodyShape::kCylinder ? object.size_m.x() : 0.5 * object.size_m.minCoeff();
+    const double weight_n = object.mass_kg * -scenario_.gravity_m_s2.z();
+    const double most_nm = kRollingResistance * weight_n * lever_m * std::min(1.0, rolling_rad_s / kSoft_rad_s);
+    const double inertia_kg_m2 = 0.4 * object.mass_kg * lever_m * lever_m;  // at least
+    const double torque_nm = std::min(most_nm, kMostOfRate * inertia_kg_m2 * rolling_rad_s / settings_.step_s);
+    dBodyAddTorque(objects_[i], -torque_nm * rate.x() / rolling_rad_s, -torque_nm * rate.y() / rolling_rad_s, 0.0);
+  }
+}
+
 void World::step() {
   for (const auto& drive : drives_) drive->drive();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     dBodyAddForce(objects_[i], forces_n_[i].x(), forces_n_[i].y(), forces_n_[i].z());
   }
   stand_on_bellies();
+  resist_rolling();
   contacts_.begin_step();
   collide();
   // QuickStep reorders constraints with a random generator that all worlds of the process share. Each world restores

@@ -30,6 +30,10 @@ struct ImuTruth {
                                                             ///< the world's z axis
 };
 
+/// Rolling resistance of an object that lies on the ground: its force as a share of its weight. An assumption, between
+/// a hard wheel on a hard floor (0.01) and a soft one (0.1).
+inline constexpr double kRollingResistance = 0.03;
+
 class World {
  public:
   /// Copies its arguments. Does not throw for arguments that load_robot and load_scenario accept.
@@ -100,6 +104,7 @@ class World {
   [[nodiscard]] ConvexSolid solid_of(std::size_t object) const;
   void step();
   void stand_on_bellies();
+  void resist_rolling();
   void extend_hash();
   template <class Archive>
   void serialize_rest(Archive& archive);

@@ -78,8 +78,10 @@ void line(benchmark::State& state) {
 }
 void blobs(benchmark::State& state) {
   Steps steps;
+  ObjectSizes measured;
   for (auto _ : state)
-    benchmark::DoNotOptimize(find_blobs(steps.smooth, steps.regions, steps.camera, steps.config, msg::kColourBlue));
+    benchmark::DoNotOptimize(
+        find_blobs(steps.smooth, steps.regions, steps.camera, steps.config, msg::kColourBlue, {}, measured));
 }
 void picture(benchmark::State& state) {
   Steps steps;

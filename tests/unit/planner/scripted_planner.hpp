@@ -179,6 +179,11 @@ class PlannerTest : public ::testing::Test {
     release(colour);
     map_dropped(colour, 0.1);
     succeed(msg::kEventDroppingDone);
+    // After the last object the robot looks a little longer.
+    for (int i = 0; i < 60 && memory_.state == MissionState::kInspect; ++i) {
+      map_dropped(colour, 0.1);
+      step();
+    }
   }
 
   PlannerConfig config_;

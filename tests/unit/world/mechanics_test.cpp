@@ -151,6 +151,29 @@ double slide_robot(double slope_rad, const Vector3d& downhill) {
   return acceleration;
 }
 
+// A solid cylinder that rolls without slipping: m a = F - c m g and m r² a / 2 = F r give a = -2/3 c g.
+TEST(Mechanics, ARollingCylinderIsSlowedDownByItsRollingResistance) {
+  const double radius = 0.05, mass = 0.4;
+  World world(mamba(), with_object({radius, radius, 0.4}, mass));
+  const auto push = [&](const Vector3d& force, double seconds) {
+    for (int i = 0; i < static_cast<int>(std::lround(seconds / kPeriod_s)); ++i) {
+      world.apply_force(0, force);
+      world.advance(kPeriod_s);
+    }
+  };
+  push(0.35 * mass * kG * Vector3d::UnitX(), 1.0);
+  push(Vector3d::Zero(), 2.0);
+  ASSERT_NEAR(world.object_pose(0).translation().z(), radius, 0.005);  // it lies, its axis along x
+  push(0.2 * mass * kG * Vector3d::UnitY(), 0.6);
+  push(Vector3d::Zero(), 0.2);
+  const double before = world.object_velocity_m_s(0).y();
+  ASSERT_GT(before, 0.4);
+  push(Vector3d::Zero(), 1.0);
+  EXPECT_NEAR(before - world.object_velocity_m_s(0).y(), 2.0 / 3.0 * kRollingResistance * kG, 0.02);
+  push(Vector3d::Zero(), 6.0);
+  EXPECT_LT(world.object_velocity_m_s(0).norm(), 0.01);
+}
+
 TEST(Mechanics, ARobotOnASlopeHoldsUpToItsFrictionAngleAndThenAccelerates) {
   const RobotModel robot = mamba();
   for (const auto& [downhill, mu] : {std::pair<Vector3d, double>(Vector3d::UnitX(), robot.friction_along),

@@ -1,0 +1,85 @@
+#include "perception/low_objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "perception/sight.hpp"
+#include "perception/silhouette.hpp"
+
+namespace constrictor::perception {
+namespace {
+
+constexpr double kLeastHeight_m = 0.02;
+constexpr double kRisePixels = 2.0;  // the least height is also this many pixels
+constexpr double kHorizonPixels = 3.0;
+
+enum class Rise { kFlat, kLow, kDoubtful };
+
+/// A region of which the image shows one side. Close to this side a disc is thin, so that its two edges meet.
+/// `height_m` becomes the height of what rises there.
+Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
+                  const Sides& sides, double& height_m) {
+  constexpr double kInside = 2.5;  // [pixel]
+  constexpr double kFlat_m = 0.02, kLow_m = 0.04;
+  const bool left = regions.regions[index].u_min > 0;
+  const double inside_rad = kInside / camera.focal_pixels();
+  if (sides.angle_rad() < 2.0 * inside_rad) return Rise::kDoubtful;
+  const auto path =
+      walk(rgb, camera, regions, index, left ? sides.left_rad - inside_rad : sides.right_rad + inside_rad);
+  if (!path) return Rise::kDoubtful;
+  height_m = camera.height_m() - path->near_m * std::max(path->slope, 0.0);
+  return height_m < kFlat_m ? Rise::kFlat : height_m > kLow_m ? Rise::kLow : Rise::kDoubtful;
+}
+
+/// A region of which the image shows both sides: the farthest edge of a disc lies where the nearest edge and the sides
+/// tell. `height_m` becomes the height of a round object whose farthest rim is the highest edge.
+Rise rise_of_whole(const std::vector<Path>& paths, const GroundCamera& camera, const Sides& sides, double& height_m) {
+  if (2 * paths.size() <= kPaths) return Rise::kDoubtful;
+  // The nearest edge of a disc lies on its middle path.
+  const auto nearer = [](const Path& a, const Path& b) { return a.near_m < b.near_m; };
+  const double range_m = std::min_element(paths.begin(), paths.end(), nearer)->near_m;
+  const Disc disc = Disc::between_tangents(range_m, sides.angle_rad());
+  std::vector<double> heights;
+  for (const Path& path : paths)
+    heights.push_back(camera.height_m() - disc.far_m(path.aside_rad) * std::max(path.slope, 0.0));
+  const double least_m = std::max(kLeastHeight_m, kRisePixels * disc.centre_m / camera.focal_pixels());
+  const double lowest_m = *std::min_element(heights.begin(), heights.end());
+  height_m = median(heights);
+  return height_m >= least_m && lowest_m >= 0.5 * least_m ? Rise::kLow : Rise::kFlat;
+}
+
+}  // namespace
+
+void mark_low_objects(const cv::Mat& rgb, const GroundCamera& camera, const PerceptionConfig& config,
+                      Regions& regions) {
+  for (std::size_t i = 0; i < regions.regions.size(); ++i) {
+    Region& region = regions.regions[i];
+    if (region.area < config.min_area_pixels || region.line) continue;
+    // Something as high as the camera reaches above the horizon with a few pixels at most.
+    const double horizon = std::min(camera.horizon_row(region.u_min), camera.horizon_row(region.u_max + 1.0));
+    const double above = horizon - region.v_min;
+    if (region.standing() && above > kHorizonPixels) continue;
+    const Sides sides = sides_of(rgb, camera, regions, i);
+    if (sides.left_rad <= sides.right_rad) continue;
+    if (Disc::between_tangents(sides.nearest_m, sides.angle_rad()).radius_m > config.object_max_radius_m) continue;
+    const bool cut_left = region.u_min == 0, cut_right = region.u_max == camera.width() - 1;
+    double height_m = 0.0;
+    Rise rise = Rise::kDoubtful;
+    if (cut_left != cut_right) {
+      rise = rise_at_side(rgb, camera, regions, i, sides, height_m);
+    } else if (!cut_left) {
+      rise = rise_of_whole(walk_paths(rgb, camera, regions, i, sides), camera, sides, height_m);
+    }
+    region.doubtful = rise == Rise::kDoubtful && !region.standing();
+    if (rise != Rise::kLow) continue;
+    region.low = true;
+    region.left_rad = sides.left_rad;
+    region.right_rad = sides.right_rad;
+    region.height_m = height_m;
+    region.standing_first = region.u_min;
+    region.standing_last = region.u_max;
+    region.standing_bottom = region.v_max;
+  }
+}
+
+}  // namespace constrictor::perception

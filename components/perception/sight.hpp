@@ -1,0 +1,31 @@
+// Lines of sight from the camera: azimuths in frame G, and the vertical planes that they span, as lines of the image.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "perception/ground_camera.hpp"
+
+namespace constrictor::perception {
+
+/// [rad] direction of a pixel's line of sight around the vertical, from x of G, positive left.
+[[nodiscard]] double azimuth_rad(const GroundCamera& camera, const Eigen::Vector2d& pixel);
+
+/// The vertical plane of an azimuth in the image.
+struct VerticalPlane {
+  Eigen::Vector2d horizon;  ///< [pixel] its point on the horizon
+  Eigen::Vector2d down;     ///< unit vector downwards
+};
+
+/// None if the plane lies behind the camera.
+[[nodiscard]] std::optional<VerticalPlane> vertical_plane(const GroundCamera& camera, double azimuth_rad);
+
+/// The azimuth at a share of the way from the right side (0) to the left side (1) of something in view: path `i` of
+/// `count`, spread over the middle `width` of it.
+[[nodiscard]] double path_share(int i, int count, double width);
+
+/// The median; reorders `values`, which must not be empty.
+[[nodiscard]] double median(std::vector<double>& values);
+
+}  // namespace constrictor::perception

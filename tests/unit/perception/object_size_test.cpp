@@ -1,0 +1,163 @@
+// Objects lower and higher than the camera, and zones of any radius, in the scenes of an independent ray caster.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "perception/line_and_blob_detector.hpp"
+#include "ray_caster.hpp"
+
+namespace constrictor {
+namespace {
+
+using perception::GroundCamera;
+using perception::LineAndBlobDetector;
+using perception::ObjectSizes;
+using perception::PerceptionConfig;
+using perception::Percepts;
+using test::Head;
+using test::Round;
+using test::Scene;
+
+constexpr double kDegree = 3.14159265358979 / 180.0;
+
+/// How a scene is lit and how the head is held. The camera is 0.085 m above the ground.
+struct Conditions {
+  double intensity, ambient, noise_sd;
+  Head head;
+};
+
+const Conditions kConditions[] = {
+    {1.0, 0.35, 0.0, {}},
+    {0.5, 0.35, 0.03, {0.0, 0.02, 0.4, 0.035}},
+    {1.5, 0.3, 0.05, {0.03, -0.02, -2.0, 0.035}},
+    {0.7, 0.4, 0.03, {-0.04, 0.04, 1.0, 0.035}},
+};
+
+Percepts look(Scene scene, const Conditions& c, const ObjectSizes& sizes = {}) {
+  static LineAndBlobDetector detector{PerceptionConfig{}};
+  scene.light_intensity = c.intensity;
+  scene.ambient = c.ambient;
+  scene.noise_sd = c.noise_sd;
+  const msg::CameraInfo info = test::camera_info();
+  const GroundCamera camera(info, test::orientation(c.head), c.head.height_m);
+  return detector.detect(test::draw(scene, info, c.head), camera, msg::kColourBlue, sizes);
+}
+
+const msg::Blob* find(const Percepts& percepts, std::uint8_t kind) {
+  for (int i = 0; i < percepts.objects.blob_count; ++i) {
+    if (percepts.objects.blobs[i].kind == kind) return &percepts.objects.blobs[i];
+  }
+  return nullptr;
+}
+
+std::string describe(const Conditions& c, double radius_m, double height_m, double range_m) {
+  return "intensity " + std::to_string(c.intensity) + ", radius " + std::to_string(radius_m) + ", height " +
+         std::to_string(height_m) + ", range " + std::to_string(range_m);
+}
+
+TEST(ObjectSize, ObjectsOfAnyHeightAreFoundAndMeasured) {
+  for (const Conditions& c : kConditions) {
+    for (const double height : {0.05, 0.07, 0.085, 0.1, 0.15, 0.4}) {
+      for (const double radius : {0.04, 0.085, 0.16}) {
+        for (const double range : {0.3, 0.6, 1.2}) {
+          SCOPED_TRACE(describe(c, radius, height, range));
+          Scene scene;
+          scene.rounds = {Round{msg::kColourRed, {range + radius, 0.05}, radius, height}};
+          const Percepts percepts = look(scene, c);
+          const double seen_range = scene.rounds[0].centre.norm() - radius;
+          EXPECT_EQ(percepts.objects.blob_count, 1);
+          const msg::Blob* blob = find(percepts, msg::kBlobObject);
+          ASSERT_NE(blob, nullptr);
+          EXPECT_NEAR(blob->bearing_rad, std::atan2(0.05, range + radius), 1.5 * kDegree);
+          EXPECT_NEAR(blob->range_m, seen_range, 0.06 * seen_range);
+          EXPECT_NEAR(blob->width_m, 2.0 * radius, 0.03);
+          const perception::ObjectSize& size = percepts.measured.of[msg::kColourRed];
+          if (blob->cut_top) continue;  // the upper edge is out of view: no size follows
+          ASSERT_EQ(size.images, 1);
+          EXPECT_NEAR(size.radius_m, radius, 0.015);
+          EXPECT_NEAR(size.height_m, height, 0.01 + 0.02 * range);
+        }
+      }
+    }
+  }
+}
+
+TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
+  for (const Conditions& c : kConditions) {
+    for (const double radius : {0.1, 0.15, 0.25, 0.4}) {
+      for (const double range : {0.3, 0.8, 1.5}) {
+        SCOPED_TRACE(describe(c, radius, 0.0, range));
+        Scene scene;
+        scene.rounds = {Round{msg::kColourRed, {range + radius, -0.05}, radius}};
+        const Percepts percepts = look(scene, c);
+        EXPECT_EQ(percepts.objects.blob_count, 1);
+        ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
+        EXPECT_EQ(percepts.measured.of[msg::kColourRed].images, 0);
+      }
+    }
+  }
+}
+
+TEST(ObjectSize, WhatTheBorderCutsIsNeverMistaken) {
+  for (const Conditions& c : kConditions) {
+    for (const double bearing : {-0.85, -0.75, -0.65, 0.65, 0.75, 0.85}) {
+      const Eigen::Vector2d sight(std::cos(bearing), std::sin(bearing));
+      for (const double range : {0.3, 0.6}) {
+        Scene low, zone;
+        low.rounds = {Round{msg::kColourRed, (range + 0.085) * sight, 0.085, 0.06}};
+        zone.rounds = {Round{msg::kColourRed, (range + 0.3) * sight, 0.3}};
+        SCOPED_TRACE(describe(c, bearing, 0.0, range));
+        EXPECT_EQ(find(look(low, c), msg::kBlobZone), nullptr);
+        EXPECT_EQ(find(look(zone, c), msg::kBlobObject), nullptr);
+      }
+    }
+  }
+}
+
+ObjectSizes known(double radius_m, double height_m) {
+  ObjectSizes sizes, one;
+  one.of[msg::kColourGreen] = {radius_m, height_m, 1};
+  for (int i = 0; i < perception::ObjectSize::kEnoughImages; ++i) sizes.learn(one);
+  return sizes;
+}
+
+TEST(ObjectSize, TheKnownSizeGivesTheRangeOnAZoneOfTheObjectsColour) {
+  for (const Conditions& c : kConditions) {
+    for (const double height : {0.1, 0.15, 0.3}) {
+      for (const double distance : {0.6, 0.9}) {
+        SCOPED_TRACE(describe(c, 0.085, height, distance));
+        Scene scene;
+        scene.rounds = {Round{msg::kColourGreen, {distance, 0.0}, 0.3},
+                        Round{msg::kColourGreen, {distance, 0.0}, 0.085, height}};
+        const Percepts percepts = look(scene, c, known(0.085, height));
+        const msg::Blob* object = find(percepts, msg::kBlobObject);
+        ASSERT_NE(object, nullptr);
+        ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
+        EXPECT_NEAR(object->range_m, distance - 0.085, 0.07 * distance);
+        EXPECT_EQ(percepts.measured.of[msg::kColourGreen].images, 0);
+      }
+    }
+  }
+}
+
+TEST(ObjectSize, ALowObjectOfKnownSizeIsFoundOnAZoneOfItsColour) {
+  for (const Conditions& c : kConditions) {
+    for (const double distance : {0.6, 0.9}) {
+      SCOPED_TRACE(describe(c, 0.085, 0.06, distance));
+      Scene scene;
+      scene.rounds = {Round{msg::kColourGreen, {distance, 0.05}, 0.3}};
+      EXPECT_EQ(find(look(scene, c, known(0.085, 0.06)), msg::kBlobObject), nullptr);
+      scene.rounds.push_back(Round{msg::kColourGreen, {distance, 0.05}, 0.085, 0.06});
+      EXPECT_EQ(find(look(scene, c), msg::kBlobObject), nullptr);  // of unknown size
+      const Percepts percepts = look(scene, c, known(0.085, 0.06));
+      const msg::Blob* object = find(percepts, msg::kBlobObject);
+      ASSERT_NE(object, nullptr);
+      ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
+      EXPECT_NEAR(object->range_m, scene.rounds[1].centre.norm() - 0.085, 0.05);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace constrictor
