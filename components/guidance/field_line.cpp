@@ -5,6 +5,11 @@
 #include "guidance/field_mapper.hpp"
 
 namespace constrictor::guidance {
+namespace {
+
+constexpr std::size_t kMaxLinePoints = 20000;  // 1 km with the default spacing; bounds the time of an image
+
+}  // namespace
 
 void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick,
                        double period_s) {
@@ -54,8 +59,7 @@ void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposu
         filter_.observe_line(residual_m, normal, p - filter_.pose().p, config_.inflation * sd_m * sd_m);
       }
     }
-    if (nearest_m > config_.line_spacing_m &&
-        state_.line_x_m.size() < static_cast<std::size_t>(msg::kMaxMapLinePoints)) {
+    if (nearest_m > config_.line_spacing_m && state_.line_x_m.size() < kMaxLinePoints) {
       state_.line_x_m.push_back(p.x());
       state_.line_y_m.push_back(p.y());
       state_.line_tick.push_back(tick);

@@ -159,11 +159,14 @@ void FieldMapper::objects(const msg::ObjectPercepts& percepts, const PlanarPose&
 
 void FieldMapper::fill(msg::FieldMap& map) const {
   map.line_colour = state_.line_colour;
-  const std::size_t points =
-      std::min<std::size_t>(state_.line_x_m.size(), static_cast<std::size_t>(msg::kMaxMapLinePoints));
-  map.line_point_count = static_cast<std::uint16_t>(points);
-  std::copy_n(state_.line_x_m.begin(), points, map.line_x_m);
-  std::copy_n(state_.line_y_m.begin(), points, map.line_y_m);
+  // A line with more points than the message has room for is published with a greater spacing.
+  constexpr auto kRoom = static_cast<std::size_t>(msg::kMaxMapLinePoints);
+  const std::size_t known = state_.line_x_m.size(), stride = std::max<std::size_t>(1, (known + kRoom - 1) / kRoom);
+  map.line_point_count = 0;
+  for (std::size_t i = 0; i < known; i += stride) {
+    map.line_x_m[map.line_point_count] = state_.line_x_m[i];
+    map.line_y_m[map.line_point_count++] = state_.line_y_m[i];
+  }
   map.object_count = 0;
   for (const Landmark& landmark : state_.landmarks) {
     if (landmark.hits < config_.confirm && !landmark.carried) continue;
