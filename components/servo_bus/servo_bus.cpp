@@ -14,7 +14,6 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kRecordEvery_ticks = 50;
-constexpr double kSlowestClock = 0.6;  // wall time by run time; a late run catches up by at most 0.2 s
 
 RobotModel robot_of(const Setup& setup) {
   return load_robot(setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file);
@@ -74,29 +73,9 @@ void ServoBus::start() {
   started_ = true;
 }
 
-void ServoBus::measure(const Tick& tick) {
-  if (!started_) {
-    start();
-    window_tick_ = tick.index;
-    window_time_ns_ = ports_.now_ns();
-  } else {
-    servos_.measure();
-  }
-}
-
-void ServoBus::check_pace(const Tick& tick) {
-  const std::int64_t ticks = tick.index - window_tick_;
-  if (ticks < kRecordEvery_ticks) return;
-  const std::int64_t now_ns = ports_.now_ns();
-  const double wall_s = static_cast<double>(now_ns - window_time_ns_) * 1e-9;
-  const bool known = now_ns != 0 && window_time_ns_ != 0;
-  if (known && wall_s < kSlowestClock * static_cast<double>(ticks) * tick.period_s())
-    throw ConfigurationError(
-        fmt::format("--pace: found a run with {} ticks in {:.2f} s, accepted --pace realtime: real "
-                    "servos cannot be faster than the clock",
-                    ticks, wall_s));
-  window_tick_ = tick.index;
-  window_time_ns_ = now_ns;
+void ServoBus::measure() {
+  if (started_) servos_.measure();
+  else start();
 }
 
 void ServoBus::report_news() {
@@ -124,7 +103,7 @@ void ServoBus::write_joints(double elapsed_s) {
 
 void ServoBus::sample(const Tick& tick) {
   const std::int64_t before_ns = ports_.now_ns();
-  measure(tick);
+  measure();
   const auto imu = boards_.imu();
   const msg::ContactState contacts = boards_.contacts();
   bus_time_ns_ = before_ns == 0 ? 0 : ports_.now_ns() - before_ns;
@@ -137,7 +116,7 @@ void ServoBus::sample(const Tick& tick) {
   write_joints(tick.period_s());
   contact_state_.write(contacts);
   if (imu) imu_state_.write(*imu);
-  check_pace(tick);
+  pace_.look(tick, ports_.now_ns(), "real servos");
 }
 
 void ServoBus::step(const Tick& tick) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
 #include "servo_bus/bus_record.hpp"
 #include "servo_bus/joint_servos.hpp"
@@ -33,10 +34,9 @@ class ServoBus final : public Plant {
 
  private:
   void start();
-  void measure(const Tick& tick);
+  void measure();
   void write_joints(double elapsed_s);
   void report_news();
-  void check_pace(const Tick& tick);
 
   Wiring& wiring_;
   ServoBusConfig config_;
@@ -49,12 +49,11 @@ class ServoBus final : public Plant {
   PlantGate gate_;
   std::vector<double> angles_rad_, torques_nm_;  ///< one entry for each joint; the torques are low-pass filtered
   bool started_ = false;
-  bool continued_ = false;           ///< this process continues the run of its predecessor
-  bool locked_ = false;              ///< a stop was ordered because a watchdog has tripped
-  bool held_ = false;                ///< the posture is held because a servo is missing
-  std::int64_t bus_time_ns_ = 0;     ///< that this tick has spent on the buses
-  std::int64_t window_tick_ = 0;     ///< tick at which the measurement of the pace began
-  std::int64_t window_time_ns_ = 0;  ///< clock at that tick
+  bool continued_ = false;        ///< this process continues the run of its predecessor
+  bool locked_ = false;           ///< a stop was ordered because a watchdog has tripped
+  bool held_ = false;             ///< the posture is held because a servo is missing
+  std::int64_t bus_time_ns_ = 0;  ///< that this tick has spent on the buses
+  PaceCheck pace_;
 
   Output<msg::JointState> joint_state_ = wiring_.output(topics::kJointState);
   Output<msg::ContactState> contact_state_ = wiring_.output(topics::kContactState);

@@ -99,6 +99,7 @@ set(CONSTRICTOR_LAYERS
   "components/tools/host => .*"
   "components/tools/.* => idl|components/lib/.*"
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
+  "components/plant_relay => idl|components/lib/(component|configuration|plant|robot)"
   "components/video_capture => idl|components/lib/(component|configuration|robot|video)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
   "sim/emulation => idl|components/lib/(configuration|log)|sim/.*"

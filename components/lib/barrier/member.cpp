@@ -28,14 +28,9 @@ class Member::MemberWiring : public Wiring {
   explicit MemberWiring(Member& member) : member_(member) {}
   void request_end_of_run() override { member_.end_requested_ = true; }
   void count_refusal(const std::string& reason) override { member_.refuse_from_component(reason); }
-  std::shared_ptr<ClientRequests> client_requests() override {
-    if (!member_.client_requests_) member_.client_requests_ = std::make_shared<ClientRequests>();
-    return member_.client_requests_;
-  }
-  std::shared_ptr<StopOrders> stop_orders() override {
-    if (!member_.stop_orders_) member_.stop_orders_ = std::make_shared<StopOrders>();
-    return member_.stop_orders_;
-  }
+  std::shared_ptr<ClientRequests> client_requests() override { return made(member_.client_requests_); }
+  std::shared_ptr<StopOrders> stop_orders() override { return made(member_.stop_orders_); }
+  std::shared_ptr<HardwareLink> hardware_link() override { return made(member_.hardware_link_); }
 
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     if (member_.reads_.contains(topic.id)) bug(member_.name(), fmt::format("declares input {} twice", topic.name));
@@ -56,6 +51,11 @@ class Member::MemberWiring : public Wiring {
   }
 
  private:
+  template <class Latch>
+  static const std::shared_ptr<Latch>& made(std::shared_ptr<Latch>& latch) {
+    if (!latch) latch = std::make_shared<Latch>();
+    return latch;
+  }
   Member& member_;
 };
 

@@ -15,6 +15,7 @@
 #include "barrier/protocol.hpp"
 #include "component/client_requests.hpp"
 #include "component/component.hpp"
+#include "component/hardware_link.hpp"
 #include "component/plant_stop.hpp"
 #include "constrictor/sha256.hpp"
 
@@ -57,6 +58,8 @@ class Member {
   [[nodiscard]] const std::shared_ptr<ClientRequests>& client_requests() const { return client_requests_; }
   /// The latch of emergency stops for this component; null if it takes none.
   [[nodiscard]] const std::shared_ptr<StopOrders>& stop_orders() const { return stop_orders_; }
+  /// The latch of a process outside the barrier; null if the component relays to none.
+  [[nodiscard]] const std::shared_ptr<HardwareLink>& hardware_link() const { return hardware_link_; }
   /// Counts a message that was rejected; `reason` names what was found and what is accepted.
   void refuse(const std::string& reason);
 
@@ -172,6 +175,7 @@ class Member {
   Counters counters_;
   std::shared_ptr<ClientRequests> client_requests_;
   std::shared_ptr<StopOrders> stop_orders_;
+  std::shared_ptr<HardwareLink> hardware_link_;
 };
 
 }  // namespace constrictor

@@ -13,6 +13,7 @@
 namespace constrictor {
 
 class ClientRequests;
+class HardwareLink;
 class StopOrders;
 
 /// A message of any topic, immutable and shared. `header` points to the message's own header.
@@ -118,6 +119,9 @@ class Wiring {
   [[nodiscard]] virtual std::shared_ptr<ClientRequests> client_requests() { return nullptr; }
   /// The latch of emergency stops, for the plant. Null if no client can reach it.
   [[nodiscard]] virtual std::shared_ptr<StopOrders> stop_orders() { return nullptr; }
+  /// The latch of a process outside the barrier that drives the joints, for the plant that relays to it. Null if no
+  /// such process can be reached.
+  [[nodiscard]] virtual std::shared_ptr<HardwareLink> hardware_link() { return nullptr; }
   /// Counts a refusal by the component in ComponentStatus; `reason` names what was found and what is accepted.
   virtual void count_refusal(const std::string& reason) { static_cast<void>(reason); }
   /// Asks the conductor to end the run when the outputs of this step become visible.

@@ -18,6 +18,8 @@ class FaultyWiring : public Wiring {
   FaultyWiring(Wiring& real, const FaultPlan& plan, std::uint64_t seed) : real_(real), plan_(plan), seed_(seed) {}
 
   std::shared_ptr<ClientRequests> client_requests() override { return real_.client_requests(); }
+  std::shared_ptr<StopOrders> stop_orders() override { return real_.stop_orders(); }
+  std::shared_ptr<HardwareLink> hardware_link() override { return real_.hardware_link(); }
   void count_refusal(const std::string& reason) override { real_.count_refusal(reason); }
   void request_end_of_run() override { real_.request_end_of_run(); }
   const OutputSlot* output_slot(const TopicInfo& topic) override { return real_.output_slot(topic); }

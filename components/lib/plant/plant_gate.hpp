@@ -32,6 +32,11 @@ class PlantGate {
                                               bool hold = false);
   /// The next command that is obeyed begins at the measured posture, as after a takeover.
   void begin_at_posture() { state_.take_over = true; }
+  /// The same, and a hold begins at the measured posture, too: the joints may have moved while nobody measured them.
+  void forget_posture() {
+    state_.take_over = true;
+    state_.started = false;
+  }
 
   [[nodiscard]] const GateState& state() const { return state_; }
   [[nodiscard]] const PlantStopState& stop_state() const { return stop_.state(); }

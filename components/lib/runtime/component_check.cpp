@@ -10,6 +10,7 @@
 #include "barrier/history_depth.hpp"
 #include "component/client_requests.hpp"
 #include "component/data_path.hpp"
+#include "component/hardware_link.hpp"
 
 namespace constrictor {
 namespace {
@@ -21,6 +22,10 @@ class UnconnectedWiring : public Wiring {
   std::shared_ptr<ClientRequests> client_requests() override {
     takes_requests = true;
     return std::make_shared<ClientRequests>();
+  }
+  std::shared_ptr<HardwareLink> hardware_link() override {
+    relays_hardware = true;
+    return std::make_shared<HardwareLink>();
   }
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     hello.reads.insert(topic.id);
@@ -37,6 +42,7 @@ class UnconnectedWiring : public Wiring {
   Hello hello;  ///< what the component would announce: name, timing and topics
 
   bool takes_requests = false;
+  bool relays_hardware = false;
 
  private:
   std::deque<InputSlot> inputs_;  // a deque, because its elements keep the addresses that components store
@@ -70,6 +76,11 @@ std::vector<std::string> topics_of_components(const HostOptions& options,
       if (wiring.hello.writes.contains(topic.id)) lines.push_back(fmt::format("writes {}", topic.name));
     }
     if (wiring.takes_requests) lines.push_back(fmt::format("reads {}", barrier_topics::kRequest.name));
+    if (!wiring.relays_hardware) continue;
+    for (const auto& topic : barrier_topics::kInfos) {
+      if (std::string_view(topic.writers) == "hardware") lines.push_back(fmt::format("reads {}", topic.name));
+    }
+    lines.push_back(fmt::format("writes {}", barrier_topics::kHardwareJointCommand.name));
   }
   return lines;
 }

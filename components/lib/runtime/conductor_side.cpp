@@ -95,6 +95,7 @@ void ConductorSide::make_endpoints() {
   // Commands are not validated here, because a command that violates its IDL must be answered, too.
   links_.attach(control_reader_.get(),
                 [this] { control_reader_.take([this](const msg::RunControl& m) { take_control(m); }); });
+  connect_hardware();
 }
 
 std::int64_t ConductorSide::period_ns() const { return static_cast<const Plant&>(plant_.component()).period_ns(); }

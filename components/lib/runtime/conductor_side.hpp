@@ -98,6 +98,8 @@ class ConductorSide : private ConductorSink {
   /// Answers a process that may not command the run, within a limit for each second.
   void refuse_stranger(const msg::RunControl& control, const std::string& reason);
   void take_stop(const msg::EmergencyStop& stop);
+  /// Connects a plant that relays to a process outside the barrier with the topics hardware/*.
+  void connect_hardware();
   /// Returns why the command is refused; empty if it was obeyed.
   [[nodiscard]] std::string obey(const msg::RunControl& control);
   [[nodiscard]] msg::RunState current_run_state() const;
@@ -128,6 +130,10 @@ class ConductorSide : private ConductorSink {
   dds::Reader<msg::RunControl> control_reader_;
   dds::Reader<msg::ComponentStatus> status_reader_;
   dds::Reader<msg::EmergencyStop> stop_reader_;
+  dds::Reader<msg::HardwareJointState> hardware_joints_;
+  dds::Reader<msg::HardwareContactState> hardware_contacts_;
+  dds::Reader<msg::HardwareImuState> hardware_imus_;
+  dds::Writer<msg::HardwareJointCommand> hardware_commands_;
   dds::Writer<msg::Tick> tick_writer_;
   dds::Writer<msg::EpochStart> epoch_writer_;
   dds::Writer<msg::Resume> resume_writer_;

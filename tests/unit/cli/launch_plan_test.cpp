@@ -49,7 +49,7 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
   EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
   EXPECT_EQ(names_of(kManifests),
             (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live", "case_study_mx106",
-                                      "emulated_hardware", "emulated_servos", "manual", "two_hosts"}));
+                                      "emulated_hardware", "emulated_servos", "manual", "outside_plant", "two_hosts"}));
 }
 
 TEST_F(LaunchPlanTest, ARealPlantFollowsTheWallClock) {

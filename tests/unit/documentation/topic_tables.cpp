@@ -66,7 +66,8 @@ const std::map<std::string, std::unique_ptr<const Member>>& members() {
     setup.mission = "{sequence: [green, red], line_colour: blue}";
     std::map<std::string, std::unique_ptr<const Member>> made;
     for (const auto& [name, factory] : known_components()) {
-      if (name == "servo_bus") continue;  // it takes the place of physics: the tables name one plant
+      // They take the place of physics: the tables name one plant.
+      if (name == "servo_bus" || name == "plant_relay") continue;
       made.emplace(name, std::make_unique<const Member>(factory(), setup, 1, false, sink));
     }
     return made;

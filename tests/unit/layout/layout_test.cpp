@@ -87,6 +87,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/navigation",
                              "components/perception",
                              "components/planner",
+                             "components/plant_relay",
                              "components/servo_bus",
                              "components/video_capture",
                              "sim/camera",

@@ -1,0 +1,116 @@
+// A run with plant_relay as its plant; the test plays control and the hardware.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "barrier/local_run.hpp"
+#include "component/hardware_link.hpp"
+#include "component/plant_stop.hpp"
+#include "configuration/configuration.hpp"
+#include "constrictor/text.hpp"
+#include "plant_relay/plant_relay.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace constrictor::testing {
+
+inline constexpr std::size_t kJoints = 23;
+inline constexpr std::int64_t kPeriod_ns = 20'000'000;
+
+class Relay : public ::testing::Test {
+ protected:
+  using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
+
+  class Commander final : public Component {
+   public:
+    Commander(Wiring& wiring, const CommandAt& command_at)
+        : command_at_(command_at), output_(wiring.output(topics::kJointCommand)) {}
+    void step(const Tick& tick) override {
+      msg::JointCommand command{};
+      command.joint_count = kJoints;
+      for (std::size_t i = 0; i < kJoints; ++i) command.torque_limit_nm[i] = 6.0;
+      if (command_at_ && command_at_(tick.index, command)) output_.write(command);
+    }
+    [[nodiscard]] std::string save() const override { return {}; }
+    void load(const std::string&) override {}
+
+   private:
+    const CommandAt& command_at_;
+    Output<msg::JointCommand> output_;
+  };
+
+  Relay() {
+    std::ofstream(folder_.path() / "relay.yaml") << "hardware: {patience_s: 1}\n";
+    constrictor::Setup setup;
+    setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+    const ComponentFactory control{"control", [this](Wiring& wiring, const constrictor::Setup&) {
+                                     return std::make_unique<Commander>(wiring, command_);
+                                   }};
+    run_ = std::make_unique<LocalRun>(
+        std::vector<ComponentFactory>{make_plant_relay_factory(), control}, setup,
+        std::map<std::string, std::filesystem::path>{{"plant_relay", folder_.path() / "relay.yaml"}});
+    link().connect([this](const msg::HardwareJointCommand& command) { sent_.push_back(command); }, {});
+    angles_rad_.resize(kJoints);
+  }
+
+  HardwareLink& link() { return *run_->member("plant_relay").hardware_link(); }
+  PlantRelay& relay() { return dynamic_cast<PlantRelay&>(run_->component("plant_relay")); }
+  [[nodiscard]] std::string last_refusal() { return run_->member("plant_relay").counters().last_refusal; }
+  [[nodiscard]] GateMode mode() { return relay().gate().mode; }
+
+  /// What the hardware would write now. It obeys the newest command at once.
+  msg::HardwareJointState measured() {
+    if (!sent_.empty() && follows_) {
+      for (std::size_t i = 0; i < kJoints; ++i) angles_rad_[i] = sent_.back().position_rad[i];
+    }
+    msg::HardwareJointState state{};
+    state.session = session_;
+    state.sequence_number = ++number_;
+    state.time_ns = time_ns_;
+    if (!sent_.empty() && hears_) {
+      confirmed_session_ = sent_.back().session;
+      confirmed_number_ = sent_.back().sequence_number;
+    }
+    state.command_session = confirmed_session_;
+    state.command_number = confirmed_number_;
+    state.joint_count = kJoints;
+    std::copy(angles_rad_.begin(), angles_rad_.end(), state.position_rad);
+    return state;
+  }
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) {
+      time_ns_ += kPeriod_ns;
+      if (alive_) {
+        msg::HardwareJointState state = measured();
+        if (damage_) damage_(state);
+        link().add(state);
+      }
+      run_->advance(1);
+    }
+  }
+  static CommandAt bend(double angle_rad) {
+    return [angle_rad](std::int64_t, msg::JointCommand& command) {
+      command.position_rad[4] = angle_rad;
+      return true;
+    };
+  }
+
+  const TemporaryFolder folder_;
+  CommandAt command_;
+  std::unique_ptr<LocalRun> run_;
+  std::vector<msg::HardwareJointCommand> sent_;
+  std::vector<double> angles_rad_;
+  std::function<void(msg::HardwareJointState&)> damage_;
+  bool alive_ = true, follows_ = true, hears_ = true;
+  std::uint64_t session_ = 77, number_ = 0, confirmed_session_ = 0, confirmed_number_ = 0;
+  std::int64_t time_ns_ = 5;
+};
+
+}  // namespace constrictor::testing
