@@ -105,6 +105,8 @@ int host_command(int argc, char** argv) {
 
 int camera_command(int argc, char** argv) { return become("camera_setup", {argv, argv + argc}); }
 
+int conform_command(int argc, char** argv) { return become("conform", {argv, argv + argc}); }
+
 int dashboard_command(int argc, char** argv) { return become("dashboard", {argv, argv + argc}); }
 
 void add_commands(CLI::App& app, Action& action) {
@@ -161,6 +163,18 @@ void add_commands(CLI::App& app, Action& action) {
           "is\n"
           "  wrong; 130 Ctrl-C\n\n"
           "ENVIRONMENT\n  CONSTRICTOR_DATA   directory of the default files");
+
+  app.add_subcommand("conform", "check whether a part keeps the contract: plant")
+      ->footer(
+          "The process becomes the program `conform`, which shows its options with `constrictor conform plant "
+          "--help`.\n"
+          "\nEXAMPLES\n"
+          "  constrictor conform plant --domain 5          # a process that drives joints on the topics hardware/*\n"
+          "  constrictor conform plant --list              # all checks, and what they expect\n\n"
+          "EXIT STATUS\n"
+          "  0 it conforms; 1 a check failed or was not made; 64 wrong usage, or not agreed; 78 a file is wrong;\n"
+          "  130 Ctrl-C\n\n"
+          "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI, CONSTRICTOR_DATA");
 
   app.add_subcommand("host", "host components in one process: constrictor host NAME... [OPTION...]")
       ->footer(

@@ -1,5 +1,5 @@
-// The smaller subcommands of `constrictor`: end, diff, host, camera and dashboard. Each function returns an exit
-// status.
+// The smaller subcommands of `constrictor`: end, diff, host, camera, conform and dashboard. Each function returns an
+// exit status.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,7 @@ int host_command(int argc, char** argv);
 
 /// `constrictor dashboard [OPTION...]`: replaces this process by the program `dashboard`.
 int dashboard_command(int argc, char** argv);
-int camera_command(int argc, char** argv);  ///< becomes camera_setup
+int camera_command(int argc, char** argv);   ///< becomes camera_setup
+int conform_command(int argc, char** argv);  ///< becomes conform
 
 }  // namespace constrictor::cli

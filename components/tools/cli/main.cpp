@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
     const std::string second = argc == 3 ? argv[2] : "";
     if (first == "host" && second != "--help" && second != "-h") return cli::host_command(argc - 2, argv + 2);
     if (first == "dashboard") return cli::dashboard_command(argc - 2, argv + 2);
+    if (first == "conform") return cli::conform_command(argc - 2, argv + 2);
     if (first == "camera") return cli::camera_command(argc - 2, argv + 2);
     return dispatch(argc, argv);
   } catch (const cli::UsageError& error) {

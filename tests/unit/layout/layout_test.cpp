@@ -78,6 +78,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/lib/recording",
                              "components/lib/runtime",
                              "components/tools/cli",
+                             "components/tools/conform",
                              "components/tools/dashboard",
                              "components/tools/ros_bridge",
                              "components/tools/host",

@@ -1,0 +1,60 @@
+// Checks whether a plant keeps the contract of idl/README.md. Every motion is small and slow, and nothing moves before
+// the measured posture is known.
+#pragma once
+
+#include <vector>
+
+#include "conform/plant_hand.hpp"
+#include "conform/plant_port.hpp"
+#include "conform/plant_profile.hpp"
+#include "conform/report.hpp"
+
+namespace constrictor::conform {
+
+/// All checks, in the order in which they are made.
+[[nodiscard]] std::vector<Check> plant_checks();
+
+class PlantConformance {
+ public:
+  /// All arguments must outlive this object. `profile` must fit the robot (PlantProfile::adapt_to).
+  PlantConformance(PlantPort& port, const RobotModel& robot, const PlantProfile& profile, Report& report)
+      : port_(port), robot_(robot), profile_(profile), report_(report), hand_(port, robot, profile) {}
+
+  /// Makes all checks that can be made. Throws Interrupted and PlantGone; the report then has the results so far.
+  void run();
+
+ private:
+  // What can be seen while the joints rest (plant_rest_checks.cpp). False: nothing must be moved.
+  bool check_arrival();
+  bool check_samples(const std::vector<JointSample>& samples);
+  void check_stamps(const std::vector<JointSample>& samples);
+  void check_rate(const std::vector<JointSample>& samples);
+  void check_rest(const std::vector<JointSample>& samples);
+  void check_confirmation(const std::vector<JointSample>& samples);
+  void check_imu();
+  void check_contacts();
+  // One joint after the other (plant_motion_checks.cpp).
+  struct Moved;
+  void check_motions();
+  Moved move_joint(std::size_t joint);
+  // Commands that must not be obeyed, and their absence (plant_command_checks.cpp).
+  void check_commands();
+  void refuses(const char* name, const PlantCommand& wrong, bool beside_proper, const char* todo);
+  void check_torque_limit(std::size_t joint);
+  void check_relaxed();
+  void check_silence(std::size_t joint);
+  void check_return(std::size_t joint, const char* name, const char* todo);
+  void check_stop(std::size_t joint);
+  void check_epoch(std::size_t joint);
+  void skip_all(const std::vector<const char*>& names, const std::string& reason);
+  /// [rad] how far the joint that moved most was from its setpoint in any of the samples.
+  [[nodiscard]] double strayed_rad(const std::vector<JointSample>& samples) const;
+
+  PlantPort& port_;
+  const RobotModel& robot_;
+  const PlantProfile& profile_;
+  Report& report_;
+  PlantHand hand_;
+};
+
+}  // namespace constrictor::conform

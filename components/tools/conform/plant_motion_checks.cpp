@@ -1,0 +1,194 @@
+// One joint after the other is moved by a small angle and back: does the right joint move, in the right direction, as
+// far as commanded, soon?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "conform/plant_conformance.hpp"
+
+namespace constrictor::conform {
+namespace {
+
+constexpr double kMovedShare = 0.3;  // of the amplitude: less is no motion
+constexpr double kUnitFactor = 8.0;  // a gain beyond this, or below its inverse, is a wrong unit
+
+/// Names up to eight joints: "joints 0, 3, 4".
+std::string names_of(const std::vector<std::size_t>& joints) {
+  std::string text = joints.size() == 1 ? "joint " : "joints ";
+  for (std::size_t i = 0; i < joints.size() && i < 8; ++i) text += fmt::format("{}{}", i ? ", " : "", joints[i]);
+  return joints.size() > 8 ? text + fmt::format(" and {} more", joints.size() - 8) : text;
+}
+
+/// [s] when a value has passed half of its way, interpolated; empty if it never does.
+template <class Value, class Time>
+std::optional<double> half_way_s(const std::vector<Instant>& motion, double from, double to, Value value, Time time) {
+  const double half = 0.5 * (from + to);
+  for (std::size_t i = 1; i < motion.size(); ++i) {
+    const double before = value(motion[i - 1]) - half, now = value(motion[i]) - half;
+    if ((before < 0) == (now < 0)) continue;
+    const double share = before / (before - now);
+    return time(motion[i - 1]) + share * (time(motion[i]) - time(motion[i - 1]));
+  }
+  return {};
+}
+
+/// [Nm] mean over the last samples of a motion, when the joint rests.
+double last_torque_nm(const std::vector<Instant>& motion, std::size_t joint) {
+  constexpr std::size_t kLast = 6;
+  const std::size_t count = std::min(kLast, motion.size());
+  double mean_nm = 0.0;
+  for (std::size_t i = motion.size() - count; i < motion.size(); ++i)
+    mean_nm += motion[i].sample.torque_nm[joint] / static_cast<double>(count);
+  return mean_nm;
+}
+
+}  // namespace
+
+struct PlantConformance::Moved {
+  double ratio = 0.0;  ///< measured by commanded motion
+  bool escaped = false;
+  std::size_t other = 0;   ///< the joint that moved most, apart from the commanded one
+  double other_rad = 0.0;  ///< how far
+  std::optional<double> delay_s;
+  std::optional<double> velocity_ratio;  ///< measured rate by the rate of the measured angle
+  double torque_nm = 0.0;                ///< load at the goal minus load at the start, along the motion
+};
+
+PlantConformance::Moved PlantConformance::move_joint(std::size_t joint) {
+  Moved moved;
+  const double start_rad = hand_.setpoint_rad(joint), goal_rad = hand_.goal_rad(joint);
+  const double way_rad = goal_rad - start_rad;
+  const std::vector<double> before_rad = hand_.mean_rad(hand_.hold(5 * profile_.period_s));
+  const std::vector<Instant> away = hand_.move(joint, goal_rad, &moved.escaped);
+  if (moved.escaped) {
+    // What the joints had done when they were held: the largest step by the commanded one.
+    const JointSample& last = away.back().sample;
+    double most_rad = 0.0;
+    for (std::size_t i = 0; i < before_rad.size() && i < last.position_rad.size(); ++i) {
+      const double step_rad = last.position_rad[i] - before_rad[i];
+      if (i == joint) moved.ratio = step_rad / way_rad;
+      else if (std::abs(step_rad) > most_rad) {
+        most_rad = std::abs(step_rad);
+        moved.other = i;
+      }
+    }
+    moved.other_rad = most_rad;
+    const double commanded = std::max(std::abs(away.back().setpoint_rad - start_rad), 1e-6);
+    if (std::abs(moved.ratio) > kMovedShare) moved.ratio *= std::max(1.0, std::abs(way_rad) / commanded);
+    return moved;
+  }
+  const std::vector<double> after_rad = hand_.mean_rad(hand_.hold(5 * profile_.period_s));
+  const std::vector<Instant> back = hand_.move(joint, start_rad, &moved.escaped);
+  moved.ratio = (after_rad[joint] - before_rad[joint]) / way_rad;
+  for (std::size_t i = 0; i < after_rad.size(); ++i) {
+    const double step_rad = std::abs(after_rad[i] - before_rad[i]);
+    if (i == joint || step_rad <= moved.other_rad) continue;
+    moved.other_rad = step_rad;
+    moved.other = i;
+  }
+  if (std::abs(moved.ratio) < kMovedShare) return moved;
+  const auto angle = [joint](const Instant& at) { return at.sample.position_rad[joint]; };
+  const auto commanded_s = half_way_s(
+      away, start_rad, goal_rad, [](const Instant& at) { return at.setpoint_rad; },
+      [](const Instant& at) { return at.time_s; });
+  const auto measured_s = half_way_s(away, before_rad[joint], after_rad[joint], angle,
+                                     [](const Instant& at) { return at.sample.arrival_s; });
+  if (commanded_s && measured_s) moved.delay_s = *measured_s - *commanded_s;
+  double rate_s = 0.0, angle_rad = 0.0;
+  for (std::size_t i = 1; i < away.size(); ++i) {
+    const auto &last = away[i - 1].sample, &now = away[i].sample;
+    if (now.number == last.number) continue;
+    rate_s += 0.5 * (now.velocity_rad_s[joint] + last.velocity_rad_s[joint]) *
+              (1e-9 * static_cast<double>(now.time_ns - last.time_ns));
+    angle_rad += now.position_rad[joint] - last.position_rad[joint];
+  }
+  if (std::abs(angle_rad) > kMovedShare * std::abs(way_rad)) moved.velocity_ratio = rate_s / angle_rad;
+  // A bent joint carries a weight, or friction that it has overcome: both point along the way that it has moved.
+  const double load_nm = last_torque_nm(away, joint) - last_torque_nm(back, joint);
+  moved.torque_nm = std::copysign(load_nm, load_nm * way_rad * moved.ratio);
+  return moved;
+}
+
+void PlantConformance::check_motions() {
+  std::vector<std::size_t> still, negative, degrees, weak, late, rates;
+  std::string order, gains, delays, velocities;
+  std::vector<double> torques_nm;
+  double longest_s = 0.0, least = 1e9, most = -1e9;
+  bool rated = false;
+  for (const double number : profile_.joints) {
+    const auto joint = static_cast<std::size_t>(number);
+    const Moved moved = move_joint(joint);
+    const double ratio = moved.ratio;
+    const bool other = moved.other_rad > 0.5 * profile_.amplitude_rad && std::abs(ratio) < 0.6;
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+    if (std::abs(ratio) > kUnitFactor || (std::abs(ratio) > 0.5 / 57.3 && std::abs(ratio) < 2.0 / 57.3 && !other &&
+                                          std::abs(ratio) * profile_.amplitude_rad > 0.0008)) {
+      degrees.push_back(joint);
+      continue;
+    }
+    if (other) {
+      order +=
+          fmt::format("{}joint {} moved when joint {} was commanded", order.empty() ? "" : "; ", moved.other, joint);
+      continue;
+    }
+    if (std::abs(ratio) < kMovedShare) {
+      still.push_back(joint);
+      continue;
+    }
+    if (ratio < 0.0) {
+      negative.push_back(joint);
+      continue;
+    }
+    if (std::abs(ratio - 1.0) > profile_.gain_tolerance) {
+      weak.push_back(joint);
+      gains = fmt::format("; joint {} moved {:.2f} times as far as commanded", joint, ratio);
+    }
+    if (moved.delay_s) longest_s = std::max(longest_s, *moved.delay_s);
+    if (moved.delay_s && *moved.delay_s > profile_.delay_s) late.push_back(joint);
+    rated = rated || moved.velocity_ratio;
+    if (moved.velocity_ratio && std::abs(*moved.velocity_ratio - 1.0) > profile_.velocity_share) {
+      rates.push_back(joint);
+      velocities =
+          fmt::format("; that of joint {} is {:.2f} times the rate of its angle", joint, *moved.velocity_ratio);
+    }
+    torques_nm.push_back(moved.torque_nm);
+  }
+  const auto list = [](const std::vector<std::size_t>& joints, const std::string& more, const std::string& fine) {
+    return joints.empty() ? fine : names_of(joints) + more;
+  };
+  const std::string moved_joints = fmt::format("{} joints moved", profile_.joints.size());
+  report_.judge("moves", !still.empty(), list(still, " did not move", moved_joints),
+                "check power, wiring, torque limit and the servo's number; a frozen measurement looks the same");
+  report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,
+                "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");
+  report_.judge("sign", !negative.empty(), list(negative, " moved the other way", "the right way"),
+                "invert these joints' direction, for commands and measurements alike (yaw: positive is left, pitch: "
+                "positive is nose down)");
+  report_.judge("unit", !degrees.empty(), list(degrees, " moved by about 57 times too much or too little", "radians"),
+                "convert: commands and measurements are in radians, not in degrees or steps");
+  const std::string ratios = fmt::format("{:.2f} to {:.2f} times as far as commanded", least, most);
+  report_.judge("gain", !weak.empty(), list(weak, gains, ratios),
+                "check the steps of a turn and the gear ratio of these joints");
+  report_.judge(
+      "delay", !late.empty(),
+      list(late, fmt::format(" followed {:.2f} s later", longest_s), fmt::format("{:.0f} ms at most", longest_s * 1e3)),
+      "obey each command as it arrives, keep no queue of commands, and measure afresh for each sample");
+  if (rated)
+    report_.judge("velocity", !rates.empty(), list(rates, velocities, "the rate of the angle"),
+                  "velocity_rad_s must be the rate of position_rad: check its sign and unit");
+  else report_.skip("velocity", "no joint moved as commanded");
+  const double mean_nm = torques_nm.empty() ? 0.0
+                                            : std::accumulate(torques_nm.begin(), torques_nm.end(), 0.0) /
+                                                  static_cast<double>(torques_nm.size());
+  if (std::abs(mean_nm) < profile_.felt_nm)
+    report_.skip("torque_sign", fmt::format("{:.3f} Nm on average is too little to show a sign", mean_nm));
+  else
+    report_.judge("torque_sign", mean_nm < 0.0, fmt::format("{:.2f} Nm on average along the way", mean_nm),
+                  "invert torque_nm: it is the servo's torque, with the sign of position_rad");
+}
+
+}  // namespace constrictor::conform

@@ -1,0 +1,181 @@
+// A right plant passes; each of many faults of drivers is found, and the first check that fails names it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "conform/plant_conformance.hpp"
+#include "robot/robot_model.hpp"
+#include "support/faulty_joints.hpp"
+
+namespace constrictor::conform {
+namespace {
+
+using constrictor::testing::FaultyJoints;
+
+/// A plant in this process, with two samples in each period. It has sessions, stops and epochs.
+class Doubled final : public PlantPort {
+ public:
+  Doubled(std::size_t joints, const std::string& fault) : joints_of_plant_(joints, fault), modules_(joints + 1) {}
+  [[nodiscard]] Abilities abilities() const override { return {true, true, true, true}; }
+  void advance(const std::vector<PlantCommand>& commands) override {
+    if (interrupt_at > 0 && ++advances_ == interrupt_at) throw Interrupted();
+    joints_.clear();
+    imus_.clear();
+    contacts_.clear();
+    for (const auto& command : commands) {
+      const bool proper = command.origin == PlantCommand::Origin::kProper;
+      if (proper) ++number_;
+      const bool old = command.origin == PlantCommand::Origin::kOld;
+      joints_of_plant_.take(command, command.origin == PlantCommand::Origin::kStranger ? 99 : session_,
+                            old      ? 1
+                            : proper ? number_
+                                     : 1'000'000 + number_,
+                            now_s_);
+    }
+    for (int half = 0; half < 2; ++half) {
+      now_s_ += 0.01;
+      joints_of_plant_.move(now_s_, 0.01);
+      JointSample sample;
+      if (joints_of_plant_.measure(now_s_, sample)) {
+        sample.arrival_s = now_s_;
+        joints_.push_back(sample);
+      }
+    }
+    ImuSample imu;
+    imu.orientation = {1.0, 0.0, 0.0, 0.0};
+    imu.acceleration_m_s2 = {0.0, 0.0, joints_of_plant_.has("gravity_down") ? -9.81 : 9.81};
+    imus_.push_back(imu);
+    contacts_.push_back({joints_of_plant_.has("few_modules") ? 3 : static_cast<int>(modules_), 0, true});
+  }
+  [[nodiscard]] double now_s() const override { return now_s_; }
+  [[nodiscard]] std::uint64_t session() const override { return session_; }
+  [[nodiscard]] std::uint64_t number() const override { return number_; }
+  void begin_session() override {
+    ++session_;
+    number_ = 0;
+  }
+  void order_stop() override { joints_of_plant_.stopped = true; }
+  void clear_stop() override { joints_of_plant_.stopped = false; }
+  [[nodiscard]] bool stopped() const override { return joints_of_plant_.stopped; }
+  void begin_epoch() override {
+    if (!joints_of_plant_.has("loses_epoch")) {
+      ++epoch_;
+      joints_of_plant_.forget_session();
+    }
+    begin_session();
+  }
+  [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
+  long interrupt_at = 0;
+
+ private:
+  FaultyJoints joints_of_plant_;
+  std::size_t modules_;
+  double now_s_ = 100.0;
+  std::uint64_t session_ = 1, number_ = 0;
+  std::uint32_t epoch_ = 1;
+  long advances_ = 0;
+};
+
+Report examine(const std::string& fault, long interrupt_at = 0) {
+  const RobotModel robot = load_robot(std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml");
+  PlantProfile profile;
+  profile.adapt_to(robot);
+  Doubled plant(robot.joints.size(), fault);
+  plant.interrupt_at = interrupt_at;
+  Report report(plant_checks());
+  try {
+    PlantConformance(plant, robot, profile, report).run();
+  } catch (const Interrupted&) {}
+  return report;
+}
+
+std::string text_of(const Report& report) {
+  std::string text;
+  for (const auto& check : report.checks()) text += conform::text_of(check) + "\n";
+  return text;
+}
+
+TEST(PlantConformance, ARightPlantPassesEveryCheck) {
+  const Report report = examine("");
+  EXPECT_TRUE(report.conforms()) << text_of(report);
+  EXPECT_EQ(report.count(Verdict::kPassed), plant_checks().size()) << text_of(report);
+}
+
+struct Fault {
+  const char* fault;
+  const char* check;  ///< the first one that fails
+  const char* found;  ///< a part of what it says
+};
+
+class FindsTheFault : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(FindsTheFault, AndNamesIt) {
+  const Report report = examine(GetParam().fault);
+  EXPECT_FALSE(report.conforms());
+  const auto first = std::find_if(report.checks().begin(), report.checks().end(),
+                                  [](const Check& check) { return check.verdict == Verdict::kFailed; });
+  ASSERT_NE(first, report.checks().end()) << text_of(report);
+  EXPECT_EQ(first->name, GetParam().check) << text_of(report);
+  EXPECT_NE(first->found.find(GetParam().found), std::string::npos) << first->found;
+  EXPECT_FALSE(first->todo.empty());
+  EXPECT_EQ(report.count(Verdict::kNotChecked), 0u) << text_of(report);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Drivers, FindsTheFault,
+    ::testing::Values(
+        Fault{"silent", "arrives", "none within 10 s"}, Fault{"wrong_count", "joint_count", "22 joints"},
+        Fault{"nan", "finite", "joint 9"}, Fault{"zero_off", "range", "joint 2 at 2.0"},
+        Fault{"session_0", "numbers", "session 0"}, Fault{"same_number", "numbers", "number 7 after 7"},
+        Fault{"same_stamp", "stamps", "5 ns after 5 ns"}, Fault{"stamp_in_ms", "stamps", "by the stamps"},
+        Fault{"slow", "rate", "10.0 samples a second"}, Fault{"reports_fault", "fault", "bus power is low"},
+        Fault{"confirms_nothing", "confirms", "session 0"}, Fault{"drifts", "rests", "rad at most"},
+        Fault{"gravity_down", "imu", "-9.81"}, Fault{"few_modules", "contacts", "3 modules"},
+        Fault{"frozen", "moves", "did not move"}, Fault{"dead", "moves", "joint 4 did not move"},
+        Fault{"swapped", "order", "joint 5 moved when joint 3 was commanded"},
+        Fault{"sign", "sign", "joint 3 moved the other way"}, Fault{"degrees_in", "unit", "57 times"},
+        Fault{"degrees_out", "unit", "57 times"}, Fault{"gain", "gain", "joint 6"}, Fault{"late", "delay", "later"},
+        Fault{"velocity_in_degrees", "velocity", "times the rate of its angle"},
+        Fault{"torque_sign", "torque_sign", "-"}, Fault{"ignores_limit", "limit", "a joint moved by"},
+        Fault{"obeys_short", "too_few", "a joint moved by"}, Fault{"obeys_long", "too_many", "a joint moved by"},
+        Fault{"obeys_nan", "not_finite", "a joint moved by"}, Fault{"obeys_mode", "unknown_mode", "a joint moved by"},
+        Fault{"obeys_old", "old_command", "a joint moved by"}, Fault{"obeys_stranger", "stranger", "a joint moved by"},
+        Fault{"ignores_torque", "torque_limit", "limit of 0.30"}, Fault{"keeps_torque", "relaxed", "0.80 Nm"},
+        Fault{"ignores_silence", "silence", "after the last command"},
+        Fault{"hides_holding", "silence", "holding is false"},
+        Fault{"ends_with_commands", "silence", "end with the commands"},
+        Fault{"loses_session", "new_session", "0.00 times"}, Fault{"ignores_stop", "stop", "during a stop"},
+        Fault{"loses_epoch", "epoch", "no new epoch"}),
+    [](const auto& test) { return std::string(test.param.fault); });
+
+TEST(PlantConformance, AnInterruptLeavesTheRestNotChecked) {
+  const Report report = examine("", 300);
+  EXPECT_GT(report.count(Verdict::kPassed), 5u);
+  EXPECT_GT(report.count(Verdict::kNotChecked), 5u);
+  EXPECT_FALSE(report.conforms());
+  EXPECT_NE(summary_of(report).find("not checked: "), std::string::npos);
+}
+
+TEST(PlantConformance, IsWrittenAsJson) {
+  const nlohmann::ordered_json json = to_json(examine("sign"));
+  EXPECT_FALSE(json["conforms"].get<bool>());
+  EXPECT_EQ(json["checks"].size(), plant_checks().size());
+  for (const auto& check : json["checks"]) {
+    if (check["name"] == "sign") {
+      EXPECT_EQ(check["result"], "fail");
+    }
+  }
+}
+
+TEST(PlantProfile, RefusesWhatDoesNotFitTheRobot) {
+  const RobotModel robot = load_robot(std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml");
+  PlantProfile profile;
+  profile.joint_count = 7;
+  EXPECT_THROW(profile.adapt_to(robot), ConfigurationError);
+  PlantProfile other;
+  other.joints = {3.0, 23.0};
+  EXPECT_THROW(other.adapt_to(robot), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace constrictor::conform
