@@ -37,6 +37,8 @@ class PlantConformance {
   struct Moved;
   void check_motions();
   Moved move_joint(std::size_t joint);
+  /// `torques_nm`: of each joint that moved, positive along its way.
+  void judge_torque_sign(const std::vector<double>& torques_nm);
   // Commands that must not be obeyed, and their absence (plant_command_checks.cpp).
   void check_commands();
   void refuses(const char* name, const PlantCommand& wrong, bool beside_proper, const char* todo);

@@ -13,6 +13,7 @@ namespace constrictor::conform {
 namespace {
 
 constexpr double kMovedShare = 0.3;  // of the amplitude: less is no motion
+constexpr double kWrongRate = 4.0;   // a rate that is so much too large has a wrong unit, also at one joint
 constexpr double kUnitFactor = 8.0;  // a gain beyond this, or below its inverse, is a wrong unit
 
 /// Names up to eight joints: "joints 0, 3, 4".
@@ -117,7 +118,7 @@ void PlantConformance::check_motions() {
   std::string order, gains, delays, velocities;
   std::vector<double> torques_nm;
   double longest_s = 0.0, least = 1e9, most = -1e9;
-  bool rated = false;
+  std::vector<double> velocity_ratios;
   for (const double number : profile_.joints) {
     const auto joint = static_cast<std::size_t>(number);
     const Moved moved = move_joint(joint);
@@ -149,8 +150,8 @@ void PlantConformance::check_motions() {
     }
     if (moved.delay_s) longest_s = std::max(longest_s, *moved.delay_s);
     if (moved.delay_s && *moved.delay_s > profile_.delay_s) late.push_back(joint);
-    rated = rated || moved.velocity_ratio;
-    if (moved.velocity_ratio && std::abs(*moved.velocity_ratio - 1.0) > profile_.velocity_share) {
+    if (moved.velocity_ratio) velocity_ratios.push_back(*moved.velocity_ratio);
+    if (moved.velocity_ratio && (*moved.velocity_ratio < 0.0 || *moved.velocity_ratio > kWrongRate)) {
       rates.push_back(joint);
       velocities =
           fmt::format("; that of joint {} is {:.2f} times the rate of its angle", joint, *moved.velocity_ratio);
@@ -177,18 +178,35 @@ void PlantConformance::check_motions() {
       "delay", !late.empty(),
       list(late, fmt::format(" followed {:.2f} s later", longest_s), fmt::format("{:.0f} ms at most", longest_s * 1e3)),
       "obey each command as it arrives, keep no queue of commands, and measure afresh for each sample");
-  if (rated)
-    report_.judge("velocity", !rates.empty(), list(rates, velocities, "the rate of the angle"),
+  if (velocity_ratios.empty()) {
+    report_.skip("velocity", "no joint moved as commanded");
+  } else {
+    // One short motion shows a rate only roughly, because samples are few; the median of the joints is better.
+    const auto middle = velocity_ratios.begin() + static_cast<std::ptrdiff_t>(velocity_ratios.size() / 2);
+    std::nth_element(velocity_ratios.begin(), middle, velocity_ratios.end());
+    report_.judge("velocity", !rates.empty() || std::abs(*middle - 1.0) > profile_.velocity_share,
+                  list(rates, velocities, fmt::format("{:.2f} times the rate of the angle, the median", *middle)),
                   "velocity_rad_s must be the rate of position_rad: check its sign and unit");
-  else report_.skip("velocity", "no joint moved as commanded");
-  const double mean_nm = torques_nm.empty() ? 0.0
-                                            : std::accumulate(torques_nm.begin(), torques_nm.end(), 0.0) /
-                                                  static_cast<double>(torques_nm.size());
-  if (std::abs(mean_nm) < profile_.felt_nm)
-    report_.skip("torque_sign", fmt::format("{:.3f} Nm on average is too little to show a sign", mean_nm));
-  else
-    report_.judge("torque_sign", mean_nm < 0.0, fmt::format("{:.2f} Nm on average along the way", mean_nm),
-                  "invert torque_nm: it is the servo's torque, with the sign of position_rad");
+  }
+  judge_torque_sign(torques_nm);
+}
+
+void PlantConformance::judge_torque_sign(const std::vector<double>& torques_nm) {
+  constexpr std::size_t kFewest = 3;
+  if (torques_nm.size() < kFewest)
+    return report_.skip("torque_sign", fmt::format("{} joints are too few to show a sign", torques_nm.size()));
+  const auto count = static_cast<double>(torques_nm.size());
+  const double mean_nm = std::accumulate(torques_nm.begin(), torques_nm.end(), 0.0) / count;
+  double squares = 0.0;
+  for (const double torque_nm : torques_nm) squares += (torque_nm - mean_nm) * (torque_nm - mean_nm);
+  const double error_nm = std::sqrt(squares / (count - 1.0) / count);  // standard error of the mean
+  const auto against = std::count_if(torques_nm.begin(), torques_nm.end(), [](double nm) { return nm < 0.0; });
+  const std::string found = fmt::format("{:.2f} Nm on average along the way, against it at {} of {} joints", mean_nm,
+                                        against, torques_nm.size());
+  if (std::abs(mean_nm) < std::max(profile_.felt_nm, 2.0 * error_nm))
+    return report_.skip("torque_sign", found + ": too little to show a sign");
+  report_.judge("torque_sign", mean_nm < 0.0, found,
+                "invert torque_nm: it is the servo's torque, with the sign of position_rad");
 }
 
 }  // namespace constrictor::conform

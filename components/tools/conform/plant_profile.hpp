@@ -26,14 +26,14 @@ struct PlantProfile : ParameterSet {
       add(settle_s, "motion.settle_s", 0.3, "s", {0.1, 10.0}, kAtStart, "Time that a joint needs to come to rest");
   double torque_share = add(torque_share, "motion.torque_share", 1.0, "", {0.01, 1.0}, kAtStart,
                             "Torque limit while moving, as a share of the robot file's");
-  double gain_tolerance = add(gain_tolerance, "tolerance.gain", 0.25, "", {0.01, 0.9}, kAtStart,
+  double gain_tolerance = add(gain_tolerance, "tolerance.gain", 0.35, "", {0.01, 0.9}, kAtStart,
                               "A joint may move further or less far by this share of the motion");
   double rest_rad = add(rest_rad, "tolerance.rest_rad", 0.02, "rad", {0.0001, 0.2}, kAtStart,
                         "A joint at rest moves by less than this");
   double delay_s = add(delay_s, "tolerance.delay_s", 0.2, "s", {0.01, 5.0}, kAtStart,
                        "A joint follows its setpoint by no more than this later");
   double velocity_share = add(velocity_share, "tolerance.velocity", 0.5, "", {0.05, 0.95}, kAtStart,
-                              "A measured rate may differ from that of the angle by this share");
+                              "The median of the joints' rates may differ from that of the angles by this share");
   double torque_nm = add(torque_nm, "tolerance.torque_nm", 0.5, "Nm", {0.01, 100.0}, kAtStart,
                          "A torque may exceed its limit by this");
   double felt_nm = add(felt_nm, "tolerance.felt_nm", 0.05, "Nm", {0.0, 10.0}, kAtStart,
