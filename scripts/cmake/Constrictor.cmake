@@ -97,6 +97,7 @@ set(CONSTRICTOR_LAYERS
   "components/lib/client => idl|components/lib/(component|cyclone)"
   "components/lib/runtime => idl|components/lib/(component|barrier|faults|cyclone|recording|configuration|log)"
   "components/tools/host => .*"
+  "components/tools/pictures => .*"
   "components/tools/.* => idl|components/lib/.*"
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
   "components/plant_relay => idl|components/lib/(component|configuration|plant|robot)"

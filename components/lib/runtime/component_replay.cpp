@@ -25,8 +25,8 @@ namespace wire = barrier_topics;
 class ComponentReplay {
  public:
   ComponentReplay(const fs::path& recording, const std::vector<std::string>& components, const FindFactory& find,
-                  const fs::path& output)
-      : run_(recording, output), find_(find), wanted_(components), concludes_(!output.empty()) {
+                  const fs::path& output, const ReplayHooks& hooks = {})
+      : run_(recording, output), find_(find), wanted_(components), concludes_(!output.empty()), hooks_(hooks) {
     plan_ = std::make_shared<const FaultPlan>(load_fault_plan(run_.faults(), run_.roster));
     for (const auto& name : components) add(name);
   }
@@ -99,13 +99,16 @@ class ComponentReplay {
   /// Images that were made again go to their readers.
   void pass_on(const TopicInfo& topic, const Sample& sample) {
     if (run_.pixels || !is_image(topic)) return;
-    if (copy_) copy_->complete(topic, *static_cast<const msg::CameraImage*>(sample.message.get()));
+    const auto image = std::static_pointer_cast<const msg::CameraImage>(sample.message);
+    if (copy_) copy_->complete(topic, *image);
+    if (hooks_.image) hooks_.image(topic, image);
     for (auto& [name, member] : members_) {
       if (member->member().reads().contains(topic.id)) member->take_input(topic.id, sample);
     }
   }
 
   void take(const mcap::Channel& channel, const mcap::Message& message) {
+    if (hooks_.message) hooks_.message(channel, message);
     const auto info = std::find_if(topics::kInfos.begin(), topics::kInfos.end(),
                                    [&](const TopicInfo& one) { return one.name == channel.topic; });
     if (copy_) {
@@ -151,6 +154,7 @@ class ComponentReplay {
   const FindFactory& find_;
   std::vector<std::string> wanted_;
   bool concludes_;
+  ReplayHooks hooks_;
   std::shared_ptr<const FaultPlan> plan_;
   std::map<std::string, std::unique_ptr<ReplayedMember>> members_;
   std::unique_ptr<RestoredCopy> copy_;  ///< null: none is written
@@ -159,8 +163,8 @@ class ComponentReplay {
 }  // namespace
 
 std::vector<ReplayResult> replay_components(const fs::path& recording, const std::vector<std::string>& components,
-                                            const FindFactory& find, const fs::path& output) {
-  return ComponentReplay(recording, components, find, output).run(recording);
+                                            const FindFactory& find, const fs::path& output, const ReplayHooks& hooks) {
+  return ComponentReplay(recording, components, find, output, hooks).run(recording);
 }
 
 std::vector<ReplayResult> restore_images(const fs::path& recording, const fs::path& restored, const FindFactory& find) {

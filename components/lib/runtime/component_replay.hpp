@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "component/component.hpp"
+#include "constrictor/topics.hpp"
+#include "recording/mcap_format.hpp"
 
 namespace constrictor {
 
@@ -33,6 +36,13 @@ struct ReplayResult {
 /// Makes the factory of a component; nothing if there is no such component.
 using FindFactory = std::function<std::optional<ComponentFactory>(const std::string& name)>;
 
+/// What shows, while a replay goes on, what it reads and computes. A function may end the replay by an exception.
+struct ReplayHooks {
+  std::function<void(const mcap::Channel&, const mcap::Message&)> message;  ///< each one, in the order of the file
+  /// An image that was not recorded and has been computed again.
+  std::function<void(const TopicInfo&, const std::shared_ptr<const msg::CameraImage>&)> image;
+};
+
 /// Replays `components` in one pass over the recording. A component whose input images were not recorded (--images off
 /// or recompute) is replayed together with the components that make these images. Throws mcap::Error if the recording
 /// cannot be read, and ConfigurationError if it is not that of a run of this release, or if it has no such component.
@@ -41,7 +51,8 @@ using FindFactory = std::function<std::optional<ComponentFactory>(const std::str
 [[nodiscard]] std::vector<ReplayResult> replay_components(const std::filesystem::path& recording,
                                                           const std::vector<std::string>& components,
                                                           const FindFactory& find,
-                                                          const std::filesystem::path& output = {});
+                                                          const std::filesystem::path& output = {},
+                                                          const ReplayHooks& hooks = {});
 
 /// Writes a copy of a recording that was made with --images recompute, with all images: the components that make them
 /// are replayed, and their results returned. Throws as replay_components() does.

@@ -39,7 +39,8 @@ int end_over_dds(const RunNote& run) {
   return exit_status::kOk;
 }
 
-/// Replaces this process by another program of this build. Returns only if that fails.
+}  // namespace
+
 int become(const char* name, std::vector<std::string> arguments) {
   const std::filesystem::path program = program_folder() / name;
   arguments.insert(arguments.begin(), program.string());
@@ -50,8 +51,6 @@ int become(const char* name, std::vector<std::string> arguments) {
   std::perror(program.c_str());
   return exit_status::kSoftware;
 }
-
-}  // namespace
 
 int end_command(std::optional<std::uint32_t> domain) {
   const RunNote run = join_run(domain);

@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace constrictor::cli {
+
+/// Replaces this process by another program of this build. Returns only if that fails.
+int become(const char* name, std::vector<std::string> arguments);
 
 /// Asks a run's launcher to end the run and waits until the launcher has ended. Throws CommandError if there is no such
 /// run.
