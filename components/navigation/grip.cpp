@@ -20,6 +20,13 @@ std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double an
   return shape;
 }
 
+double GripSense::largest_radius_m() const {
+  // The yaw joints of the base are corners of a regular polygon. A base of one joint has one corner only, and no bound.
+  if (base_joints_.size() < 2 || config_.base_angle_rad <= 0.0) return 1e9;
+  const double side_m = robot_.module_length_m * static_cast<double>(base_joints_[1] - base_joints_[0]);
+  return 0.5 * side_m / std::tan(0.5 * std::min(config_.base_angle_rad, 3.0)) - robot_.module_radius_m;
+}
+
 double GripSense::largest_closing_nm(const msg::JointState& joints, double side) const {
   double largest_nm = 0.0;
   for (const std::size_t j : base_joints_) largest_nm = std::max(largest_nm, side * joints.torque_nm[j]);

@@ -192,6 +192,7 @@ Variation read_variation(Configuration from) {
   variation.start_position_m = from.number("start_position_m", {0.0, 5.0}, 0.0);
   variation.start_yaw_rad = from.number("start_yaw_rad", {0.0, std::numbers::pi}, 0.0);
   variation.radius = from.number("radius", {0.0, 0.9}, 0.0);
+  variation.height = from.number("height", {0.0, 0.9}, 0.0);
   variation.mass = from.number("mass", {0.0, 0.9}, 0.0);
   variation.friction = from.number("friction", {0.0, 0.9}, 0.0);
   variation.light_intensity = from.number("light_intensity", {0.0, 0.9}, 0.0);

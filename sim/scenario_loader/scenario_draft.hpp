@@ -26,7 +26,7 @@ struct Variation {
   double line_curvature = 0.0, line_length = 0.0;
   double object_position_m = 0.0, zone_position_m = 0.0;
   double start_position_m = 0.0, start_yaw_rad = 0.0;
-  double radius = 0.0, mass = 0.0, friction = 0.0;
+  double radius = 0.0, height = 0.0, mass = 0.0, friction = 0.0;
   double light_intensity = 0.0, light_direction_rad = 0.0;
   double camera_noise = 0.0;
 };

@@ -56,6 +56,7 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
 
   Random objects = stream("objects");
   Random masses = stream("masses");
+  Random heights = stream("heights");
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     Eigen::Vector2d at = draft.objects[i].position_m;
     if (vary.object_sides && objects.coin()) at.y() = -at.y();
@@ -63,6 +64,7 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
     scene.objects[i].position_m = pose.origin_m;
     scene.objects[i].yaw_rad = pose.yaw_rad;
     scene.objects[i].size_m.head<2>() *= objects.factor(vary.radius);
+    scene.objects[i].size_m.z() *= heights.factor(vary.height);
     scene.objects[i].mass_kg *= masses.factor(vary.mass);
   }
   Random zones = stream("zones");

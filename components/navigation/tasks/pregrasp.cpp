@@ -2,6 +2,8 @@
 // steps. After each step it bends the joints behind the object, so that the part of the body in front of them swings
 // against the object and touches it. The task ends when the object lies beside the body where the body can be wrapped
 // round it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +47,13 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     const double unseen_s = static_cast<double>(input.tick.index - object.seen_tick) * input.tick.period_s();
     if (!object.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
+    constexpr double kMeasured = 1.06;  // the camera measures the radius to a few percent
+    const double largest_m = input.grip_sense.largest_radius_m();
+    if (object.radius_m > kMeasured * largest_m)
+      return fmt::format(
+          "the object is too large: found a radius of {:.3f} m, accepted at most {:.3f} m, which the U "
+          "of the body can hold",
+          object.radius_m, largest_m);
     return handle_refusal(input);
   }
 

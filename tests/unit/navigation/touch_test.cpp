@@ -46,6 +46,38 @@ TEST_F(TouchTest, GroundContactsAreNotTouches) {
   EXPECT_NEAR(touches[0].force_n, 2.0, 1e-12);
 }
 
+/// [m] distance of a point from the middle line of the body.
+double distance_from(const std::vector<PlanarPose>& body, const RobotModel& robot, const Eigen::Vector2d& p) {
+  double least_m = 1e9;
+  for (const PlanarPose& module : body) {
+    const Eigen::Vector2d local = module.to_local(p);
+    const double beyond_m = std::max(std::abs(local.x()) - 0.5 * robot.module_length_m, 0.0);
+    least_m = std::min(least_m, std::hypot(beyond_m, local.y()));
+  }
+  return least_m;
+}
+
+// The largest circle inside the U, found by trying all places, is the largest object.
+TEST_F(TouchTest, TheLargestObjectFillsTheOpenU) {
+  msg::JointState open = joints;
+  const auto shape = grip_sense.open_shape(1.0, config.base_angle_rad);
+  const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
+  for (std::size_t k = 0; k < yaw_joints.size(); ++k) open.position_rad[yaw_joints[k]] = shape[k];
+  const auto body = planar_body(robot, open);
+  // The mouth is open: places that touch the middle of the base, and lie between the arms, count.
+  double largest_m = 0.0;
+  const Eigen::Vector2d apex = body[13].p;
+  for (double x = -0.3; x <= 0.3; x += 0.002) {
+    for (double y = -0.3; y <= 0.3; y += 0.002) {
+      const Eigen::Vector2d p = apex + Eigen::Vector2d(x, y);
+      const double room_m = distance_from(body, robot, p);
+      if (body[13].to_local(p).y() > 0.0 && (p - apex).norm() < room_m + 0.012) largest_m = std::max(largest_m, room_m);
+    }
+  }
+  EXPECT_NEAR(grip_sense.largest_radius_m(), largest_m - robot.module_radius_m, 0.006);
+  EXPECT_NEAR(grip_sense.largest_radius_m(), 0.119, 0.001);
+}
+
 TEST_F(TouchTest, ContactsOnTheBodyItselfAreNotTouches) {
   // Bent by nearly 90 degrees at three joints in a row, the body touches itself.
   msg::JointState folded = joints;

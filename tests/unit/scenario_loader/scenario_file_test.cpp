@@ -137,6 +137,23 @@ class Aspects {
   std::map<std::string, Aspect> aspects_;
 };
 
+// The ranges are those of `variation` in wide.yaml.
+TEST(ScenarioFile, HeightAndRadiusVaryIndependently) {
+  Aspects aspects;
+  double product = 0.0;
+  constexpr int kSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Scenario scene = load_scenario(kScenarios / "wide.yaml", seed);
+    for (const ScenarioObject& object : scene.objects) {
+      aspects.around("radius", object.size_m.x(), 0.084, 0.0345);
+      aspects.around("height", object.size_m.z(), 0.18, 0.1201);
+      product += (object.size_m.x() - 0.084) / 0.0345 * (object.size_m.z() - 0.18) / 0.1201;
+    }
+  }
+  // The mean product of two independent uniform values in -1 to 1 has the standard deviation 1 / (3 sqrt(n)).
+  EXPECT_LT(std::abs(product / (2 * kSeeds)), 4.0 / (3.0 * std::sqrt(2.0 * kSeeds)));
+}
+
 // The ranges are those of `variation` in case_study.yaml.
 TEST(ScenarioFile, TheSeedVariesEveryAspectWithinItsRange) {
   constexpr std::size_t kSeeds = 100;
