@@ -64,8 +64,9 @@ void EmulatedRobot::step() {
   world_.set_servo(positions_rad_, rates_rad_s_, torques_nm_);
   world_.advance(step_s);
   for (std::size_t i = 0; i < servos_.size(); ++i) {
+    // A servo measures the current of the moment; whoever reads it filters it, as the robot file says.
     servos_[i]->advance(step_s, time_ns_,
-                        {world_.joint_angle_rad(i), world_.joint_rate_rad_s(i), world_.joint_torque_nm(i)});
+                        {world_.joint_angle_rad(i), world_.joint_rate_rad_s(i), world_.joint(i).step_torque_nm()});
   }
   if (imu_) imu_->measure(sensors_.imu(world_, step_s));
   if (contacts_.empty()) return;

@@ -15,7 +15,7 @@ namespace constrictor::servo_emulator {
 struct JointMotion {
   double angle_rad = 0.0;
   double rate_rad_s = 0.0;
-  double torque_nm = 0.0;
+  double torque_nm = 0.0;  ///< of this moment, not filtered
 };
 
 /// What the servo makes its joint do.

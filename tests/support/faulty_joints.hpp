@@ -105,6 +105,8 @@ class FaultyJoints {
       for (double& rate : sample.velocity_rad_s) rate *= 180.0 / M_PI;
     if (has("torque_sign"))
       for (double& torque : sample.torque_nm) torque = -torque;
+    if (has("torque_direction"))  // every second servo is mounted the other way, and its current is not turned round
+      for (std::size_t i = 1; i < sample.torque_nm.size(); i += 2) sample.torque_nm[i] = -sample.torque_nm[i];
     if (has("degrees_out"))
       for (double& angle : angles) angle *= 180.0 / M_PI;
     if (has("nan")) angles[9] = std::numeric_limits<double>::quiet_NaN();

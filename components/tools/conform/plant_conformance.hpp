@@ -37,8 +37,12 @@ class PlantConformance {
   struct Moved;
   void check_motions();
   Moved move_joint(std::size_t joint);
-  /// `torques_nm`: of each joint that moved, positive along its way.
-  void judge_torque_sign(const std::vector<double>& torques_nm);
+  /// What a joint bears at the end of its way more than at the start; positive along the way.
+  struct JointLoad {
+    std::size_t joint = 0;
+    double along_nm = 0.0;
+  };
+  void judge_torque_sign(const std::vector<JointLoad>& loads);
   // Commands that must not be obeyed, and their absence (plant_command_checks.cpp).
   void check_commands();
   void refuses(const char* name, const PlantCommand& wrong, bool beside_proper, const char* todo);

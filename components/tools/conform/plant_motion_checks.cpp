@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "conform/plant_conformance.hpp"
@@ -116,7 +115,7 @@ PlantConformance::Moved PlantConformance::move_joint(std::size_t joint) {
 void PlantConformance::check_motions() {
   std::vector<std::size_t> still, negative, degrees, weak, late, rates;
   std::string order, gains, delays, velocities;
-  std::vector<double> torques_nm;
+  std::vector<JointLoad> loads;
   double longest_s = 0.0, least = 1e9, most = -1e9;
   std::vector<double> velocity_ratios;
   for (const double number : profile_.joints) {
@@ -156,7 +155,7 @@ void PlantConformance::check_motions() {
       velocities =
           fmt::format("; that of joint {} is {:.2f} times the rate of its angle", joint, *moved.velocity_ratio);
     }
-    torques_nm.push_back(moved.torque_nm);
+    loads.push_back({joint, moved.torque_nm});
   }
   const auto list = [](const std::vector<std::size_t>& joints, const std::string& more, const std::string& fine) {
     return joints.empty() ? fine : names_of(joints) + more;
@@ -188,21 +187,35 @@ void PlantConformance::check_motions() {
                   list(rates, velocities, fmt::format("{:.2f} times the rate of the angle, the median", *middle)),
                   "velocity_rad_s must be the rate of position_rad: check its sign and unit");
   }
-  judge_torque_sign(torques_nm);
+  judge_torque_sign(loads);
 }
 
-void PlantConformance::judge_torque_sign(const std::vector<double>& torques_nm) {
+void PlantConformance::judge_torque_sign(const std::vector<JointLoad>& loads) {
   constexpr std::size_t kFewest = 3;
-  if (torques_nm.size() < kFewest)
-    return report_.skip("torque_sign", fmt::format("{} joints are too few to show a sign", torques_nm.size()));
-  const auto count = static_cast<double>(torques_nm.size());
-  const double mean_nm = std::accumulate(torques_nm.begin(), torques_nm.end(), 0.0) / count;
+  std::vector<std::size_t> against;
+  double sum_nm = 0.0, most_nm = 0.0;
+  for (const auto& load : loads) {
+    sum_nm += load.along_nm;
+    most_nm = std::min(most_nm, load.along_nm);
+    if (load.along_nm < -profile_.against_nm) against.push_back(load.joint);
+  }
+  // A wrong sign may concern only some joints: those whose servos turn the other way.
+  if (!against.empty())
+    return report_.judge(
+        "torque_sign", true,
+        fmt::format("that of {} points against the way, by up to {:.2f} Nm", names_of(against), -most_nm),
+        "invert torque_nm of these joints: it is the servo's torque, with the sign of position_rad. If "
+        "the sign is right, the torque is filtered for too long: filter it as the robot file says "
+        "(torque_filter_s), and only once");
+  if (loads.size() < kFewest)
+    return report_.skip("torque_sign", fmt::format("{} joints are too few to show a sign", loads.size()));
+  const auto count = static_cast<double>(loads.size());
+  const double mean_nm = sum_nm / count;
   double squares = 0.0;
-  for (const double torque_nm : torques_nm) squares += (torque_nm - mean_nm) * (torque_nm - mean_nm);
+  for (const auto& load : loads) squares += (load.along_nm - mean_nm) * (load.along_nm - mean_nm);
   const double error_nm = std::sqrt(squares / (count - 1.0) / count);  // standard error of the mean
-  const auto against = std::count_if(torques_nm.begin(), torques_nm.end(), [](double nm) { return nm < 0.0; });
-  const std::string found = fmt::format("{:.2f} Nm on average along the way, against it at {} of {} joints", mean_nm,
-                                        against, torques_nm.size());
+  const std::string found =
+      fmt::format("{:.2f} Nm on average along the way, at most {:.2f} Nm against it", mean_nm, std::abs(most_nm));
   if (std::abs(mean_nm) < std::max(profile_.felt_nm, 2.0 * error_nm))
     return report_.skip("torque_sign", found + ": too little to show a sign");
   report_.judge("torque_sign", mean_nm < 0.0, found,

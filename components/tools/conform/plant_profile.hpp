@@ -38,6 +38,8 @@ struct PlantProfile : ParameterSet {
                          "A torque may exceed its limit by this");
   double felt_nm = add(felt_nm, "tolerance.felt_nm", 0.05, "Nm", {0.0, 10.0}, kAtStart,
                        "A mean load smaller than this does not show the torque's sign");
+  double against_nm = add(against_nm, "tolerance.against_nm", 0.2, "Nm", {0.0, 10.0}, kAtStart,
+                          "The load of a moved joint points against its way by less than this");
   double gravity_m_s2 = add(gravity_m_s2, "tolerance.gravity_m_s2", 1.5, "m/s2", {0.1, 5.0}, kAtStart,
                             "The acceleration at rest differs from 9.81 m/s2 upwards by less than this");
   double rate_share = add(rate_share, "rate.least", 0.85, "", {0.1, 1.0}, kAtStart,
