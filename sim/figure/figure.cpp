@@ -49,9 +49,14 @@ std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, co
   fitted_line(heading.subtitle, 65.0, {15.0, kGreyInk});
   fitted_line(heading.failure, 88.0, {15.0, kRedInk});
   static constexpr std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Yaw torques [Nm]"};
-  for (std::size_t i = 0; i < kHeadings.size(); ++i)
-    canvas.text(kHeadings[i], {left[i + 1] + (i == 3 ? 30.0 : 0.0), header - 10.0}, {15.0, kInk, true});
-  draw_joint_key(canvas, torques.torque_nm.size(), right, header - 10.0, 12.0);
+  const TextStyle heading_style{15.0, kInk, true};
+  double end = 0.0;  // of the last heading
+  for (std::size_t i = 0; i < kHeadings.size(); ++i) {
+    const double x = left[i + 1] + (i == 3 ? 30.0 : 0.0);
+    canvas.text(kHeadings[i], {x, header - 10.0}, heading_style);
+    end = x + canvas.width_of(kHeadings[i], heading_style);
+  }
+  draw_joint_key(canvas, torques.torque_nm.size(), end + kGap, right, header - 10.0, 12.0);
 
   TorqueAxes axes;
   axes.limit_nm = torque_limit(torques);

@@ -42,8 +42,10 @@ void draw_film_frame(Canvas& canvas, int width_px, int height_px, const FilmFram
   panel("Camera", kCamera, frame.camera, "no image");
   panel("Processed", kProcessed, frame.processed, "no image");
 
-  canvas.text("Yaw torques [Nm]", at(kTorques.x, kTorques.y), kPanelTitle);
-  draw_joint_key(canvas, torques.torque_nm.size(), dx + kTorques.x + kTorques.width, dy + kTorques.y, 13.0);
+  static constexpr const char* kTorqueTitle = "Yaw torques [Nm]";
+  canvas.text(kTorqueTitle, at(kTorques.x, kTorques.y), kPanelTitle);
+  draw_joint_key(canvas, torques.torque_nm.size(), dx + kTorques.x + canvas.width_of(kTorqueTitle, kPanelTitle) + 10.0,
+                 dx + kTorques.x + kTorques.width, dy + kTorques.y, 13.0);
   TorqueAxes axes;
   axes.limit_nm = limit_nm;
   axes.moment_s = axes.drawn_until_s = frame.time_s;

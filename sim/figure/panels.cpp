@@ -127,17 +127,22 @@ void draw_torques(Canvas& canvas, const Rect& area, const TorqueSeries& torques,
   canvas.frame(inner, kFrame, 1.0);
 }
 
-void draw_joint_key(Canvas& canvas, std::size_t joints, double right, double y, double font) {
+void draw_joint_key(Canvas& canvas, std::size_t joints, double left, double right, double y, double font) {
   if (joints == 0) return;
+  constexpr double kSpace = 6.0;
   const TextStyle style{font, kGreyInk, false, Align::kRight};
-  const double swatch = 0.75 * font;
-  canvas.text("tail", {right, y}, style);
-  const double to = right - canvas.width_of("tail", style) - 6.0;
+  const double to = right - canvas.width_of("tail", style) - kSpace;
+  const double room = to - left - canvas.width_of("head", style) - kSpace;
+  const double height = 0.75 * font;
+  const double swatch = std::min(height, room / static_cast<double>(joints));
+  if (swatch <= 0.0) return;
+  const double gap = std::min(1.0, 0.2 * swatch);  // narrow swatches need their width for the colour
   const double from = to - swatch * static_cast<double>(joints);
+  canvas.text("tail", {right, y}, style);
   for (std::size_t joint = 0; joint < joints; ++joint)
-    canvas.fill({from + swatch * static_cast<double>(joint), y - swatch, swatch - 1.0, swatch},
+    canvas.fill({from + swatch * static_cast<double>(joint), y - height, swatch - gap, height},
                 joint_colour(joint, joints));
-  canvas.text("head", {from - 6.0, y}, style);
+  canvas.text("head", {from - kSpace, y}, style);
 }
 
 void draw_picture(Canvas& canvas, const Rect& area, const Picture& picture, const std::string& missing) {

@@ -33,8 +33,9 @@ struct TorqueAxes {
 /// A plot with its axes in `area`, which contains their numbers. `font`: size of the numbers.
 void draw_torques(Canvas& canvas, const Rect& area, const TorqueSeries& torques, const TorqueAxes& axes, double font);
 
-/// Shows which colour belongs to which joint, with its right end at x and the baseline of its text at y.
-void draw_joint_key(Canvas& canvas, std::size_t joints, double right, double y, double font);
+/// Shows which colour belongs to which joint, with its right end at `right` and the baseline of its text at y. It never
+/// begins before `left`: the colours of many joints are narrower. Draws nothing where there is no room for colours.
+void draw_joint_key(Canvas& canvas, std::size_t joints, double left, double right, double y, double font);
 
 /// A picture in a frame; if it is empty, a grey area with the words `missing`.
 void draw_picture(Canvas& canvas, const Rect& area, const Picture& picture, const std::string& missing);

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "sim/figure/lazy_figure.hpp"
 #include "support/temporary_folder.hpp"
@@ -94,6 +96,40 @@ TEST(Figure, TextsOfAnSvgFileCanBeSearched) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(svg.find('\x1b'), std::string::npos) << "control characters are not allowed in XML";
   EXPECT_EQ(svg.find("<symbol"), std::string::npos) << "text is not drawn as outlines";
+}
+
+/// Where a text of an SVG file begins and ends.
+std::pair<double, double> place_of(const std::string& svg, const std::string& words) {
+  const std::size_t end = svg.find(">" + words + "</text>");
+  if (end == std::string::npos) return {};
+  const std::string text = svg.substr(svg.rfind("<text", end), end);
+  const auto value = [&](const std::string& name) { return std::stod(text.substr(text.find(name) + name.size())); };
+  const double x = value(" x=\"");
+  return {x, x + value(" textLength=\"")};
+}
+
+TEST(Figure, TheKeyOfManyJointsStaysBesideTheHeading) {
+  for (const std::size_t joints : {1, 2, 12, 16, 32, 63}) {
+    TorqueSeries torques;
+    torques.torque_nm.resize(joints);
+    const std::string svg = draw_figure({"title", "", ""}, {}, torques, 30.0, Format::kSvg);
+    const auto heading = place_of(svg, "Yaw torques [Nm]"), head = place_of(svg, "head"), tail = place_of(svg, "tail");
+    EXPECT_GT(heading.second, heading.first);
+    EXPECT_GE(head.first, heading.second + 8.0) << joints << " joints";
+    EXPECT_GT(tail.first, head.second) << joints << " joints";
+    EXPECT_NEAR(tail.second, 1400.0 - 24.0, 0.01);
+    // The colours between the two words: runs of at least three equal pixels that are not the white of the paper.
+    const cv::Mat figure = decoded(draw_figure({"title", "", ""}, {}, torques, 30.0, Format::kPng, 4.0));
+    const int from = static_cast<int>(4.0 * head.second), to = static_cast<int>(4.0 * tail.first);
+    const cv::Mat row = figure(cv::Rect(from, 4 * (108 - 10) - 12, to - from, 1));
+    std::set<std::array<int, 3>> colours;
+    for (int x = 2; x < row.cols; ++x) {
+      const auto pixel = row.at<cv::Vec3b>(0, x);
+      const bool solid = pixel == row.at<cv::Vec3b>(0, x - 1) && pixel == row.at<cv::Vec3b>(0, x - 2);
+      if (solid && pixel != cv::Vec3b(255, 255, 255)) colours.insert({pixel[0], pixel[1], pixel[2]});
+    }
+    EXPECT_EQ(colours.size(), joints) << "each joint has its colour";
+  }
 }
 
 TEST(Figure, APdfFileHasItsFontsAndIsTheSameEachTime) {
