@@ -141,7 +141,7 @@ TEST_F(Recording, OfAnotherProcessCanBeReadAfterItWasKilled) {
   EXPECT_NE(output_.find("nothing to recover"), std::string::npos) << output_;
   // A recording that is ended in order has all that it was to have, and nothing else. Writers keep 16 steps for late
   // readers: at 20 times real time a reader that needs more than 16 ms for its start would miss messages.
-  EXPECT_EQ(status_of({"pace", "2x"}), 0) << output_;
+  EXPECT_EQ(status_of({"pace", "1x"}), 0) << output_;
   const std::string chosen = (dir_ / "chosen.mcap").string();
   EXPECT_EQ(status_of({"record", chosen, "--topic", "joint_*", "--topic", "barrier/tick", "--for", "2"}), 0) << output_;
   const RecordingSummary summary = summarise_recording(chosen);

@@ -84,7 +84,7 @@ TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {
 
 TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {
   options_.scenario = "lime";
-  expect_refused(options_, {"scenario: found 'lime'", "case_study, line", "did you mean 'line'?"});
+  expect_refused(options_, {"scenario: found 'lime'", "case_study, channel", "did you mean 'line'?"});
   options_ = {};
   options_.robot = "momba";
   expect_refused(options_, {"robot: found 'momba'", "did you mean 'mamba'?"});

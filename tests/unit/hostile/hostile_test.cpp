@@ -232,8 +232,9 @@ INSTANTIATE_TEST_SUITE_P(EveryComponent, Hostile,
                                          "physics", "camera", "overview", "report"),
                          [](const auto& made) { return std::string(made.param); });
 
-// servo_bus needs servos: tests/unit/servo_bus sends it absurd commands.
-TEST(HostileTest, CoversEveryComponent) { EXPECT_EQ(known_components().size(), 10u + 1u); }
+// servo_bus needs servos, and plant_relay a process outside the barrier: tests/unit/servo_bus and
+// tests/unit/plant_relay send them absurd commands and measurements.
+TEST(HostileTest, CoversEveryComponent) { EXPECT_EQ(known_components().size(), 10u + 2u); }
 
 }  // namespace
 }  // namespace constrictor::test
