@@ -15,9 +15,6 @@ namespace constrictor::perception {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPaths = 9;                 // number of lines of sight along which an edge is searched
-constexpr double kMiddle = 0.5;           // share of the width over which these lines are spread
-constexpr double kMaxGapPixels = 3.0;     // widest hole in a region that is passed over
 constexpr double kMeasuredRange_m = 1.5;  // objects that are nearer show their size
 constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than the camera shows no range by its height
 
@@ -48,7 +45,7 @@ class Gauge {
     if (left_ <= right_) return std::nullopt;
     blob.kind = msg::kBlobObject;
     bool cut = false;
-    double range_m = !on_zone ? lower_edge_range(left_, right_, cut) : kNan;
+    double range_m = on_zone ? kNan : lower_edge_range(left_, right_, cut);
     blob.cut_bottom |= cut;
     const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
     if (!std::isfinite(range_m)) range_m = range_by_size(blob);
@@ -177,12 +174,9 @@ class Gauge {
     std::vector<double> ranges;
     int lost = 0, cuts = 0;
     for (int i = 0; i < kPaths; ++i) {
-      const auto plane = vertical_plane(camera_, right + path_share(i, kPaths, kMiddle) * (left - right));
+      const auto plane = vertical_plane(camera_, right + path_share(i, kPaths, kInnerShare) * (left - right));
       if (!plane) continue;
-      auto [start, down] = *plane;
-      // If the horizon lies above the image, the walk begins at the border of the image.
-      if (start.y() < 0.0 && down.y() > 1e-3) start += (0.01 - start.y()) / down.y() * down;
-      const Edge edge = find_edge(rgb_, regions_, camera_, id_, start, down,
+      const Edge edge = find_edge(rgb_, regions_, camera_, id_, plane->first_in_image(), plane->down,
                                   region_.standing() && !region_.low ? kMaxGapPixels : 1e9);
       if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
       if (edge.state == EdgeState::kCut) ++cuts;
@@ -229,10 +223,9 @@ class Gauge {
     blob.width_m = kNan;
     if (!std::isfinite(range_m)) return blob;
     if (range_m > config_.blob_max_range_m) return std::nullopt;
-    const double sine = std::sin(std::min(0.5 * (left - right), 1.4));
-    const double radius_m = range_m * sine / (1.0 - sine);
+    const auto [centre_m, radius_m] = Disc::between_tangents(range_m, left - right);
     const Eigen::Vector2d centre =
-        camera_.position_on_ground() + (range_m + radius_m) * Eigen::Vector2d(std::cos(middle), std::sin(middle));
+        camera_.position_on_ground() + centre_m * Eigen::Vector2d(std::cos(middle), std::sin(middle));
     blob.bearing_rad = std::atan2(centre.y(), centre.x());
     blob.range_m = std::max(centre.norm() - radius_m, 0.0);
     blob.width_m = 2.0 * radius_m;
@@ -263,13 +256,14 @@ std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, co
     const Gauge gauge(rgb, regions, i, camera, config, sizes);
     ObjectSize size;
     if (region.standing()) {
-      int flat_pixels = 0;
-      bool nearer = false;
-      gauge.flat_part(flat_pixels, nearer);
-      // Beside the sides of a high object there are stray pixels of its colour.
-      const int stray = std::min(region.area / 8, 2 * (region.v_max - region.v_min + 1));
-      const bool with_zone =
-          !region.low && region.colour != line_colour && flat_pixels > std::max(2 * config.min_area_pixels, stray);
+      bool with_zone = false, nearer = false;
+      if (!region.low && region.colour != line_colour) {
+        int flat_pixels = 0;
+        gauge.flat_part(flat_pixels, nearer);
+        // Beside the sides of a high object there are stray pixels of its colour.
+        const int stray = std::min(region.area / 8, 2 * (region.v_max - region.v_min + 1));
+        with_zone = flat_pixels > std::max(2 * config.min_area_pixels, stray);
+      }
       const bool on_zone = region.on_zone || (with_zone && nearer);
       if (const auto blob = gauge.object(on_zone, size)) blobs.push_back(*blob);
       // Of several objects of one colour the nearest one is measured best, and it is the largest in most images.

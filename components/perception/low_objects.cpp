@@ -35,10 +35,7 @@ Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions&
 /// tell. `height_m` becomes the height of a round object whose farthest rim is the highest edge.
 Rise rise_of_whole(const std::vector<Path>& paths, const GroundCamera& camera, const Sides& sides, double& height_m) {
   if (2 * paths.size() <= kPaths) return Rise::kDoubtful;
-  // The nearest edge of a disc lies on its middle path.
-  const auto nearer = [](const Path& a, const Path& b) { return a.near_m < b.near_m; };
-  const double range_m = std::min_element(paths.begin(), paths.end(), nearer)->near_m;
-  const Disc disc = Disc::between_tangents(range_m, sides.angle_rad());
+  const Disc disc = Disc::of(sides, paths);
   std::vector<double> heights;
   for (const Path& path : paths)
     heights.push_back(camera.height_m() - disc.far_m(path.aside_rad) * std::max(path.slope, 0.0));
@@ -72,13 +69,7 @@ void mark_low_objects(const cv::Mat& rgb, const GroundCamera& camera, const Perc
     }
     region.doubtful = rise == Rise::kDoubtful && !region.standing();
     if (rise != Rise::kLow) continue;
-    region.low = true;
-    region.left_rad = sides.left_rad;
-    region.right_rad = sides.right_rad;
-    region.height_m = height_m;
-    region.standing_first = region.u_min;
-    region.standing_last = region.u_max;
-    region.standing_bottom = region.v_max;
+    region.stand_low(sides.left_rad, sides.right_rad, height_m);
   }
 }
 

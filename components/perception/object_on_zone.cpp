@@ -14,7 +14,6 @@ constexpr double kRisePixels = 2.5;      // above the far rim of the zone
 constexpr int kMaxGapColumns = 2;        // that noise makes in the outline of an object
 constexpr double kAboveCamera_m = 0.01;  // a higher object reaches far above the horizon
 constexpr double kHeightError_m = 0.025;
-constexpr std::size_t kMaxRegions = 250;  // ids are bytes
 
 /// Successive columns; empty if last < first.
 struct Columns {
@@ -38,10 +37,8 @@ struct ZoneOutline {
 
   /// Whether the line of sight to a pixel passes above the far rim.
   [[nodiscard]] bool below(const GroundCamera& camera, const Eigen::Vector2d& pixel) const {
-    const Eigen::Vector3d direction = camera.ray(pixel.x(), pixel.y());
-    const double aside_rad = std::atan2(direction.y(), direction.x()) - middle_rad;
-    const double slope = -direction.z() / direction.head<2>().norm();
-    return slope < camera.height_m() / disc.far_m(aside_rad) - kRisePixels / camera.focal_pixels();
+    const double far_m = disc.far_m(azimuth_rad(camera, pixel) - middle_rad);
+    return descent(camera, pixel) < camera.height_m() / far_m - kRisePixels / camera.focal_pixels();
   }
 };
 
@@ -52,9 +49,7 @@ std::optional<ZoneOutline> outline_of(const cv::Mat& rgb, const GroundCamera& ca
   const Sides sides = sides_of(rgb, camera, regions, index);
   const std::vector<Path> paths = walk_paths(rgb, camera, regions, index, sides);
   if (sides.angle_rad() <= 0.0 || 2 * paths.size() <= kPaths) return std::nullopt;
-  const auto nearer = [](const Path& a, const Path& b) { return a.near_m < b.near_m; };
-  const double range_m = std::min_element(paths.begin(), paths.end(), nearer)->near_m;
-  return ZoneOutline{Disc::between_tangents(range_m, sides.angle_rad()), sides.middle_rad()};
+  return ZoneOutline{Disc::of(sides, paths), sides.middle_rad()};
 }
 
 /// The most columns without a large gap in which the region rises above the zone.
@@ -76,19 +71,22 @@ Columns risen_columns(const GroundCamera& camera, const Regions& regions, std::s
 bool fits(const GroundCamera& camera, const Regions& regions, std::size_t index, const Columns& columns,
           const ZoneOutline& outline, const ObjectSize& size, double angle_rad) {
   const int u = (columns.first + columns.last) / 2;
-  const Eigen::Vector3d direction = camera.ray(u + 0.5, top_row(regions, index, u));
-  const double slope = -direction.z() / direction.head<2>().norm();
+  const double slope = descent(camera, {u + 0.5, static_cast<double>(top_row(regions, index, u))});
   const double centre_m = size.radius_m / std::sin(0.5 * angle_rad);
   const double height_m = camera.height_m() - (centre_m + size.radius_m) * slope;
   const bool on_zone = std::abs(centre_m - outline.disc.centre_m) < outline.disc.radius_m + size.radius_m;
   return on_zone && std::abs(height_m - size.height_m) < kHeightError_m;
 }
 
-void split(const GroundCamera& camera, const Columns& columns, const ZoneOutline& outline, std::size_t index,
-           Region object, Regions& regions) {
-  object.area = 0;
-  object.v_max = -1;
+/// Gives the pixels that rise above the zone, in these columns, to a new region, and returns it.
+Region& split(const GroundCamera& camera, const Columns& columns, const ZoneOutline& outline, std::size_t index,
+              Regions& regions) {
   const Region zone = regions.regions[index];
+  Region object;
+  object.colour = zone.colour;
+  object.u_min = columns.first;
+  object.u_max = columns.last;
+  object.v_max = -1;
   const auto id = static_cast<std::uint8_t>(regions.regions.size() + 1);
   for (int v = zone.v_min; v <= zone.v_max; ++v) {
     for (int u = columns.first; u <= columns.last; ++u) {
@@ -100,9 +98,8 @@ void split(const GroundCamera& camera, const Columns& columns, const ZoneOutline
       ++object.area;
     }
   }
-  object.standing_bottom = object.v_max;
   regions.regions[index].area -= object.area;
-  regions.regions.push_back(object);
+  return regions.regions.emplace_back(object);
 }
 
 }  // namespace
@@ -120,16 +117,12 @@ void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, co
     const Columns columns = risen_columns(camera, regions, i, *outline);
     if (columns.count() < 3) continue;
     const double row = zone.v_min + 0.5;
-    Region object;
-    object.colour = zone.colour;
-    object.u_min = object.standing_first = columns.first;
-    object.u_max = object.standing_last = columns.last;
-    object.low = object.on_zone = true;
-    object.left_rad = azimuth_rad(camera, {static_cast<double>(columns.first), row});
-    object.right_rad = azimuth_rad(camera, {columns.last + 1.0, row});
-    object.height_m = size.height_m;
-    if (!fits(camera, regions, i, columns, *outline, size, object.left_rad - object.right_rad)) continue;
-    split(camera, columns, *outline, i, object, regions);
+    const double left_rad = azimuth_rad(camera, {static_cast<double>(columns.first), row});
+    const double right_rad = azimuth_rad(camera, {columns.last + 1.0, row});
+    if (!fits(camera, regions, i, columns, *outline, size, left_rad - right_rad)) continue;
+    Region& object = split(camera, columns, *outline, i, regions);
+    object.stand_low(left_rad, right_rad, size.height_m);
+    object.on_zone = true;
   }
 }
 

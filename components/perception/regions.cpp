@@ -9,8 +9,7 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr int kSpeckPixels = 4;           // smaller fragments are dropped before fragments are joined
-constexpr std::size_t kMaxRegions = 250;  // ids are bytes
+constexpr int kSpeckPixels = 4;  // smaller fragments are dropped before fragments are joined
 constexpr double kHorizonMarginPixels = 1.0;
 
 struct Fragment {

@@ -11,6 +11,9 @@
 
 namespace constrictor::perception {
 
+/// Ids of regions are bytes.
+inline constexpr std::size_t kMaxRegions = 250;
+
 /// Pixels of one colour that belong together. Bounds are inclusive pixel indices.
 struct Region {
   std::uint8_t colour = msg::kColourUnknown;
@@ -29,6 +32,16 @@ struct Region {
   double height_m = 0.0;
 
   [[nodiscard]] bool standing() const { return standing_last > standing_first; }
+  /// Makes the whole region a low object between these azimuths.
+  void stand_low(double left, double right, double height) {
+    low = true;
+    left_rad = left;
+    right_rad = right;
+    height_m = height;
+    standing_first = u_min;
+    standing_last = u_max;
+    standing_bottom = v_max;
+  }
 };
 
 struct Regions {

@@ -10,6 +10,11 @@ double azimuth_rad(const GroundCamera& camera, const Eigen::Vector2d& pixel) {
   return std::atan2(direction.y(), direction.x());
 }
 
+double descent(const GroundCamera& camera, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3d direction = camera.ray(pixel.x(), pixel.y());
+  return -direction.z() / direction.head<2>().norm();
+}
+
 std::optional<VerticalPlane> vertical_plane(const GroundCamera& camera, double azimuth_rad) {
   const Eigen::Vector3d along(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
   const auto far = camera.pixel(Eigen::Vector3d(camera.position() + 100.0 * along));

@@ -40,17 +40,14 @@ Sides sides_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& re
 std::optional<Path> walk(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
                          double azimuth_rad) {
   const auto id = static_cast<std::uint8_t>(index + 1);
-  auto plane = vertical_plane(camera, azimuth_rad);
+  const auto plane = vertical_plane(camera, azimuth_rad);
   if (!plane) return std::nullopt;
-  if (plane->horizon.y() < 0.0 && plane->down.y() > 1e-3)
-    plane->horizon += (0.01 - plane->horizon.y()) / plane->down.y() * plane->down;
-  const Edge low = find_edge(rgb, regions, camera, id, plane->horizon, plane->down, kAnyGap);
+  const Edge low = find_edge(rgb, regions, camera, id, plane->first_in_image(), plane->down, kAnyGap);
   if (low.state != EdgeState::kSeen) return std::nullopt;
   const Edge high = find_edge(rgb, regions, camera, id, low.pixel - plane->down, -plane->down, kAnyGap);
   const auto foot = camera.ground(low.pixel.x(), low.pixel.y(), 50.0);
   if (high.state != EdgeState::kSeen || !foot) return std::nullopt;
-  const Eigen::Vector3d direction = camera.ray(high.pixel.x(), high.pixel.y());
-  return Path{0.0, (*foot - camera.position_on_ground()).norm(), -direction.z() / direction.head<2>().norm()};
+  return Path{0.0, (*foot - camera.position_on_ground()).norm(), descent(camera, high.pixel)};
 }
 
 std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
@@ -68,15 +65,12 @@ std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, con
 
 std::vector<double> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                       std::uint8_t id, double right_rad, double left_rad) {
-  constexpr double kInner = 0.5, kHole = 3.0;
   std::vector<double> slopes;
   for (int i = 0; i < kPaths; ++i) {
-    const auto plane = vertical_plane(camera, right_rad + path_share(i, kPaths, kInner) * (left_rad - right_rad));
+    const auto plane = vertical_plane(camera, right_rad + path_share(i, kPaths, kInnerShare) * (left_rad - right_rad));
     if (!plane) continue;
-    const Edge edge = find_edge(rgb, regions, camera, id, plane->horizon, -plane->down, kHole);
-    if (edge.state != EdgeState::kSeen) continue;
-    const Eigen::Vector3d direction = camera.ray(edge.pixel.x(), edge.pixel.y());
-    slopes.push_back(direction.z() / direction.head<2>().norm());
+    const Edge edge = find_edge(rgb, regions, camera, id, plane->horizon, -plane->down, kMaxGapPixels);
+    if (edge.state == EdgeState::kSeen) slopes.push_back(-descent(camera, edge.pixel));
   }
   return slopes;
 }
@@ -85,6 +79,11 @@ Disc Disc::between_tangents(double range_m, double angle_rad) {
   const double sine = std::sin(std::min(0.5 * angle_rad, 1.4));
   const double radius_m = range_m * sine / (1.0 - sine);
   return {range_m + radius_m, radius_m};
+}
+
+Disc Disc::of(const Sides& sides, const std::vector<Path>& paths) {
+  const auto nearer = [](const Path& a, const Path& b) { return a.near_m < b.near_m; };
+  return between_tangents(std::min_element(paths.begin(), paths.end(), nearer)->near_m, sides.angle_rad());
 }
 
 double Disc::far_m(double aside_rad) const {

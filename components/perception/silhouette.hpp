@@ -11,6 +11,13 @@
 
 namespace constrictor::perception {
 
+/// Number of lines of sight along which an edge is searched.
+inline constexpr int kPaths = 9;
+/// Share of an object's width over which these lines are spread if its lower or upper edge gives the range.
+inline constexpr double kInnerShare = 0.5;
+/// [pixel] widest hole in the standing part of a region that a walk passes over.
+inline constexpr double kMaxGapPixels = 3.0;
+
 /// The sides of a region: its greatest and least azimuth.
 struct Sides {
   double left_rad = -1e9, right_rad = 1e9;
@@ -33,8 +40,6 @@ struct Path {
 [[nodiscard]] std::optional<Path> walk(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                        std::size_t index, double azimuth_rad);
 
-inline constexpr int kPaths = 9;
-
 /// Up to kPaths paths, spread over the middle of the region.
 [[nodiscard]] std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                            std::size_t index, const Sides& sides);
@@ -52,6 +57,8 @@ struct Disc {
 
   /// The disc whose nearest point is at `range_m`, and which fills an angle between its tangents.
   static Disc between_tangents(double range_m, double angle_rad);
+  /// The disc to which the sides and the nearest edge of a region belong; `paths` must not be empty.
+  static Disc of(const Sides& sides, const std::vector<Path>& paths);
   /// [m] distance of its farthest point at an angle beside its centre.
   [[nodiscard]] double far_m(double aside_rad) const;
 };

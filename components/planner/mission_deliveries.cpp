@@ -33,7 +33,7 @@ void MissionPlanner::note_drops(const PlannerInputs& inputs) {
         view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m).verdict == Delivery::kOutside;
     if (outside) continue;
     for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
-      if (config_.sequence[i] != event->colour || (memory_.delivered >> i & 1u) != 0) continue;
+      if (config_.sequence[i] != event->colour || done(i)) continue;
       memory_.delivered |= std::uint32_t{1} << i;
       break;
     }
@@ -75,7 +75,7 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
 
 bool MissionPlanner::at_last_object() const {
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
-    if (i != memory_.object_index && (memory_.delivered >> i & 1u) == 0) return false;
+    if (i != memory_.object_index && !done(i)) return false;
   }
   return config_.sequence.size() > 1;
 }
@@ -87,8 +87,7 @@ void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double el
   const auto off_zone = [&](PlacedObject& object) {
     const std::uint8_t colour = config_.sequence[object.index];
     bool all = true;  // of this colour are delivered, so that an object that appears now is one of them
-    for (std::size_t i = 0; i < config_.sequence.size(); ++i)
-      all = all && (config_.sequence[i] != colour || (memory_.delivered >> i & 1u) != 0);
+    for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
     constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
     if (!all && object.handle == 0) return false;
     const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick};
@@ -129,7 +128,7 @@ bool MissionPlanner::choose_object() {
 MissionState MissionPlanner::end_of_sequence() {
   std::string left;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
-    if ((memory_.delivered >> i & 1u) != 0) continue;
+    if (done(i)) continue;
     left += (left.empty() ? "" : ", ") + std::string(name_of(constants::kColour, config_.sequence[i]));
   }
   if (left.empty()) return kDone;

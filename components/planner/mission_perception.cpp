@@ -58,7 +58,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
   bool any = false;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i)
-    any = any || (config_.sequence[i] == blob.colour && (memory_.delivered >> i & 1u) != 0);
+    any = any || (config_.sequence[i] == blob.colour && done(i));
   if (!any) return false;
   if (!inputs.pose || !inputs.map) return false;
   const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;

@@ -140,7 +140,7 @@ class MissionPlanner {
   [[nodiscard]] MissionState delivered(const PlannerInputs& inputs);
   /// Counts a delivered object as undelivered again when the map has shown it outside its zone for a while.
   void watch_placed_objects(const PlannerInputs& inputs, double elapsed_s);
-  /// Whether all objects but the present one are delivered or put aside for good.
+  /// Whether all objects but the present one are delivered; false in a mission with one object.
   [[nodiscard]] bool at_last_object() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
   /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
@@ -159,6 +159,8 @@ class MissionPlanner {
   void enter(MissionState state);
   // Percepts.
   void count_percepts(const PlannerInputs& inputs);
+  /// Whether entry `i` of the sequence is delivered.
+  [[nodiscard]] bool done(std::size_t i) const { return (memory_.delivered >> i & 1u) != 0; }
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
   /// Whether the robot faces the direction along the line that the state wants. True if the direction is unknown.
   [[nodiscard]] bool leads_wanted_way(const PlannerInputs& inputs) const;

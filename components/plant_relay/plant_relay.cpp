@@ -8,16 +8,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "component/data_path.hpp"
+#include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
 #include "constrictor/text.hpp"
 
 namespace constrictor {
 namespace {
-
-RobotModel robot_of(const Setup& setup) {
-  return load_robot(setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file);
-}
 
 constexpr std::int64_t kSamplesInARow = 3;  // that make a posture known
 
@@ -34,7 +30,7 @@ std::uint64_t session_of(const Tick& tick, std::uint64_t starts) {
 PlantRelay::PlantRelay(Wiring& wiring, const Setup& setup)
     : wiring_(wiring),
       config_(load_parameters<PlantRelayConfig>(setup.config_file)),
-      robot_(robot_of(setup)),
+      robot_(load_robot(robot_file_of(setup))),
       judge_(robot_, config_),
       gate_(wiring, robot_, config_.command),
       link_(wiring.hardware_link()) {

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "configuration/parameter_set.hpp"
-#include "robot/safety_gate.hpp"
+#include "plant/plant_parameters.hpp"
 
 namespace constrictor {
 
-struct PlantRelayConfig : ParameterSet {
+struct PlantRelayConfig : PlantParameters {
   double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Control tick");
   double patience_s = add(patience_s, "hardware.patience_s", 30.0, "s", {0.1, 3600.0}, kAtStart,
                           "Time to wait for the first measured posture; without it the run ends");
@@ -27,11 +26,7 @@ struct PlantRelayConfig : ParameterSet {
   double jump_tolerance_rad =
       add(jump_tolerance_rad, "hardware.jump_tolerance_rad", 0.2, "rad", {0.01, 3.0}, kAtStart,
           "A measured angle is refused if it differs by more than this from what the joint's largest speed allows");
-  GateLimits command{
-      add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
-          kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
-      add(command.relax_after_ticks, "command.relax_after_ticks", GateLimits{}.relax_after_ticks, "ticks", {1, 1000000},
-          kAtStart, "After this time without an acceptable command the joints relax")};
+  GateLimits command = add_gate_limits(command);
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   [[nodiscard]] std::int64_t patience_ticks() const { return std::llround(patience_s / control_period_s); }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "component/data_path.hpp"
+#include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
 #include "serial/serial_port.hpp"
 
@@ -14,10 +15,6 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kRecordEvery_ticks = 50;
-
-RobotModel robot_of(const Setup& setup) {
-  return load_robot(setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file);
-}
 
 dynamixel::BusPlan plan_of(const ServoBusConfig& config, const RobotModel& robot) {
   const std::filesystem::path file = data_path(config.bus_file);
@@ -40,7 +37,7 @@ OpenPort serial_ports(const std::filesystem::path& folder, double patience_s) {
 ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
     : wiring_(wiring),
       config_(load_parameters<ServoBusConfig>(setup.config_file)),
-      robot_(robot_of(setup)),
+      robot_(load_robot(robot_file_of(setup))),
       plan_(plan_of(config_, robot_)),
       ports_(plan_.ports, config_.answer_slack_s,
              open ? open : serial_ports(setup.output_dir, config_.port_patience_s)),

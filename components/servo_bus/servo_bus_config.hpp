@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <string>
 
-#include "configuration/parameter_set.hpp"
-#include "robot/safety_gate.hpp"
+#include "plant/plant_parameters.hpp"
 
 namespace constrictor {
 
-struct ServoBusConfig : ParameterSet {
+struct ServoBusConfig : PlantParameters {
   double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Control tick");
   std::string bus_file = add(bus_file, "bus_file", "deploy/buses/mamba_emulated.yaml", {},
                              "Bus file: which servo moves which joint (components/lib/dynamixel/README.md)");
@@ -33,11 +32,7 @@ struct ServoBusConfig : ParameterSet {
           "The robot does not start if a joint is further than this beyond its limits: its zero or direction is wrong");
   bool torque_off_at_exit = add(torque_off_at_exit, "servo.torque_off_at_exit", true,
                                 "Switch the torque of all servos off when the process ends in order");
-  GateLimits command{
-      add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
-          kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
-      add(command.relax_after_ticks, "command.relax_after_ticks", GateLimits{}.relax_after_ticks, "ticks", {1, 1000000},
-          kAtStart, "After this time without an acceptable command the joints relax")};
+  GateLimits command = add_gate_limits(command);
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   /// The time in which a servo moves to its goal: one tick. [ms]

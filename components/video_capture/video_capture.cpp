@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "component/data_path.hpp"
+#include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
 
 namespace constrictor {
@@ -23,8 +24,7 @@ video::VideoSource source_of(const VideoCaptureConfig& config, const Setup& setu
 }
 
 video::Rectifier rectifier_of(const VideoCaptureConfig& config, const Setup& setup) {
-  const auto robot =
-      load_robot(setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file);
+  const auto robot = load_robot(robot_file_of(setup));
   const auto calibration = config.calibration == "none"
                                ? video::calibration_of(robot.camera)
                                : video::load_calibration(data_path(config.calibration), robot.camera);

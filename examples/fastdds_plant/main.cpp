@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <exception>
 #include <random>
-#include <string>
 #include <thread>
 
 #include "hardwarePubSubTypes.h"
 #include "joints.hpp"
+#include "options.hpp"
 #include "participant.hpp"
 
 namespace {
@@ -22,21 +22,6 @@ constexpr std::chrono::milliseconds kPeriod{10};  // twice in each control perio
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
-
-void usage(int status) {
-  std::fprintf(status ? stderr : stdout,
-               "usage: fastdds_plant --domain N [--joints COUNT]\n"
-               "  --domain  DDS domain of the run, as `constrictor run` prints it\n"
-               "  --joints  number of joints of the robot, 1 to 64 (default 23)\n");
-  std::exit(status);
-}
-
-long number(const char* text, long least, long most) {
-  char* end = nullptr;
-  const long value = std::strtol(text, &end, 10);
-  if (end == text || *end != '\0' || value < least || value > most) usage(64);
-  return value;
-}
 
 void run(std::uint32_t domain, std::size_t count) {
   example::Participant participant(domain, "fastdds_plant");
@@ -100,20 +85,11 @@ void run(std::uint32_t domain, std::size_t count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  long domain = -1, joints = 23;
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name == "--help") usage(0);
-    if (++i == argc) usage(64);
-    if (name == "--domain") domain = number(argv[i], 0, 229);
-    else if (name == "--joints") joints = number(argv[i], 1, msg::kMaxJoints);
-    else usage(64);
-  }
-  if (domain < 0) usage(64);
+  const example::Options options = example::read_options("fastdds_plant", msg::kMaxJoints, argc, argv);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   try {
-    run(static_cast<std::uint32_t>(domain), static_cast<std::size_t>(joints));
+    run(options.domain, options.joints);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fastdds_plant: %s\n", error.what());
     return 70;

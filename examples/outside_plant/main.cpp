@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <random>
-#include <string>
 
 #include "hardware.h"
 #include "joints.hpp"
+#include "options.hpp"
 
 namespace {
 
@@ -42,21 +42,6 @@ std::int64_t now_ns() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-void usage(int status) {
-  std::fprintf(status ? stderr : stdout,
-               "usage: outside_plant --domain N [--joints COUNT]\n"
-               "  --domain  DDS domain of the run, as `constrictor run` prints it\n"
-               "  --joints  number of joints of the robot, 1 to 64 (default 23)\n");
-  std::exit(status);
-}
-
-long number(const char* text, long least, long most) {
-  char* end = nullptr;
-  const long value = std::strtol(text, &end, 10);
-  if (end == text || *end != '\0' || value < least || value > most) usage(64);
-  return value;
 }
 
 class Process {
@@ -158,20 +143,11 @@ class Process {
 }  // namespace
 
 int main(int argc, char** argv) {
-  long domain = -1, joints = 23;
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name == "--help") usage(0);
-    if (++i == argc) usage(64);
-    if (name == "--domain") domain = number(argv[i], 0, 229);
-    else if (name == "--joints") joints = number(argv[i], 1, constrictor_msg_kMaxJoints);
-    else usage(64);
-  }
-  if (domain < 0) usage(64);
+  const example::Options options = example::read_options("outside_plant", constrictor_msg_kMaxJoints, argc, argv);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  Process process(static_cast<std::uint32_t>(domain), static_cast<std::size_t>(joints));
-  std::printf("outside_plant: %ld joints in domain %ld\n", joints, domain);
+  Process process(options.domain, options.joints);
+  std::printf("outside_plant: %zu joints in domain %u\n", options.joints, options.domain);
   std::fflush(stdout);
   std::int64_t next_ns = now_ns();
   while (!g_stop) {

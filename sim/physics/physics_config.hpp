@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "configuration/parameter_set.hpp"
-#include "robot/safety_gate.hpp"
+#include "plant/plant_parameters.hpp"
 #include "sim/world/solver_settings.hpp"
 
 namespace constrictor {
 
-struct PhysicsConfig : ParameterSet {
+struct PhysicsConfig : PlantParameters {
   double control_period_s =
       add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, kAtStart, "Control tick; a multiple of solver.step_s");
   SolverSettings solver{
@@ -37,11 +36,7 @@ struct PhysicsConfig : ParameterSet {
           SolverSettings{}.one_ground_contact_a_joint,
           "At a joint only the front module touches the ground: the solver is a third faster, and the gait 1.4 % "
           "faster")};
-  GateLimits command{
-      add(command.stale_after_ticks, "command.stale_after_ticks", GateLimits{}.stale_after_ticks, "ticks", {1, 100000},
-          kAtStart, "A command older than this is not obeyed: the joints hold the measured posture"),
-      add(command.relax_after_ticks, "command.relax_after_ticks", GateLimits{}.relax_after_ticks, "ticks", {1, 1000000},
-          kAtStart, "After this time without an acceptable command the joints relax")};
+  GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},
           "Ticks at which an emergency stop is latched, rising: repeats a run with stops (emergency_stop/state)");

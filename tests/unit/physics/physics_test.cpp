@@ -12,33 +12,14 @@
 
 #include "barrier/local_run.hpp"
 #include "configuration/configuration.hpp"
+#include "support/commander.hpp"
 
 namespace constrictor {
 namespace {
 
 const std::filesystem::path kProject = PROJECT_DIR;
 
-using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
-
-/// Replaces the component `control`: writes the command that the test gives for each tick, or none.
-class Commander final : public Component {
- public:
-  Commander(Wiring& wiring, CommandAt command_at)
-      : command_at_(std::move(command_at)), output_(wiring.output(topics::kJointCommand)) {}
-  void step(const Tick& tick) override {
-    msg::JointCommand command{};
-    command.joint_count = 23;
-    for (double& limit : command.torque_limit_nm) limit = 6.0;
-    for (std::size_t i = 23; i < msg::kMaxJoints; ++i) command.torque_limit_nm[i] = 0.0;
-    if (command_at_(tick.index, command)) output_.write(command);
-  }
-  [[nodiscard]] std::string save() const override { return {}; }
-  void load(const std::string&) override {}
-
- private:
-  CommandAt command_at_;
-  Output<msg::JointCommand> output_;
-};
+using testing::CommandAt;
 
 Setup setup_of(const std::string& scenario, std::uint64_t seed = 1) {
   Setup setup;
@@ -49,10 +30,8 @@ Setup setup_of(const std::string& scenario, std::uint64_t seed = 1) {
 }
 
 std::unique_ptr<LocalRun> make_run(CommandAt command_at, const Setup& setup = setup_of("line.yaml")) {
-  ComponentFactory control{"control", [command_at = std::move(command_at)](Wiring& wiring, const Setup&) {
-                             return std::make_unique<Commander>(wiring, command_at);
-                           }};
-  return std::make_unique<LocalRun>(std::vector<ComponentFactory>{make_physics_factory(), control}, setup);
+  return std::make_unique<LocalRun>(
+      std::vector<ComponentFactory>{make_physics_factory(), testing::commander(std::move(command_at))}, setup);
 }
 
 CommandAt silence() {
@@ -203,7 +182,7 @@ TEST(Physics, NoiseHasTheStandardDeviationOfTheRobotFile) {
 }
 
 TEST(Physics, AScenarioCanSwitchNoiseOff) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "quiet.yaml";
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "quiet.yaml";
   std::ofstream(file) << "name: quiet\nstart: {position_m: [1, 2], yaw_rad: 0.7}\nnoise: {sensors: false}\n";
   auto setup = setup_of("line.yaml");
   setup.scenario_file = file;
@@ -220,7 +199,7 @@ TEST(Physics, AScenarioCanSwitchNoiseOff) {
 }
 
 TEST(Physics, RejectsAPeriodThatIsNoMultipleOfTheStep) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "physics.yaml";
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "physics.yaml";
   std::ofstream(file) << "period_s: 0.02\nsolver: {step_s: 0.003, iterations: 20}\n";
   try {
     (void)load_parameters<PhysicsConfig>(file);

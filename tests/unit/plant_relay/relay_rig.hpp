@@ -17,42 +17,22 @@
 #include "configuration/configuration.hpp"
 #include "constrictor/text.hpp"
 #include "plant_relay/plant_relay.hpp"
+#include "support/commander.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
-inline constexpr std::size_t kJoints = 23;
+inline constexpr std::size_t kJoints = Commander::kJoints;
 inline constexpr std::int64_t kPeriod_ns = 20'000'000;
 
 class Relay : public ::testing::Test {
  protected:
-  using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
-
-  class Commander final : public Component {
-   public:
-    Commander(Wiring& wiring, const CommandAt& command_at)
-        : command_at_(command_at), output_(wiring.output(topics::kJointCommand)) {}
-    void step(const Tick& tick) override {
-      msg::JointCommand command{};
-      command.joint_count = kJoints;
-      for (std::size_t i = 0; i < kJoints; ++i) command.torque_limit_nm[i] = 6.0;
-      if (command_at_ && command_at_(tick.index, command)) output_.write(command);
-    }
-    [[nodiscard]] std::string save() const override { return {}; }
-    void load(const std::string&) override {}
-
-   private:
-    const CommandAt& command_at_;
-    Output<msg::JointCommand> output_;
-  };
-
   Relay() {
     std::ofstream(folder_.path() / "relay.yaml") << "hardware: {patience_s: 1}\n";
     constrictor::Setup setup;
     setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
-    const ComponentFactory control{"control", [this](Wiring& wiring, const constrictor::Setup&) {
-                                     return std::make_unique<Commander>(wiring, command_);
-                                   }};
+    const ComponentFactory control = commander(
+        [this](std::int64_t tick, msg::JointCommand& command) { return command_ && command_(tick, command); });
     run_ = std::make_unique<LocalRun>(
         std::vector<ComponentFactory>{make_plant_relay_factory(), control}, setup,
         std::map<std::string, std::filesystem::path>{{"plant_relay", folder_.path() / "relay.yaml"}});

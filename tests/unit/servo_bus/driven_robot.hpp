@@ -17,6 +17,7 @@
 #include "emulated_port.hpp"
 #include "servo_bus/servo_bus.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
+#include "support/commander.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
@@ -25,26 +26,6 @@ inline const std::filesystem::path kProject = PROJECT_DIR;
 
 class DrivenRobot : public ::testing::Test {
  protected:
-  using CommandAt = std::function<bool(std::int64_t tick, msg::JointCommand&)>;
-
-  class Commander final : public Component {
-   public:
-    Commander(Wiring& wiring, const CommandAt& command_at)
-        : command_at_(command_at), output_(wiring.output(topics::kJointCommand)) {}
-    void step(const Tick& tick) override {
-      msg::JointCommand command{};
-      command.joint_count = 23;
-      for (int i = 0; i < 23; ++i) command.torque_limit_nm[i] = 6.0;
-      if (command_at_ && command_at_(tick.index, command)) output_.write(command);
-    }
-    [[nodiscard]] std::string save() const override { return {}; }
-    void load(const std::string&) override {}
-
-   private:
-    const CommandAt& command_at_;
-    Output<msg::JointCommand> output_;
-  };
-
   DrivenRobot()
       : plan_(dynamixel::load_bus_plan(kProject / "deploy/buses/mamba_emulated.yaml",
                                        kProject / "components/lib/dynamixel/models")),
@@ -60,9 +41,8 @@ class DrivenRobot : public ::testing::Test {
     const OpenPort open = [this](const dynamixel::BusPort& port) {
       return std::make_unique<EmulatedPort>(bench_, port.device == "bus0" ? 0 : 1, port.baud);
     };
-    const ComponentFactory control{"control", [this](Wiring& wiring, const constrictor::Setup&) {
-                                     return std::make_unique<Commander>(wiring, command_);
-                                   }};
+    const ComponentFactory control = commander(
+        [this](std::int64_t tick, msg::JointCommand& command) { return command_ && command_(tick, command); });
     const auto file = config.empty() ? std::filesystem::path{} : config_.path() / "servo_bus.yaml";
     std::map<std::string, std::filesystem::path> files;
     if (!file.empty()) files["servo_bus"] = file;
