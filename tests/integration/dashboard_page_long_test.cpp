@@ -19,11 +19,12 @@ class DashboardPage : public RunCommand {
     dashboard_.emplace(command({"dashboard", "--port", port}));
     ASSERT_TRUE(dashboard_->wait_for("Ctrl-C ends the dashboard", 20s)) << dashboard_->errors();
   }
-  [[nodiscard]] Process browse(const std::string& size, std::vector<std::string> steps) const {
+  [[nodiscard]] Process browse(const std::string& size, std::vector<std::string> steps,
+                               const std::string& flags = "") const {
     std::vector<std::string> arguments{"/usr/bin/env", "node", CONSTRICTOR_SOURCE_DIR "/tests/support/browser.mjs",
                                        "http://127.0.0.1:" + port_ + "/", size};
     arguments.insert(arguments.end(), steps.begin(), steps.end());
-    return Process(std::move(arguments));
+    return Process(std::move(arguments), {{"CONSTRICTOR_BROWSER_FLAGS", flags}});
   }
   static std::string answered(const std::string& text) {
     return "wait=document.querySelector('#answer').textContent.includes('" + text + "')";
@@ -33,25 +34,41 @@ class DashboardPage : public RunCommand {
 };
 
 constexpr const char* kConnected = "wait=document.querySelector('#connection').textContent === 'connected'";
-/// The number of distinct colours on a canvas: an empty one has one.
-constexpr const char* kColours =
-    "wait=['scene', 'camera', 'processed', 'torques', 'history'].every(id => { const c = document.getElementById(id);"
-    "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; const s = new Set();"
-    "for (let i = 0; i < d.length; i += 4) s.add(d[i] << 16 | d[i + 1] << 8 | d[i + 2]); return s.size > 3; })";
+/// An empty canvas has one colour.
+const std::vector<std::string> kDrawn = {"colours=3 #camera", "colours=3 #processed", "colours=3 #torques",
+                                         "colours=3 #history"};
+
+std::vector<std::string> joined(std::vector<std::string> steps, const std::vector<std::string>& more) {
+  steps.insert(steps.end(), more.begin(), more.end());
+  return steps;
+}
 
 TEST_F(DashboardPage, DrawsTheRunAndItsButtonsCommandIt) {
   Process desktop =
-      browse("1300x1000", {kConnected, kColours, "wait=document.querySelectorAll('#processes tr').length === 9",
-                           "wait=document.querySelectorAll('#states li.present').length === 1", "click=#pause",
-                           answered("paused, next tick"), "click=#step", answered("step: paused, next tick"),
-                           "click=#resume", answered("running")});
+      browse("1300x1000", joined({kConnected, "colours=30 #scene_3d", "wait=document.querySelector('#solid').checked",
+                                  "wait=document.querySelectorAll('#processes tr').length === 9",
+                                  "wait=document.querySelectorAll('#machine .present').length === 1", "click=#pause",
+                                  answered("paused, next tick"), "click=#step", answered("step: paused, next tick"),
+                                  "click=#resume", answered("running")},
+                                 kDrawn));
   EXPECT_EQ(desktop.wait(120s), 0) << desktop.errors();
-  Process phone = browse("390x844", {kConnected, kColours, "wait=document.documentElement.scrollWidth <= 390",
-                                     "click=#stop", answered("the robot holds its posture"),
-                                     "wait=document.querySelector('#run').textContent.includes('EMERGENCY STOP')",
-                                     "click=#clear_stop", answered("emergency stop cleared"),
-                                     "wait=!document.querySelector('#run').textContent.includes('EMERGENCY STOP')"});
+  Process phone =
+      browse("390x844", {kConnected, "colours=30 #scene_3d", "wait=document.documentElement.scrollWidth <= 390",
+                         "click=#stop", answered("the robot holds its posture"),
+                         "wait=document.querySelector('#run').textContent.includes('EMERGENCY STOP')",
+                         "click=#clear_stop", answered("emergency stop cleared"),
+                         "wait=!document.querySelector('#run').textContent.includes('EMERGENCY STOP')"});
   EXPECT_EQ(phone.wait(120s), 0) << phone.errors();
+}
+
+TEST_F(DashboardPage, ShowsTheSceneFromAboveWhereTheBrowserHasNoWebGl) {
+  Process page = browse(
+      "1300x1000",
+      joined({kConnected, "wait=document.querySelector('#scene_note').textContent.includes('is shown from above')",
+              "wait=document.querySelector('#solid').disabled", "colours=5 #scene_from_above"},
+             kDrawn),
+      "--disable-3d-apis");
+  EXPECT_EQ(page.wait(120s), 0) << page.errors();
 }
 
 TEST_F(DashboardPage, ShowsALostConnectionAndRecovers) {

@@ -4,8 +4,14 @@
 //   click=SELECTOR       with the mouse
 //   print=EXPRESSION     a line with its value as JSON
 //   shot=FILE            a picture (.png, .jpg) of the whole page
+//   view=FILE            a picture of what the screen shows
+//   colours=N SELECTOR   until this element shows more than N distinct colours, WebGL included
+//   press=SELECTOR       holds the mouse button down in the element, at 3/4 of its width and 1/4 of its height
+//   let                  lets the mouse button go
+//   down=KEY, up=KEY     holds a key ("ArrowUp") down, lets it go
+//   frames=SECONDS       a line of JSON with the time [ms] for which the page's main thread works in each frame
 //   line                 waits for a line on standard input
-// Ends with status 1 if a wait is in vain or the page throws.
+// Ends with status 1 if a wait is in vain or the page throws. CONSTRICTOR_BROWSER_FLAGS: more arguments of Chromium.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -19,7 +25,8 @@ const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 
 const chromium = spawn("chromium", [
-  "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+  "--headless", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--enable-unsafe-swiftshader",
+  ...(process.env.CONSTRICTOR_BROWSER_FLAGS ?? "").split(" ").filter((flag) => flag),
   "--remote-debugging-pipe", `--user-data-dir=${folder}`, "about:blank",
 ], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
 
@@ -38,6 +45,7 @@ class Page {
     this.number = 0;
     this.waiting = new Map();
     this.errors = [];
+    this.traced = [];
     let text = "";
     chromium.stdio[4].on("data", (data) => {
       text += data;
@@ -49,28 +57,90 @@ class Page {
   take(message) {
     if (message.method === "Runtime.exceptionThrown")
       this.errors.push(message.params.exceptionDetails.exception?.description ?? "exception");
+    if (message.method === "Tracing.dataCollected") this.traced.push(...message.params.value);
+    if (message.method === "Tracing.tracingComplete") this.traceDone?.();
     this.waiting.get(message.id)?.(message);
     this.waiting.delete(message.id);
   }
-  call(method, params = {}) {
+  call(method, params = {}, sessionId = this.session) {
     return new Promise((done, fail) => {
       const id = ++this.number;
       this.waiting.set(id, ({ result, error }) => (error ? fail(new Error(`${method}: ${error.message}`)) : done(result)));
-      chromium.stdio[3].write(JSON.stringify({ id, method, params, sessionId: this.session }) + "\0");
+      chromium.stdio[3].write(JSON.stringify({ id, method, params, sessionId }) + "\0");
     });
   }
   async value(expression) {
-    const { result, exceptionDetails } = await this.call("Runtime.evaluate", { expression, returnByValue: true });
+    const { result, exceptionDetails } =
+      await this.call("Runtime.evaluate", { expression, returnByValue: true, awaitPromise: true });
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description}`);
     return result.value;
   }
-  async click(selector) {
-    const place = await this.value(`(() => { const e = document.querySelector(${JSON.stringify(selector)});
-      e.scrollIntoView({block: "center"}); const b = e.getBoundingClientRect();
-      return [b.x + b.width / 2, b.y + b.height / 2]; })()`);
-    for (const type of ["mousePressed", "mouseReleased"])
-      await this.call("Input.dispatchMouseEvent", { type, x: place[0], y: place[1], button: "left", clickCount: 1 });
+  /** Brings an element into view; its place in the window. */
+  place(selector) {
+    return this.value(`(() => { const e = document.querySelector(${JSON.stringify(selector)});
+      e.scrollIntoView({block: "center"}); const { x, y, width, height } = e.getBoundingClientRect();
+      return { x, y, width, height }; })()`);
   }
+  mouse(type, x, y) {
+    return this.call("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: 1, clickCount: 1 });
+  }
+  async click(selector) {
+    const { x, y, width, height } = await this.place(selector);
+    for (const type of ["mousePressed", "mouseReleased"]) await this.mouse(type, x + width / 2, y + height / 2);
+  }
+  async press(selector) {
+    const { x, y, width, height } = await this.place(selector);
+    this.held = [x + 0.75 * width, y + 0.25 * height];
+    await this.mouse("mousePressed", ...this.held);
+  }
+  /** From a picture of the screen, because the pixels of WebGL cannot be read when they have been shown. */
+  async colours(selector) {
+    const clip = { ...(await this.place(selector)), scale: 1 };
+    if (clip.width === 0 || clip.height === 0) return 0; // hidden
+    const scrolled = await this.value("[scrollX, scrollY]");
+    clip.x += scrolled[0];
+    clip.y += scrolled[1];
+    const { data } = await this.call("Page.captureScreenshot", { clip, captureBeyondViewport: true });
+    return this.value(`(async () => {
+      const bytes = Uint8Array.from(atob(${JSON.stringify(data)}), (c) => c.charCodeAt(0));
+      const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size; })()`);
+  }
+  /** The events of the browser in this time. Tracing belongs to the browser, not to the page. */
+  async trace(seconds) {
+    this.traced = [];
+    const done = new Promise((end) => (this.traceDone = end));
+    const includedCategories = ["devtools.timeline", "disabled-by-default-devtools.timeline", "toplevel"];
+    await this.call("Tracing.start", { traceConfig: { includedCategories } }, undefined);
+    await pause(1000 * seconds);
+    await this.call("Tracing.end", {}, undefined);
+    await done;
+    return this.traced;
+  }
+}
+
+/** How long the main thread of the page worked from each animation frame to the next. */
+function framesOf(events) {
+  const counts = new Map(); // of animation frames, by thread
+  const thread = (event) => `${event.pid}/${event.tid}`;
+  const starts = events.filter((event) => event.name === "FireAnimationFrame" && event.ph === "X");
+  for (const event of starts) counts.set(thread(event), (counts.get(thread(event)) ?? 0) + 1);
+  const [busiest] = [...counts].sort((a, b) => b[1] - a[1])[0] ?? [""];
+  const tasks = events.filter((event) => event.name === "RunTask" && event.ph === "X" && thread(event) === busiest)
+    .sort((a, b) => a.ts - b.ts);
+  const begins = starts.filter((event) => thread(event) === busiest).map((event) => event.ts).sort((a, b) => a - b);
+  const busy = new Array(Math.max(0, begins.length - 1)).fill(0);
+  let frame = 0;
+  for (const task of tasks) {
+    // A task belongs to the frame in which it ends: the task of an animation frame begins before its callback.
+    while (frame < busy.length && task.ts + task.dur > begins[frame + 1]) ++frame;
+    if (frame < busy.length && task.ts + task.dur >= begins[0]) busy[frame] += task.dur / 1000;
+  }
+  busy.sort((a, b) => a - b);
+  const at = (share) => Number((busy[Math.min(busy.length - 1, Math.floor(share * busy.length))] ?? NaN).toFixed(2));
+  return { frames: busy.length, p50_ms: at(0.5), p95_ms: at(0.95), p99_ms: at(0.99), most_ms: at(1) };
 }
 
 async function open() {
@@ -92,10 +162,18 @@ async function carryOut(page, step) {
   if (name === "wait") await until(value, 30000, () => page.value(`!!(${value})`));
   else if (name === "click") await page.click(value);
   else if (name === "print") console.log(JSON.stringify(await page.value(value)));
+  else if (name === "press") await page.press(value);
+  else if (name === "let") await page.mouse("mouseReleased", ...page.held);
+  else if (name === "down" || name === "up")
+    await page.call("Input.dispatchKeyEvent", { type: name === "up" ? "keyUp" : "rawKeyDown", key: value, code: value });
+  else if (name === "colours") {
+    const [, count, selector] = value.match(/^(\d+) (.*)$/);
+    await until(step, 30000, async () => (await page.colours(selector)) > Number(count));
+  } else if (name === "frames") console.log(JSON.stringify(framesOf(await page.trace(Number(value)))));
   else if (name === "line") await lines.next();
-  else if (name === "shot") {
+  else if (name === "shot" || name === "view") {
     const format = value.endsWith(".jpg") ? "jpeg" : "png";
-    const { data } = await page.call("Page.captureScreenshot", { captureBeyondViewport: true, format });
+    const { data } = await page.call("Page.captureScreenshot", { captureBeyondViewport: name === "shot", format });
     writeFileSync(value, Buffer.from(data, "base64"));
   } else throw new Error(`unknown step ${step}`);
 }

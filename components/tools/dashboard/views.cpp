@@ -142,20 +142,12 @@ json robot(const Newest& newest, std::uint64_t time_ns) {
     list["cubes"].push_back(
         cube(pose_of(world.module_poses[i]), size, torque_colour(known ? newest.joints->torque_nm[i] : 0.0)));
   }
-  if (!newest.contacts) return list;
-  for (std::size_t i = 0; i < newest.contacts->contact_count; ++i) {
-    const msg::Contact& contact = newest.contacts->contacts[i];
-    if (contact.module_index >= world.module_count) continue;
-    const msg::Pose3& module = world.module_poses[contact.module_index];
-    const Eigen::Vector3d force_n = rotated(module.orientation, contact.force_n);
-    if (force_n.head<2>().norm() < 0.5) continue;  // the weight on the ground is not worth an arrow
-    const Eigen::Vector3d at = Eigen::Vector3d(module.position_m.x, module.position_m.y, module.position_m.z) +
-                               rotated(module.orientation, contact.position_m);
-    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), force_n);
+  for (const ContactArrow& arrow : contact_arrows(newest)) {
+    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), arrow.force_W_n);
     list["arrows"].push_back({{"pose",
-                               {{"position", point(at.x(), at.y(), at.z())},
+                               {{"position", point(arrow.p_W.x(), arrow.p_W.y(), arrow.p_W.z())},
                                 {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}}},
-                              {"shaft_length", kArrow_m_per_n * force_n.norm()},
+                              {"shaft_length", kArrow_m_per_n * arrow.force_W_n.norm()},
                               {"shaft_diameter", 0.01},
                               {"head_length", 0.03},
                               {"head_diameter", 0.03},
@@ -178,6 +170,22 @@ json own_map(const Newest& newest, std::uint64_t time_ns) {
 }
 
 }  // namespace
+
+std::vector<ContactArrow> contact_arrows(const Newest& newest) {
+  std::vector<ContactArrow> arrows;
+  if (!newest.contacts || !newest.world) return arrows;
+  for (std::size_t i = 0; i < newest.contacts->contact_count; ++i) {
+    const msg::Contact& contact = newest.contacts->contacts[i];
+    if (contact.module_index >= newest.world->module_count) continue;
+    const msg::Pose3& module = newest.world->module_poses[contact.module_index];
+    const Eigen::Vector3d force_n = rotated(module.orientation, contact.force_n);
+    if (force_n.head<2>().norm() < 0.5) continue;
+    arrows.push_back({Eigen::Vector3d(module.position_m.x, module.position_m.y, module.position_m.z) +
+                          rotated(module.orientation, contact.position_m),
+                      force_n});
+  }
+  return arrows;
+}
 
 void align(Newest& newest) {
   if (newest.start || !newest.world || !newest.pose || newest.world->module_count == 0) return;

@@ -1,11 +1,13 @@
 // What viewers show: messages of the run in forms that Foxglove and the page know. Pure: no sockets, no DDS.
 #pragma once
 
+#include <Eigen/Core>
 #include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "constrictor/messages.hpp"
 #include "robot/planar.hpp"
@@ -35,6 +37,14 @@ struct Newest {
 
 /// Sets `newest.start` if it is not known yet and a pose of the same tick as the world has arrived.
 void align(Newest& newest);
+
+/// A contact of the robot's skin: where it is, and the force on the robot [N], both in the world's frame W.
+struct ContactArrow {
+  Eigen::Vector3d p_W;
+  Eigen::Vector3d force_W_n;
+};
+/// The contacts that push sideways. Those that only carry the weight on the ground are left out.
+[[nodiscard]] std::vector<ContactArrow> contact_arrows(const Newest& newest);
 
 /// foxglove.SceneUpdate: line, zones, objects and obstacles of the scenario, the robot's modules coloured by the torque
 /// of their joint, contact forces as arrows, and the robot's own map. Frame "world".

@@ -25,6 +25,12 @@ std::string host_without_port(std::string host) {
 WebServer::Impl::Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call)
     : options(std::move(given)), name(std::move(given_name)), acceptor(context), on_call(std::move(call)) {
   for (auto& service : names) services.push_back({static_cast<std::uint32_t>(services.size() + 1), service});
+  // Only the files that are there now are served: no request can lead to another place.
+  std::error_code error;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(options.page, error)) {
+    if (entry.is_regular_file())
+      files.emplace("/" + entry.path().lexically_relative(options.page).generic_string(), entry.path());
+  }
 }
 
 bool WebServer::Impl::knows_host(const std::string& host) const {

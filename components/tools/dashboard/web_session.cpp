@@ -21,18 +21,15 @@ constexpr std::size_t kMostSubscriptions = 1000;     // of one client
 constexpr std::size_t kMostRequestBytes = 64 << 10;
 constexpr auto kRequestBound = std::chrono::seconds(20);
 
-/// The page's files, by the path of the request.
-struct PageFile {
-  const char* target;
-  const char* file;
-  const char* type;
-};
-constexpr PageFile kPageFiles[] = {{"/", "index.html", "text/html; charset=utf-8"},
-                                   {"/index.html", "index.html", "text/html; charset=utf-8"},
-                                   {"/page.js", "page.js", "text/javascript; charset=utf-8"},
-                                   {"/cdr.js", "cdr.js", "text/javascript; charset=utf-8"},
-                                   {"/draw.js", "draw.js", "text/javascript; charset=utf-8"},
-                                   {"/page.css", "page.css", "text/css; charset=utf-8"}};
+/// The type of a file of the page.
+const char* type_of(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".html"   ? "text/html; charset=utf-8"
+         : ending == ".js"   ? "text/javascript; charset=utf-8"
+         : ending == ".css"  ? "text/css; charset=utf-8"
+         : ending == ".json" ? "application/json"
+                             : "text/plain; charset=utf-8";
+}
 
 }  // namespace
 
@@ -72,11 +69,9 @@ void Session::on_request() {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return respond(http::status::method_not_allowed, "accepted: GET\n");
   const auto target = std::string(request.target().substr(0, request.target().find('?')));
-  for (const auto& file : kPageFiles) {
-    if (target != file.target) continue;
-    std::ifstream stream(server_->options.page / file.file, std::ios::binary);
-    if (!stream) break;
-    return respond(http::status::ok, {std::istreambuf_iterator<char>(stream), {}}, file.type);
+  if (const auto file = server_->files.find(target == "/" ? "/index.html" : target); file != server_->files.end()) {
+    std::ifstream stream(file->second, std::ios::binary);
+    if (stream) return respond(http::status::ok, {std::istreambuf_iterator<char>(stream), {}}, type_of(file->second));
   }
   respond(http::status::not_found, "there is no such file; the page is at /\n");
 }

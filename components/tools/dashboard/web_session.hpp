@@ -38,7 +38,8 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   OnCall on_call;
   std::vector<Channel> channels;
   std::vector<Service> services;
-  std::set<std::shared_ptr<Session>> sessions;  ///< WebSocket clients only
+  std::map<std::string, std::filesystem::path> files;  ///< of the page, by the path of the request
+  std::set<std::shared_ptr<Session>> sessions;         ///< WebSocket clients only
   std::size_t connections = 0;
   std::uint64_t dropped = 0;
 };

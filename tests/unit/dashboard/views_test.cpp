@@ -64,6 +64,27 @@ TEST(Views, ContactForcesPointWhereTheyPushTheModule) {
   EXPECT_EQ(robot.at("timestamp").at("nsec"), 7);
 }
 
+TEST(Views, ThePageGetsPosesInSpaceAndContactsInTheWorld) {
+  Newest newest = example();
+  msg::ContactState contacts{};
+  contacts.contact_count = 1;
+  contacts.contacts[0].module_index = 1;
+  contacts.contacts[0].position_m = {0, 0.03, 0};
+  contacts.contacts[0].force_n = {1, -10, 2};
+  newest.contacts = contacts;
+  const auto state = page_state(newest);
+  const double half = std::sqrt(0.5);  // the modules are turned by 90 degrees about z
+  const std::vector<double> expected = {1.0, 1.5, std::numbers::pi / 2, 0.03, 0, 0, half, half};
+  const auto tail = state.at("world").at("modules").at(1).get<std::vector<double>>();
+  ASSERT_EQ(tail.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(tail[i], expected[i], 1e-5) << i;
+  EXPECT_EQ(state.at("world").at("objects").at(0).at("size_m"), nlohmann::json({0.08, 0.08, 0.15}));
+  const std::vector<double> arrow = {1.0 - 0.03, 1.5, 0.03, 10, 1, 2};
+  const auto drawn = state.at("contacts").at(0).get<std::vector<double>>();
+  ASSERT_EQ(drawn.size(), arrow.size());
+  for (std::size_t i = 0; i < arrow.size(); ++i) EXPECT_NEAR(drawn[i], arrow[i], 1e-5) << i;
+}
+
 TEST(Views, TheEstimateBeginsAtTheTruthAndThenShowsItsError) {
   Newest newest = example();
   msg::RobotPose pose{};

@@ -1,0 +1,54 @@
+// The diagram of the page against the state machine of the planner.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "planner/mission_state.hpp"
+
+namespace constrictor::dashboard {
+namespace {
+
+using nlohmann::json;
+
+json diagram() {
+  std::ifstream file(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page/machine.json");
+  return json::parse(file);
+}
+
+TEST(Machine, TheDiagramHasEachStateOfThePlannerAtAPlaceOfItsOwn) {
+  const json machine = diagram();
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < kMissionStates; ++i) names.insert(name_of(static_cast<MissionState>(i)));
+  std::set<std::string> drawn;
+  std::set<std::pair<int, int>> places;
+  for (const auto& [name, place] : machine.at("states").items()) {
+    drawn.insert(name);
+    EXPECT_TRUE(places.emplace(place.at(0), place.at(1)).second) << name;
+    EXPECT_LT(place.at(0), machine.at("columns")) << name;
+    EXPECT_LT(place.at(1), machine.at("rows")) << name;
+  }
+  EXPECT_EQ(drawn, names);
+}
+
+TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
+  const json machine = diagram();
+  std::set<std::pair<std::string, std::string>> drawn;
+  for (const auto& way : machine.at("transitions")) EXPECT_TRUE(drawn.emplace(way.at(0), way.at(1)).second) << way;
+  for (std::size_t i = 0; i < kMissionStates; ++i) {
+    const StateRow& row = row_of(static_cast<MissionState>(i));
+    std::set<MissionState> next = {row.succeeded, row.failed};
+    for (const auto& loss : row.losses) {
+      if (loss.event != msg::kEventNone) next.insert(loss.to);
+    }
+    next.erase(row.state);  // to stay is no arrow
+    for (const MissionState to : next)
+      EXPECT_TRUE(drawn.contains({row.name, name_of(to)})) << row.name << " to " << name_of(to);
+  }
+}
+
+}  // namespace
+}  // namespace constrictor::dashboard
