@@ -1,9 +1,9 @@
 // The dashboard of a run of toy components, with viewers that are right, slow, hostile and foreign.
 #include <random>
 
+#include "integration/dashboard_viewer.hpp"
 #include "integration/run_command_fixture.hpp"
 #include "recording/message_cdr.hpp"
-#include "support/web_socket.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -24,33 +24,6 @@ class DashboardTest : public RunCommand {
     const std::string output = dashboard_->output();
     port_ = static_cast<std::uint16_t>(std::stoi(output.substr(output.find("127.0.0.1:") + 10)));
   }
-  /// Receives until a text with this `op` arrives.
-  static json wait_for(WebSocket& viewer, const std::string& op) {
-    for (;;) {
-      const auto message = viewer.receive();
-      if (!message) return nullptr;
-      if (!message->text) continue;
-      json text = json::parse(message->bytes, nullptr, false);
-      if (text.value("op", "") == op) return text;
-    }
-  }
-  /// Receives until the channel of this topic is advertised; its number, or 0.
-  static std::uint32_t channel_of(WebSocket& viewer, const std::string& topic) {
-    for (;;) {
-      const json text = wait_for(viewer, "advertise");
-      if (text.is_null()) return 0;
-      for (const auto& channel : text.at("channels")) {
-        if (channel.at("topic") == topic) return channel.at("id");
-      }
-    }
-  }
-  static std::string subscribe(std::uint32_t subscription, std::uint32_t channel) {
-    return json{{"op", "subscribe"}, {"subscriptions", {{{"id", subscription}, {"channelId", channel}}}}}.dump();
-  }
-  static std::string call(std::uint32_t service, std::uint32_t number, const std::string& request) {
-    std::string frame{'\2', static_cast<char>(service), 0, 0, 0, static_cast<char>(number), 0, 0, 0, 4, 0, 0, 0};
-    return frame + "json" + request;
-  }
   [[nodiscard]] long memory_kib() const {
     std::ifstream status("/proc/" + std::to_string(dashboard_->pid()) + "/status");
     for (std::string line; std::getline(status, line);)
@@ -70,14 +43,14 @@ class DashboardTest : public RunCommand {
 TEST_F(DashboardTest, ShowsEachTopicAsItIsAndDoesNotChangeTheRun) {
   ASSERT_EQ(run(1500, "alone", {"--in-process"}).wait(60s), exit_status::kOk);
   begin(1500);
-  WebSocket viewer(port_);
+  Viewer viewer(port_);
   ASSERT_EQ(viewer.status, 101) << viewer.headers;
   EXPECT_NE(viewer.headers.find("foxglove.sdk.v1"), std::string::npos);
-  EXPECT_EQ(wait_for(viewer, "serverInfo").value("name", ""),
+  EXPECT_EQ(viewer.wait_for("serverInfo").value("name", ""),
             "Constrictor run " + std::to_string(domain_of(*launcher_)));
-  const std::uint32_t channel = channel_of(viewer, "joint_state");
+  const std::uint32_t channel = viewer.channel_of("joint_state");
   ASSERT_GT(channel, 0u);
-  ASSERT_TRUE(viewer.send_text(subscribe(77, channel)));
+  ASSERT_TRUE(viewer.send_text(Viewer::subscribe(77, channel)));
   const MessageCodec* codec = find_codec("JointState");
   ASSERT_TRUE(codec);
   std::int64_t tick = -1;
@@ -103,26 +76,9 @@ TEST_F(DashboardTest, ShowsEachTopicAsItIsAndDoesNotChangeTheRun) {
 
 TEST_F(DashboardTest, AViewerPausesStepsAndResumesTheRun) {
   begin(1'000'000);
-  WebSocket viewer(port_);
+  Viewer viewer(port_);
   ASSERT_EQ(viewer.status, 101);
-  const json services = wait_for(viewer, "advertiseServices");
-  ASSERT_FALSE(services.is_null());
-  const auto ask = [&](const std::string& name, const std::string& request) -> std::string {
-    std::uint32_t id = 0;
-    for (const auto& service : services.at("services"))
-      if (service.at("name") == name) id = service.at("id");
-    EXPECT_TRUE(viewer.send_binary(call(id, 9, request)));
-    for (;;) {
-      const auto message = viewer.receive(20s);
-      if (!message) return "no answer";
-      if (message->text) {
-        const json text = json::parse(message->bytes);
-        if (text.value("op", "") == "serviceCallFailure") return "failure: " + text.value("message", "");
-      } else if (message->bytes[0] == 3) {
-        return json::parse(message->bytes.substr(17)).value("text", "");
-      }
-    }
-  };
+  const auto ask = [&](const std::string& name, const std::string& request) { return viewer.ask(name, request); };
   const std::string paused = ask("pause", "{}");
   ASSERT_TRUE(paused.starts_with("paused, next tick ")) << paused;
   const long tick = std::stol(paused.substr(18));
@@ -131,8 +87,8 @@ TEST_F(DashboardTest, AViewerPausesStepsAndResumesTheRun) {
   EXPECT_NE(ask("step", R"({"ticks":0})").find("failure: step: accepted"), std::string::npos);
   EXPECT_NE(ask("step", R"({"ticks":"3"})").find("failure: step: accepted"), std::string::npos);
   EXPECT_NE(ask("pace", R"({"pace":-1})").find("failure: pace: accepted"), std::string::npos);
-  ASSERT_TRUE(viewer.send_binary(call(99, 1, "{}")));
-  EXPECT_EQ(wait_for(viewer, "serviceCallFailure").value("message", ""), "there is no service 99");
+  ASSERT_TRUE(viewer.send_binary(Viewer::call(99, 1, "{}")));
+  EXPECT_EQ(viewer.wait_for("serviceCallFailure").value("message", ""), "there is no service 99");
   end();
 }
 
@@ -146,10 +102,10 @@ TEST_F(DashboardTest, RefusesPagesOfOtherSitesAndNamesThatAreNotItsOwn) {
   EXPECT_EQ(WebSocket(port_, {"foxglove.sdk.v1", "http://evil.example", "evil.example"}).status, 403)
       << "a name of another site that leads to this host";
   EXPECT_EQ(WebSocket(port_, {"chat", "", ""}).status, 400);
-  WebSocket watcher(port_, {"foxglove.sdk.v1", "https://app.foxglove.dev", ""});
+  Viewer watcher(port_, {"foxglove.sdk.v1", "https://app.foxglove.dev", ""});
   EXPECT_EQ(watcher.status, 101);
-  ASSERT_TRUE(watcher.send_binary(call(1, 5, "{}")));
-  EXPECT_EQ(wait_for(watcher, "serviceCallFailure").value("message", ""),
+  ASSERT_TRUE(watcher.send_binary(Viewer::call(1, 5, "{}")));
+  EXPECT_EQ(watcher.wait_for("serviceCallFailure").value("message", ""),
             "pages of other web sites may watch, but not command");
   Process second = command({"dashboard", "--port", std::to_string(port_)});
   EXPECT_EQ(second.wait(20s), exit_status::kSoftware);
@@ -159,13 +115,13 @@ TEST_F(DashboardTest, RefusesPagesOfOtherSitesAndNamesThatAreNotItsOwn) {
 
 TEST_F(DashboardTest, ASlowViewerDelaysNobodyAndCostsBoundedMemory) {
   begin(1'000'000, {}, "8x");
-  WebSocket viewer(port_), slow(port_);
-  const std::uint32_t channel = channel_of(viewer, "joint_state");
+  Viewer viewer(port_), slow(port_);
+  const std::uint32_t channel = viewer.channel_of("joint_state");
   ASSERT_GT(channel, 0u);
   const long before_kib = memory_kib();
   // Many subscriptions make much data of one topic: about 500 times 1.6 KiB for each tick.
-  for (std::uint32_t i = 0; i < 500; ++i) ASSERT_TRUE(slow.send_text(subscribe(i, channel)));
-  ASSERT_TRUE(viewer.send_text(subscribe(1, channel)));
+  for (std::uint32_t i = 0; i < 500; ++i) ASSERT_TRUE(slow.send_text(Viewer::subscribe(i, channel)));
+  ASSERT_TRUE(viewer.send_text(Viewer::subscribe(1, channel)));
   std::size_t received = 0;
   while (received < 400) {
     const auto message = viewer.receive(5s);
@@ -180,10 +136,10 @@ TEST_F(DashboardTest, ASlowViewerDelaysNobodyAndCostsBoundedMemory) {
 TEST_F(DashboardTest, WhateverClientsSendItGoesOnServing) {
   begin(1'000'000);
   std::mt19937 random(20261122);
-  const std::vector<std::string> good = {subscribe(1, 1), R"({"op":"unsubscribe","subscriptionIds":[1]})",
-                                         call(1, 1, "{}"), "{}", std::string(1000, '[')};
+  const std::vector<std::string> good = {Viewer::subscribe(1, 1), R"({"op":"unsubscribe","subscriptionIds":[1]})",
+                                         Viewer::call(1, 1, "{}"), "{}", std::string(1000, '[')};
   for (int round = 0; round < 40; ++round) {
-    WebSocket client(port_);
+    Viewer client(port_);
     ASSERT_EQ(client.status, 101) << round;
     for (int i = 0; i < 50; ++i) {
       std::string bytes = good[random() % good.size()];
@@ -198,10 +154,10 @@ TEST_F(DashboardTest, WhateverClientsSendItGoesOnServing) {
   for (int i = 0; i < 200; ++i) {
     const WebSocket hasty(port_, {"foxglove.sdk.v1", "", std::string(random() % 9000, 'x')});  // closed at once
   }
-  WebSocket viewer(port_);
+  Viewer viewer(port_);
   ASSERT_EQ(viewer.status, 101);
   ASSERT_TRUE(viewer.send_text(R"({"op":"fly"})"));
-  EXPECT_NE(wait_for(viewer, "status").value("message", "").find("found op 'fly'"), std::string::npos);
+  EXPECT_NE(viewer.wait_for("status").value("message", "").find("found op 'fly'"), std::string::npos);
   EXPECT_TRUE(dashboard_->running());
   end();
 }

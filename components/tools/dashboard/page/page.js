@@ -1,13 +1,22 @@
 // The page of the dashboard: what arrives is shown once in each frame of the screen, and buttons call services.
 import { Connection } from "./connection.js";
+import { Drive } from "./drive.js";
 import { drawImage } from "./images.js";
 import { Machine } from "./machine.js";
+import { Parameters } from "./parameters.js";
 import { Scene } from "./scene.js";
+import { buildTasks } from "./tasks.js";
 import { showTexts } from "./texts.js";
 import { drawTorques, TorqueHistory } from "./torques.js";
 
 const element = (id) => document.getElementById(id);
-const buttons = ["stop", "clear_stop", "release", "pause", "resume", "step", "pace"];
+// The service of each button and field. Those that the dashboard does not offer are disabled.
+const services = {
+  stop: "stop", clear_stop: "clear_stop", take: "take", release: "release",
+  pause: "pause", resume: "resume", step: "step", pace: "pace",
+  task_start: "task", task_cancel: "stand", parameter_read: "param_list",
+};
+const plain = ["stop", "clear_stop", "take", "release", "pause", "resume"]; // buttons whose request is empty
 const texts_ms = 200; // people do not read faster, and texts cost more time than drawings
 
 let state = null;
@@ -24,20 +33,24 @@ function say(text, bad) {
   element("answer").className = bad ? "bad" : "";
 }
 
-/** Calls a service and shows its answer or the reason of its refusal. */
+/** Calls a service, shows its answer or the reason of its refusal, and returns the answer; null: it was refused. */
 async function call(name, request) {
   say(`${name}: waiting for the answer`, false);
   try {
-    say(`${name}: ${await connection.call(name, request)}`, false);
+    const answer = await connection.call(name, request);
+    say(`${name}: ${answer}`, false);
+    return answer;
   } catch (error) {
     say(error.message, true);
+    return null;
   }
 }
 
 function onChange(text, kind) {
   element("connection").textContent = text;
   element("connection").className = "badge " + kind;
-  for (const name of buttons) element(name).disabled = kind !== "good" || !connection.has(name);
+  for (const [id, service] of Object.entries(services))
+    element(id).disabled = kind !== "good" || !connection.has(service);
 }
 
 function onMessage(topic, view, from) {
@@ -73,11 +86,12 @@ const connection = new Connection(["view/state", "view/camera", "view/processed"
   change: (text, kind) => onChange(text, kind),
 });
 
-for (const name of buttons) {
-  if (name === "pace") continue;
-  element(name).addEventListener("click", () => call(name, name === "step" ? { ticks: 1 } : {}));
-}
+for (const name of plain) element(name).addEventListener("click", () => call(name, {}));
+element("step").addEventListener("click", () => call("step", { ticks: 1 }));
 element("pace").addEventListener("change", (event) => call("pace", { pace: Number(event.target.value) }));
+buildTasks(call);
+new Drive(connection, say, () => call("stop", {}));
+new Parameters(connection, call);
 addEventListener("resize", () => (scenes = plots = true));
 
 machine = new Machine(element("machine"), await (await fetch("machine.json")).json());

@@ -1,0 +1,119 @@
+// Viewers of the dashboard drive a robot that consists of the real components, and change its parameters.
+#include "integration/dashboard_viewer.hpp"
+#include "integration/run_watcher.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+class DashboardDrive : public CliFixture {
+ protected:
+  void SetUp() override {
+    // No test here needs camera and perception, and the run is faster without them.
+    write("blind.yaml",
+          "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
+          "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
+    launcher_.emplace(start(
+        {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "2x"}));
+    ASSERT_TRUE(launcher_->wait_for("simulated", 30s)) << launcher_->errors();
+    dashboard_.emplace(start({"dashboard", "--port", "0"}));
+    ASSERT_TRUE(dashboard_->wait_for("Ctrl-C ends the dashboard", 20s)) << dashboard_->errors();
+    const std::string output = dashboard_->output();
+    port_ = static_cast<std::uint16_t>(std::stoi(output.substr(output.find("127.0.0.1:") + 10)));
+  }
+  void TearDown() override {
+    EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
+    EXPECT_EQ(launcher_->wait(20s), 128 + SIGTERM);
+    EXPECT_EQ(dashboard_->wait(20s), exit_status::kOk) << dashboard_->errors();
+  }
+  /// True when the setpoints have not changed for 60 ticks in a row.
+  static bool stands(Watcher& watcher) {
+    return eventually(
+        [&] {
+          watcher.poll();
+          return watcher.changed_tick >= 0 && watcher.commands.back().header.tick > watcher.changed_tick + 60;
+        },
+        20s);
+  }
+
+  std::optional<Process> launcher_, dashboard_;
+  std::uint16_t port_ = 0;
+};
+
+TEST_F(DashboardDrive, TheRobotMovesOnlyWhileAViewerRepeatsTheDrive) {
+  Viewer viewer(port_);
+  Watcher watcher(domain());
+  const std::string forwards = R"({"speed_m_s":0.3,"turn_rad_s":0.1})";
+  const std::string let_go = R"({"speed_m_s":0,"turn_rad_s":0})";
+  EXPECT_EQ(viewer.ask("drive", let_go), "the robot stands already, or is not driven from here");
+  ASSERT_EQ(viewer.ask("drive", forwards), "0.30 m/s, 0.10 rad/s");
+  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
+  EXPECT_EQ(std::string(watcher.authorities.back().first.source).substr(0, 10), "dashboard.");
+  ASSERT_TRUE(watcher.moves());
+  ASSERT_TRUE(stands(watcher)) << "no viewer repeats the drive any more";
+  EXPECT_EQ(watcher.authorities.back().first.level, msg::kAuthorityOperator) << "the planner must not go on by itself";
+  // Repeated for 3 s of the run, which are 1.5 s of wall time: much longer than a single drive lasts.
+  const std::int64_t begin = watcher.commands.back().header.tick;
+  while (watcher.commands.back().header.tick < begin + 150) {
+    ASSERT_EQ(viewer.ask("drive", forwards), "0.30 m/s, 0.10 rad/s");
+    watcher.poll();
+  }
+  EXPECT_GT(watcher.changed_tick, begin + 130) << "it drives still";
+  EXPECT_EQ(viewer.ask("drive", let_go), "the robot stands");
+  ASSERT_TRUE(stands(watcher));
+  EXPECT_EQ(viewer.ask("release", "{}"), "authority released");
+  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
+}
+
+TEST_F(DashboardDrive, ADriveThatWasStoppedDoesNotTakeAuthorityBack) {
+  Viewer driver(port_), stopper(port_);
+  const std::string forwards = R"({"speed_m_s":0.3,"turn_rad_s":0})";
+  ASSERT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s");
+  ASSERT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s");
+  EXPECT_EQ(stopper.ask("stop", "{}"), "emergency stop: the robot holds its posture");
+  EXPECT_TRUE(eventually([&] { return driver.ask("drive", forwards).starts_with("failure: drive: "); }));
+  EXPECT_TRUE(driver.ask("drive", forwards).starts_with("failure: drive: ")) << "the stop is latched";
+  EXPECT_EQ(stopper.ask("clear_stop", "{}"), "emergency stop cleared");
+  EXPECT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s") << "a new wish, after the stop was cleared";
+}
+
+TEST_F(DashboardDrive, TasksAndParametersAreObeyedOrRefusedWithTheReason) {
+  Viewer viewer(port_);
+  EXPECT_EQ(viewer.ask("drive", R"({"speed_m_s":3,"turn_rad_s":0})"),
+            "failure: drive: accepted {\"speed_m_s\": -2 to 2}");
+  EXPECT_EQ(viewer.ask("drive", R"({"speed_m_s":1})"), "failure: drive: accepted {\"turn_rad_s\": -4 to 4}");
+  EXPECT_EQ(viewer.ask("task", R"({"task":"dance"})").substr(0, 42), "failure: task: task: found 'dance', accept");
+  EXPECT_NE(viewer.ask("task", R"({"task":"rotate"})").find("rotate needs a direction"), std::string::npos);
+  EXPECT_EQ(viewer.ask("task", R"({"task":"rotate direction=left"})"), "rotate was accepted");
+  EXPECT_EQ(viewer.ask("stand", "{}"), "the robot stands");
+  EXPECT_EQ(viewer.ask("release", "{}"), "authority released");
+  Process teleop = start({"teleop", "--drive", "0.2,0"});
+  ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
+  const std::string refused = viewer.ask("take", "{}");
+  EXPECT_TRUE(refused.starts_with("failure: take: ")) << refused;
+  EXPECT_NE(refused.find("teleop"), std::string::npos) << refused;
+
+  const auto value_of = [&](const std::string& name) {
+    for (const auto& parameter : nlohmann::json::parse(viewer.ask("param_list", "{}"), nullptr, false))
+      if (parameter.at("name") == name) return parameter.at("value").get<double>();
+    return -1.0;
+  };
+  const std::string name = "navigation.travel.frequency_hz";
+  const double before = value_of(name);
+  ASSERT_GT(before, 0);
+  const std::string answer = viewer.ask("param_set", R"({"name":")" + name + R"(","value":0.9})");
+  EXPECT_TRUE(answer.starts_with(name + ": 0.9 from tick ")) << answer;
+  EXPECT_NE(before, 0.9);
+  EXPECT_TRUE(eventually([&] { return value_of(name) == 0.9; }));
+  const std::string refused = viewer.ask("param_set", R"({"name":")" + name + R"(","value":900})");
+  EXPECT_TRUE(refused.starts_with("failure: " + name + ": ")) << refused;
+  EXPECT_NE(refused.find("accepted"), std::string::npos) << refused;
+  EXPECT_TRUE(viewer.ask("param_set", R"({"name":"navigation.nothing","value":1})").starts_with("failure: "));
+  EXPECT_EQ(viewer.ask("param_set", R"({"name":"x","value":null})"),
+            "failure: param_set: accepted {\"value\": -1000000000000 to 1000000000000}");
+}
+
+}  // namespace
+}  // namespace constrictor::testing
