@@ -91,9 +91,11 @@ TEST_F(DashboardDrive, TasksAndParametersAreObeyedOrRefusedWithTheReason) {
   EXPECT_EQ(viewer.ask("release", "{}"), "authority released");
   Process teleop = start({"teleop", "--drive", "0.2,0"});
   ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
-  const std::string refused = viewer.ask("take", "{}");
-  EXPECT_TRUE(refused.starts_with("failure: take: ")) << refused;
-  EXPECT_NE(refused.find("teleop"), std::string::npos) << refused;
+  const std::string taken = viewer.ask("take", "{}");
+  EXPECT_TRUE(taken.starts_with("failure: take: ")) << taken;
+  EXPECT_NE(taken.find("teleop"), std::string::npos) << taken;
+  teleop.signal(SIGINT);
+  ASSERT_EQ(teleop.wait(20s), 130) << teleop.errors();
 
   const auto value_of = [&](const std::string& name) {
     for (const auto& parameter : nlohmann::json::parse(viewer.ask("param_list", "{}"), nullptr, false))
