@@ -44,6 +44,9 @@ tests=(
   openssh-server iproute2
   # another vendor's DDS
   libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
+  # definitions of ROS messages, with which those of the bridge to ROS 2 are compared (0.4 MB in all)
+  ros-std-msgs ros-geometry-msgs ros-sensor-msgs ros-nav-msgs ros-tf2-msgs ros-rosgraph-msgs ros-visualization-msgs
+  ros-diagnostic-msgs
 )
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)

@@ -7,6 +7,7 @@
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -35,8 +36,10 @@ T* made(T* entity, const std::string& what) {
 class Participant {
  public:
   /// `domain` is the number that `constrictor run` prints. `address` is the address of the network interface on which
-  /// the robot's processes communicate.
-  Participant(std::uint32_t domain, const std::string& name, const std::string& address = "127.0.0.1") {
+  /// the robot's processes communicate. `listener`, if given, is told of every participant, reader and writer that Fast
+  /// DDS discovers, in a thread of Fast DDS; it must outlive this object.
+  Participant(std::uint32_t domain, const std::string& name, const std::string& address = "127.0.0.1",
+              fdds::DomainParticipantListener* listener = nullptr) {
     namespace rtps = eprosima::fastrtps::rtps;
     fdds::DomainParticipantQos qos;
     qos.name(name);
@@ -52,8 +55,9 @@ class Participant {
     peer.kind = LOCATOR_KIND_UDPv4;
     rtps::IPLocator::setIPv4(peer, address);
     qos.wire_protocol().builtin.initialPeersList.push_back(peer);
-    participant_ =
-        made(fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos), "a participant");
+    participant_ = made(fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos, listener,
+                                                                                           fdds::StatusMask::none()),
+                        "a participant");
     subscriber_ = made(participant_->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT), "a subscriber");
     publisher_ = made(participant_->create_publisher(fdds::PUBLISHER_QOS_DEFAULT), "a publisher");
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "constrictor/text.hpp"
+#include "cyclone/create_domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/security.hpp"
 
@@ -82,11 +83,13 @@ Entity create_participant(std::uint32_t domain, Reach reach, const std::string& 
   return {dds_create_participant(domain, qos.get(), nullptr), "dds_create_participant"};
 }
 
-Domain::Domain(std::uint32_t domain, Reach reach, const std::string& identity) {
+Entity create_domain(std::uint32_t domain, Reach reach) {
   limit_log_of_dds();
-  if (reach == Reach::kLoopback && !std::getenv("CYCLONEDDS_URI"))
-    domain_ = Entity(dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain");
-  participant_ = create_participant(domain, reach, identity);
+  if (reach == Reach::kNetwork || std::getenv("CYCLONEDDS_URI")) return {};
+  return {dds_create_domain(domain, configuration_of(domain).c_str()), "dds_create_domain"};
 }
+
+Domain::Domain(std::uint32_t domain, Reach reach, const std::string& identity)
+    : domain_(create_domain(domain, reach)), participant_(create_participant(domain, reach, identity)) {}
 
 }  // namespace constrictor::dds

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/interrupt.hpp"
-#include "cli/task_names.hpp"
+#include "client/task_names.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {

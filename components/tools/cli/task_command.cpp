@@ -14,11 +14,11 @@
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/task_wait.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "client/task_names.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {

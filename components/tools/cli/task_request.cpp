@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/task_names.hpp"
 #include "client/goal_tracker.hpp"
+#include "client/task_names.hpp"
 #include "component/task_parameters.hpp"
 
 namespace constrictor::cli {

@@ -8,12 +8,12 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/task_command.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/usage.hpp"
 #include "client/goal_reader.hpp"
 #include "client/polling.hpp"
 #include "client/run_registry.hpp"
+#include "client/task_names.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "runtime/host.hpp"

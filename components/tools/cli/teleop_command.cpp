@@ -9,7 +9,6 @@
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/teleop_drive.hpp"
 #include "cli/teleop_screen.hpp"
@@ -17,6 +16,7 @@
 #include "cli/usage.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "client/task_names.hpp"
 #include "robot/drive_gait.hpp"
 #include "runtime/host.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cli/task_names.hpp"
+#include "client/task_names.hpp"
 
 namespace constrictor::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/task_names.hpp"
+#include "client/task_names.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/endpoint.hpp"
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "cli/operator.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
+#include "client/task_names.hpp"
 #include "dashboard/lane.hpp"
 #include "robot/drive_gait.hpp"
 
@@ -85,11 +85,11 @@ void Driver::check_authority() {
 
 std::string Driver::task(const std::string& line) {
   msg::Request request = task_request(msg::kTaskNone);
-  std::string problem = cli::parse_task(line, request.task, request.parameters, request.path);
+  std::string problem = parse_task(line, request.task, request.parameters, request.path);
   if (problem.empty()) problem = cli::task_problem(request);
   if (!problem.empty()) throw std::invalid_argument("task: " + problem);
   client_.start_goal(request);
-  return fmt::format("{} was accepted", cli::task_word(request.task));
+  return fmt::format("{} was accepted", task_word(request.task));
 }
 
 std::string Driver::release() {

@@ -3,11 +3,15 @@
 #include <cstdio>
 #include <utility>
 
+#include "cyclone/create_domain.hpp"
+#include "ros_bridge/ros_values.hpp"
+
 namespace constrictor::ros {
 
 using namespace std::chrono_literals;
 
 namespace {
+
 RequestClientOptions client_options(const BridgeOptions& options) {
   RequestClientOptions client;
   client.source = unique_source("ros_bridge");
@@ -16,52 +20,103 @@ RequestClientOptions client_options(const BridgeOptions& options) {
   return client;
 }
 
+dds::Entity create_ros_domain(const BridgeOptions& options) {
+  if (options.ros_domain == options.run.domain) return {};
+  return dds::create_domain(options.ros_domain,
+                            options.ros_localhost_only ? dds::Reach::kLoopback : dds::Reach::kNetwork);
+}
+
+/// A participant of its own, because ROS 2 knows its participants by their user data.
+dds::Entity create_ros_participant(const BridgeOptions& options) {
+  const dds::Qos qos = dds::make_qos();
+  dds_qset_userdata(qos.get(), kRosParticipant, std::char_traits<char>::length(kRosParticipant));
+  if (options.ros_domain != options.run.domain)
+    return {dds_create_participant(options.ros_domain, qos.get(), nullptr), "dds_create_participant"};
+  dds::Entity participant = dds::create_participant(options.run.domain, dds::Reach::kLoopback, {});  // also if secured
+  dds::check(dds_set_qos(participant.get(), qos.get()), "dds_set_qos");
+  return participant;
+}
+
 }  // namespace
 
 Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
     : options_(options),
-      translator_(std::move(robot)),
-      client_(options.domain, client_options(options)),
+      translator_(robot),
+      drawing_(robot.module_radius_m),
+      health_(robot.name),
+      client_(options.run.domain, client_options(options)),
+      monitor_(options.run, client_.participant()),
+      ros_domain_(create_ros_domain(options)),
+      ros_participant_(create_ros_participant(options)),
+      node_(ros_participant_.get(), "ros_bridge", options.release),
       pilot_(options.hold_after_s) {
-  const dds_entity_t robot_side = client_.participant();
-  if (options.ros_domain != options.domain) {
-    other_domain_.emplace(options.ros_domain,
-                          options.ros_localhost_only ? dds::Reach::kLoopback : dds::Reach::kNetwork);
-  }
-  const dds_entity_t ros_side = other_domain_ ? other_domain_->participant() : robot_side;
   // ROS 2's readers ask for reliable or best effort, volatile or (tf_static) transient-local: the QoS of these writers
   // matches all of them. Keep-last writers never wait for a reader.
-  clock_out_ = {ros_side, "rt/clock", 1};
-  joints_out_ = {ros_side, "rt/joint_states", 10};
-  imu_out_ = {ros_side, "rt/imu", 10};
-  odom_out_ = {ros_side, "rt/odom", 10};
-  tf_out_ = {ros_side, "rt/tf", 10};
-  tf_static_out_ = {ros_side, "rt/tf_static", 1};
-  image_out_ = {ros_side, "rt/camera/image_raw", 2};
-  camera_info_out_ = {ros_side, "rt/camera/camera_info", 10};  // small, and an image is useless without it
-  velocity_ = dds::Reader<Twist>::observer(ros_side, "rt/cmd_vel");
+  clock_out_ = node_.writer<Clock>("clock", 1);
+  joints_out_ = node_.writer<JointState>("joint_states", 10);
+  imu_out_ = node_.writer<Imu>("imu", 10);
+  odom_out_ = node_.writer<Odometry>("odom", 10);
+  tf_out_ = node_.writer<TFMessage>("tf", 10);
+  tf_static_out_ = node_.writer<TFMessage>("tf_static", 1);
+  image_out_ = node_.writer<Image>("camera/image_raw", 2);
+  camera_info_out_ = node_.writer<CameraInfo>("camera/camera_info", 10);  // small, and an image is useless without it
+  percept_image_out_ = node_.writer<Image>("perception/image", 2);
+  overview_image_out_ = node_.writer<Image>("overview/image", 2);
+  map_markers_out_ = node_.writer<MarkerArray>("markers/map", 1);
+  line_markers_out_ = node_.writer<MarkerArray>("markers/line_in_view", 1);
+  object_markers_out_ = node_.writer<MarkerArray>("markers/objects_in_view", 1);
+  line_out_ = node_.writer<Path>("line", 1);
+  plan_out_ = node_.writer<Path>("plan", 1);
+  diagnostics_out_ = node_.writer<DiagnosticArray>("diagnostics", 1);
+  stopped_out_ = node_.writer<std_msgs_msg_dds__Bool_>("emergency_stop/state", 1);
+  task_answer_out_ = node_.writer<Text>("task/answer", 16);
+  task_status_out_ = node_.writer<Text>("task/status", 1);
+  task_event_out_ = node_.writer<Text>("task/event", 64);
+  using enum Node::Reliability;
+  velocity_ = node_.reader<Twist>("cmd_vel", 1, kBestEffort);
+  // A stop must not be lost, and it must match every writer. A stop that arrives at both readers is one stop.
+  stop_ = node_.reader<Empty>("emergency_stop", 1, kReliable);
+  best_effort_stop_ = node_.reader<Empty>("emergency_stop", 1, kBestEffort);
+  clear_stop_ = node_.reader<Empty>("emergency_stop/clear", 1, kReliable);
+  task_ = node_.reader<Text>("task/request", 16, kReliable);
+  node_.announce();
 
+  const dds_entity_t robot_side = client_.participant();
   tick_ = dds::Reader<msg::Tick>::observer(robot_side, "barrier/tick", 8);
   joints_ = dds::Reader<msg::JointState>::observer(robot_side, "joint_state", 8);
   imu_ = dds::Reader<msg::ImuState>::observer(robot_side, "imu_state", 8);
   pose_ = dds::Reader<msg::RobotPose>::observer(robot_side, "guidance/pose", 8);
   camera_image_ = dds::Reader<msg::CameraImage>::observer(robot_side, "camera/image", 2);
-  // Written once an epoch: a member's reader also receives what was written before this process started.
+  percept_image_ = dds::Reader<msg::CameraImage>::observer(robot_side, "perception/image", 2);
+  overview_image_ = dds::Reader<msg::CameraImage>::observer(robot_side, "overview/image", 2);
+  line_percept_ = dds::Reader<msg::LinePercept>::observer(robot_side, "perception/line", 2);
+  object_percepts_ = dds::Reader<msg::ObjectPercepts>::observer(robot_side, "perception/objects", 2);
+  map_ = dds::Reader<msg::FieldMap>::observer(robot_side, "guidance/map", 1);
+  run_state_ = dds::Reader<msg::RunState>::observer(robot_side, "run_state", 1);
+  component_status_ = dds::Reader<msg::ComponentStatus>::observer(robot_side, "component_status", 4);
+  task_status_ = dds::Reader<msg::TaskStatus>::observer(robot_side, "task/status", 4);
+  // Written seldom: a member's reader also receives what was written before this process started.
   camera_info_ = dds::Reader<msg::CameraInfo>::member(robot_side, "camera/info");
+  task_command_ = dds::Reader<msg::TaskCommand>::member(robot_side, "task/command");
+  task_event_ = dds::Reader<msg::TaskEvent>::member(robot_side, "task/event");
   wait_set_ = dds::WaitSet(robot_side);
-  for (const auto reader :
-       {tick_.get(), joints_.get(), imu_.get(), pose_.get(), camera_info_.get(), camera_image_.get()}) {
+  for (const auto reader : {tick_.get(), joints_.get(), imu_.get(), pose_.get(), camera_info_.get(),
+                            camera_image_.get(), percept_image_.get(), overview_image_.get()}) {
     wait_set_.attach(reader);
   }
-  if (!other_domain_) wait_set_.attach(velocity_.get());
 }
 
-bool Bridge::over() const { return over_ || (met_ && tick_.writers() == 0); }
-
 void Bridge::serve(SteadyClock::time_point now) {
-  pass_out();
-  pass_velocity(now);
-  wait_set_.wait(20ms);  // a wait set serves one domain; the other domain is polled
+  monitor_.poll();
+  take_stops(now);
+  pass_robot();
+  pass_images();
+  pass_surroundings();
+  take_velocities(now);
+  take_task_lines(now);
+  pass_tasks();
+  pass_health(now);
+  wait_set_.wait(20ms);  // a wait set serves one participant; the participant of ROS 2 is polled
 }
 
 template <class T, class Use>
@@ -69,18 +124,18 @@ void Bridge::take_fit(const dds::Reader<T>& reader, Use&& use) {
   reader.take([&](const T& message) {
     const std::string reason = unfit(message);
     if (reason.empty()) return use(message);
-    if (!dropped_)
+    if (counts_.dropped == 0)
       std::fprintf(stderr,
-                   "ros_bridge: dropped a message that ROS 2 cannot represent: %s (later ones are dropped silently)\n",
+                   "ros_bridge: dropped a message that ROS 2 cannot represent: %s (/diagnostics counts later ones)\n",
                    reason.c_str());
-    dropped_ = true;
+    ++counts_.dropped;
+    counts_.last_reason = "dropped a message that ROS 2 cannot represent: " + reason;
   });
 }
 
-void Bridge::pass_out() {
+void Bridge::pass_robot() {
   take_fit(tick_, [this](const msg::Tick& tick) {
-    met_ = true;
-    over_ = over_ || tick.final_tick;
+    health_.take(tick);
     clock_out_.write(translator_.clock(tick.time_ns));
   });
   take_fit(imu_, [this](const msg::ImuState& imu) {
@@ -100,6 +155,14 @@ void Bridge::pass_out() {
     tf_static_out_.write(translator_.camera_transform(info));
     last_info_ = info;
   });
+}
+
+void Bridge::take_image(const dds::Reader<msg::CameraImage>& reader, const dds::Writer<Image>& writer,
+                        const char* frame) {
+  take_fit(reader, [&](const msg::CameraImage& image) { writer.write(translator_.image(image, frame)); });
+}
+
+void Bridge::pass_images() {
   take_fit(camera_image_, [this](const msg::CameraImage& image) {
     if (!last_info_) return;  // ROS pairs images with infos of the same stamp; there is no info for this image yet
     const Image out = translator_.image(image);
@@ -108,25 +171,31 @@ void Bridge::pass_out() {
     info.header.stamp = out.header.stamp;
     camera_info_out_.write(info);
   });
+  take_image(percept_image_, percept_image_out_, "camera_optical");
+  take_image(overview_image_, overview_image_out_, "overview");
 }
 
-void Bridge::pass_velocity(SteadyClock::time_point now) {
-  const double now_s = std::chrono::duration<double>(now.time_since_epoch()).count();
-  velocity_.take([&](const Twist& twist) { pilot_.command(drive_of(twist, options_.drive), now_s); });
-  client_.poll();
-  if (const msg::RequestAnswer* answer = client_.answer(number_)) {
-    number_ = 0;
-    pilot_.answered(answer->granted);
-    if (answer->granted) refusal_.clear();
-    else if (refusal_ != answer->reason)
-      std::fprintf(stderr, "ros_bridge: cmd_vel is refused: %s\n", (refusal_ = answer->reason).c_str());
-  }
-  if (client_.authority()) pilot_.authority(client_.holds_authority(), client_.authority()->emergency_stop, now_s);
-  if (const auto request = pilot_.next(client_.connected(), velocity_.writers() > 0, now_s)) {
-    if (request->kind != msg::kRequestMotion) number_ = client_.ask(request->kind);
-    else if (request->drive == Drive{}) number_ = client_.move(msg::kMotionStand);
-    else number_ = client_.move(msg::kMotionDrive, request->drive.frequency_hz, request->drive.curvature_1_m);
-  }
+void Bridge::pass_surroundings() {
+  take_fit(map_, [this](const msg::FieldMap& map) {
+    map_markers_out_.write(drawing_.map(map));
+    line_out_.write(drawing_.line(map));
+  });
+  take_fit(line_percept_,
+           [this](const msg::LinePercept& line) { line_markers_out_.write(drawing_.line_in_view(line)); });
+  take_fit(object_percepts_, [this](const msg::ObjectPercepts& objects) {
+    object_markers_out_.write(drawing_.objects_in_view(objects));
+  });
+  take_fit(task_command_, [this](const msg::TaskCommand& command) { plan_out_.write(drawing_.plan(command)); });
+}
+
+void Bridge::pass_health(SteadyClock::time_point now) {
+  run_state_.take([this](const msg::RunState& state) { health_.take(state); });
+  component_status_.take([this](const msg::ComponentStatus& status) { health_.take(status); });
+  if (now - health_told_ < 1s) return;
+  health_told_ = now;
+  counts_.refused = desk_.refused();
+  counts_.unanswered = desk_.waiting().size();
+  diagnostics_out_.write(health_.report(counts_));
 }
 
 bool Bridge::leave() { return !client_.holds_authority() || client_.release(std::chrono::seconds(2)); }

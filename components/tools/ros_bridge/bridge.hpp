@@ -1,4 +1,4 @@
-// The bridge's two sides: an observer on the robot's topics, and ROS 2's topics with ROS 2's names and types.
+// The bridge's two sides: an observer on the robot's topics, and a node of ROS 2 with ROS 2's names and types.
 #pragma once
 
 #include <chrono>
@@ -7,72 +7,121 @@
 #include <string>
 
 #include "client/request_client.hpp"
-#include "cyclone/domain.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
 #include "cyclone/endpoint.hpp"
+#include "cyclone/entity.hpp"
 #include "cyclone/wait_set.hpp"
-#include "ros_bridge/ros_descriptors.hpp"
+#include "ros_bridge/ros_diagnostics.hpp"
+#include "ros_bridge/ros_drawing.hpp"
+#include "ros_bridge/ros_node.hpp"
 #include "ros_bridge/ros_translator.hpp"
+#include "ros_bridge/task_desk.hpp"
 #include "ros_bridge/velocity_pilot.hpp"
 
 namespace constrictor::ros {
 
 struct BridgeOptions {
-  std::uint32_t domain = 0;         ///< of the run
+  RunNote run;                      ///< which run
   std::uint32_t ros_domain = 0;     ///< ROS_DOMAIN_ID of the ROS 2 side
   bool ros_localhost_only = false;  ///< as ROS_LOCALHOST_ONLY=1: no message leaves this host
+  Release release = Release::kIron;
   std::uint16_t robot_id = 1;
-  std::uint8_t level = msg::kAuthorityOperator;  ///< level of the requests for velocities
+  std::uint8_t level = msg::kAuthorityOperator;  ///< level of the requests for velocities and tasks
   double hold_after_s = 0.5;  ///< [s] of wall time without a velocity command after which the robot stands still
   DriveConfig drive;
 };
 
 /// Reads as an observer, outside the barrier: no member waits for the bridge, and none reads anything from it. It turns
-/// velocities on rt/cmd_vel into requests to `input`, as every client does.
+/// velocities, tasks and emergency stops of ROS programs into requests to `input`, as every client does.
 class Bridge {
  public:
   using SteadyClock = std::chrono::steady_clock;
   Bridge(const BridgeOptions& options, RobotModel robot);
   /// Waits for messages, at most 20 ms, and forwards those that have arrived.
   void serve(SteadyClock::time_point now);
-  /// True once the run has ended, or its processes are gone.
-  [[nodiscard]] bool over() const;
+  /// Why the bridge must end, as text for people; empty while the run goes on.
+  [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
   /// Releases authority if the bridge has it, and waits for the answer. False: no answer within 2 s; authority then
   /// ends half a second after this process.
   bool leave();
+  /// The node that ROS 2 sees.
+  [[nodiscard]] const Node& node() const { return node_; }
 
  private:
-  void pass_out();
+  void pass_robot();
+  void pass_images();
+  void pass_surroundings();
+  void pass_tasks();
+  void pass_health(SteadyClock::time_point now);
   /// Calls `use` for each message that ROS 2 can represent; drops the others and logs the first of them.
   template <class T, class Use>
   void take_fit(const dds::Reader<T>& reader, Use&& use);
-  void pass_velocity(SteadyClock::time_point now);
+  void take_image(const dds::Reader<msg::CameraImage>& reader, const dds::Writer<Image>& writer, const char* frame);
+  void take_stops(SteadyClock::time_point now);
+  void take_velocities(SteadyClock::time_point now);
+  void take_task_lines(SteadyClock::time_point now);
+  void say(const dds::Writer<std_msgs_msg_dds__String_>& writer, const std::string& text);
+
+  using Text = std_msgs_msg_dds__String_;
+  using Empty = std_msgs_msg_dds__Empty_;
 
   BridgeOptions options_;
   Translator translator_;
-  RequestClient client_;                     ///< on the run's domain
-  std::optional<dds::Domain> other_domain_;  ///< empty: ROS 2 is on the run's own domain
+  Drawing drawing_;
+  Health health_;
+  RequestClient client_;  ///< on the run's domain
+  RunMonitor monitor_;
+  dds::Entity ros_domain_;  ///< empty: ROS 2 is on the run's own domain, or Cyclone's default configures its domain
+  dds::Entity ros_participant_;
+  Node node_;
+
+  // The robot's side.
   dds::Reader<msg::Tick> tick_;
+  dds::Reader<msg::RunState> run_state_;
+  dds::Reader<msg::ComponentStatus> component_status_;
   dds::Reader<msg::JointState> joints_;
   dds::Reader<msg::ImuState> imu_;
   dds::Reader<msg::RobotPose> pose_;
   dds::Reader<msg::CameraInfo> camera_info_;
-  dds::Reader<msg::CameraImage> camera_image_;
+  dds::Reader<msg::CameraImage> camera_image_, percept_image_, overview_image_;
+  dds::Reader<msg::LinePercept> line_percept_;
+  dds::Reader<msg::ObjectPercepts> object_percepts_;
+  dds::Reader<msg::FieldMap> map_;
+  dds::Reader<msg::TaskCommand> task_command_;
+  dds::Reader<msg::TaskStatus> task_status_;
+  dds::Reader<msg::TaskEvent> task_event_;
+
+  // ROS 2's side.
   dds::Writer<Clock> clock_out_;
   dds::Writer<JointState> joints_out_;
   dds::Writer<Imu> imu_out_;
   dds::Writer<Odometry> odom_out_;
   dds::Writer<TFMessage> tf_out_, tf_static_out_;
-  dds::Writer<Image> image_out_;
+  dds::Writer<Image> image_out_, percept_image_out_, overview_image_out_;
   dds::Writer<CameraInfo> camera_info_out_;
-  dds::Reader<Twist> velocity_;
+  dds::Writer<MarkerArray> map_markers_out_, line_markers_out_, object_markers_out_;
+  dds::Writer<Path> line_out_, plan_out_;
+  dds::Writer<DiagnosticArray> diagnostics_out_;
+  dds::Writer<std_msgs_msg_dds__Bool_> stopped_out_;
+  dds::Writer<Text> task_answer_out_, task_status_out_, task_event_out_;
+  Subscription<Twist> velocity_;
+  Subscription<Empty> stop_, best_effort_stop_, clear_stop_;
+  Subscription<Text> task_;
+
   dds::WaitSet wait_set_;
   msg::JointState last_joints_{};
   msg::ImuState last_imu_{};
   std::optional<msg::CameraInfo> last_info_;
-  std::uint64_t number_ = 0;  ///< of the request that is not answered yet; 0: none
+  std::string last_task_status_;
+  std::optional<bool> stopped_;  ///< as ROS 2 was told
+  std::uint64_t number_ = 0;     ///< of the pilot's request that is not answered yet; 0: none
+  std::uint64_t stop_number_ = 0, clear_number_ = 0;
+  SteadyClock::time_point stop_asked_{}, health_told_{};
   VelocityPilot pilot_;
+  TaskDesk desk_;
+  BridgeCounts counts_;
   std::string refusal_;  ///< the last reason that was printed
-  bool met_ = false, over_ = false, dropped_ = false;
 };
 
 }  // namespace constrictor::ros

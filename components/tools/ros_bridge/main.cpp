@@ -1,47 +1,89 @@
 // ros_bridge: shows the robot to ROS 2 tools on ROS 2's topics.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
+#include "client/run_registry.hpp"
 #include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
 #include "ros_bridge/bridge.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version_text.hpp"
 
 namespace {
+
+using namespace constrictor;
+
 volatile std::sig_atomic_t g_stop = 0;
+
+void print_bridge(const ros::BridgeOptions& options, const ros::Node& node) {
+  const RunNote& run = options.run;
+  fmt::print("run {} ({}, seed {}) is node /{} in ROS_DOMAIN_ID {}{}; Ctrl-C ends the bridge, not the run\n",
+             run.domain, run.scenario, run.seed, node.name(), options.ros_domain,
+             options.ros_localhost_only ? ", on this host only" : "");
+  for (const bool written : {true, false}) {
+    fmt::print("{}:\n", written ? "written" : "read");
+    for (const auto& topic : node.topics()) {
+      if (topic.written == written) fmt::print("  {:<26} {}\n", topic.name, topic.type);
+    }
+  }
+  std::fflush(stdout);
 }
 
+int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, const std::string& robot) {
+  options.run = join_run(domain);
+  ros::Bridge bridge(options, load_robot(robot));
+  print_bridge(options, bridge.node());
+  while (!g_stop && bridge.over().empty()) bridge.serve(ros::Bridge::SteadyClock::now());
+  if (!bridge.over().empty()) fmt::print("{}\n", bridge.over());
+  else if (!bridge.leave())
+    std::fprintf(stderr, "ros_bridge: no answer from `input`; authority ends with this process\n");
+  return exit_status::kOk;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace constrictor;
   ros::BridgeOptions options;
+  std::optional<std::uint32_t> domain;
   std::string robot = data_path("components/lib/robot/mamba.yaml");
   std::string level = "operator";
+  std::string distribution = "jazzy";
   const char* localhost = std::getenv("ROS_LOCALHOST_ONLY");
   const char* range = std::getenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
   options.ros_localhost_only =
       (localhost && std::string(localhost) == "1") || (range && std::string(range) == "LOCALHOST");
 
-  CLI::App app{"Shows the robot to ROS 2 (rt/clock, joint_states, tf, imu, odom, camera) and takes rt/cmd_vel."};
+  CLI::App app{
+      "Shows a run to ROS 2 (joints, tf, odometry, images, map, diagnostics), and takes velocities, tasks and\n"
+      "emergency stops from ROS 2. Without options it bridges the only run on this host to ROS_DOMAIN_ID."};
   app.set_version_flag("--version", [] { return version_text("ros_bridge"); });
-  app.add_option("--domain", options.domain, "DDS domain of the run, as `constrictor run` prints it")
+  app.add_option("--run,--domain", domain,
+                 "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")
       ->envname("CONSTRICTOR_DOMAIN")
-      ->check(CLI::Range(0, 229))
-      ->required();
+      ->check(CLI::Range(0, 229));
   app.add_option("--ros-domain", options.ros_domain, "ROS 2's domain")
       ->envname("ROS_DOMAIN_ID")
       ->check(CLI::Range(0, 229))
+      ->capture_default_str();
+  app.add_option("--ros-distro", distribution,
+                 "release of ROS 2; ids of nodes are longer in humble than in all later releases")
+      ->envname("ROS_DISTRO")
+      ->check(CLI::IsMember({"humble", "iron", "jazzy", "kilted", "lyrical", "rolling"}))
       ->capture_default_str();
   app.add_flag("--localhost", options.ros_localhost_only,
                "use ROS 2's domain on this host only; the same as ROS_LOCALHOST_ONLY=1 or "
                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
   app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--level", level, "level of the requests for rt/cmd_vel")
+  app.add_option("--level", level, "level of the requests for velocities and tasks")
       ->check(CLI::IsMember({"operator", "external"}))
       ->capture_default_str();
-  app.add_option("--hold-after", options.hold_after_s, "[s] without rt/cmd_vel until the robot stands still")
+  app.add_option("--hold-after", options.hold_after_s, "[s] without /cmd_vel until the robot stands still")
       ->check(CLI::Range(0.05, 60.0))
       ->capture_default_str();
   try {
@@ -50,16 +92,16 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
   }
   options.level = level == "operator" ? msg::kAuthorityOperator : msg::kAuthorityExternal;
+  options.release = distribution == "humble" ? ros::Release::kHumble : ros::Release::kIron;
   struct sigaction action {};
   action.sa_handler = [](int) { g_stop = 1; };
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
   try {
-    ros::Bridge bridge(options, load_robot(robot));
-    while (!g_stop && !bridge.over()) bridge.serve(ros::Bridge::SteadyClock::now());
-    if (!bridge.over() && !bridge.leave())
-      std::fprintf(stderr, "ros_bridge: no answer from `input`; authority ends with this process\n");
-    return exit_status::kOk;
+    return bridge_run(domain, options, robot);
+  } catch (const ConfigurationError& error) {
+    std::fprintf(stderr, "ros_bridge: configuration: %s\n", error.what());
+    return exit_status::kConfiguration;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ros_bridge: %s\n", error.what());
     return exit_status::kSoftware;

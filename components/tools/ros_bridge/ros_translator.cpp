@@ -3,31 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "constrictor/image.hpp"
-#include "constrictor/reflect.hpp"
 #include "robot/kinematics.hpp"
+#include "ros_bridge/ros_values.hpp"
 
 namespace constrictor::ros {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-// The message structs have char* members, but no code writes through them.
-char* text(const char* literal) { return const_cast<char*>(literal); }
-char* text(const std::string& name) { return const_cast<char*>(name.c_str()); }
-
-builtin_interfaces_msg_dds__Time_ time_of(std::int64_t time_ns) {
-  return {static_cast<std::int32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
-}
-
-std_msgs_msg_dds__Header_ header_of(std::int64_t time_ns, char* frame) { return {time_of(time_ns), frame}; }
-
-dds_sequence_double borrow(const double* values, std::size_t count) {
+dds_sequence_double values_of(const double* values, std::size_t count) {
   dds_sequence_double sequence{};
   sequence._length = sequence._maximum = static_cast<std::uint32_t>(count);
   sequence._buffer = const_cast<double*>(values);
@@ -36,9 +22,6 @@ dds_sequence_double borrow(const double* values, std::size_t count) {
 
 geometry_msgs_msg_dds__Vector3_ vector_of(const msg::Vector3& v) { return {v.x, v.y, v.z}; }
 geometry_msgs_msg_dds__Quaternion_ rotation_of(const msg::Quaternion& q) { return {q.x, q.y, q.z, q.w}; }
-geometry_msgs_msg_dds__Quaternion_ yaw_rotation(double yaw_rad) {
-  return {0, 0, std::sin(0.5 * yaw_rad), std::cos(0.5 * yaw_rad)};
-}
 
 std::string numbered(const char* prefix, std::size_t number) {
   char name[32];
@@ -46,21 +29,8 @@ std::string numbered(const char* prefix, std::size_t number) {
   return name;
 }
 
-bool sayable(std::int64_t time_ns) {
-  return time_ns >= 0 && time_ns / kSecond_ns <= std::numeric_limits<std::int32_t>::max();
-}
-
 bool is_rotation(const msg::Quaternion& q) {
   return std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 0.01;
-}
-
-/// Why no message with this header can be represented; empty: it can.
-template <class T>
-std::string broken(const T& message) {
-  if (auto violation = validate(message)) return *std::move(violation);
-  return sayable(message.header.time_ns)
-             ? ""
-             : "header.time_ns: found " + std::to_string(message.header.time_ns) + ", accepted a time of ROS";
 }
 
 }  // namespace
@@ -88,11 +58,8 @@ std::string unfit(const msg::CameraInfo& info) {
 }
 
 std::string unfit(const msg::CameraImage& image) {
-  std::string reason = broken(image);
-  if (reason.empty()) reason = image_violation(image);
-  if (!reason.empty()) return reason;
-  if (image.exposure_tick >= 0 && image.exposure_tick <= image.header.tick) return "";
-  return "exposure_tick: found " + std::to_string(image.exposure_tick) + ", accepted 0 to the tick of the message";
+  std::string reason = broken_exposure(image);
+  return reason.empty() ? image_violation(image) : reason;
 }
 
 std::string joint_name(std::size_t joint) { return numbered("joint_", joint); }
@@ -112,9 +79,9 @@ JointState Translator::joint_state(const msg::JointState& joints) {
   message.header = header_of(joints.header.time_ns, text(""));
   message.name._length = message.name._maximum = static_cast<std::uint32_t>(count);
   message.name._buffer = joint_name_pointers_.data();
-  message.position = borrow(joints.position_rad, count);
-  message.velocity = borrow(joints.velocity_rad_s, count);
-  message.effort = borrow(joints.torque_nm, count);
+  message.position = values_of(joints.position_rad, count);
+  message.velocity = values_of(joints.velocity_rad_s, count);
+  message.effort = values_of(joints.torque_nm, count);
   return message;
 }
 
@@ -127,17 +94,15 @@ Imu Translator::imu(const msg::ImuState& imu) {
   return message;
 }
 
-Image Translator::image(const msg::CameraImage& image) {
+Image Translator::image(const msg::CameraImage& image, const char* frame) {
   Image message{};
-  // The time of the exposure: the message itself comes later.
-  const std::int64_t tick_ns = image.header.tick > 0 ? image.header.time_ns / image.header.tick : 0;
-  message.header = header_of(tick_ns * image.exposure_tick, text("camera_optical"));
+  message.header = header_of(exposure_ns(image.header, image.exposure_tick), text(frame));
   message.height = image.height;
   message.width = image.width;
   message.encoding = text("rgb8");
   message.step = 3u * image.width;
-  message.data = image.data;
-  message.data._release = false;
+  message.data._length = message.data._maximum = image.data._length;
+  message.data._buffer = image.data._buffer;
   return message;
 }
 
@@ -148,7 +113,7 @@ CameraInfo Translator::camera_info(const msg::CameraInfo& info) {
   message.height = info.height;
   message.width = info.width;
   message.distortion_model = text("plumb_bob");
-  message.d = borrow(kNoDistortion, 5);
+  message.d = values_of(kNoDistortion, 5);
   // ROS counts pixel centres from 0, CameraInfo from 0.5.
   const double cx = info.cx - 0.5;
   const double cy = info.cy - 0.5;
@@ -181,8 +146,7 @@ Odometry Translator::odometry(const msg::RobotPose& pose, const msg::ImuState& i
 
 TFMessage Translator::tf_message() {
   TFMessage message{};
-  message.transforms._length = message.transforms._maximum = static_cast<std::uint32_t>(transforms_.size());
-  message.transforms._buffer = transforms_.data();
+  borrow(message.transforms, transforms_);
   return message;
 }
 

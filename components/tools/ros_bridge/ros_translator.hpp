@@ -53,8 +53,8 @@ class Translator {
   /// Effort is the servo's torque [Nm].
   [[nodiscard]] JointState joint_state(const msg::JointState& joints);
   [[nodiscard]] Imu imu(const msg::ImuState& imu);
-  /// rgb8.
-  [[nodiscard]] Image image(const msg::CameraImage& image);
+  /// rgb8, stamped with the time of the exposure.
+  [[nodiscard]] Image image(const msg::CameraImage& image, const char* frame = "camera_optical");
   /// plumb_bob without distortion.
   [[nodiscard]] CameraInfo camera_info(const msg::CameraInfo& info);
   /// Pose in odom, velocity in base_link; the turning rate is the newest of `imu`. Components that motion in the plane

@@ -7,6 +7,7 @@ constexpr double kAfterSilence_s = 0.5;
 }  // namespace
 
 void VelocityPilot::command(const Drive& drive, double now_s) {
+  if (task_runs_ && !wanted_ && drive == Drive{}) return;
   commanded_s_ = now_s;
   if (drive == Drive{}) blocked_ = false;
   if (!blocked_) wanted_ = drive;
@@ -22,6 +23,14 @@ void VelocityPilot::authority(bool holds, bool emergency_stop, double now_s) {
     asked_s_ = now_s;
   }
   holds_ = holds;
+}
+
+void VelocityPilot::task(bool runs) {
+  if (runs && !task_runs_) {
+    wanted_.reset();
+    last_ = Last::kNothing;
+  }
+  task_runs_ = runs;
 }
 
 void VelocityPilot::answered(bool granted) {

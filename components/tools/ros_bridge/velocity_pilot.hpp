@@ -24,6 +24,10 @@ class VelocityPilot {
   /// To be called with the newest authority: whether the bridge has it, and whether an emergency stop is latched. After
   /// a stop there is no request until the velocity was zero or absent once, so that clearing the stop starts no motion.
   void authority(bool holds, bool emergency_stop, double now_s);
+  /// To be called with whether a task that a ROS program requested runs. When one begins, the pilot forgets the
+  /// velocity before it: the newest command counts. While it runs, a velocity of zero is ignored unless another
+  /// velocity came before, because many ROS programs write zeros all the time.
+  void task(bool runs);
   /// To be called when the last request is answered.
   void answered(bool granted);
   /// The request to send now; empty: none. `connected`: `input` reads requests. `steered`: some process writes
@@ -39,6 +43,7 @@ class VelocityPilot {
   double commanded_s_ = 0.0;  ///< time of the last velocity
   bool holds_ = false;
   bool blocked_ = false;  ///< by an emergency stop
+  bool task_runs_ = false;
   Last last_ = Last::kNothing;
   Ask asked_;
   double asked_s_ = 0.0;

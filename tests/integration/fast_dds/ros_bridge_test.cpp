@@ -5,7 +5,6 @@
 #include <atomic>
 #include <map>
 #include <set>
-#include <sstream>
 #include <thread>
 
 #include "client/request_writer.hpp"
@@ -13,31 +12,20 @@
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "cyclone/wait_set.hpp"
+#include "foreign_clock.h"
+#include "probe_lines.hpp"
 #include "running.hpp"
 #include "support/eventually.hpp"
+
+template <>
+const dds_topic_descriptor_t& constrictor::dds::descriptor<rosgraph_msgs_msg_dds__Clock_>() {
+  return rosgraph_msgs_msg_dds__Clock__desc;
+}
 
 namespace constrictor::testing {
 namespace {
 
 using namespace std::chrono_literals;
-
-struct Line {
-  std::string kind;
-  std::vector<std::string> words;
-};
-
-std::vector<Line> lines_of(const std::string& output) {
-  std::vector<Line> lines;
-  std::istringstream stream(output);
-  for (std::string text; std::getline(stream, text);) {
-    std::istringstream words(text);
-    Line line;
-    words >> line.kind;
-    for (std::string word; words >> word;) line.words.push_back(word);
-    lines.push_back(std::move(line));
-  }
-  return lines;
-}
 
 TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) {
   Process launcher = run("bridged", "short", {"--max-sim-time", "8", "--pace", "2x"});
@@ -50,7 +38,10 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
 
   // The robot's own messages, for comparison.
   std::map<std::int64_t, std::vector<double>> said;
+  int foreign_clocks = 0;
   {
+    const dds::Domain there(100 + domain);
+    const auto clocks = dds::Reader<rosgraph_msgs_msg_dds__Clock_>::observer(there.participant(), "rt/clock", 8);
     const dds::Domain here(domain);
     const auto joints = dds::Reader<msg::JointState>::member(here.participant(), "joint_state");
     const auto ticks = dds::Reader<msg::Tick>::member(here.participant(), "barrier/tick");
@@ -61,6 +52,7 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
     EXPECT_TRUE(eventually(
         [&] {
           wait_set.wait(200ms);
+          clocks.take([&](const auto&) { ++foreign_clocks; });
           joints.take([&](const msg::JointState& m) {
             said[m.header.time_ns].assign(m.position_rad, m.position_rad + m.joint_count);
           });
@@ -73,10 +65,15 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
   EXPECT_EQ(bridge.wait(15s), 0) << bridge.errors();  // it ends with the run
   EXPECT_EQ(probe.wait(15s), 0) << probe.errors();
 
+  EXPECT_GT(foreign_clocks, 5) << "a reader with type information of its own must match";
+  expect_node(lines_of(probe.output()), bridge.output());
+
   std::map<std::string, int> count;
+  std::set<std::string> healthy, drawn;
+  std::size_t line_points = 0;
   int compared = 0;
   long long last_ns = -1;
-  std::set<std::string> image_stamps, info_stamps;
+  std::set<std::string> image_stamps, percept_stamps, info_stamps;
   for (const Line& line : lines_of(probe.output())) {
     ++count[line.kind];
     if (line.kind == "clock") {
@@ -106,6 +103,18 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
     } else if (line.kind == "camera_info") {
       EXPECT_EQ(line.words.at(2), "plumb_bob");
       info_stamps.insert(line.words.at(0));
+    } else if (line.kind == "percept_image") {
+      EXPECT_EQ(line.words.at(1), "320x240");
+      percept_stamps.insert(line.words.at(0));
+    } else if (line.kind == "diagnostics") {
+      healthy.insert(line.words.at(0) + " " + line.words.at(2));
+    } else if (line.kind.rfind("markers/", 0) == 0) {
+      EXPECT_EQ(line.words.at(1), ":0:0:0") << "it begins by deleting the old markers";
+      for (std::size_t i = 2; i < line.words.size(); ++i)
+        drawn.insert(line.words[i].substr(0, line.words[i].find(':')));
+    } else if (line.kind == "line") {
+      EXPECT_EQ(line.words.at(0), "odom");
+      line_points = std::max<std::size_t>(line_points, std::stoul(line.words.at(1)));
     } else if (line.kind == "imu") {
       EXPECT_EQ(line.words.at(1), "base_link");
       EXPECT_NEAR(std::stod(line.words.at(2)), 9.81, 8.0);  // at rest +g upwards; contacts shake it
@@ -113,6 +122,19 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
   }
   for (const char* kind : {"clock", "joint_states", "imu", "odom", "tf"}) EXPECT_GT(count[kind], 50) << kind;
   EXPECT_GE(count["tf_static"], 1);
+  // Both kinds are stamped with the exposure, although the processed image comes later.
+  EXPECT_GT(std::count_if(percept_stamps.begin(), percept_stamps.end(),
+                          [&](const auto& stamp) { return image_stamps.contains(stamp); }),
+            5);
+  EXPECT_GT(count["task/status"], 1);
+  EXPECT_GT(count["task/event"], 1);
+  EXPECT_GT(line_points, 5u);
+  for (const char* name : {"line", "objects", "numbers", "line_in_view", "objects_in_view"})
+    EXPECT_TRUE(drawn.contains(name)) << name;
+  for (const char* name : {"physics", "camera", "perception", "guidance", "navigation", "control", "input", "planner",
+                           "report", "run", "ros_bridge"}) {
+    EXPECT_TRUE(healthy.contains(std::string("0 ") + name) || healthy.contains(std::string("1 ") + name)) << name;
+  }
   EXPECT_GT(count["image"], 5);
   EXPECT_GT(compared, 50);
   for (const auto& stamp : image_stamps)
@@ -178,6 +200,50 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   ASSERT_EQ(probe.wait(20s), 0);
   EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s))
       << "level " << int{authority.level};
+
+  // The same run obeys tasks of ROS programs, refuses what is no task, and stops.
+  const auto ros = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {program("ros_probe"), "--domain", ros_domain, "--for", "60"});
+    return Process(std::move(more));
+  };
+  {
+    Process wrong = ros({"--task", "dance"});
+    EXPECT_TRUE(wrong.wait_for(R"("request":"dance","state":"refused")", 30s)) << wrong.output();
+    EXPECT_TRUE(wrong.wait_for("diagnostics 1 constrictor: ros_bridge", 30s)) << "the refusal is counted";
+    wrong.signal(SIGTERM);
+    EXPECT_EQ(wrong.wait(20s), 0);
+  }
+  {
+    Process right = ros({"--task", "rotate direction=left timeout_s=1"});
+    EXPECT_TRUE(until([&] { return of_bridge(authority.source); }, 60s));
+    EXPECT_TRUE(right.wait_for(R"(timeout_s=1","state":"succeeded")", 60s)) << right.output();
+    right.signal(SIGTERM);
+    EXPECT_EQ(right.wait(20s), 0);
+  }
+  EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s))
+      << "with the end of the task and of its writer, the planner goes on";
+  Process stop = ros({"--stop"});
+  EXPECT_TRUE(until([&] { return authority.emergency_stop; }, 30s));
+  EXPECT_TRUE(stop.wait_for("stopped true", 30s)) << stop.output();
+  launcher.signal(SIGTERM);
+  EXPECT_TRUE(launcher.wait(15s));
+}
+
+TEST_F(RosBridge, HumbleSeesTheNodeByItsLongerIds) {
+  Process launcher = run("humble", "line", {"--pace", "1x", "--in-process"});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_GT(domain, 0u) << launcher.output();
+  const std::string ros_domain = std::to_string(100 + domain);
+  Process bridge({program("ros_bridge"), "--run", std::to_string(domain), "--ros-domain", ros_domain},
+                 {{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_DISTRO", "humble"}});
+  Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "60", "--humble"});
+  EXPECT_TRUE(probe.wait_for(" / ros_bridge\n", 60s)) << probe.output() << bridge.errors();
+  for (const Line& line : lines_of(probe.output())) {
+    if (line.kind != "node") continue;
+    EXPECT_EQ(line.words.at(0).substr(32), std::string(16, '0')) << "16 bytes, then zeros";
+  }
+  bridge.signal(SIGINT);
+  EXPECT_EQ(bridge.wait(15s), 0) << bridge.errors();
   launcher.signal(SIGTERM);
   EXPECT_TRUE(launcher.wait(15s));
 }

@@ -1,6 +1,7 @@
 // ros_probe: acts as a ROS 2 node on another vendor's DDS with ROS's topic and type names. It prints a line for each
-// sample; with --drive it writes velocities, as teleop_twist_keyboard does.
-//   ros_probe --domain N --for SECONDS [--drive SPEED,TURN]
+// sample, and for each reader and writer that it discovers. With --drive it writes velocities, as teleop_twist_keyboard
+// does; with --task and --stop it requests a task or an emergency stop once the bridge reads them.
+//   ros_probe --domain N --for SECONDS [--drive SPEED,TURN] [--task LINE] [--stop] [--humble]
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -13,6 +14,8 @@
 
 namespace {
 
+namespace rtps = eprosima::fastrtps::rtps;
+
 volatile std::sig_atomic_t g_stop = 0;
 
 template <class Stamp>
@@ -20,20 +23,95 @@ long long ns(const Stamp& stamp) {
   return stamp.sec() * 1'000'000'000LL + stamp.nanosec();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  unsigned domain = 0;
-  double seconds = 5, speed_m_s = 0, turn_rad_s = 0;
-  bool drive = false;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (!std::strcmp(argv[i], "--domain")) domain = static_cast<unsigned>(std::atoi(argv[i + 1]));
-    if (!std::strcmp(argv[i], "--for")) seconds = std::atof(argv[i + 1]);
-    if (!std::strcmp(argv[i], "--drive")) drive = std::sscanf(argv[i + 1], "%lf,%lf", &speed_m_s, &turn_rad_s) == 2;
+std::string hexadecimal(const std::uint8_t* bytes, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", bytes[i]);
+    text += digits;
   }
+  return text;
+}
+
+std::string hexadecimal(const rtps::GUID_t& guid) {
+  return hexadecimal(guid.guidPrefix.value, 12) + hexadecimal(guid.entityId.value, 4);
+}
+
+/// Prints "participant GUID USERDATA", "writer TOPIC GUID USERDATA" and "reader ..." of what Fast DDS discovers.
+class Discovery : public example::fdds::DomainParticipantListener {
+ public:
+  void on_participant_discovery(example::fdds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) override {
+    if (found.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+    const auto& data = found.info.m_userData;
+    std::printf("participant %s %s\n", hexadecimal(found.info.m_guid).c_str(),
+                std::string(data.begin(), data.end()).c_str());
+  }
+  void on_publisher_discovery(example::fdds::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) override {
+    if (found.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) print("writer", found.info);
+  }
+  void on_subscriber_discovery(example::fdds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& found) override {
+    if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) print("reader", found.info);
+  }
+
+ private:
+  template <class Info>
+  static void print(const char* kind, const Info& info) {
+    const auto& data = info.m_qos.m_userData;
+    std::printf("%s %s %s %s\n", kind, info.topicName().c_str(), hexadecimal(info.guid()).c_str(),
+                std::string(data.begin(), data.end()).c_str());
+  }
+};
+
+/// Prints "node PARTICIPANT NAMESPACE NAME", then a line for each of its entities, as `ros2 node info` would.
+template <class Graph>
+void print_graph(const Graph& graph) {
+  const auto gid = [](const auto& id) { return hexadecimal(id.data().data(), id.data().size()); };
+  for (const auto& node : graph.node_entities_info_seq()) {
+    std::printf("node %s %s %s\n", gid(graph.gid()).c_str(), node.node_namespace().c_str(), node.node_name().c_str());
+    for (const auto& id : node.writer_gid_seq()) std::printf("node_writer %s\n", gid(id).c_str());
+    for (const auto& id : node.reader_gid_seq()) std::printf("node_reader %s\n", gid(id).c_str());
+  }
+}
+
+/// Humble's message has the name of the later ones, which generated code cannot express.
+class HumbleGraph : public rmw_dds_common::msg::dds_::HumbleParticipantEntitiesInfo_PubSubType {
+ public:
+  HumbleGraph() { setName("rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"); }
+};
+
+void read_surroundings(example::Participant& node) {
+  const auto print_markers = [](const char* name) {
+    return [name](const visualization_msgs::msg::dds_::MarkerArray_& m) {
+      std::printf("%s %zu", name, m.markers().size());
+      for (const auto& marker : m.markers())
+        std::printf(" %s:%d:%d:%zu", marker.ns().c_str(), marker.id(), marker.type(), marker.points().size());
+      std::printf("\n");
+    };
+  };
+  using Markers = visualization_msgs::msg::dds_::MarkerArray_PubSubType;
+  node.read<Markers>("rt/markers/map", true, 1, print_markers("markers/map"));
+  node.read<Markers>("rt/markers/line_in_view", true, 1, print_markers("markers/line_in_view"));
+  node.read<Markers>("rt/markers/objects_in_view", true, 1, print_markers("markers/objects_in_view"));
+  using Path = nav_msgs::msg::dds_::Path_PubSubType;
+  node.read<Path>("rt/line", true, 1,
+                  [](const auto& m) { std::printf("line %s %zu\n", m.header().frame_id().c_str(), m.poses().size()); });
+  node.read<Path>("rt/plan", true, 1,
+                  [](const auto& m) { std::printf("plan %s %zu\n", m.header().frame_id().c_str(), m.poses().size()); });
+  node.read<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>("rt/diagnostics", true, 1, [](const auto& m) {
+    for (const auto& status : m.status())
+      std::printf("diagnostics %d %s\n", int{status.level()}, status.name().c_str());
+  });
+  using Text = std_msgs::msg::dds_::String_PubSubType;
+  for (const char* name : {"task/answer", "task/status", "task/event"})
+    node.read<Text>(std::string("rt/") + name, true, 64,
+                    [name](const auto& m) { std::printf("%s %s\n", name, m.data().c_str()); });
+  node.read<std_msgs::msg::dds_::Bool_PubSubType>("rt/emergency_stop/state", true, 1, [](const auto& m) {
+    std::printf("stopped %s\n", m.data() ? "true" : "false");
+  });
+}
+
+void read_robot(example::Participant& node) {
   namespace sensor = sensor_msgs::msg::dds_;
-  example::Participant node(domain, "ros_probe");
   node.read<rosgraph_msgs::msg::dds_::Clock_PubSubType>(
       "rt/clock", false, 10, [](const auto& m) { std::printf("clock %lld\n", ns(m.clock())); });
   node.read<sensor::JointState_PubSubType>("rt/joint_states", false, 10, [](const auto& m) {
@@ -59,23 +137,69 @@ int main(int argc, char** argv) {
   };
   node.read<tf2_msgs::msg::dds_::TFMessage_PubSubType>("rt/tf", false, 10, print_tf("tf"));
   node.read<tf2_msgs::msg::dds_::TFMessage_PubSubType>("rt/tf_static", true, 10, print_tf("tf_static"));
-  node.read<sensor::Image_PubSubType>("rt/camera/image_raw", true, 2, [](const auto& m) {
-    unsigned long sum = 0;
-    for (const auto byte : m.data()) sum += byte;
-    std::printf("image %lld %ux%u %s %zu %lu\n", ns(m.header().stamp()), m.width(), m.height(), m.encoding().c_str(),
-                m.data().size(), sum);
-  });
+  const auto print_image = [](const char* name) {
+    return [name](const sensor::Image_& m) {
+      unsigned long sum = 0;
+      for (const auto byte : m.data()) sum += byte;
+      std::printf("%s %lld %ux%u %s %zu %lu\n", name, ns(m.header().stamp()), m.width(), m.height(),
+                  m.encoding().c_str(), m.data().size(), sum);
+    };
+  };
+  node.read<sensor::Image_PubSubType>("rt/camera/image_raw", true, 2, print_image("image"));
+  node.read<sensor::Image_PubSubType>("rt/perception/image", true, 2, print_image("percept_image"));
   node.read<sensor::CameraInfo_PubSubType>("rt/camera/camera_info", true, 10, [](const auto& m) {
     std::printf("camera_info %lld %ux%u %s fx=%.6f\n", ns(m.header().stamp()), m.width(), m.height(),
                 m.distortion_model().c_str(), m.k()[0]);
   });
+}
+
+/// Writes `message` once, when `writer` has a reader. Returns false until then.
+template <class Message>
+bool write_once(example::fdds::DataWriter* writer, Message message) {
+  example::fdds::PublicationMatchedStatus matched;
+  writer->get_publication_matched_status(matched);
+  return matched.current_count > 0 && writer->write(&message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  unsigned domain = 0;
+  double seconds = 5, speed_m_s = 0, turn_rad_s = 0;
+  bool drive = false, stop = false, humble = false;
+  std::string task;
+  for (int i = 1; i < argc; ++i) {
+    stop = stop || !std::strcmp(argv[i], "--stop");
+    humble = humble || !std::strcmp(argv[i], "--humble");
+    if (i + 1 == argc) break;
+    if (!std::strcmp(argv[i], "--domain")) domain = static_cast<unsigned>(std::atoi(argv[i + 1]));
+    if (!std::strcmp(argv[i], "--for")) seconds = std::atof(argv[i + 1]);
+    if (!std::strcmp(argv[i], "--task")) task = argv[i + 1];
+    if (!std::strcmp(argv[i], "--drive")) drive = std::sscanf(argv[i + 1], "%lf,%lf", &speed_m_s, &turn_rad_s) == 2;
+  }
+  std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16);  // whole lines, from the threads of Fast DDS as well
+  Discovery discovery;
+  example::Participant node(domain, "ros_probe", "127.0.0.1", &discovery);
+  if (humble) node.read<HumbleGraph>("ros_discovery_info", true, 1, [](const auto& m) { print_graph(m); });
+  else
+    node.read<rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_PubSubType>("ros_discovery_info", true, 1,
+                                                                             [](const auto& m) { print_graph(m); });
+  read_robot(node);
+  read_surroundings(node);
   auto* velocity = drive ? node.write<geometry_msgs::msg::dds_::Twist_PubSubType>("rt/cmd_vel", 1, false) : nullptr;
+  auto* tasks =
+      task.empty() ? nullptr : node.write<std_msgs::msg::dds_::String_PubSubType>("rt/task/request", 1, false);
+  auto* stops = stop ? node.write<std_msgs::msg::dds_::Empty_PubSubType>("rt/emergency_stop", 1, false) : nullptr;
 
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   for (auto next = Clock::now(); !g_stop && Clock::now() < end;) {
     node.wait(0.05);
-    std::fflush(stdout);
+    std_msgs::msg::dds_::String_ line;
+    line.data(task);
+    if (tasks && write_once(tasks, line)) tasks = nullptr;
+    if (stops && write_once(stops, std_msgs::msg::dds_::Empty_())) stops = nullptr;
     if (!velocity || Clock::now() < next) continue;
     next = Clock::now() + std::chrono::milliseconds(100);
     geometry_msgs::msg::dds_::Twist_ twist;

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "cli/task_command.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/usage.hpp"
+#include "client/task_names.hpp"
 
 namespace constrictor::cli {
 namespace {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "cli/task_command.hpp"
-#include "cli/task_names.hpp"
 #include "cli/task_request.hpp"
 #include "cli/teleop_keys.hpp"
 #include "cli/teleop_screen.hpp"
 #include "cli/usage.hpp"
+#include "client/task_names.hpp"
 #include "robot/drive_gait.hpp"
 
 namespace constrictor::cli {

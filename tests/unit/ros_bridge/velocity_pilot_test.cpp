@@ -91,5 +91,17 @@ TEST_F(VelocityPilotTest, RequestsAChangedVelocityAtOnce) {
   EXPECT_EQ(asks(0.1, Drive{0.4, 0.3}), 1);
 }
 
+TEST_F(VelocityPilotTest, ATaskIsNotEndedByTheVelocityBeforeItNorByZeros) {
+  asks(0.2, kAhead);
+  pilot_.task(true);
+  EXPECT_EQ(asks(2.0, std::nullopt), 0) << "the end of the old velocity must not make the robot stand";
+  EXPECT_EQ(asks(2.0, Drive{}), 0) << "many ROS programs write zeros all the time";
+  EXPECT_EQ(asks(0.1, kAhead), 1) << "a new velocity is the newest command";
+  EXPECT_EQ(asks(0.1, Drive{}), 1) << "and its end makes the robot stand";
+  pilot_.task(false);
+  EXPECT_EQ(asks(0.1, std::nullopt, true, /*steered=*/false), 1);
+  EXPECT_EQ(last_.kind, msg::kRequestRelease);
+}
+
 }  // namespace
 }  // namespace constrictor::ros

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/subcommands.hpp"
-#include "cli/task_names.hpp"
+#include "client/task_names.hpp"
 #include "constrictor/topics.hpp"
 #include "runtime/host.hpp"
 

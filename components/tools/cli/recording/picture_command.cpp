@@ -10,8 +10,8 @@
 #include "cli/commands.hpp"
 #include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/task_names.hpp"
 #include "cli/usage.hpp"
+#include "client/task_names.hpp"
 #include "constrictor/json.hpp"
 
 namespace constrictor::cli {

@@ -1,4 +1,4 @@
-#include "cli/task_names.hpp"
+#include "client/task_names.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "constrictor/constants.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 namespace {
 
 std::string plain(std::string text) {
@@ -132,4 +132,4 @@ std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskPar
   return {};
 }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

@@ -8,7 +8,7 @@
 
 #include "constrictor/messages.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 
 const char* task_word(std::uint8_t task);         ///< "follow_line"
 const char* event_name(std::uint8_t event);       ///< "line_lost"
@@ -33,4 +33,4 @@ std::string set_path(msg::Path& path, const std::vector<std::string>& points);
 /// empty: none.
 std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskParameters& parameters, msg::Path& path);
 
-}  // namespace constrictor::cli
+}  // namespace constrictor
