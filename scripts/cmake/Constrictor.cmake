@@ -87,7 +87,7 @@ set(CONSTRICTOR_LAYERS
   "components/lib/dynamixel => components/lib/configuration"
   "components/lib/robot => idl|components/lib/configuration"
   "components/lib/video => components/lib/(configuration|robot)"
-  "components/lib/component => idl|components/lib/configuration"
+  "components/lib/component => idl|components/lib/(configuration|log)"
   "components/lib/plant => idl|components/lib/(component|robot)"
   "components/lib/serial => components/lib/dynamixel"
   "components/lib/barrier => idl|components/lib/(component|configuration)"

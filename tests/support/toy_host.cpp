@@ -17,7 +17,7 @@ using namespace constrictor;
 
 /// Ends the run after a number of ticks, as the component `report` does. The file name of the scenario begins with this
 /// number. The toy prints the last angle of the plant's joint and a hash of all angles; if it has an output directory,
-/// it also writes mission.json.
+/// it also writes mission.json. It logs as many lines in each step as the environment variable TOY_LINES says.
 class ToyReport : public StatefulComponent<toys::Mixer> {
  public:
   ToyReport(Wiring& wiring, const Setup& setup)
@@ -25,8 +25,12 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
         joints_(wiring.latest(topics::kJointState)),
         // 0 if the name is no number: `--topics` and `--check` build the toy with any scenario
         ticks_(std::strtol(setup.scenario_file.filename().c_str(), nullptr, 10)),
-        output_dir_(setup.output_dir) {}
+        output_dir_(setup.output_dir),
+        log_(setup.log) {
+    if (const char* lines = std::getenv("TOY_LINES")) lines_ = std::atoi(lines);
+  }
   void step(const Tick& tick) override {
+    for (int line = 0; line < lines_; ++line) log_.info("line {} of tick {}", line, tick.index);
     state_.mix(joints_->position_rad[0]);
     if (tick.index + 1 < ticks_) return;
     std::printf("result %.17g %016llx\n", joints_->position_rad[0], static_cast<unsigned long long>(state_.value));
@@ -43,6 +47,8 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   Latest<msg::JointState> joints_;
   long ticks_;
   std::filesystem::path output_dir_;
+  Log log_;
+  int lines_ = 0;
 };
 
 /// Steps once per second of simulated time, as the real `overview` does, and writes nothing.

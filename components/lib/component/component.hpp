@@ -11,6 +11,7 @@
 #include "component/ports.hpp"
 #include "component/stateful.hpp"
 #include "configuration/parameter_set.hpp"
+#include "log/log.hpp"
 
 namespace constrictor {
 
@@ -51,6 +52,7 @@ struct Setup {
   std::uint64_t seed = 1;            ///< of the epoch
   std::uint16_t robot_id = 1;        ///< key of every message of this robot
   std::uint16_t latency_ticks = 1;   ///< least latency of the component; one with a longer latency of its own keeps it
+  Log log;  ///< for what people must know, never once per tick; a step that is repeated after a restart logs again
 
   /// Seed of this component's own generator: a fixed mix of `seed` and `component`.
   [[nodiscard]] std::uint64_t component_seed() const;

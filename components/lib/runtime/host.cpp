@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/host_context.hpp"
 #include "runtime/links.hpp"
+#include "runtime/log_publisher.hpp"
 #include "runtime/member_side.hpp"
+#include "runtime/version.hpp"
 
 namespace constrictor {
 namespace {
@@ -20,12 +23,6 @@ constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
-
-std::string this_host() {
-  char name[64] = {};
-  ::gethostname(name, sizeof(name) - 1);
-  return name;
-}
 
 std::string names_of(const std::vector<ComponentFactory>& factories) {
   std::vector<std::string> names;
@@ -43,7 +40,17 @@ HostContext make_context(HostOptions options, const std::vector<ComponentFactory
   const std::string identity = names_of(factories);
   const std::string config_hash = run_config_hash(options.setup.robot_file, options.roster, options.plant,
                                                   options.latency_ticks, options.faults_file);
-  return {std::move(options), identity, config_hash, this_host()};
+  return {std::move(options), identity, config_hash, own_host()};
+}
+
+/// The first line of each process: what is needed to know which build with which configuration it is.
+std::string banner(const HostContext& context) {
+  const HostOptions& options = context.options;
+  const char* launcher = std::getenv(kLauncherVariable);
+  return fmt::format(
+      "starts: Constrictor {}, IDL {:.12}, domain {}, configuration {:.12}, incarnation {}, pid {} on {}{}", kVersion,
+      msg::kIdlHash, options.domain, context.config_hash, options.incarnation, ::getpid(), context.host_name,
+      launcher ? fmt::format(", started by {}", launcher) : "");
 }
 
 }  // namespace
@@ -53,7 +60,9 @@ class Host::Impl {
   Impl(HostOptions options, std::vector<ComponentFactory> factories)
       : context_(make_context(std::move(options), factories)),
         links_(context_.options.domain, security_identity(context_.identity)),
+        log_publisher_(links_.participant(), context_.log, context_.identity, context_.options.incarnation),
         members_(context_, links_, std::move(factories)) {
+    context_.log.info("{}", banner(context_));
     links_.on_rejected([this](const std::string& topic, const std::string& reason) { members_.reject(topic, reason); });
     if (!members_.plant()) return;
     conductor_ = std::make_unique<ConductorSide>(context_, links_, members_);
@@ -108,6 +117,7 @@ class Host::Impl {
 
   HostContext context_;
   Links links_;
+  LogPublisher log_publisher_;
   MemberSide members_;
   std::unique_ptr<ConductorSide> conductor_;  ///< null: the plant is in another process
   HostContext::Clock::time_point last_report_ = HostContext::Clock::now();

@@ -24,6 +24,10 @@ inline constexpr int kRefused = 76;        ///< the conductor refused this proce
 inline constexpr int kConfiguration = 78;
 }  // namespace exit_status
 
+/// Environment variable in which a launcher names itself and its git revision for the first log line of the processes
+/// that it starts.
+inline constexpr const char* kLauncherVariable = "CONSTRICTOR_LAUNCHER";
+
 struct HostOptions {
   std::uint32_t domain = 0;
   std::vector<std::string> roster;  ///< every member of the run, in this or another process

@@ -211,7 +211,9 @@ void MemberSide::take_tick(const msg::Tick& tick) {
     const std::int64_t newest = local.member->newest_tick();
     local.member->on_tick(tick);
     // A new tick is progress of the run, even if no member of this process has a step to do.
-    if (local.member->newest_tick() > newest) context_.note_progress();
+    if (local.member->newest_tick() <= newest) continue;
+    context_.note_progress();
+    context_.log.at(tick.run_id, tick.epoch, tick.index);
   }
 }
 

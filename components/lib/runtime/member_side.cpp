@@ -34,6 +34,7 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
     const auto latency = options.latency_ticks.find(factory.name);
     if (latency != options.latency_ticks.end()) setup.latency_ticks = latency->second;
     const bool checkpoints = !conducts || (options.checkpoints && !options.setup.output_dir.empty());
+    setup.log = context.log.about(factory.name);
     auto member = std::make_unique<Member>(std::move(factory), std::move(setup), options.incarnation, checkpoints,
                                            static_cast<MemberSink&>(*this));
     if (member->name() == options.plant) plant_ = member.get();
@@ -100,6 +101,7 @@ void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
     if (local.member->in_epoch() && local.member->epoch() == epoch) continue;
     const bool stepping = local.member->stepping();
     if (stepping) local.thread->wait();
+    context_.log.at(epoch.run_id, epoch.epoch, -1);
     local.member->on_epoch(epoch, seed);
     // The step of the previous epoch has been dropped. An epoch that is known already changes nothing.
     if (stepping && !local.member->stepping()) local.thread->collect();
@@ -117,6 +119,7 @@ bool MemberSide::on_resume(const Resume& resume) {
 }
 
 void MemberSide::on_tick(const msg::Tick& tick) {
+  context_.log.at(tick.run_id, tick.epoch, tick.index);
   for (auto& local : members_) local.member->on_tick(tick);
 }
 
@@ -267,10 +270,9 @@ void MemberSide::report_waiting() {
 
 void MemberSide::report_waiting(const Member& waiter, const std::string& topic, const std::string& writer,
                                 std::int64_t tick, std::uint64_t have, std::uint64_t want) {
-  const double waited_s = context_.waited_s();
-  const std::string subject = waiter.name() == context_.identity ? "" : waiter.name() + " ";
-  context_.log.warning("{}waits for {} of {} at tick {} (has {}, needs {}) for {:.0f} s", subject, topic, writer, tick,
-                       have, want, waited_s);
+  context_.log.about(waiter.name())
+      .warning("waits for {} of {} at tick {} (has {}, needs {}) for {:.0f} s", topic, writer, tick, have, want,
+               context_.waited_s());
   msg::Waiting message{};
   dds::set_text(message.component, waiter.name());
   if (waiter.in_epoch()) message.run_id = waiter.epoch().run_id;
@@ -279,7 +281,7 @@ void MemberSide::report_waiting(const Member& waiter, const std::string& topic, 
   dds::set_text(message.writer, writer);
   message.have = have;
   message.want = want;
-  message.waited_s = waited_s;
+  message.waited_s = context_.waited_s();
   waiting_writer_.write(message);
 }
 

@@ -129,7 +129,9 @@ double ChildProcess::pss_mib() const {
 
 std::vector<std::string> last_lines(const std::filesystem::path& log, std::uintmax_t offset, std::size_t count) {
   std::ifstream file(log);
-  file.seekg(static_cast<std::streamoff>(offset));
+  std::error_code missing;
+  // A log that became too large has been emptied (bound_log()).
+  if (offset <= std::filesystem::file_size(log, missing)) file.seekg(static_cast<std::streamoff>(offset));
   std::deque<std::string> lines;
   for (std::string line; std::getline(file, line);) {
     if (line.empty()) continue;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/launch_plan.hpp"
+#include "cli/log/log_files.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -35,7 +36,7 @@ Companions::Companions(const LaunchManifest& manifest, std::uint64_t seed, const
                                           report_dir.string()};
     arguments.insert(arguments.end(), plan.arguments.begin(), plan.arguments.end());
     Companion companion{plan.program, logs / (plan.program + ".log"), nullptr};
-    std::filesystem::remove(companion.log);
+    remove_log(companion.log);
     companion.process = std::make_unique<ChildProcess>(arguments, run_environment(), companion.log);
     companions_.push_back(std::move(companion));
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <string>
 
 #include "cli/commands.hpp"
@@ -10,6 +11,7 @@
 #include "configuration/configuration.hpp"
 #include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
+#include "runtime/version.hpp"
 #include "runtime/version_text.hpp"
 
 namespace {
@@ -42,6 +44,7 @@ int dispatch(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    ::setenv(kLauncherVariable, fmt::format("constrictor {} git {}", kVersion, kGitRevision).c_str(), 1);
     // The options after `host NAME...` belong to constrictor_host.
     const std::string first = argc > 1 ? argv[1] : "";
     const std::string second = argc == 3 ? argv[2] : "";

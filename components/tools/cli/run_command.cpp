@@ -10,6 +10,8 @@
 #include "cli/companions.hpp"
 #include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
+#include "cli/log/launch_log.hpp"
+#include "cli/log/log_files.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/recording/recording_text.hpp"
 #include "cli/remote/host_set.hpp"
@@ -65,19 +67,20 @@ class Launcher {
         hosts_prepared_((hosts_.prepare(claim_.domain(), report_dir_, note_.token_file()), true)),
         security_(claim_.domain(), options.secure),
         observer_(claim_.domain(), run_id_),
+        log_(display_, report_dir_ / "logs", observer_.participant(), run_id_, resumed_),
         supervisor_(
             plan_.manifest,
             recorded(
                 with_swaps(make_command_line(options, plan_, claim_.domain(), report_dir_, run_id_, note_.token_file()),
                            report_dir_)),
-            run_environment(), report_dir_ / "logs", [this](const std::string& line) { display_.print(line); },
+            run_environment(), report_dir_ / "logs", [this](const std::string& line) { log_.warn(line); },
             [this](const auto&... process) { return hosts_.start(process...); }) {}
 
   int run() {
     const auto processes = plan_.manifest.processes.size();
-    display_.print(fmt::format("run {}: {} seed {}, {} components in {} process{}, report in {}", claim_.domain(),
-                               scenario_, options_.seed, plan_.roster.size(), processes, processes == 1 ? "" : "es",
-                               report_dir_.string()));
+    log_.say(fmt::format("run {}: {} seed {}, {} components in {} process{}, report in {}", claim_.domain(), scenario_,
+                         options_.seed, plan_.roster.size(), processes, processes == 1 ? "" : "es",
+                         report_dir_.string()));
     display_.print(
         fmt::format("  token {} (for programs on other hosts: put it into a file, see --token-file)", note_.token()));
     if (!options_.faults_file.empty())
@@ -85,9 +88,9 @@ class Launcher {
     const auto start = Clock::now();
     if (resumed_) {
       fs::remove(report_dir_ / "report.json");  // it says why the run was interrupted
-      display_.print(prepare_checkpoint(report_dir_));
+      log_.say(prepare_checkpoint(report_dir_));
     }
-    companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& l) { display_.print(l); });
+    companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& line) { log_.warn(line); });
     supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
     watch_run();
@@ -145,9 +148,11 @@ class Launcher {
     const RunView& view = observer_.view();
     note_.set_seed(view.seed(options_.seed));
     supervisor_.run_is_at(view.tick, view.held());
+    log_.at(view);
+    bound_logs(report_dir_ / "logs");
     for (const auto& [component, signal] : faults_.due(view.sim_time_s(), Clock::now()))
       supervisor_.signal(component, signal);
-    for (const auto& line : faults_.news(view.sim_time_s())) display_.print(line);
+    for (const auto& line : faults_.news(view.sim_time_s())) log_.warn(line);
     // A launcher that was stopped (SIGSTOP) for long can miss the plant's last status; mission.json shows the same.
     const bool reported = supervisor_.plant_is_gone() && fs::exists(report_dir_ / "mission.json");
     if (reported || view.ended(plan_.manifest.plant)) supervisor_.expect_end();
@@ -174,8 +179,7 @@ class Launcher {
 
   void note_signal(int signal) {
     ending_.signal_received(signal, observer_.view().tick >= 0, Clock::now());
-    if (ending_.kill_reason(Clock::now()).empty())
-      display_.print("ending the run; a second signal kills its processes");
+    if (ending_.kill_reason(Clock::now()).empty()) log_.say("ending the run; a second signal kills its processes");
   }
 
   void ask_conductor_to_end() {
@@ -202,7 +206,7 @@ class Launcher {
       supervisor_.finish(kEndGrace, [this] { return must_kill(0ms); });
     }
     if (!killed_.empty()) {
-      display_.print("killing all processes, the report will be incomplete: " + killed_);
+      log_.warn("killing all processes, the report will be incomplete: " + killed_);
       supervisor_.stop(ending_.at_once() || !left_.empty());
     }
   }
@@ -229,9 +233,9 @@ class Launcher {
     if (!outcome.recording.is_null()) display_.print(outcome.recording["text"].get<std::string>());
     companions_.reset();  // emulated devices write what really happened when they end
     const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records(), hosts_.report());
-    display_.print(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
-                               verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")",
-                               verdict.sim_time_s, wall_time_s, (report_dir_ / "report.json").string()));
+    log_.say(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
+                         verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")", verdict.sim_time_s,
+                         wall_time_s, (report_dir_ / "report.json").string()));
     if (!verdict.truth.empty()) display_.print(verdict.truth);
     return verdict.success ? exit_status::kOk : status;
   }
@@ -251,6 +255,7 @@ class Launcher {
   bool hosts_prepared_;              ///< before the observer, which needs the DDS configuration
   dds::PublishedSecurity security_;  ///< before the observer, which joins the run with an identity
   RunObserver observer_;
+  LaunchLog log_;
   Supervisor supervisor_;
   FaultDirector faults_{plan_.faults};
   Clock::time_point memory_sampled_{};

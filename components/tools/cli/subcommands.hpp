@@ -30,6 +30,7 @@ void add_topic(CLI::App& app, Action& action);        ///< topic
 void add_node(CLI::App& app, Action& action);         ///< node
 void add_status(CLI::App& app, Action& action);       ///< status
 void add_doctor(CLI::App& app, Action& action);       ///< doctor
+void add_log(CLI::App& app, Action& action);          ///< log
 void add_record(CLI::App& app, Action& action);       ///< record
 void add_replay(CLI::App& app, Action& action);       ///< replay
 void add_recording_files(CLI::App& app, Action& action);  ///< info, recover
@@ -42,7 +43,7 @@ void add_man_pages(CLI::App& app, Action& action, const std::string& date);
 inline constexpr std::array kSubcommands{
     add_run,  add_evaluate, add_serve,           add_list,  add_robot,  add_commands, add_run_control, add_teleop,
     add_task, add_param,    add_topic,           add_node,  add_status, add_doctor,   add_agent,       add_completion,
-    add_keys, add_record,   add_recording_files, add_servo, add_swap,   add_replay,   add_pictures};
+    add_keys, add_record,   add_recording_files, add_servo, add_swap,   add_replay,   add_pictures,    add_log};
 
 /// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
 template <class Options, class Run>

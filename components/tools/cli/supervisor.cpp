@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "cli/launch_plan.hpp"
+#include "cli/log/log_files.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -68,8 +69,7 @@ std::filesystem::path Supervisor::log_of(const Supervised& process) const {
 void Supervisor::start(const std::map<std::string, std::uint32_t>& last_incarnations) {
   std::filesystem::create_directories(log_dir_);
   for (auto& process : processes_) {
-    std::error_code ignored;
-    if (last_incarnations.empty()) std::filesystem::remove(log_of(process), ignored);
+    if (last_incarnations.empty()) remove_log(log_of(process));
     const auto last = last_incarnations.find(process.record.name);
     if (last != last_incarnations.end()) process.incarnation = last->second;
     spawn(process);

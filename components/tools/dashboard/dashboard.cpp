@@ -87,6 +87,7 @@ Dashboard::Dashboard(const RunNote& run, WebOptions options)
       monitor_(run, commands_.participant()),
       tap_(commands_.participant(), shown, false),
       readers_(std::make_unique<Readers>(commands_.participant())),
+      lines_(commands_.participant()),
       scene_(server_.add_channel(json_channel("view/scene", "foxglove.SceneUpdate"))),
       transforms_(server_.add_channel(json_channel("view/transforms", "foxglove.FrameTransforms"))),
       camera_(server_.add_channel(image_channel("view/camera"))),
@@ -160,6 +161,7 @@ void Dashboard::take_typed() {
     const std::uint64_t time_ns = now_ns();
     server_.send(log_, time_ns, log_of(event, time_ns).dump());
   });
+  lines_.take([&](const msg::LogLine& line, std::uint64_t) { server_.send(log_, now_ns(), log_of(line).dump()); });
   align(newest_);
   const auto image = [&](const dds::Reader<msg::CameraImage>& reader, std::uint32_t channel) {
     const bool wanted = server_.wanted(channel);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "client/log_reader.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
 #include "cyclone/endpoint.hpp"
@@ -40,6 +41,7 @@ class Dashboard {
   RunMonitor monitor_;
   dds::TopicTap tap_;
   std::unique_ptr<Readers> readers_;
+  LogReader lines_;
   std::map<const dds::TopicTap::Topic*, std::uint32_t> channels_;
   Newest newest_;
   bool changed_ = false;

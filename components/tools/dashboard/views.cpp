@@ -1,5 +1,7 @@
 #include "dashboard/views.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -7,6 +9,7 @@
 
 #include "constrictor/constants.hpp"
 #include "constrictor/image.hpp"
+#include "constrictor/text.hpp"
 #include "robot/planar_message.hpp"
 
 namespace constrictor::dashboard {
@@ -241,6 +244,19 @@ json log_of(const msg::TaskEvent& event, std::uint64_t time_ns) {
           {"name", "navigation"},
           {"file", ""},
           {"line", 0}};
+}
+
+json log_of(const msg::LogLine& line) {
+  // Foxglove's levels: 2 is an information, 3 a warning, 4 an error.
+  const int level = line.level == msg::kLogError ? 4 : line.level == msg::kLogWarning ? 3 : 2;
+  const std::string component = text_of(line.component);
+  return {
+      {"timestamp", stamp(static_cast<std::uint64_t>(std::max<std::int64_t>(line.wall_time_ns, 0)))},
+      {"level", level},
+      {"message", line.tick < 0 ? text_of(line.message) : fmt::format("tick {}: {}", line.tick, text_of(line.message))},
+      {"name", component.empty() ? text_of(line.process) : component},
+      {"file", ""},
+      {"line", 0}};
 }
 
 std::optional<std::string> ros_image(const msg::CameraImage& image, const std::string& frame, std::uint64_t time_ns) {

@@ -51,8 +51,9 @@ struct ContactArrow {
 [[nodiscard]] nlohmann::json scene_update(const Newest& newest, std::uint64_t time_ns);
 /// foxglove.FrameTransforms: "head" and "start" (the frame M of the robot's map) in "world".
 [[nodiscard]] nlohmann::json frame_transforms(const Newest& newest, std::uint64_t time_ns);
-/// foxglove.Log.
+/// foxglove.Log. A line of a process has the time at which it was written.
 [[nodiscard]] nlohmann::json log_of(const msg::TaskEvent& event, std::uint64_t time_ns);
+[[nodiscard]] nlohmann::json log_of(const msg::LogLine& line);
 /// For the page: everything but images, in one object. Documented in README.md.
 [[nodiscard]] nlohmann::json page_state(const Newest& newest);
 /// The image as ROS 2's sensor_msgs/msg/Image in CDR, or nothing if its number of bytes does not fit its size.

@@ -89,8 +89,8 @@ std::string idl_text(const std::string& name) {
   return text.str();
 }
 
-const char* const kFiles[] = {"common",   "plant", "hardware", "simulation", "camera",    "perception",
-                              "guidance", "task",  "motion",   "mission",    "parameter", "barrier"};
+const char* const kFiles[] = {"common", "plant",  "hardware", "simulation", "camera", "perception", "guidance",
+                              "task",   "motion", "mission",  "parameter",  "log",    "barrier"};
 
 /// Counts over all fields of all types.
 struct Counter {

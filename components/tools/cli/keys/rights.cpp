@@ -44,7 +44,7 @@ Rights rights_of_member(const std::vector<std::string>& lines, bool conducts) {
     else if (line.starts_with("writes ")) rights.publish.insert(line.substr(7));
     else throw std::runtime_error(fmt::format("--topics: found '{}', accepted 'reads TOPIC' or 'writes TOPIC'", line));
   }
-  rights.publish.insert({wire::kHello, wire::kWaiting, wire::kStatus});
+  rights.publish.insert({wire::kHello, wire::kWaiting, wire::kStatus, wire::kLog});
   rights.subscribe.insert({wire::kHello, wire::kRefused});
   if (conducts) {
     rights.publish.insert(
@@ -58,7 +58,8 @@ Rights rights_of_member(const std::vector<std::string>& lines, bool conducts) {
 }
 
 Rights rights_of_operator() {
-  Rights rights{{barrier_topics::kRequest, barrier_topics::kRunControl, barrier_topics::kEmergencyStop}, {}};
+  namespace wire = barrier_topics;
+  Rights rights{{wire::kRequest, wire::kRunControl, wire::kEmergencyStop, wire::kLog}, {}};
   read_what_runs_publish(rights, true);
   return rights;
 }

@@ -102,6 +102,7 @@ int Agent::run() {
     accept_connection();
     answer_echo();
     const bool ended = reap();
+    for (auto& [name, process] : processes_) bound_log_of(name, process);
     if (!channel_) continue;
     try {
       channel_->exchange();

@@ -43,6 +43,7 @@ class Agent {
     std::uint32_t incarnation = 0;
     std::unique_ptr<ChildProcess> child;
     std::uintmax_t log_sent = 0;  ///< [byte] of its log that the launcher has
+    std::uintmax_t log_cut = 0;   ///< [byte] of its log that are no longer in the file
     double pss_mib = 0;
   };
   void accept_connection();
@@ -56,6 +57,10 @@ class Agent {
   void open_echo(const nlohmann::json& message);
   void answer_echo() const;
   void send_logs();
+  /// Empties the log of a process when it is too large: the launcher has it, or has been out of reach for too long.
+  void bound_log_of(const std::string& name, Managed& process) const;
+  /// [byte] that a process has written into its log.
+  [[nodiscard]] std::uintmax_t log_size(const std::string& name, const Managed& process) const;
   void send_state();
   void send_files();
   /// Looks for processes that have ended. True if one has.

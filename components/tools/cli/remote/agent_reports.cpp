@@ -1,5 +1,6 @@
 // What the agent sends to the launcher while processes run: their state, their logs, the files that they write.
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "cli/log/log_files.hpp"
 #include "cli/remote/agent.hpp"
 
 namespace constrictor::cli {
@@ -44,10 +46,29 @@ std::string hexadecimal(const std::string& bytes) {
 
 }  // namespace
 
+std::uintmax_t Agent::log_size(const std::string& name, const Managed& process) const {
+  return process.log_cut + size_of(log_of(name));
+}
+
+void Agent::bound_log_of(const std::string& name, Managed& process) const {
+  const std::uintmax_t size = size_of(log_of(name));
+  const bool sent = process.log_sent == process.log_cut + size;
+  if (size <= (sent ? kMostLogBytes : 2 * kMostLogBytes)) return;
+  std::error_code error;
+  fs::resize_file(log_of(name), 0, error);
+  if (!error) process.log_cut += size;
+}
+
 void Agent::send_logs() {
   for (auto& [name, process] : processes_) {
-    while (channel_->unsent() < kUnsentBound && process.log_sent < size_of(log_of(name))) {
-      const std::string bytes = read_chunk(log_of(name), process.log_sent);
+    if (process.log_sent < process.log_cut) {
+      const auto text = fmt::format("{} bytes of the log were dropped: there was no connection\n",
+                                    process.log_cut - process.log_sent);
+      process.log_sent = process.log_cut;
+      channel_->send({{"op", "log"}, {"name", name}, {"next", process.log_sent}, {"text", text}});
+    }
+    while (channel_->unsent() < kUnsentBound && process.log_sent < log_size(name, process)) {
+      const std::string bytes = read_chunk(log_of(name), process.log_sent - process.log_cut);
       if (bytes.empty()) break;
       const auto end = bytes.rfind('\n');  // whole lines, so that no character is cut
       const std::string text = end == std::string::npos ? bytes : bytes.substr(0, end + 1);
@@ -90,7 +111,7 @@ void Agent::send_state() {
                   {"pid", process.child->pid()},
                   {"pss_mib", process.pss_mib}};
     // The end is reported after the log, so that the launcher can show the last lines.
-    const bool log_complete = process.log_sent >= size_of(log_of(name));
+    const bool log_complete = process.log_sent >= log_size(name, process);
     if (const auto& exit = process.child->poll(); exit && log_complete) {
       entry["wait_status"] = exit->wait_status;
       entry["cpu_s"] = exit->cpu_s;

@@ -1,0 +1,45 @@
+#include "cli/log/launch_log.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "cli/log/log_files.hpp"
+#include "constrictor/messages.hpp"
+#include "runtime/host.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+Log open_log(const std::filesystem::path& folder, bool continued) {
+  std::filesystem::create_directories(folder);
+  const auto file = folder / (std::string(LaunchLog::kName) + ".log");
+  if (!continued) remove_log(file);
+  return {LaunchLog::kName, file};
+}
+
+}  // namespace
+
+LaunchLog::LaunchLog(ProgressDisplay& display, const std::filesystem::path& folder, std::int32_t participant,
+                     std::uint64_t run_id, bool continued)
+    : display_(display), run_id_(run_id), log_(open_log(folder, continued)), publisher_(participant, log_, kName, 1) {
+  log_.at(run_id_, 0, -1);
+  const char* program = std::getenv(kLauncherVariable);
+  log_.info("{}, IDL {:.12}, pid {} on {}", program ? program : "constrictor", msg::kIdlHash, ::getpid(), own_host());
+}
+
+void LaunchLog::say(const std::string& line) {
+  display_.print(line);
+  log_.info("{}", line);
+}
+
+void LaunchLog::warn(const std::string& line) {
+  display_.print(line);
+  log_.warning("{}", line);
+}
+
+void LaunchLog::at(const RunView& view) const {
+  if (view.tick >= 0) log_.at(run_id_, view.run_state ? view.run_state->epoch : 1, view.tick);
+}
+
+}  // namespace constrictor::cli

@@ -1,0 +1,193 @@
+// `constrictor log`: what the processes of a run have to say, while it goes on or from the files of its report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "cli/interrupt.hpp"
+#include "cli/introspection/domain_view.hpp"
+#include "cli/log/log_lines.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
+#include "client/log_reader.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
+#include "constrictor/constants.hpp"
+#include "constrictor/json.hpp"
+#include "cyclone/domain.hpp"
+#include "runtime/host.hpp"
+#include "runtime/log_publisher.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPoll = 20ms;
+constexpr auto kQuiet = 200ms;  // the lines that writers keep for late readers arrive with smaller gaps
+constexpr auto kBound = 3s;     // for lines that were written before
+
+struct Options {
+  ViewOptions view;
+  LogFilter filter;
+  std::string folder;
+  std::string level = "info";
+  std::uint64_t last = 0;
+  bool follow = false;
+};
+
+class Printer {
+ public:
+  explicit Printer(const Options& options) : json_(options.view.json) {}
+  void print(const LogEntry& entry) const {
+    if (json_) fmt::print("{}\n", json_text(to_json(entry)));
+    else fmt::print("{}\n", text_of(entry, own_host_));
+  }
+  void print_last(const std::vector<LogEntry>& entries, std::uint64_t last) const {
+    const std::size_t skipped = last > 0 && entries.size() > last ? entries.size() - last : 0;
+    for (std::size_t i = skipped; i < entries.size(); ++i) print(entries[i]);
+    std::fflush(stdout);
+  }
+
+ private:
+  bool json_;
+  std::string own_host_ = own_host();
+};
+
+int of_files(const Options& options) {
+  if (options.follow)
+    throw UsageError(
+        fmt::format("--follow: found together with the folder '{}', accepted for a run that goes on; "
+                    "leave the folder out",
+                    options.folder));
+  Printer(options).print_last(read_logs(options.folder, options.filter), options.last);
+  return exit_status::kOk;
+}
+
+/// The lines of a run that goes on, from the topic `log`.
+class LiveLog {
+ public:
+  explicit LiveLog(const Options& options)
+      : options_(options),
+        run_(join_run(options.view.domain)),
+        domain_(run_.domain),
+        monitor_(run_, domain_.participant()),
+        reader_(domain_.participant()),
+        printer_(options) {}
+
+  int show() {
+    catch_interrupts({SIGINT, SIGTERM, SIGHUP});
+    const auto begin = Clock::now();
+    for (auto changed = begin; interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
+      if (take() > 0) changed = Clock::now();
+      const bool complete = reader_.heard_all() && Clock::now() - changed > kQuiet;
+      if (complete || Clock::now() - begin > kBound || !over().empty()) break;
+    }
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const auto& a, const auto& b) { return a.record.time < b.record.time; });
+    printer_.print_last(waiting_, options_.last);
+    waiting_.clear();
+    if (options_.follow) follow();
+    report_lost();
+    return interrupt_signal() != 0 && !options_.follow ? interrupt_status() : exit_status::kOk;
+  }
+
+ private:
+  [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
+
+  void follow() {
+    for (bool last_look = false; interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
+      take();
+      printer_.print_last(waiting_, 0);
+      waiting_.clear();
+      if (last_look) {
+        std::fprintf(stderr, "log: %s\n", over().c_str());
+        return;
+      }
+      last_look = !over().empty();  // the last lines of the processes may arrive after the news of the end
+    }
+  }
+  std::size_t take() {
+    monitor_.poll();
+    std::size_t taken = 0;
+    reader_.take([&](const msg::LogLine& line, std::uint64_t lost) {
+      ++taken;
+      const auto& state = monitor_.state();
+      if (state && line.run_id != 0 && line.run_id != state->run_id) return;
+      if (lost > 0) lost_[constrictor::text_of(line.process)] += lost;
+      LogEntry entry = entry_of(line);
+      if (options_.filter.accepts(entry)) waiting_.push_back(std::move(entry));
+    });
+    return taken;
+  }
+  void report_lost() const {
+    for (const auto& [process, count] : lost_) {
+      std::fprintf(stderr,
+                   "log: %llu lines of %s did not arrive here, because it wrote faster than it may publish; its "
+                   "log file has them\n",
+                   static_cast<unsigned long long>(count), process.c_str());
+    }
+  }
+
+  const Options& options_;
+  RunNote run_;
+  dds::Domain domain_;
+  RunMonitor monitor_;
+  LogReader reader_;
+  Printer printer_;
+  std::vector<LogEntry> waiting_;
+  std::map<std::string, std::uint64_t> lost_;  ///< number of lines, by process
+};
+
+int log(const Options& given) {
+  Options options = given;
+  options.filter.least_level = *value_of(constants::kLog, options.level);
+  if (!options.folder.empty()) return of_files(options);
+  return LiveLog(options).show();
+}
+
+}  // namespace
+
+void add_log(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  auto* sub = add_subcommand(app, "log", "print the log lines of all processes of a run, in the order of their time",
+                             action, options, log);
+  sub->add_option("FOLDER", options->folder,
+                  "report folder of a run, also of one that has ended (default: the run that goes on, over DDS)")
+      ->check(CLI::ExistingDirectory);
+  sub->add_flag("--follow,-f", options->follow, "print new lines until Ctrl-C or the end of the run");
+  sub->add_option("--level", options->level, "only lines of this level and of those above it: info, warning, error")
+      ->check(CLI::IsMember(names_of(constants::kLog)))
+      ->capture_default_str();
+  sub->add_option("--component", options->filter.components,
+                  "only lines of this component, or of the process that contains it; `launcher` has those of "
+                  "`constrictor run`; may be repeated")
+      ->expected(1)
+      ->take_all();
+  sub->add_option("--since", options->filter.since_tick, "only lines of this tick and of later ones")
+      ->check(whole_number(0, 9'000'000'000'000'000));
+  sub->add_option("--grep", options->filter.text, "only lines whose message contains this text");
+  sub->add_option("--last", options->last, "only the last lines, this many, of those that were written before")
+      ->check(whole_number(1, 1'000'000'000));
+  add_view_options(*sub, options->view);
+  sub->footer(help_footer(
+      "A run that goes on: each process keeps its newest 256 lines for readers that come later. The files of the "
+      "report "
+      "have\nmore: every line, also what libraries write, up to 16 MiB for each process; then the oldest lines are "
+      "dropped, and the\nlog says so. Lines of processes on other hosts name the host.\n\n"
+      "--json prints one object for each line: wall_time_ns (since 1970, UTC), level, component, process, host, pid, "
+      "incarnation,\nepoch, tick, number (of the line in its process), foreign (not written by our log), message; null "
+      "is unknown.",
+      {"constrictor log", "constrictor log --follow --level warning",
+       "constrictor log --component physics --since 1000",
+       "constrictor log runs/20261122-101530_case_study_seed1 --grep refused",
+       "constrictor log --json | jq -r .message"},
+      fmt::format("0 done; {}; 130 interrupted before the first line", kRunStatuses)));
+}
+
+}  // namespace constrictor::cli
