@@ -172,6 +172,7 @@ async function carryOut(page, step) {
   } else if (name === "frames") console.log(JSON.stringify(framesOf(await page.trace(Number(value)))));
   else if (name === "line") await lines.next();
   else if (name === "shot" || name === "view") {
+    if (name === "shot") await page.value("scrollTo(0, 0)"); // what sticks to the window sticks to the top
     const format = value.endsWith(".jpg") ? "jpeg" : "png";
     const { data } = await page.call("Page.captureScreenshot", { captureBeyondViewport: name === "shot", format });
     writeFileSync(value, Buffer.from(data, "base64"));

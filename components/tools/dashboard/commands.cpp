@@ -27,19 +27,20 @@ std::string describe(const msg::RunState& state) {
 
 }  // namespace
 
-std::vector<std::string> Commands::services() {
+std::vector<std::string> Commands::services() const {
   std::vector<std::string> all;
   for (const auto* names : {&kControls, &kStops, &kParameters, &kDrives})
     all.insert(all.end(), names->begin(), names->end());
   return all;
 }
 
-Commands::Commands(std::uint32_t domain)
-    : driver_(domain, ending_),
-      run_(driver_.participant(), domain, 10s, [this] { return ending_.load(); }),
-      stops_(driver_.participant(), domain, operator_client("dash-stop", ending_)),
-      parameters_(driver_.participant(), domain, operator_client("dash-param", ending_)),
+Commands::Commands(const RunNote& run)
+    : driver_(run.domain, ending_),
+      run_(driver_.participant(), run.domain, 10s, [this] { return ending_.load(); }),
+      stops_(driver_.participant(), run.domain, operator_client("dash-stop", ending_)),
+      parameters_(driver_.participant(), run.domain, operator_client("dash-param", ending_)),
       setter_(parameters_),
+      monitor_(run, driver_.participant()),
       control_lane_(answers_, [this](const WebServer::Call& call) { return control(call); }),
       stop_lane_(answers_, [this](const WebServer::Call& call) { return stop(call); }),
       driver_lane_(
@@ -48,6 +49,11 @@ Commands::Commands(std::uint32_t domain)
       parameter_lane_(answers_, [this](const WebServer::Call& call) { return parameter(call); }) {}
 
 Commands::~Commands() { ending_ = true; }
+
+void Commands::poll() {
+  monitor_.poll();
+  answers_.deliver();
+}
 
 void Commands::add(WebServer::Call call) {
   const std::string name = call.service;

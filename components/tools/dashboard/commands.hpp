@@ -2,12 +2,16 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "client/parameters.hpp"
 #include "client/request_client.hpp"
 #include "client/run_control_client.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
+#include "dashboard/controls.hpp"
 #include "dashboard/driver.hpp"
 #include "dashboard/lane.hpp"
 #include "dashboard/web_server.hpp"
@@ -17,20 +21,17 @@ namespace constrictor::dashboard {
 /// The services that the page and other viewers can call: `pause`, `resume`, `step` {"ticks": N}, `pace` {"pace": X}
 /// (0: as fast as possible), `stop` (emergency stop), `clear_stop`, `param_list`, `param_set` {"name", "value"}, and
 /// those of Driver. The run obeys or refuses them as it does the commands of `constrictor`.
-class Commands {
+class Commands : public Controls {
  public:
-  [[nodiscard]] static std::vector<std::string> services();
+  explicit Commands(const RunNote& run);
+  ~Commands() override;
 
-  explicit Commands(std::uint32_t domain);
-  ~Commands();
-  Commands(const Commands&) = delete;
-  Commands& operator=(const Commands&) = delete;
-
-  /// DDS participant in the run's domain, for readers of this process.
-  [[nodiscard]] std::int32_t participant() const { return driver_.participant(); }
-  void add(WebServer::Call call);
-  /// Delivers the answers that have arrived. To be called in the thread of the server.
-  void poll() { answers_.deliver(); }
+  [[nodiscard]] std::vector<std::string> services() const override;
+  [[nodiscard]] std::int32_t participant() const override { return driver_.participant(); }
+  void add(WebServer::Call call) override;
+  void poll() override;
+  [[nodiscard]] std::string over() const override { return monitor_.attachment().over(); }
+  [[nodiscard]] std::optional<msg::RunState> run() const override { return monitor_.state(); }
 
  private:
   std::string control(const WebServer::Call& call);
@@ -42,6 +43,7 @@ class Commands {
   RunControlClient run_;
   RequestClient stops_, parameters_;  // each is used in one thread only
   ParameterSetter setter_;
+  RunMonitor monitor_;
   Answers answers_;
   Lane control_lane_, stop_lane_, driver_lane_, parameter_lane_;
 };

@@ -80,14 +80,13 @@ struct Dashboard::Readers {
   dds::Reader<msg::ComponentStatus> statuses;
 };
 
-Dashboard::Dashboard(const RunNote& run, WebOptions options)
-    : commands_(run.domain),
-      server_(std::move(options), fmt::format("Constrictor run {}", run.domain), Commands::services(),
-              [this](WebServer::Call call) { commands_.add(std::move(call)); }),
-      monitor_(run, commands_.participant()),
-      tap_(commands_.participant(), shown, false),
-      readers_(std::make_unique<Readers>(commands_.participant())),
-      lines_(commands_.participant()),
+Dashboard::Dashboard(std::unique_ptr<Controls> controls, const std::string& name, WebOptions options)
+    : controls_(std::move(controls)),
+      server_(std::move(options), name, controls_->services(),
+              [this](WebServer::Call call) { controls_->add(std::move(call)); }),
+      tap_(controls_->participant(), shown, false),
+      readers_(std::make_unique<Readers>(controls_->participant())),
+      lines_(controls_->participant()),
       scene_(server_.add_channel(json_channel("view/scene", "foxglove.SceneUpdate"))),
       transforms_(server_.add_channel(json_channel("view/transforms", "foxglove.FrameTransforms"))),
       camera_(server_.add_channel(image_channel("view/camera"))),
@@ -102,9 +101,12 @@ void Dashboard::serve() {
   tap_.wait(10ms);
   tap_.take([this](const dds::TopicTap::Topic& topic, const dds::RawSample& sample) { pass_on(topic, sample); });
   take_typed();
-  monitor_.poll();
-  if (const auto& state = monitor_.state()) newest_.run = *state;
-  commands_.poll();
+  controls_->poll();
+  newest_.run = controls_->run();
+  if (auto replay = controls_->replay(); replay != newest_.replay) {
+    newest_.replay = std::move(replay);
+    changed_ = true;
+  }
   show();
   server_.poll();
 }
@@ -138,6 +140,11 @@ void Dashboard::take_typed() {
       newest_.map.reset();
       newest_.events.clear();
     }
+    // A replay may go back. What happened later than this has not happened yet.
+    auto& events = newest_.events;
+    while (before && world.header.tick < before->header.tick && !events.empty() &&
+           events.back().header.tick > world.header.tick)
+      events.pop_back();
     newest_.world = world;
     changed_ = true;
   });
@@ -156,7 +163,10 @@ void Dashboard::take_typed() {
   });
   readers_->events.take([&](const msg::TaskEvent& event) {
     if (validate(event)) return;
-    newest_.events.push_back(event);
+    auto& events = newest_.events;
+    while (!events.empty() && events.back().header.sequence_number >= event.header.sequence_number)
+      events.pop_back();  // a replay has gone back, or a new epoch has begun
+    events.push_back(event);
     if (newest_.events.size() > Newest::kMostEvents) newest_.events.pop_front();
     const std::uint64_t time_ns = now_ns();
     server_.send(log_, time_ns, log_of(event, time_ns).dump());

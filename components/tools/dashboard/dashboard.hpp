@@ -8,26 +8,25 @@
 #include <string>
 
 #include "client/log_reader.hpp"
-#include "client/run_monitor.hpp"
-#include "client/run_registry.hpp"
 #include "cyclone/endpoint.hpp"
 #include "cyclone/topic_tap.hpp"
-#include "dashboard/commands.hpp"
+#include "dashboard/controls.hpp"
 #include "dashboard/views.hpp"
 #include "dashboard/web_server.hpp"
 
 namespace constrictor::dashboard {
 
 /// An observer outside of the barrier: no member waits for it, and none reads anything from it but the commands of its
-/// viewers.
+/// viewers. A replay looks like a run.
 class Dashboard {
  public:
-  Dashboard(const RunNote& run, WebOptions options);
+  /// `name` is shown to viewers.
+  Dashboard(std::unique_ptr<Controls> controls, const std::string& name, WebOptions options);
   ~Dashboard();
   /// Waits for messages, at most 10 ms, and passes on what has arrived.
   void serve();
-  /// Why the run is over; empty while it goes on.
-  [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
+  /// Why the run or the replay is over; empty while it goes on.
+  [[nodiscard]] std::string over() const { return controls_->over(); }
   [[nodiscard]] const WebServer& server() const { return server_; }
 
  private:
@@ -36,9 +35,8 @@ class Dashboard {
   void take_typed();
   void show();
 
-  Commands commands_;
+  std::unique_ptr<Controls> controls_;
   WebServer server_;
-  RunMonitor monitor_;
   dds::TopicTap tap_;
   std::unique_ptr<Readers> readers_;
   LogReader lines_;

@@ -2,16 +2,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "cli/recording/replay_control.hpp"
 #include "client/command_error.hpp"
 #include "client/run_registry.hpp"
 #include "component/data_path.hpp"
+#include "dashboard/commands.hpp"
 #include "dashboard/dashboard.hpp"
+#include "dashboard/replay_controls.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version_text.hpp"
 
@@ -28,13 +33,37 @@ std::string place_of(const dashboard::WebOptions& web, std::uint16_t port) {
   return fmt::format("{}:{}", every ? "localhost" : v6 ? "[" + web.address + "]" : web.address, port);
 }
 
-int show(std::optional<std::uint32_t> run, dashboard::WebOptions web) {
+/// What is shown: its name, and how it is commanded.
+struct Shown {
+  std::string name;
+  std::unique_ptr<dashboard::Controls> controls;
+  const char* after;  ///< what the end of this program does not end
+};
+
+/// The run or the replay in `domain`; without a domain the only run on this host, or else the only replay.
+Shown find(std::optional<std::uint32_t> domain) {
+  const auto replays = cli::live_replays();
+  const bool wanted = domain && std::find(replays.begin(), replays.end(), *domain) != replays.end();
+  if (wanted || (!domain && replays.size() == 1 && live_runs().empty())) {
+    auto controls = std::make_unique<dashboard::ReplayControls>(domain.value_or(replays.front()));
+    const std::string name = fmt::format("replay {} of {}", domain.value_or(replays.front()), controls->file());
+    return {name, std::move(controls), "replay"};
+  }
+  if (!domain && replays.size() > 1 && live_runs().empty())
+    throw CommandError(
+        fmt::format("several replays on this host; choose one: --run {}", fmt::join(replays, ", --run ")),
+        CommandError::Cause::kNoRun);
+  const RunNote note = join_run(domain);
+  return {fmt::format("run {}", note.domain), std::make_unique<dashboard::Commands>(note), "run"};
+}
+
+int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
   web.page = data_path("components/tools/dashboard/page");
-  const RunNote note = join_run(run);
-  dashboard::Dashboard board(note, web);
+  Shown shown = find(domain);
+  dashboard::Dashboard board(std::move(shown.controls), "Constrictor " + shown.name, web);
   const std::string place = place_of(web, board.server().port());
-  fmt::print("run {}: http://{} for a browser, ws://{} for Foxglove; Ctrl-C ends the dashboard, not the run\n",
-             note.domain, place, place);
+  fmt::print("{}: http://{} for a browser, ws://{} for Foxglove; Ctrl-C ends the dashboard, not the {}\n", shown.name,
+             place, place, shown.after);
   if (!board.server().on_this_host_only())
     fmt::print("everybody who can reach {} may watch and command the run\n", web.address);
   std::fflush(stdout);
@@ -52,9 +81,11 @@ int main(int argc, char** argv) {
   std::optional<std::uint32_t> run;
   std::string token_file;
   dashboard::WebOptions web;
-  CLI::App app{"Shows a run in a web browser and in Foxglove."};
+  CLI::App app{"Shows a run, or the replay of a recording, in a web browser and in Foxglove."};
   app.set_version_flag("--version", [] { return version_text("dashboard"); });
-  app.add_option("--run", run, "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")
+  app.add_option("--run", run,
+                 "DDS domain of the run or replay, as `constrictor run` and `replay` print it (default: the only run\n"
+                 "here, or else the only replay)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229));
   app.add_option("--token-file", token_file, "file with the token of a run that was started on another host")

@@ -158,6 +158,7 @@ json page_state(const Newest& newest) {
                     {"seed", run.seed}, {"realtime", run.realtime},
                     {"pace", run.pace}, {"real_time_factor", number(run.real_time_factor)}};
   }
+  if (newest.replay) state["replay"] = *newest.replay;
   for (const auto& event : newest.events) {
     json line = log_of(event, 0);
     state["events"].push_back({{"time_s", static_cast<double>(event.header.time_ns) * 1e-9},

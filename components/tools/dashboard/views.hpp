@@ -27,6 +27,7 @@ struct Newest {
   std::optional<msg::Authority> authority;
   std::optional<msg::StopState> stop;
   std::optional<msg::RunState> run;
+  std::optional<nlohmann::json> replay;  ///< where a replay is; empty: a run is shown
   /// X_WM: the frame of the robot's map in the world, from the first pair of true and estimated pose. At the start of a
   /// run both are the same; a viewer that joins later sees the error of the estimate since then.
   std::optional<PlanarPose> start;

@@ -1,17 +1,17 @@
 #include "cli/recording/player.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <termios.h>
-#include <unistd.h>
-
 #include <chrono>
+#include <deque>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <thread>
+#include <utility>
 
 #include "cli/interrupt.hpp"
+#include "cli/recording/key_input.hpp"
+#include "cli/recording/replay_control.hpp"
+#include "cli/recording/replayed_topics.hpp"
 #include "cli/recording/topic_pattern.hpp"
 #include "cli/usage.hpp"
 #include "client/command_error.hpp"
@@ -29,65 +29,21 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kMeet = 500ms;    // until readers that exist have met the writers
-constexpr int kLeastDepth = 64;  // of topics with several instances, which count as one here
+constexpr auto kMeet = 500ms;  // until readers that exist have met the writers
 constexpr auto kLongestWait = 50ms;
-
-/// Single keys from a terminal; nothing if the input is no terminal.
-class Keys {
- public:
-  Keys() : terminal_(::isatty(STDIN_FILENO) == 1 && ::tcgetattr(STDIN_FILENO, &before_) == 0) {
-    if (!terminal_) return;
-    termios raw = before_;
-    raw.c_lflag &= static_cast<tcflag_t>(~(ICANON | ECHO));
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
-  }
-  ~Keys() {
-    if (terminal_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-  }
-  Keys(const Keys&) = delete;
-  Keys& operator=(const Keys&) = delete;
-  /// The key that was typed within `bound`; 0: none.
-  [[nodiscard]] char read(std::chrono::milliseconds bound) const {
-    if (!terminal_) {
-      std::this_thread::sleep_for(bound);
-      return 0;
-    }
-    pollfd input{STDIN_FILENO, POLLIN, 0};
-    char key = 0;
-    if (::poll(&input, 1, static_cast<int>(bound.count())) <= 0 || ::read(STDIN_FILENO, &key, 1) != 1) return 0;
-    return key;
-  }
-
- private:
-  termios before_{};
-  bool terminal_;
-};
-
-/// Commands to a run and what proves membership: nobody should obey them again.
-bool is_command(const std::string& topic) {
-  namespace wire = barrier_topics;
-  return topic == wire::kRequest.name || topic == wire::kRunControl.name || topic == wire::kEmergencyStop.name ||
-         topic == wire::kHello.name || topic == wire::kResume.name;
-}
-
-int depth_of(const std::string& topic) {
-  int depth = kLeastDepth;
-  for (const auto& info : topics::kInfos) {
-    if (info.name == topic) depth = info.depth;
-  }
-  for (const auto& info : barrier_topics::kInfos) {
-    if (info.name == topic) depth = std::max(depth, info.depth);
-  }
-  return depth;
-}
+constexpr auto kControlEvery = 10ms;
 
 class Player {
  public:
   explicit Player(const PlayOptions& options)
-      : options_(options), patterns_(options.topics), claim_(options.domain), domain_(claim_.domain()) {
+      : options_(options),
+        patterns_(options.topics),
+        claim_(options.domain),
+        domain_(claim_.domain()),
+        speed_(options.speed),
+        paused_(options.paused) {
     refuse_a_run();
-    paused_ = options.paused;
+    control_.emplace(claim_.domain());
   }
 
   int play() {
@@ -95,30 +51,114 @@ class Player {
       mcap::Reader reader(options_.file);
       reader.read();
       begin_ns_ = reader.contents().statistics.start_time;
+      end_ns_ = std::max(begin_ns_, reader.contents().statistics.end_time);
     }
-    const auto from_ns = begin_ns_ + static_cast<std::uint64_t>(options_.from_s * 1e9);
-    mcap::Reader reader(options_.file);
     try {
-      reader.read({[&](const mcap::Channel& channel, const mcap::Message& message) {
-                     if (!wanted(channel)) return;
-                     if (message.log_time >= from_ns) play(channel, message);
-                     else before_[channel.id] = {channel, std::string(mcap::text_of(message.data))};
-                   },
-                   nullptr, nullptr});
-      begin_playing(from_ns);
+      for (std::optional<double> from_s = options_.from_s; from_s;) {
+        try {
+          read_from(*from_s);
+          from_s.reset();
+          wait_at_the_end();
+        } catch (const Seek& seek) {
+          from_s = seek.to_s;
+        }
+      }
     } catch (const Ended&) {}
-    fmt::print("{} messages of {} topics in DDS domain {}\n", count_, writers_.size(), claim_.domain());
-    std::fflush(stdout);
-    while (options_.stay && !ended()) static_cast<void>(keys_.read(kLongestWait));
+    report_end();
     return exit_status::kOk;
   }
 
  private:
   struct Ended {};
+  struct Seek {
+    double to_s;  ///< after the first message
+  };
   struct Early {
     mcap::Channel channel;
-    std::string cdr;
+    std::deque<std::string> cdrs;
   };
+
+  void read_from(double from_s) {
+    const auto from_ns = begin_ns_ + static_cast<std::uint64_t>(from_s * 1e9);
+    before_.clear();
+    start_.reset();
+    position_ns_ = std::min(from_ns, end_ns_);
+    over_ = false;
+    mcap::Reader reader(options_.file);
+    reader.read({[&](const mcap::Channel& channel, const mcap::Message& message) {
+                   if (!wanted(channel)) return;
+                   if (message.log_time >= from_ns) return play(channel, message);
+                   Early& early = before_[channel.id];
+                   early.channel = channel;
+                   early.cdrs.emplace_back(mcap::text_of(message.data));
+                   if (early.cdrs.size() > kept_before(channel.topic)) early.cdrs.pop_front();
+                 },
+                 nullptr, nullptr});
+    begin_playing(from_ns);
+  }
+
+  void report_end() {
+    if (std::exchange(told_end_, true)) return;
+    fmt::print("{} messages of {} topics in DDS domain {}\n", count_, writers_.size(), claim_.domain());
+    std::fflush(stdout);
+  }
+
+  /// A program that controls the replay may seek back.
+  void wait_at_the_end() {
+    over_ = true;
+    position_ns_ = end_ns_;
+    if (options_.stay) report_end();
+    while (options_.stay || control_->watched()) {
+      obey_control();
+      react(keys_.read(kLongestWait));
+    }
+  }
+
+  [[nodiscard]] ReplayState state() const {
+    const auto seconds = [&](std::uint64_t time_ns) {
+      return time_ns > begin_ns_ ? static_cast<double>(time_ns - begin_ns_) * 1e-9 : 0.0;
+    };
+    return {seconds(position_ns_), seconds(end_ns_), speed_.value_or(0.0), paused_, over_, options_.file.string()};
+  }
+
+  /// Obeys programs that control the replay.
+  void obey_control() {
+    controlled_ = Clock::now();
+    std::optional<Seek> seek;
+    const auto go_to = [&](double time_s) {
+      seek = Seek{std::min(time_s, state().length_s)};
+      position_ns_ = begin_ns_ + static_cast<std::uint64_t>(seek->to_s * 1e9);
+      over_ = false;
+    };
+    control_->poll([&](const ReplayRequest& request) {
+      switch (request.kind) {
+        case ReplayRequest::Kind::kState:
+          break;
+        case ReplayRequest::Kind::kPause:
+          paused_ = true;
+          steps_ = 0;
+          break;
+        case ReplayRequest::Kind::kResume:
+          paused_ = false;
+          if (over_) go_to(0.0);  // to play it once more
+          break;
+        case ReplayRequest::Kind::kStep:
+          paused_ = true;
+          steps_ += static_cast<std::uint64_t>(request.value);
+          break;
+        case ReplayRequest::Kind::kSpeed:
+          speed_ = request.value == 0 ? std::nullopt : std::optional(request.value);
+          if (start_) start_ = std::max(*start_, Clock::now());
+          start_ns_ = position_ns_;
+          break;
+        case ReplayRequest::Kind::kSeek:
+          go_to(request.value);
+          break;
+      }
+      return state();
+    });
+    if (seek) throw Seek(*seek);
+  }
 
   void refuse_a_run() const {
     const dds::Discovery discovery(domain_.participant());
@@ -163,12 +203,18 @@ class Player {
   /// Publishes the last messages before the beginning, so that readers know the scene.
   void begin_playing(std::uint64_t from_ns) {
     if (start_) return;
-    fmt::print("replaying {} in DDS domain {}\n", options_.file.string(), claim_.domain());
-    std::fflush(stdout);
-    for (const auto& [id, early] : before_) write(early.channel, mcap::bytes_of(early.cdr));
+    if (!told_begin_) {
+      fmt::print("replaying {} in DDS domain {}; `constrictor dashboard --run {}` shows it\n", options_.file.string(),
+                 claim_.domain(), claim_.domain());
+      std::fflush(stdout);
+    }
+    for (const auto& [id, early] : before_) {
+      for (const auto& cdr : early.cdrs) write(early.channel, mcap::bytes_of(cdr));
+    }
     before_.clear();
-    start_ = Clock::now() + kMeet;
+    start_ = Clock::now() + (told_begin_ ? 0ms : kMeet);
     start_ns_ = from_ns;
+    told_begin_ = true;
   }
 
   void play(const mcap::Channel& channel, const mcap::Message& message) {
@@ -177,42 +223,46 @@ class Player {
       writer_of(channel, message.data);  // exists before the first message is due
     }
     const bool tick = channel.topic == barrier_topics::kTick.name;
+    if (Clock::now() - controlled_ > kControlEvery) obey_control();
     wait_for(message.log_time);
-    if (paused_) wait_paused(message.log_time, tick);
+    if (paused_ && steps_ == 0) wait_paused(message.log_time);
     write(channel, message.data);
-    if (tick && step_) {
-      step_ = false;
-      paused_ = true;
-    }
+    position_ns_ = message.log_time;
+    if (tick && steps_ > 0) --steps_;
   }
 
   void react(char key) {
     if (key == 'q' || ended()) throw Ended{};
     if (key == ' ') paused_ = !paused_;
-    if (key == 's') paused_ = step_ = true;
+    if (key == 's') {
+      paused_ = true;
+      steps_ = 1;
+    }
   }
 
   void wait_for(std::uint64_t time_ns) {
     for (;;) {
       if (ended()) throw Ended{};
-      if (paused_ || (!options_.speed && Clock::now() >= *start_)) return;
-      const double ahead_s = options_.speed && time_ns > start_ns_
-                                 ? static_cast<double>(time_ns - start_ns_) * 1e-9 / *options_.speed
-                                 : 0.0;
+      if (paused_ || (!speed_ && Clock::now() >= *start_)) return;
+      const double ahead_s =
+          speed_ && time_ns > start_ns_ ? static_cast<double>(time_ns - start_ns_) * 1e-9 / *speed_ : 0.0;
       const auto due = *start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(ahead_s));
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now());
       if (left <= 0ms) return;
       react(keys_.read(std::min<std::chrono::milliseconds>(left, kLongestWait)));
+      obey_control();
     }
   }
 
-  /// Waits for the end of the pause, or for the permission of one tick. Time goes on from `time_ns` then.
-  void wait_paused(std::uint64_t time_ns, bool) {
-    if (!told_) fmt::print("paused: the space bar continues, s makes one tick, q ends\n");
+  /// Waits for the end of the pause, or for the permission of a tick. Time goes on from `time_ns` then.
+  void wait_paused(std::uint64_t time_ns) {
+    if (!told_pause_) fmt::print("paused: the space bar continues, s makes one tick, q ends\n");
     std::fflush(stdout);
-    told_ = true;
-    while (paused_ && !step_) react(keys_.read(kLongestWait));
-    if (step_) paused_ = false;
+    told_pause_ = true;
+    while (paused_ && steps_ == 0) {
+      react(keys_.read(kLongestWait));
+      obey_control();
+    }
     start_ = Clock::now();
     start_ns_ = time_ns;
   }
@@ -221,15 +271,20 @@ class Player {
   TopicPatterns patterns_;
   DomainClaim claim_;
   dds::Domain domain_;
-  Keys keys_;
+  KeyInput keys_;
+  std::optional<ReplayServer> control_;                               ///< after the check that the domain has no run
   std::map<std::uint16_t, std::unique_ptr<dds::RawWriter>> writers_;  ///< by channel
   std::map<std::uint16_t, Early> before_;                             ///< last messages before the beginning
-  std::uint64_t begin_ns_ = 0;
-  std::uint64_t start_ns_ = 0;  ///< log time that is due at `start_`
+  std::uint64_t begin_ns_ = 0, end_ns_ = 0;                           ///< of the first and the last message
+  std::uint64_t position_ns_ = 0;                                     ///< of the newest message that was published
+  std::uint64_t start_ns_ = 0;                                        ///< log time that is due at `start_`
   std::optional<Clock::time_point> start_;
-  bool paused_ = false;
-  bool step_ = false;
-  bool told_ = false;
+  Clock::time_point controlled_{};  ///< when requests of other programs were looked for
+  std::optional<double> speed_;     ///< times the recorded speed; empty: as fast as possible
+  bool paused_;
+  std::uint64_t steps_ = 0;  ///< ticks that the pause still lets through
+  bool over_ = false;
+  bool told_begin_ = false, told_pause_ = false, told_end_ = false;
   std::uint64_t count_ = 0;
 };
 
@@ -238,19 +293,6 @@ class Player {
 int play_recording(const PlayOptions& options) {
   catch_interrupts({SIGINT, SIGTERM});
   return Player(options).play();
-}
-
-std::vector<std::string> recorded_roster(const std::filesystem::path& file) {
-  std::vector<std::string> names;
-  mcap::Reader(file).read({nullptr, nullptr, [&](const mcap::Metadata& metadata) {
-                             const auto roster = metadata.entries.find("roster");
-                             if (metadata.name != "recording" || roster == metadata.entries.end()) return;
-                             std::istringstream list(roster->second);
-                             for (std::string name; std::getline(list, name, ',');) names.push_back(name);
-                           }});
-  if (names.empty())
-    throw UsageError(fmt::format("FILE: found {}, accepted a recording of `constrictor run --record`", file.string()));
-  return names;
 }
 
 }  // namespace constrictor::cli

@@ -22,7 +22,4 @@ struct PlayOptions {
 /// Returns the exit status. Throws mcap::Error, dds::Error, or CommandError if the domain has a run.
 int play_recording(const PlayOptions& options);
 
-/// The components of a recorded run. Throws mcap::Error, or UsageError if the recording is not that of a run.
-[[nodiscard]] std::vector<std::string> recorded_roster(const std::filesystem::path& file);
-
 }  // namespace constrictor::cli

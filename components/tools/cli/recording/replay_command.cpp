@@ -4,12 +4,14 @@
 
 #include <chrono>
 #include <optional>
+#include <sstream>
 
 #include "cli/interrupt.hpp"
 #include "cli/launch_plan.hpp"
 #include "cli/recording/player.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "recording/mcap_reader.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -23,6 +25,20 @@ struct Options {
   std::string speed = "1";
   PlayOptions play;
 };
+
+/// The components of a recorded run. Throws mcap::Error, or UsageError if the recording is not that of a run.
+std::vector<std::string> recorded_roster(const std::filesystem::path& file) {
+  std::vector<std::string> names;
+  mcap::Reader(file).read({nullptr, nullptr, [&](const mcap::Metadata& metadata) {
+                             const auto roster = metadata.entries.find("roster");
+                             if (metadata.name != "recording" || roster == metadata.entries.end()) return;
+                             std::istringstream list(roster->second);
+                             for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+                           }});
+  if (names.empty())
+    throw UsageError(fmt::format("FILE: found {}, accepted a recording of `constrictor run --record`", file.string()));
+  return names;
+}
 
 /// This process becomes constrictor_host, which contains the components.
 int replay_components(const Options& options) {

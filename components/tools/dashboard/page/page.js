@@ -7,6 +7,7 @@ import { Parameters } from "./parameters.js";
 import { Scene } from "./scene.js";
 import { buildTasks } from "./tasks.js";
 import { showTexts } from "./texts.js";
+import { Timeline } from "./timeline.js";
 import { drawTorques, TorqueHistory } from "./torques.js";
 
 const element = (id) => document.getElementById(id);
@@ -49,8 +50,12 @@ async function call(name, request) {
 function onChange(text, kind) {
   element("connection").textContent = text;
   element("connection").className = "badge " + kind;
-  for (const [id, service] of Object.entries(services))
-    element(id).disabled = kind !== "good" || !connection.has(service);
+  for (const [id, service] of Object.entries(services)) {
+    const offered = kind === "good" && connection.has(service);
+    element(id).disabled = !offered;
+    if (kind === "good") element(id).closest("label, button").hidden = !offered; // a recording obeys fewer of them
+  }
+  if (kind === "good") element("operate").hidden = !connection.has("drive");
 }
 
 function onMessage(topic, view, from) {
@@ -58,6 +63,17 @@ function onMessage(topic, view, from) {
   state = JSON.parse(new TextDecoder().decode(new Uint8Array(view.buffer, from)));
   if (state.world && state.torque_nm) history.add(state.world.time_s, state.torque_nm);
   scenes = plots = true;
+}
+
+/** Shows the pace of the run, or the speed of the replay, unless the user is just choosing another one. */
+function showPace() {
+  const { run, replay } = state;
+  const pace = replay ? replay.speed : run ? (run.realtime ? 1 : run.pace) : null;
+  const field = element("pace");
+  if (pace === null || document.activeElement === field) return;
+  const known = [...field.options].find((option) => option.value !== "" && Number(option.value) === pace);
+  field.value = known ? known.value : "";
+  field.options[0].textContent = `${pace} times`;
 }
 
 function showMission(mission) {
@@ -78,6 +94,8 @@ function frame() {
   drawTorques(element("torques"), state.torque_nm ?? []);
   history.draw();
   showMission(state.mission);
+  showPace();
+  timeline.show(state.replay);
   showTexts(state);
 }
 
@@ -89,6 +107,7 @@ const connection = new Connection(["view/state", "view/camera", "view/processed"
 for (const name of plain) element(name).addEventListener("click", () => call(name, {}));
 element("step").addEventListener("click", () => call("step", { ticks: 1 }));
 element("pace").addEventListener("change", (event) => call("pace", { pace: Number(event.target.value) }));
+const timeline = new Timeline(connection, call);
 buildTasks(call);
 new Drive(connection, say, () => call("stop", {}));
 new Parameters(connection, call);

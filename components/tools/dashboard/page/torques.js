@@ -34,7 +34,7 @@ export class TorqueHistory {
 
   add(time, torques) {
     const newest = this.largest.at(-1)?.time;
-    if (newest !== undefined && (time < newest || time > newest + span_s || this.image?.height !== torques.length)) {
+    if (newest !== undefined && (time < newest || time > newest + 10 || this.image?.height !== torques.length)) {
       this.largest = []; // a new epoch, or another place in a recording
       this.image = null;
     } else if (newest !== undefined && time - newest < step_s * 0.99) {

@@ -1,0 +1,16 @@
+// What a replay does with each topic.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace constrictor::cli {
+
+/// Commands to a run and what proves membership: nobody should obey them again.
+[[nodiscard]] bool is_command(const std::string& topic);
+/// The depth of the writer's history.
+[[nodiscard]] int depth_of(const std::string& topic);
+/// How many of the last messages before the beginning are published: more than one where each tells something else.
+[[nodiscard]] std::size_t kept_before(const std::string& topic);
+
+}  // namespace constrictor::cli
