@@ -47,6 +47,8 @@ tests=(
   # definitions of ROS messages, with which those of the bridge to ROS 2 are compared (0.4 MB in all)
   ros-std-msgs ros-geometry-msgs ros-sensor-msgs ros-nav-msgs ros-tf2-msgs ros-rosgraph-msgs ros-visualization-msgs
   ros-diagnostic-msgs
+  # parsers of the robot's descriptions for ROS and Gazebo
+  liburdfdom-dev liburdfdom-tools libsdformat-dev
 )
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)

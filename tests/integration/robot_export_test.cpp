@@ -27,9 +27,14 @@ TEST_F(RobotExport, TheExamplesOfItsHelpWork) {
     Process example({"/bin/sh", "-c", "cd " + dir_.string() + " && " + line}, environment);
     EXPECT_EQ(example.wait(20s), exit_status::kOk) << line << example.errors();
   }
-  EXPECT_EQ(examples, 2);
+  EXPECT_EQ(examples, 4);
   EXPECT_NE(read("mamba.xml").find("<mujoco model=\"mamba\">"), std::string::npos);
   EXPECT_NE(read("serpens.xml").find("<mujoco model=\"serpens\">"), std::string::npos);
+  EXPECT_NE(read("mamba.sdf").find("<model name=\"mamba\">"), std::string::npos);
+  Process check({"/usr/bin/check_urdf", (dir_ / "mamba.urdf").string()});
+  ASSERT_EQ(check.wait(20s), 0) << check.errors() << " (liburdfdom-tools is installed by scripts/setup.sh tests)";
+  EXPECT_NE(check.output().find("root Link: base_link has 2 child(ren)"), std::string::npos) << check.output();
+  EXPECT_NE(check.output().find("module_23"), std::string::npos);
 }
 
 TEST_F(RobotExport, WritesTheSameToAFileAsToTheStandardOutput) {
@@ -52,7 +57,9 @@ TEST_F(RobotExport, RefusesWrongOptionsRobotsAndFiles) {
   write("robot.yaml", "name: none\n");
   const std::string missing = (dir_ / "no_such_folder" / "robot.xml").string();
   const std::vector<Case> cases = {
-      {{}, exit_status::kUsage, "--mjcf is required"},
+      {{}, exit_status::kUsage, "[--mjcf,--urdf,--sdf]"},
+      {{"--urdf", "--sdf"}, exit_status::kUsage, "[--mjcf,--urdf,--sdf]"},
+      {{"--urdf", "mamba"}, exit_status::kUsage, "mamba"},
       {{"--mjfc"}, exit_status::kUsage, "--mjcf"},
       {{"--mjcf", "mamba"}, exit_status::kUsage, "mamba"},
       {{"--mjcf", "--robot", "mambo"}, exit_status::kConfiguration, "robot: found 'mambo'"},

@@ -1,4 +1,4 @@
-// `constrictor robot export`: the robot as a model of another simulator.
+// `constrictor robot export`: the robot as a description for other programs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,7 @@
 #include "cli/launch_plan.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "robot/description.hpp"
 #include "robot/mujoco_model.hpp"
 #include "robot/robot_model.hpp"
 #include "runtime/host.hpp"
@@ -21,13 +22,14 @@ namespace constrictor::cli {
 namespace {
 
 struct Options {
-  bool mjcf = false;
+  bool mjcf = false, urdf = false, sdf = false;
   std::string robot = "mamba";
   std::filesystem::path output;  ///< empty: standard output
 };
 
 int export_robot(const Options& options) {
-  const std::string text = mujoco_model(load_robot(find_file(options.robot, kRobots)));
+  const RobotModel robot = load_robot(find_file(options.robot, kRobots));
+  const std::string text = options.mjcf ? mujoco_model(robot) : options.urdf ? urdf_model(robot) : sdf_model(robot);
   const bool to_file = !options.output.empty();
   errno = 0;
   std::ofstream file;
@@ -44,28 +46,40 @@ int export_robot(const Options& options) {
 
 void add_robot(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  auto* robot = add_group(app, "robot", "write the robot as a model of another simulator");
-  auto* sub = add_subcommand(*robot, "export", "write the robot as a model of another simulator", action, options,
+  auto* robot = add_group(app, "robot", "write the robot as a description for other programs");
+  auto* sub = add_subcommand(*robot, "export", "write the robot as a description for other programs", action, options,
                              export_robot);
-  sub->add_flag("--mjcf", options->mjcf, "XML file for the simulator MuJoCo (tested with version 2.2.2)")->required();
+  auto* format = sub->add_option_group("format");
+  format->add_flag("--mjcf", options->mjcf, "XML file for the simulator MuJoCo (tested with version 2.2.2)");
+  format->add_flag("--urdf", options->urdf, "URDF file for ROS: RViz, robot_state_publisher, MoveIt");
+  format->add_flag("--sdf", options->sdf, "SDF 1.9 file for the simulator Gazebo");
+  format->require_option(1);
   sub->add_option("--robot", options->robot, "robot: a name (see `constrictor list robots`) or a file")
       ->capture_default_str();
   sub->add_option("--output", options->output,
                   "file to write; an existing file is replaced (default: standard output)");
   const std::string about =
-      "The model contains: the modules as capsules with mass and inertia; the joints with axes, ranges, rotor inertia\n"
-      "and gear friction; the servos with both gains and the limit of their torque; series-elastic elements; a ground\n"
-      "plane; the friction of the skin along and across each module.\n"
-      "It does not contain: the flat undersides of the modules (a straight robot may roll), the limit of the joints'\n"
-      "speed, the speed-torque curve, the camera, the noise of the sensors, objects and walls.\n"
-      "The control of a servo is: setpoint + (velocity gain / position gain) * rate of the setpoint [rad].\n"
-      "Where the model differs from this project's physics is explained in components/lib/robot/README.md.";
-  const std::string footer = help_footer(about,
-                                         {"constrictor robot export --mjcf > mamba.xml",
-                                          "constrictor robot export --mjcf --robot serpens --output serpens.xml"},
-                                         "0 done; 64 wrong usage; 70 the file cannot be written; 78 no such robot, or "
-                                         "a wrong robot file",
-                                         kDataEnvironment);
+      "All formats contain: the modules as capsules with mass and inertia; the joints with axes, ranges, limit of the\n"
+      "torque and gear friction. The angles have the signs of this project.\n"
+      "MJCF also: rotor inertia; servos with both gains; series-elastic elements; a ground plane; the friction of the\n"
+      "skin along and across each module. The control of a servo is: setpoint + (velocity gain / position gain) * "
+      "rate\n"
+      "of the setpoint [rad].\n"
+      "URDF and SDF also: the limit of the joints' speed; the frame of the camera. The frames are those that "
+      "ros_bridge\n"
+      "publishes. SDF also: the camera as a sensor, and the friction of the skin.\n"
+      "None contains: the flat undersides of the modules (a straight robot may roll), the speed-torque curve, "
+      "backlash,\n"
+      "the noise of the sensors, objects and walls. No meshes are needed: capsules are exact.\n"
+      "Where the models differ from this project's physics is explained in components/lib/robot/README.md.";
+  const std::string footer =
+      help_footer(about,
+                  {"constrictor robot export --mjcf > mamba.xml", "constrictor robot export --urdf > mamba.urdf",
+                   "constrictor robot export --sdf --output mamba.sdf",
+                   "constrictor robot export --mjcf --robot serpens --output serpens.xml"},
+                  "0 done; 64 wrong usage; 70 the file cannot be written; 78 no such robot, or "
+                  "a wrong robot file",
+                  kDataEnvironment);
   sub->footer(footer);
   robot->footer(footer);
 }

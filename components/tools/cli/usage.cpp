@@ -43,6 +43,10 @@ std::vector<std::string> option_names(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const auto& name : option->get_lnames()) names.push_back("--" + name);
   }
+  // A group of options is a subcommand without a name.
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* each) { return each->get_name().empty(); })) {
+    for (auto& name : option_names(*group)) names.push_back(std::move(name));
+  }
   return names;
 }
 

@@ -72,6 +72,7 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   task_answer_out_ = node_.writer<Text>("task/answer", 16);
   task_status_out_ = node_.writer<Text>("task/status", 1);
   task_event_out_ = node_.writer<Text>("task/event", 64);
+  description_out_ = node_.writer<Text>("robot_description", 1);
   using enum Node::Reliability;
   velocity_ = node_.reader<Twist>("cmd_vel", 1, kBestEffort);
   // A stop must not be lost, and it must match every writer. A stop that arrives at both readers is one stop.
@@ -80,6 +81,7 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   clear_stop_ = node_.reader<Empty>("emergency_stop/clear", 1, kReliable);
   task_ = node_.reader<Text>("task/request", 16, kReliable);
   node_.announce();
+  say(description_out_, urdf_model(robot));
 
   const dds_entity_t robot_side = client_.participant();
   tick_ = dds::Reader<msg::Tick>::observer(robot_side, "barrier/tick", 8);
@@ -171,7 +173,7 @@ void Bridge::pass_images() {
     info.header.stamp = out.header.stamp;
     camera_info_out_.write(info);
   });
-  take_image(percept_image_, percept_image_out_, "camera_optical");
+  take_image(percept_image_, percept_image_out_, kCameraFrame);
   take_image(overview_image_, overview_image_out_, "overview");
 }
 

@@ -104,7 +104,7 @@ class Bridge {
   dds::Writer<Path> line_out_, plan_out_;
   dds::Writer<DiagnosticArray> diagnostics_out_;
   dds::Writer<std_msgs_msg_dds__Bool_> stopped_out_;
-  dds::Writer<Text> task_answer_out_, task_status_out_, task_event_out_;
+  dds::Writer<Text> task_answer_out_, task_status_out_, task_event_out_, description_out_;
   Subscription<Twist> velocity_;
   Subscription<Empty> stop_, best_effort_stop_, clear_stop_;
   Subscription<Text> task_;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <utility>
 
 #include "constrictor/image.hpp"
+#include "robot/description.hpp"
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_values.hpp"
 
@@ -22,12 +22,6 @@ dds_sequence_double values_of(const double* values, std::size_t count) {
 
 geometry_msgs_msg_dds__Vector3_ vector_of(const msg::Vector3& v) { return {v.x, v.y, v.z}; }
 geometry_msgs_msg_dds__Quaternion_ rotation_of(const msg::Quaternion& q) { return {q.x, q.y, q.z, q.w}; }
-
-std::string numbered(const char* prefix, std::size_t number) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%s%02zu", prefix, number);
-  return name;
-}
 
 bool is_rotation(const msg::Quaternion& q) {
   return std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 0.01;
@@ -62,12 +56,9 @@ std::string unfit(const msg::CameraImage& image) {
   return reason.empty() ? image_violation(image) : reason;
 }
 
-std::string joint_name(std::size_t joint) { return numbered("joint_", joint); }
-std::string module_frame(std::size_t module) { return module == 0 ? "base_link" : numbered("module_", module); }
-
 Translator::Translator(RobotModel robot) : robot_(std::move(robot)) {
   for (std::size_t i = 0; i < robot_.joints.size(); ++i) joint_names_.push_back(joint_name(i));
-  for (std::size_t i = 0; i < robot_.module_count; ++i) module_frames_.push_back(module_frame(i));
+  for (std::size_t i = 0; i < robot_.module_count; ++i) module_frames_.push_back(link_name(i));
   for (auto& name : joint_names_) joint_name_pointers_.push_back(name.data());
 }
 
@@ -109,7 +100,7 @@ Image Translator::image(const msg::CameraImage& image, const char* frame) {
 CameraInfo Translator::camera_info(const msg::CameraInfo& info) {
   static const double kNoDistortion[5] = {};
   CameraInfo message{};
-  message.header = header_of(info.header.time_ns, text("camera_optical"));
+  message.header = header_of(info.header.time_ns, text(kCameraFrame));
   message.height = info.height;
   message.width = info.width;
   message.distortion_model = text("plumb_bob");
@@ -158,8 +149,11 @@ TFMessage Translator::transforms(const msg::RobotPose& pose, const msg::JointSta
                          {{pose.x_m, pose.y_m, robot_.module_radius_m}, yaw_rotation(pose.yaw_rad)}});
   const std::size_t count = std::min<std::size_t>(joints.joint_count, robot_.joints.size());
   const auto poses = module_poses(robot_, std::span(joints.position_rad, count));
+  const auto link = [&](std::size_t i) -> Eigen::Isometry3d {
+    return poses[i] * Eigen::Translation3d(-centre_in_link(robot_, i));
+  };
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const Eigen::Isometry3d X = poses[i - 1].inverse() * poses[i];
+    const Eigen::Isometry3d X = link(i - 1).inverse() * link(i);
     const Eigen::Quaterniond q(X.linear());
     const Eigen::Vector3d p = X.translation();
     transforms_.push_back({header_of(time_ns, text(module_frames_[i - 1])),
@@ -172,7 +166,7 @@ TFMessage Translator::transforms(const msg::RobotPose& pose, const msg::JointSta
 TFMessage Translator::camera_transform(const msg::CameraInfo& info) {
   transforms_.clear();
   transforms_.push_back({header_of(info.header.time_ns, text(module_frames_.front())),
-                         text("camera_optical"),
+                         text(kCameraFrame),
                          {vector_of(info.X_HC.position_m), rotation_of(info.X_HC.orientation)}});
   return tf_message();
 }

@@ -2,8 +2,8 @@
 // no clock.
 //
 // Frames follow REP 103 and 105: `odom` is guidance's map frame M (z up, origin on the ground below the head's first
-// position), `base_link` is the head module, `module_01` and so on are the others by a chain of joints, and
-// `camera_optical` is the camera. Units are SI on both sides.
+// position). The frames of the modules and of the camera are those of the robot's URDF file (robot/description.hpp).
+// Units are SI on both sides.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "robot/description.hpp"
 #include "robot/robot_model.hpp"
 #include "ros_types.h"
 
@@ -36,11 +37,6 @@ using Twist = geometry_msgs_msg_dds__Twist_;
 [[nodiscard]] std::string unfit(const msg::CameraInfo& info);
 [[nodiscard]] std::string unfit(const msg::CameraImage& image);
 
-/// Name of a joint by its place: joint_00 is next to the head.
-[[nodiscard]] std::string joint_name(std::size_t joint);
-/// Frame of a module; module 0 is base_link.
-[[nodiscard]] std::string module_frame(std::size_t module);
-
 /// Translates messages for which unfit() is empty. The returned messages point into memory of the translator (names)
 /// and of the argument (pixels): write them before either changes.
 class Translator {
@@ -54,7 +50,7 @@ class Translator {
   [[nodiscard]] JointState joint_state(const msg::JointState& joints);
   [[nodiscard]] Imu imu(const msg::ImuState& imu);
   /// rgb8, stamped with the time of the exposure.
-  [[nodiscard]] Image image(const msg::CameraImage& image, const char* frame = "camera_optical");
+  [[nodiscard]] Image image(const msg::CameraImage& image, const char* frame = kCameraFrame);
   /// plumb_bob without distortion.
   [[nodiscard]] CameraInfo camera_info(const msg::CameraInfo& info);
   /// Pose in odom, velocity in base_link; the turning rate is the newest of `imu`. Components that motion in the plane

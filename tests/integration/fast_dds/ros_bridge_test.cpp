@@ -122,6 +122,9 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
   }
   for (const char* kind : {"clock", "joint_states", "imu", "odom", "tf"}) EXPECT_GT(count[kind], 50) << kind;
   EXPECT_GE(count["tf_static"], 1);
+  Process urdf({program("constrictor"), "robot", "export", "--urdf"});
+  EXPECT_EQ(urdf.wait(20s), 0);
+  EXPECT_NE(probe.output().find("\n" + urdf.output()), std::string::npos) << "robot_description";
   // Both kinds are stamped with the exposure, although the processed image comes later.
   EXPECT_GT(std::count_if(percept_stamps.begin(), percept_stamps.end(),
                           [&](const auto& stamp) { return image_stamps.contains(stamp); }),

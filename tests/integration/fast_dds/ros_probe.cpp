@@ -105,6 +105,8 @@ void read_surroundings(example::Participant& node) {
   for (const char* name : {"task/answer", "task/status", "task/event"})
     node.read<Text>(std::string("rt/") + name, true, 64,
                     [name](const auto& m) { std::printf("%s %s\n", name, m.data().c_str()); });
+  node.read<Text>("rt/robot_description", true, 1,
+                  [](const auto& m) { std::printf("robot_description %zu\n%s", m.data().size(), m.data().c_str()); });
   node.read<std_msgs::msg::dds_::Bool_PubSubType>("rt/emergency_stop/state", true, 1, [](const auto& m) {
     std::printf("stopped %s\n", m.data() ? "true" : "false");
   });

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -77,8 +78,15 @@ TEST(RosTranslator, FramesOfModulesAreWhereKinematicsPutsThem) {
   head.translation() << pose.x_m, pose.y_m, robot.module_radius_m;
   head.linear() = Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const auto expected = module_poses(robot, std::span(joints.position_rad, 23), head);
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_LT((frames.at(module_frame(i)).matrix() - expected[i].matrix()).norm(), 1e-12) << module_frame(i);
+  EXPECT_LT((frames.at("base_link").matrix() - expected[0].matrix()).norm(), 1e-12);
+  for (std::size_t i = 1; i < expected.size(); ++i) {
+    char name[32];
+    std::snprintf(name, sizeof name, "module_%02zu", i);
+    // The frame lies on the joint, half a module ahead of the centre; it turns with the module.
+    const Eigen::Isometry3d centre = frames.at(name) * Eigen::Translation3d(-0.5 * robot.module_length_m, 0, 0);
+    EXPECT_LT((centre.matrix() - expected[i].matrix()).norm(), 1e-12) << name;
+    const Eigen::Vector3d end_ahead = expected[i - 1] * Eigen::Vector3d(-0.5 * robot.module_length_m, 0, 0);
+    EXPECT_LT((frames.at(name).translation() - end_ahead).norm(), 1e-12) << name << " is not on its joint";
   }
 }
 
