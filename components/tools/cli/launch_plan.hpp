@@ -25,6 +25,8 @@ struct RunOptions {
   bool no_checkpoints = false;            ///< the plant keeps none: it is not restarted, and the run not resumed
   bool record = false;                    ///< record all topics in run.mcap
   std::string images = "on";              ///< of the recording: "on", "off" or "recompute"
+  bool view = false;                      ///< start the dashboard with the run
+  std::uint16_t view_port = 8765;         ///< of this dashboard; 0: any free one
   std::filesystem::path resume_dir;       ///< folder of a run to continue; empty: a new run
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"

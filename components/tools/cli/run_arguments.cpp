@@ -55,6 +55,13 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
   run->add_option("--max-sim-time", options->max_sim_time_s,
                   "[s] end the run at this simulated time (default: no limit but the report component's)")
       ->check(number(0.0, 1e6, "s"));
+  auto* view = run->add_flag("--view", options->view,
+                             "start `constrictor dashboard` with the run, print its address, open it in a browser if\n"
+                             "there is a display, and end it with the run");
+  run->add_option("--view-port", options->view_port, "TCP port of --view; 0: a free one")
+      ->capture_default_str()
+      ->check(whole_number(0, 65535))
+      ->needs(view);
   auto* record = run->add_flag("--record", options->record,
                                "record all topics of the run's domain in run.mcap, in the report directory");
   run->add_option("--images", options->images,
@@ -72,13 +79,15 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
   run->add_option("--domain", options->domain, "DDS domain, 0 to 229 (default: the first free one of 1 to 100)")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));
-  auto* resume = run->add_option("--resume", options->resume_dir,
-                                 "report directory of a run that was interrupted: continue it; only --domain may be "
-                                 "given in addition")
-                     ->check(CLI::ExistingDirectory);
+  auto* resume =
+      run->add_option("--resume", options->resume_dir,
+                      "report directory of a run that was interrupted: continue it; only --domain and --view "
+                      "may be given in addition")
+          ->check(CLI::ExistingDirectory);
   for (CLI::Option* other : run->get_options()) {
     const std::string name = other->get_name();
-    if (other != resume && name != "--domain" && name != "--help") resume->excludes(other);
+    if (other != resume && name != "--domain" && name != "--help" && !name.starts_with("--view"))
+      resume->excludes(other);
   }
   run->footer(
       "Checks all files first. Then starts the components of a launch manifest in a DDS domain of their own, shows "
@@ -94,6 +103,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "  constrictor run\n"
       "  constrictor run line --seed 7 --report /tmp/seven\n"
       "  constrictor run --in-process --pace realtime\n"
+      "  constrictor run --pace 1x --view                        # watch and drive it in a browser\n"
       "  constrictor run --resume /tmp/seven                     # the launcher was killed: go on\n"
       "  constrictor run --group physics,camera --group navigation,control\n"
       "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"

@@ -10,6 +10,7 @@
 #include "cli/companions.hpp"
 #include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
+#include "cli/live_view.hpp"
 #include "cli/log/launch_log.hpp"
 #include "cli/log/log_files.hpp"
 #include "cli/progress_display.hpp"
@@ -92,6 +93,10 @@ class Launcher {
     }
     companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& line) { log_.warn(line); });
     supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
+    if (options_.view) {
+      view_.emplace(claim_.domain(), options_.view_port, report_dir_ / "logs",
+                    [this](const auto& line) { display_.print(line); });
+    }
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
     watch_run();
     const double wall_time_s = std::chrono::duration<double>(Clock::now() - start).count();
@@ -145,6 +150,7 @@ class Launcher {
   void update() {
     for (const auto& line : observer_.poll()) display_.print(line);
     companions_->poll();
+    if (view_) view_->poll();
     const RunView& view = observer_.view();
     note_.set_seed(view.seed(options_.seed));
     supervisor_.run_is_at(view.tick, view.held());
@@ -231,6 +237,7 @@ class Launcher {
     }
     if (options_.record) outcome.recording = recording_report(report_dir_);
     if (!outcome.recording.is_null()) display_.print(outcome.recording["text"].get<std::string>());
+    view_.reset();
     companions_.reset();  // emulated devices write what really happened when they end
     const RunVerdict verdict = write_report(report_dir_, outcome, view, supervisor_.records(), hosts_.report());
     log_.say(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
@@ -261,6 +268,7 @@ class Launcher {
   Clock::time_point memory_sampled_{};
   RunEnding ending_;
   std::optional<Companions> companions_;  ///< programs beside the run; they end after it
+  std::optional<LiveView> view_;          ///< empty: the run is not shown
   bool run_is_over_ = false;              ///< the plant has ended; the other processes are ending
   std::string killed_;                    ///< why the processes are killed; empty if they are not killed
   std::string left_;                      ///< why the run is left without an end, so that it can be resumed; else empty
@@ -275,15 +283,11 @@ int run_command(const RunOptions& given) {
     resumed = read_run_record(given.resume_dir);
     options = resumed->options;
     options.domain = given.domain;
+    options.view = given.view;
+    options.view_port = given.view_port;
   }
   LaunchPlan plan = make_launch_plan(options);
-  for (const auto& process : plan.manifest.processes) {
-    const auto& hosted = process.components;
-    if (resumed && !process.host.empty() &&
-        std::find(hosted.begin(), hosted.end(), plan.manifest.plant) != hosted.end())
-      throw ConfigurationError(
-          fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
-  }
+  if (resumed) expect_plant_here(plan);
   check_components(options, plan);
   if (!options.secure.empty()) use_keys(options.secure, plan);
   try {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -97,6 +98,15 @@ RunRecord read_run_record(const fs::path& folder) {
   if (record.over) throw wrong("the run is over: there is nothing to continue");
   record.options.report_dir = fs::absolute(folder);
   return record;
+}
+
+void expect_plant_here(const LaunchPlan& plan) {
+  for (const auto& process : plan.manifest.processes) {
+    const auto& hosted = process.components;
+    if (!process.host.empty() && std::find(hosted.begin(), hosted.end(), plan.manifest.plant) != hosted.end())
+      throw ConfigurationError(
+          fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
+  }
 }
 
 std::string prepare_checkpoint(const fs::path& folder) {

@@ -25,6 +25,8 @@ void write_run_record(const std::filesystem::path& folder, const RunRecord& reco
 /// Throws ConfigurationError if there is no such file, if it is of another release, or if the run is over.
 [[nodiscard]] RunRecord read_run_record(const std::filesystem::path& folder);
 
+/// Throws ConfigurationError if the plant of this plan runs on another host: its checkpoint is not here.
+void expect_plant_here(const LaunchPlan& plan);
 /// Makes sure that the plant will find a complete checkpoint: the newest one, or the copy on the disk if the computer
 /// was started anew or the newest one is damaged. Waits a few seconds for processes of the run that are still ending.
 /// Returns a line for the user. Throws ConfigurationError if the run is still going on, or if there is no complete
