@@ -27,7 +27,8 @@ TEST_F(RosBridgeCommand, BridgesTheOnlyRunUntilItEndsAndRefusesToChooseAmongSeve
   ASSERT_GT(domain, 0u) << first.output();
   Process only = bridge();
   EXPECT_TRUE(only.wait_for("/task/request", 20s)) << only.errors();
-  EXPECT_EQ(only.output().rfind("run " + std::to_string(domain) + " (1000000_ticks, seed ", 0), 0u) << only.output();
+  EXPECT_EQ(only.output().rfind("run " + std::to_string(domain) + " (1000000_ticks, seed 1, robot mamba)", 0), 0u)
+      << only.output();
   EXPECT_NE(only.output().find("is node /ros_bridge in ROS_DOMAIN_ID " + environment_.at("ROS_DOMAIN_ID")),
             std::string::npos);
 

@@ -41,6 +41,7 @@ dds::Entity create_ros_participant(const BridgeOptions& options) {
 
 Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
     : options_(options),
+      joint_count_(robot.joints.size()),
       translator_(robot),
       drawing_(robot.module_radius_m),
       health_(robot.name),
@@ -121,17 +122,19 @@ void Bridge::serve(SteadyClock::time_point now) {
   wait_set_.wait(20ms);  // a wait set serves one participant; the participant of ROS 2 is polled
 }
 
+void Bridge::drop(const std::string& reason) {
+  if (counts_.dropped == 0)
+    std::fprintf(stderr, "ros_bridge: dropped %s (/diagnostics counts later ones)\n", reason.c_str());
+  ++counts_.dropped;
+  counts_.last_reason = "dropped " + reason;
+}
+
 template <class T, class Use>
 void Bridge::take_fit(const dds::Reader<T>& reader, Use&& use) {
   reader.take([&](const T& message) {
     const std::string reason = unfit(message);
     if (reason.empty()) return use(message);
-    if (counts_.dropped == 0)
-      std::fprintf(stderr,
-                   "ros_bridge: dropped a message that ROS 2 cannot represent: %s (/diagnostics counts later ones)\n",
-                   reason.c_str());
-    ++counts_.dropped;
-    counts_.last_reason = "dropped a message that ROS 2 cannot represent: " + reason;
+    drop("a message that ROS 2 cannot represent: " + reason);
   });
 }
 
@@ -145,6 +148,10 @@ void Bridge::pass_robot() {
     imu_out_.write(translator_.imu(imu));
   });
   take_fit(joints_, [this](const msg::JointState& joints) {
+    if (joints.joint_count != joint_count_) {
+      return drop("joint_state: found " + std::to_string(joints.joint_count) + " joints, but the robot file has " +
+                  std::to_string(joint_count_) + "; name the robot file of the run with --robot");
+    }
     last_joints_ = joints;
     joints_out_.write(translator_.joint_state(joints));
   });
@@ -187,7 +194,10 @@ void Bridge::pass_surroundings() {
   take_fit(object_percepts_, [this](const msg::ObjectPercepts& objects) {
     object_markers_out_.write(drawing_.objects_in_view(objects));
   });
-  take_fit(task_command_, [this](const msg::TaskCommand& command) { plan_out_.write(drawing_.plan(command)); });
+  take_fit(task_command_, [this](const msg::TaskCommand& command) {
+    plan_out_.write(drawing_.plan(command));
+    plan_goal_ = command.task == msg::kTaskFollowPath ? command.goal_id : 0;
+  });
 }
 
 void Bridge::pass_health(SteadyClock::time_point now) {

@@ -57,6 +57,8 @@ class Bridge {
   /// Calls `use` for each message that ROS 2 can represent; drops the others and logs the first of them.
   template <class T, class Use>
   void take_fit(const dds::Reader<T>& reader, Use&& use);
+  /// Counts a message of the run that is not forwarded, and logs the first one.
+  void drop(const std::string& reason);
   void take_image(const dds::Reader<msg::CameraImage>& reader, const dds::Writer<Image>& writer, const char* frame);
   void take_stops(SteadyClock::time_point now);
   void take_velocities(SteadyClock::time_point now);
@@ -67,6 +69,7 @@ class Bridge {
   using Empty = std_msgs_msg_dds__Empty_;
 
   BridgeOptions options_;
+  std::size_t joint_count_;  ///< of the robot file
   Translator translator_;
   Drawing drawing_;
   Health health_;
@@ -114,6 +117,7 @@ class Bridge {
   msg::ImuState last_imu_{};
   std::optional<msg::CameraInfo> last_info_;
   std::string last_task_status_;
+  std::uint64_t plan_goal_ = 0;  ///< the goal whose path /plan shows; 0: none
   std::optional<bool> stopped_;  ///< as ROS 2 was told
   std::uint64_t number_ = 0;     ///< of the pilot's request that is not answered yet; 0: none
   std::uint64_t stop_number_ = 0, clear_number_ = 0;

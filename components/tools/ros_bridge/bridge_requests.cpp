@@ -84,6 +84,12 @@ void Bridge::say(const dds::Writer<Text>& writer, const std::string& words) { wr
 void Bridge::pass_tasks() {
   task_status_.take([this](const msg::TaskStatus& status) {
     if (validate(status)) return;
+    if (plan_goal_ != 0 && status.goal_id == plan_goal_ && status.goal_state >= msg::kGoalSucceeded) {
+      plan_goal_ = 0;
+      msg::TaskCommand none{};
+      none.header = status.header;
+      plan_out_.write(drawing_.plan(none));
+    }
     msg::TaskStatus coarse = status;
     coarse.progress = std::floor(10 * status.progress) / 10;  // so that not every tick has news
     std::string words = task_status_json(coarse);

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -21,10 +23,10 @@ using namespace constrictor;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-void print_bridge(const ros::BridgeOptions& options, const ros::Node& node) {
+void print_bridge(const ros::BridgeOptions& options, const std::string& robot, const ros::Node& node) {
   const RunNote& run = options.run;
-  fmt::print("run {} ({}, seed {}) is node /{} in ROS_DOMAIN_ID {}{}; Ctrl-C ends the bridge, not the run\n",
-             run.domain, run.scenario, run.seed, node.name(), options.ros_domain,
+  fmt::print("run {} ({}, seed {}, robot {}) is node /{} in ROS_DOMAIN_ID {}{}; Ctrl-C ends the bridge, not the run\n",
+             run.domain, run.scenario, run.seed, robot, node.name(), options.ros_domain,
              options.ros_localhost_only ? ", on this host only" : "");
   for (const bool written : {true, false}) {
     fmt::print("{}:\n", written ? "written" : "read");
@@ -35,10 +37,21 @@ void print_bridge(const ros::BridgeOptions& options, const ros::Node& node) {
   std::fflush(stdout);
 }
 
-int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, const std::string& robot) {
+/// The robot file with which the launcher on this host has started the run; else the default one.
+std::string robot_of(const RunNote& run) {
+  const auto record =
+      nlohmann::json::parse(std::ifstream(run.report_dir / "run.json"), nullptr, /*allow_exceptions=*/false);
+  const auto robot = record.find("robot");
+  if (run.on_this_host && robot != record.end() && robot->is_string()) return robot->get<std::string>();
+  return data_path("components/lib/robot/mamba.yaml");
+}
+
+int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, std::string robot) {
   options.run = join_run(domain);
-  ros::Bridge bridge(options, load_robot(robot));
-  print_bridge(options, bridge.node());
+  if (robot.empty()) robot = robot_of(options.run);
+  const RobotModel model = load_robot(robot);
+  ros::Bridge bridge(options, model);
+  print_bridge(options, model.name, bridge.node());
   while (!g_stop && bridge.over().empty()) bridge.serve(ros::Bridge::SteadyClock::now());
   if (!bridge.over().empty()) fmt::print("{}\n", bridge.over());
   else if (!bridge.leave())
@@ -51,7 +64,7 @@ int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, 
 int main(int argc, char** argv) {
   ros::BridgeOptions options;
   std::optional<std::uint32_t> domain;
-  std::string robot = data_path("components/lib/robot/mamba.yaml");
+  std::string robot;
   std::string level = "operator";
   std::string distribution = "jazzy";
   const char* localhost = std::getenv("ROS_LOCALHOST_ONLY");
@@ -79,7 +92,8 @@ int main(int argc, char** argv) {
   app.add_flag("--localhost", options.ros_localhost_only,
                "use ROS 2's domain on this host only; the same as ROS_LOCALHOST_ONLY=1 or "
                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
-  app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--robot", robot, "robot file (default: that of the run if it was started on this host, else mamba)")
+      ->check(CLI::ExistingFile);
   app.add_option("--level", level, "level of the requests for velocities and tasks")
       ->check(CLI::IsMember({"operator", "external"}))
       ->capture_default_str();

@@ -28,7 +28,9 @@ void Health::take(const msg::Tick& tick) {
 void Health::take(const msg::RunState& state) { run_ = state; }
 
 void Health::take(const msg::ComponentStatus& status) {
-  Component& component = components_[printable(text_of(status.component))];
+  const std::string name = printable(text_of(status.component));
+  if (validate(status) || (components_.size() >= msg::kMaxMembers && !components_.contains(name))) return;
+  Component& component = components_[name];
   const msg::ComponentStatus& before = component.newest;
   const bool older =
       status.epoch < before.epoch || (status.epoch == before.epoch && status.incarnation < before.incarnation);

@@ -37,7 +37,8 @@ class Health {
 
   void take(const msg::Tick& tick);
   void take(const msg::RunState& state);
-  /// Statuses of an older incarnation than the newest one are ignored.
+  /// Ignored are statuses that break the IDL, those of an older incarnation than the newest one, and those of more
+  /// components than a run can have.
   void take(const msg::ComponentStatus& status);
 
   /// One status for each component, one for the run and one for the bridge, stamped with the newest tick. Levels:

@@ -17,6 +17,9 @@ constexpr double kObjectHeight_m = 0.15, kFlat_m = 0.005, kLineWidth_m = 0.03, k
 // The radius of a landmark whose radius is not known yet [m].
 constexpr double kObjectRadius_m = 0.08, kZoneRadius_m = 0.25;
 
+/// A size that a viewer can draw. The IDL has no bound for sizes.
+double drawable_m(double size_m) { return std::clamp(size_m, 0.001, 1000.0); }
+
 std_msgs_msg_dds__ColorRGBA_ colour_of(std::uint8_t named, double alpha) {
   const auto a = static_cast<float>(alpha);
   switch (named) {
@@ -92,7 +95,8 @@ MarkerArray Drawing::map(const msg::FieldMap& map) {
     const msg::MapObject& object = map.objects[i];
     const bool zone = object.kind == msg::kBlobZone;
     const double height_m = zone ? kFlat_m : kObjectHeight_m;
-    const double radius_m = !std::isnan(object.radius_m) ? object.radius_m : zone ? kZoneRadius_m : kObjectRadius_m;
+    const double unknown_m = zone ? kZoneRadius_m : kObjectRadius_m;
+    const double radius_m = std::isnan(object.radius_m) ? unknown_m : drawable_m(object.radius_m);
     // An object whose position no touch has confirmed is drawn paler.
     const double alpha = zone ? 0.4 : object.touched || object.carried ? 1.0 : 0.6;
     Marker& body = add(zone ? "zones" : "objects", object.handle, kCylinder, object.colour, alpha);
@@ -128,7 +132,7 @@ MarkerArray Drawing::objects_in_view(const msg::ObjectPercepts& objects) {
   for (std::size_t i = 0; i < objects.blob_count; ++i) {
     const msg::Blob& blob = objects.blobs[i];
     if (std::isnan(blob.range_m)) continue;
-    const double width_m = std::isnan(blob.width_m) ? 2 * kObjectRadius_m : blob.width_m;
+    const double width_m = std::isnan(blob.width_m) ? 2 * kObjectRadius_m : drawable_m(blob.width_m);
     const double height_m = blob.kind == msg::kBlobObject ? kObjectHeight_m : kFlat_m;
     const double centre_m = blob.range_m + 0.5 * width_m;  // the range is that of the nearest point
     Marker& body = add("objects_in_view", static_cast<int>(i), kCylinder, blob.colour,

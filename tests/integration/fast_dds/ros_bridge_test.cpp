@@ -151,7 +151,7 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
 }
 
 TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
-  Process launcher = run("driven", "line", {"--pace", "1x"});
+  Process launcher = run("driven", "case_study", {"--pace", "1x"});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output();
   const std::string ros_domain = std::to_string(100 + domain);

@@ -1,6 +1,7 @@
 // ros_probe: acts as a ROS 2 node on another vendor's DDS with ROS's topic and type names. It prints a line for each
 // sample, and for each reader and writer that it discovers. With --drive it writes velocities, as teleop_twist_keyboard
-// does; with --task and --stop it requests a task or an emergency stop once the bridge reads them.
+// does; with --task and --stop it requests a task or an emergency stop until the bridge has answered: the first sample
+// of a new writer may be lost, because its reader has not discovered it yet.
 //   ros_probe --domain N --for SECONDS [--drive SPEED,TURN] [--task LINE] [--stop] [--humble]
 #include <chrono>
 #include <csignal>
@@ -79,7 +80,13 @@ class HumbleGraph : public rmw_dds_common::msg::dds_::HumbleParticipantEntitiesI
   HumbleGraph() { setName("rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"); }
 };
 
-void read_surroundings(example::Participant& node) {
+/// What the bridge has answered to this program's requests.
+struct Answers {
+  std::string task;  ///< the line that was requested
+  bool task_answered = false, stopped = false;
+};
+
+void read_surroundings(example::Participant& node, Answers& answers) {
   const auto print_markers = [](const char* name) {
     return [name](const visualization_msgs::msg::dds_::MarkerArray_& m) {
       std::printf("%s %zu", name, m.markers().size());
@@ -102,12 +109,17 @@ void read_surroundings(example::Participant& node) {
       std::printf("diagnostics %d %s\n", int{status.level()}, status.name().c_str());
   });
   using Text = std_msgs::msg::dds_::String_PubSubType;
-  for (const char* name : {"task/answer", "task/status", "task/event"})
+  node.read<Text>("rt/task/answer", true, 64, [&answers](const auto& m) {
+    std::printf("task/answer %s\n", m.data().c_str());
+    answers.task_answered |= m.data().find("\"" + answers.task + "\"") != std::string::npos;
+  });
+  for (const char* name : {"task/status", "task/event"})
     node.read<Text>(std::string("rt/") + name, true, 64,
                     [name](const auto& m) { std::printf("%s %s\n", name, m.data().c_str()); });
   node.read<Text>("rt/robot_description", true, 1,
                   [](const auto& m) { std::printf("robot_description %zu\n%s", m.data().size(), m.data().c_str()); });
-  node.read<std_msgs::msg::dds_::Bool_PubSubType>("rt/emergency_stop/state", true, 1, [](const auto& m) {
+  node.read<std_msgs::msg::dds_::Bool_PubSubType>("rt/emergency_stop/state", true, 1, [&answers](const auto& m) {
+    answers.stopped = m.data();
     std::printf("stopped %s\n", m.data() ? "true" : "false");
   });
 }
@@ -155,14 +167,6 @@ void read_robot(example::Participant& node) {
   });
 }
 
-/// Writes `message` once, when `writer` has a reader. Returns false until then.
-template <class Message>
-bool write_once(example::fdds::DataWriter* writer, Message message) {
-  example::fdds::PublicationMatchedStatus matched;
-  writer->get_publication_matched_status(matched);
-  return matched.current_count > 0 && writer->write(&message);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -170,14 +174,14 @@ int main(int argc, char** argv) {
   unsigned domain = 0;
   double seconds = 5, speed_m_s = 0, turn_rad_s = 0;
   bool drive = false, stop = false, humble = false;
-  std::string task;
+  Answers answers;
   for (int i = 1; i < argc; ++i) {
     stop = stop || !std::strcmp(argv[i], "--stop");
     humble = humble || !std::strcmp(argv[i], "--humble");
     if (i + 1 == argc) break;
     if (!std::strcmp(argv[i], "--domain")) domain = static_cast<unsigned>(std::atoi(argv[i + 1]));
     if (!std::strcmp(argv[i], "--for")) seconds = std::atof(argv[i + 1]);
-    if (!std::strcmp(argv[i], "--task")) task = argv[i + 1];
+    if (!std::strcmp(argv[i], "--task")) answers.task = argv[i + 1];
     if (!std::strcmp(argv[i], "--drive")) drive = std::sscanf(argv[i + 1], "%lf,%lf", &speed_m_s, &turn_rad_s) == 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16);  // whole lines, from the threads of Fast DDS as well
@@ -188,20 +192,25 @@ int main(int argc, char** argv) {
     node.read<rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_PubSubType>("ros_discovery_info", true, 1,
                                                                              [](const auto& m) { print_graph(m); });
   read_robot(node);
-  read_surroundings(node);
+  read_surroundings(node, answers);
   auto* velocity = drive ? node.write<geometry_msgs::msg::dds_::Twist_PubSubType>("rt/cmd_vel", 1, false) : nullptr;
   auto* tasks =
-      task.empty() ? nullptr : node.write<std_msgs::msg::dds_::String_PubSubType>("rt/task/request", 1, false);
+      answers.task.empty() ? nullptr : node.write<std_msgs::msg::dds_::String_PubSubType>("rt/task/request", 1, false);
   auto* stops = stop ? node.write<std_msgs::msg::dds_::Empty_PubSubType>("rt/emergency_stop", 1, false) : nullptr;
 
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  auto next_request = Clock::now();
   for (auto next = Clock::now(); !g_stop && Clock::now() < end;) {
     node.wait(0.05);
-    std_msgs::msg::dds_::String_ line;
-    line.data(task);
-    if (tasks && write_once(tasks, line)) tasks = nullptr;
-    if (stops && write_once(stops, std_msgs::msg::dds_::Empty_())) stops = nullptr;
+    if (Clock::now() >= next_request) {
+      next_request = Clock::now() + std::chrono::seconds(1);
+      std_msgs::msg::dds_::String_ line;
+      line.data(answers.task);
+      if (tasks && !answers.task_answered) tasks->write(&line);
+      std_msgs::msg::dds_::Empty_ empty;
+      if (stops && !answers.stopped) stops->write(&empty);
+    }
     if (!velocity || Clock::now() < next) continue;
     next = Clock::now() + std::chrono::milliseconds(100);
     geometry_msgs::msg::dds_::Twist_ twist;
