@@ -28,6 +28,8 @@ core=(
   libzstd-dev zlib1g-dev
   # the web server of the dashboard
   libboost-dev
+  # gamepads
+  libevdev-dev
   # processes on other hosts
   openssh-client
   # the Python package

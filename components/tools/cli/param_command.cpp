@@ -1,10 +1,14 @@
-// `constrictor param`: lists, prints and changes the parameters of a run while it runs.
+// `constrictor param`: lists, prints, changes, keeps and loads the parameters of a run while it runs.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,10 +16,13 @@
 #include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/operator.hpp"
+#include "cli/param_file.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/parameters.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
@@ -34,6 +41,7 @@ struct Options {
   std::string name;                  ///< get: the parameter's name; list: prefix of the names to print
   std::vector<std::string> changes;  ///< set: NAME VALUE NAME VALUE ...
   std::int64_t at_tick = 0;
+  std::string file;  ///< dump, load
 };
 
 std::string pending_text(const msg::Parameter& p) {
@@ -101,23 +109,65 @@ int get(const Options& options) {
   return exit_status::kOk;
 }
 
+/// Sets the parameters one after the other, until one is refused.
+int set_all(const Options& options, const std::vector<ParameterValue>& values);
+
 int set(const Options& options) {
   if (options.changes.size() % 2 != 0) {
     std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
     return exit_status::kUsage;
   }
-  const std::size_t count = options.changes.size() / 2;
-  std::vector<double> values;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<ParameterValue> values;
+  for (std::size_t i = 0; i < options.changes.size() / 2; ++i) {
     const std::string& text = options.changes[2 * i + 1];
     char* end = nullptr;
-    values.push_back(std::strtod(text.c_str(), &end));
-    if (text.empty() || *end != '\0' || !std::isfinite(values.back())) {
+    values.push_back({options.changes[2 * i], std::strtod(text.c_str(), &end)});
+    if (text.empty() || *end != '\0' || !std::isfinite(values.back().value)) {
       std::fprintf(stderr, "param: VALUE of %s: found '%s', accepted a number\n", options.changes[2 * i].c_str(),
                    text.c_str());
       return exit_status::kUsage;
     }
   }
+  return set_all(options, values);
+}
+
+int dump(const Options& options) {
+  const RunNote run = join_run(options.view.domain);
+  const dds::Domain domain(run.domain);
+  const ParameterView view = read_parameters(domain.participant());
+  report_silent(view);
+  if (view.parameters.empty() || !view.silent.empty()) {
+    std::fprintf(stderr, "param: not every component has announced its parameters; no file was written\n");
+    return exit_status::kFailed;
+  }
+  const std::string title =
+      fmt::format("Parameters of run {}{}{}", run.domain, run.scenario.empty() ? "" : ", ", run.scenario);
+  const std::string text = parameter_file(view, title, options.changed);
+  if (options.file == "-") fmt::print("{}", text);
+  else write_whole(options.file, text);
+  return exit_status::kOk;
+}
+
+int load(const Options& options) {
+  std::ifstream stream(options.file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad())
+    throw ConfigurationError(fmt::format("{}: cannot be read: {}", options.file, ::strerrordesc_np(errno)));
+  std::vector<ParameterValue> values;
+  {
+    const dds::Domain domain(find_domain(options.view.domain));
+    const ParameterView view = read_parameters(domain.participant());
+    report_silent(view);
+    values = read_parameter_file(text, options.file, view, is_in_configuration);
+  }
+  if (!values.empty()) return set_all(options, values);
+  if (options.view.json) fmt::print("[]\n");
+  else fmt::print("every parameter of the file has its value already\n");
+  return exit_status::kOk;
+}
+
+int set_all(const Options& options, const std::vector<ParameterValue>& values) {
+  const std::size_t count = values.size();
   RequestClient client(find_domain(options.view.domain),
                        operator_options(unique_source("param"), 0ms, /*detached=*/true));
   ParameterSetter setter(client);
@@ -125,9 +175,9 @@ int set(const Options& options) {
   Json json = Json::array();
   int status = exit_status::kOk;
   for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
-    const std::string& name = options.changes[2 * i];
+    const auto& [name, value] = values[i];
     try {
-      const msg::ParameterChange change = setter.set(name, values[i], options.at_tick);
+      const msg::ParameterChange change = setter.set(name, value, options.at_tick);
       json.push_back({{"name", name},
                       {"value", change.value},
                       {"effective_tick", change.effective_tick},
@@ -138,7 +188,7 @@ int set(const Options& options) {
                : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
                                                                     : exit_status::kWaitedTooLong;
       const bool refused = error.cause() == CommandError::Cause::kRefused;
-      if (refused) json.push_back({{"name", name}, {"value", values[i]}, {"refused", error.what()}});
+      if (refused) json.push_back({{"name", name}, {"value", value}, {"refused", error.what()}});
       if (!refused || !options.view.json)
         std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
       if (!refused) {
@@ -174,9 +224,10 @@ void add_param(CLI::App& app, Action& action) {
        "constrictor param set navigation.travel.frequency_hz 0.9",
        "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
        "2000",
-       "constrictor param list --changed --json"},
+       "constrictor param list --changed --json", "constrictor param dump tuned.yaml --changed",
+       "constrictor param load tuned.yaml"},
       "0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no answer;\n"
-      "  130 interrupted by Ctrl-C",
+      "  78 the file of `load` is wrong: nothing was set; 130 interrupted by Ctrl-C",
       "CONSTRICTOR_DOMAIN  the run, like --run"));
   const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
     auto* sub = add_subcommand(*param, name, what, action, options, run);
@@ -190,6 +241,19 @@ void add_param(CLI::App& app, Action& action) {
   list_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
   list_app->add_flag("--names", options->names, "only the names, one in each line")->excludes("--json");
   add("get", "print one parameter", get)->add_option("NAME", options->name, "the parameter")->required();
+  auto* dump_app =
+      add_subcommand(*param, "dump", "write the values in force into a file for `param load`", action, options, dump);
+  add_run_option(*dump_app, options->view.domain);
+  dump_app->add_option("FILE", options->file, "YAML file; - is the standard output")->required();
+  dump_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
+  auto* load_app = add("load", "set the parameters of a file, after all of it was checked", load);
+  add_token_option(*load_app);
+  load_app
+      ->add_option(
+          "FILE", options->file,
+          "YAML file of `param dump`, or with keys as in the components' configuration files below the name of "
+          "the component; any number of parameters")
+      ->required();
   auto* set_app = add("set", "change parameters", set);
   add_token_option(*set_app);
   set_app
@@ -198,10 +262,11 @@ void add_param(CLI::App& app, Action& action) {
       ->required()
       ->expected(2, 64)
       ->option_text("NAME VALUE...");
-  set_app
-      ->add_option("--at-tick", options->at_tick,
-                   "tick at which the change takes effect; it must be in the future (default: the next tick)")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{9'000'000'000'000'000}));
+  for (auto* sub : {set_app, load_app}) {
+    sub->add_option("--at-tick", options->at_tick,
+                    "tick at which the changes take effect; it must be in the future (default: the next tick)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{9'000'000'000'000'000}));
+  }
 }
 
 }  // namespace constrictor::cli

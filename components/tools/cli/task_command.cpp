@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,14 +18,17 @@
 #include "cli/task_request.hpp"
 #include "cli/task_wait.hpp"
 #include "cli/usage.hpp"
+#include "client/goal_tracker.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
 /// All scripts of a run share one source, so that one script can cancel what another one started.
 constexpr const char* kSource = "task";
 
@@ -35,6 +39,8 @@ struct Options {
   std::vector<std::string> path;  ///< points "X,Y"
   TaskWaitOptions wait;
 };
+
+void print_json(const Json& json) { fmt::print("{}\n", json_text(json)); }
 
 int with_client(const Options& options, int (*use)(RequestClient&, const Options&)) {
   RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
@@ -83,12 +89,16 @@ int start(RequestClient& client, const Options& options) {
   const bool held = client.holds_authority();
   try {
     const std::uint64_t goal = client.start_goal(request);
-    fmt::print("{} started, goal {}; `constrictor release` gives authority back\n", task_word(request.task),
-               goal_text(goal));
+    if (options.wait.json)
+      print_json({{"started", task_word(request.task)}, {"goal", goal_number(goal)}, {"goal_id", goal}});
+    else
+      fmt::print("{} started, goal {}; `constrictor release` gives authority back\n", task_word(request.task),
+                 goal_text(goal));
     return exit_status::kOk;
   } catch (const CommandError& error) {
     if (error.cause() == CommandError::Cause::kInterrupted) return give_back(client);
     std::fprintf(stderr, "task: %s\n", error.what());
+    if (options.wait.json) print_json({{"started", nullptr}, {"reason", error.what()}});
     // Navigation refuses what the robot cannot do now, after `input` has given authority to this command. The grant
     // proves it: the message with the new authority may arrive later than navigation's refusal.
     const bool took = !held && client.goal() != 0;
@@ -103,14 +113,23 @@ int start(RequestClient& client, const Options& options) {
 }
 
 /// Makes the robot stand. This ends the running task.
-int cancel(RequestClient& client, const Options&) {
+int cancel(RequestClient& client, const Options& options) {
   const auto answer = client.wait_for_answer(client.move(msg::kMotionStand), 5s);
-  if (answer == RequestClient::Answer::kGranted)
-    fmt::print("cancelled, the robot stands; `constrictor release` gives authority back\n");
+  const bool granted = answer == RequestClient::Answer::kGranted;
+  if (options.wait.json) print_json({{"cancelled", granted}, {"reason", granted ? "" : client.refusal()}});
+  else if (granted) fmt::print("cancelled, the robot stands; `constrictor release` gives authority back\n");
   return report_not_granted(client, answer, "task");
 }
 
-int list() {
+int list(const Options& options) {
+  if (options.wait.json) {
+    Json tasks = Json::array();
+    Json events = Json::array();
+    for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) tasks.push_back(task_word(task));
+    for (std::uint8_t event = 1; event < msg::kEventCount; ++event) events.push_back(event_name(event));
+    print_json({{"tasks", tasks}, {"events", events}});
+    return exit_status::kOk;
+  }
   for (std::uint8_t task = 1; task < msg::kTaskCount; ++task) fmt::print("task   {}\n", task_word(task));
   for (std::uint8_t event = 1; event < msg::kEventCount; ++event) fmt::print("event  {}\n", event_name(event));
   return exit_status::kOk;
@@ -148,6 +167,7 @@ void add_task(CLI::App& app, Action& action) {
   const auto add = [&](const char* name, const char* text, std::function<int()> what) {
     auto* sub = task->add_subcommand(name, text);
     sub->callback([&action, what = std::move(what)] { action = what; });
+    sub->add_flag("--json", options->wait.json, "print the result as one JSON object, also a refusal");
     return sub;
   };
   const auto of_run = [&](CLI::App* sub) {
@@ -184,6 +204,7 @@ void add_task(CLI::App& app, Action& action) {
       "`constrictor topic echo guidance/pose --count 1`. A task that is refused leaves authority as it was. Ctrl-C "
       "before the answers\ncancels the task and releases authority.",
       {"constrictor task start follow_line --line-colour blue", "constrictor task start explore --direction forwards",
+       "constrictor task start rotate --direction left --json",
        "constrictor task start follow_path --path 0,0 1,0 2,0.5"},
       fmt::format(
           "0 the task has begun; 1 refused, with the reason; {};\n  75 no answer within 5 s; 130 interrupted by "
@@ -216,7 +237,7 @@ void add_task(CLI::App& app, Action& action) {
       fmt::format("0 the event came, or the goal succeeded; 1 the goal ended without it or did not succeed, or the run "
                   "ended;\n  {}; 75 too late; 130 interrupted by Ctrl-C",
                   kRunStatuses)));
-  add("list", "list the tasks and events", list)
+  add("list", "list the tasks and events", [options] { return list(*options); })
       ->footer(
           "EXAMPLES\n  constrictor task list\n\nEXIT STATUS\n  0 done; 64 wrong usage\n\n"
           "ENVIRONMENT\n  none: it joins no run");

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/interrupt.hpp"
@@ -14,6 +15,8 @@
 #include "client/polling.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "constrictor/json.hpp"
+#include "constrictor/text.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "runtime/host.hpp"
@@ -22,6 +25,7 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
 /// After this time all messages that writers keep for late readers have arrived.
 constexpr auto kSettle = 200ms;
 /// After this time the event of a goal's end is regarded as lost, and a TaskStatus also proves the end.
@@ -60,7 +64,7 @@ class Waiting {
       if (const auto status = look(WaitClock::now() - *heard_ > kEventLost)) return *status;
       if (!domain_claimed(domain_)) return failed("the run has ended");
     }
-    std::fprintf(stderr, "task: no %s within %s\n", wanted().c_str(), options_.timeout.c_str());
+    print_failure("too_late", fmt::format("no {} within {}", wanted(), options_.timeout));
     return exit_status::kWaitedTooLong;
   }
 
@@ -71,23 +75,53 @@ class Waiting {
     return goal_ == 0 ? what : fmt::format("{} of goal {}", what, goal_text(goal_));
   }
   [[nodiscard]] int failed(const std::string& why) const {
-    std::fprintf(stderr, "task: no %s: %s\n", wanted().c_str(), why.c_str());
+    print_failure("ended", fmt::format("no {}: {}", wanted(), why));
     return exit_status::kFailed;
+  }
+  /// `result`: what happened, for scripts.
+  void print_failure(const char* result, const std::string& reason) const {
+    std::fprintf(stderr, "task: %s\n", reason.c_str());
+    if (!options_.json) return;
+    Json json = {{"result", result}};
+    if (goal_ != 0) json["goal"] = goal_number(goal_);
+    json["reason"] = reason;
+    fmt::print("{}\n", json_text(json));
+  }
+  void print(const msg::TaskEvent& event) const {
+    const double time_s = static_cast<double>(event.header.time_ns) * 1e-9;
+    if (!options_.json) {
+      fmt::print("{} at {:.2f} s, goal {} {}\n", event_name(event.event), time_s, goal_text(event.goal_id),
+                 event.detail);
+      return;
+    }
+    const Json json = {
+        {"result", "event"},        {"event", event_name(event.event)}, {"goal", goal_number(event.goal_id)},
+        {"goal_id", event.goal_id}, {"task", task_word(event.task)},    {"tick", event.header.tick},
+        {"sim_time_s", time_s},     {"detail", text_of(event.detail)}};
+    fmt::print("{}\n", json_text(json));
+  }
+  void print(const GoalTracker::End& end) const {
+    const Json json = {{"result", "end"},
+                       {"state", goal_state_name(end.state)},
+                       {"goal", goal_number(goal_)},
+                       {"goal_id", goal_},
+                       {"reason", end.reason}};
+    if (options_.json) fmt::print("{}\n", json_text(json));
+    else fmt::print("{}{}{}\n", goal_state_name(end.state), end.reason.empty() ? "" : ": ", end.reason);
   }
   /// The exit status, if the wait is over. `status_counts`: navigation's TaskStatus proves the end of a goal.
   [[nodiscard]] std::optional<int> look(bool status_counts) const {
     if (!options_.end) {
       const auto* event = any_ ? goals().event_after(from_, event_) : goals().event(goal_, event_);
       if (event) {
-        fmt::print("{} at {:.2f} s, goal {} {}\n", event_name(event->event),
-                   static_cast<double>(event->header.time_ns) * 1e-9, goal_text(event->goal_id), event->detail);
+        print(*event);
         return exit_status::kOk;
       }
     }
     const auto end = any_ || goal_ == 0 ? std::nullopt : goals().end(goal_, status_counts);
     if (!end) return std::nullopt;
     if (options_.end) {
-      fmt::print("{}{}{}\n", goal_state_name(end->state), end->reason.empty() ? "" : ": ", end->reason);
+      print(*end);
       return end->state == msg::kGoalSucceeded ? exit_status::kOk : exit_status::kFailed;
     }
     // A grasp may be lost after its goal has succeeded. Every other event of a goal comes before its end.

@@ -12,6 +12,7 @@ struct TaskWaitOptions {
   std::string event;  ///< name of the event; empty with `end`
   bool end = false;   ///< wait for the end of the goal
   std::string timeout = "60s";
+  bool json = false;  ///< print what came as one JSON object
 };
 
 /// Waits in the run of this DDS domain; returns the exit status. Events of the goal that happened before the call count

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/gamepad/gamepad_drive.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
@@ -35,6 +36,7 @@ struct Options {
   std::optional<std::uint32_t> run;
   std::string drive;
   std::string duration;
+  GamepadOptions gamepad;
 };
 
 /// The full-screen client.
@@ -72,11 +74,12 @@ class Teleop {
         else if (!act(action_of(key))) return leave();
       }
       show_answer();
-      if (Clock::now() - drawn < kRedraw && typed.empty()) continue;
+      const ScreenSize size = terminal_.size();
+      if (Clock::now() - drawn < kRedraw && typed.empty() && size == drawn_size_) continue;
       drawn = Clock::now();
+      drawn_size_ = size;
       screen_.authority = client_.authority();
       screen_.view = observer_.view();
-      const ScreenSize size = terminal_.size();
       terminal_.draw(render(screen_, size), size);
     }
     return leave();
@@ -173,6 +176,7 @@ class Teleop {
   TeleopObserver observer_;
   KeyReader keys_;
   TeleopScreen screen_;
+  ScreenSize drawn_size_{0, 0};
   std::uint64_t number_ = 0;  ///< number of the request that is not answered yet; 0: none
   std::string request_;       ///< the name of this request on the screen
   std::string farewell_;
@@ -181,6 +185,8 @@ class Teleop {
 int teleop(const Options& options) {
   if (!options.drive.empty()) return teleop_drive(options.drive, options.duration, options.run);
   if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
+  if (!options.gamepad.device.empty()) return gamepad_drive(options.gamepad, options.run);
+  if (!options.gamepad.mapping.empty()) throw UsageError("--mapping: accepted together with --gamepad");
   const RunNote run = join_run(options.run);
   int status = exit_status::kOk;
   std::string over;
@@ -217,11 +223,23 @@ void add_teleop(CLI::App& app, Action& action) {
       "the robot stand and release authority");
   sub->add_option("--for", options->duration,
                   "duration of --drive in wall time, for example 5s, 500ms, 2m (default: until Ctrl-C)");
+  sub->add_option("--gamepad", options->gamepad.device,
+                  "drive with a gamepad, without a screen: `auto`, or the path of an event device "
+                  "(/dev/input/event5), or of a FIFO with its events")
+      ->excludes("--drive");
+  sub->add_option("--mapping", options->gamepad.mapping,
+                  "which stick and button does what (YAML; default: components/tools/cli/gamepad/gamepad.yaml)")
+      ->check(CLI::ExistingFile);
   sub->footer(help_footer(
       "The first key that moves the robot takes authority; q or Ctrl-C releases it. The screen shows the keys; the "
       "space bar is the emergency\nstop. If this program or its terminal dies, the robot holds its posture within half "
-      "a second. The terminal needs 40x10 characters.",
-      {"constrictor teleop", "constrictor teleop --run 3", "constrictor teleop --drive 0.3,0.2 --for 5s"},
+      "a second. The terminal needs 40x10 characters; a larger one shows more.\n\nWith --gamepad the robot moves only "
+      "while "
+      "the dead-man button is held (left shoulder), and stands when it is released. A gamepad\nthat is unplugged "
+      "counts "
+      "as released; when it is back, press the button anew. The button of the emergency stop always works.",
+      {"constrictor teleop", "constrictor teleop --run 3", "constrictor teleop --drive 0.3,0.2 --for 5s",
+       "constrictor teleop --gamepad auto", "constrictor teleop --gamepad /dev/input/event5 --mapping my_pad.yaml"},
       fmt::format("0 done; 1 refused, authority lost, or the run is gone; {}, or no terminal;\n"
                   "  75 no answer from `input`; 130 --drive ended by Ctrl-C",
                   kRunStatuses)));

@@ -12,10 +12,13 @@
 namespace constrictor::cli {
 namespace {
 
-constexpr ScreenSize kLargest{120, 24};
-constexpr std::size_t kCell = 27;  // columns of a joint
-constexpr std::size_t kJoints = 24;
+constexpr ScreenSize kLargest{240, 80};
+constexpr std::size_t kUsualRows = 24;  // a terminal with more shows more joints and more events
+constexpr std::size_t kCell = 27;       // columns of a joint
+constexpr std::size_t kUsualJoints = 24;
+constexpr std::size_t kUsualEvents = 3;
 constexpr int kBar = 12;
+constexpr std::size_t kLinesBelow = 3;  // notice, emergency stop, prompt: they are always there
 constexpr double kFullBar_nm = 6.0;
 constexpr double kSilent_s = 2.5;  // the conductor sends a RunState once a second at least
 
@@ -97,14 +100,16 @@ std::string joint_cell(const msg::JointState& joints, std::size_t j) {
                      std::string(static_cast<std::size_t>(full), '#'), kBar, std::abs(torque_nm));
 }
 
-std::vector<std::string> joint_lines(const TeleopScreen& s, std::size_t columns) {
+std::vector<std::string> joint_lines(const TeleopScreen& s, ScreenSize size) {
   std::vector<std::string> lines = {
       fmt::format("joints     angle [rad], torque [Nm], a full bar is {:.0f} Nm", kFullBar_nm)};
-  const std::size_t across = std::max<std::size_t>((columns + 1) / kCell, 1);  // a cell ends with a blank
-  const std::size_t rows = (kJoints + across - 1) / across;
+  const std::size_t known = s.view.joints ? std::min<std::size_t>(s.view.joints->joint_count, msg::kMaxJoints) : 0;
+  const std::size_t most = size.rows > kUsualRows ? std::max(known, kUsualJoints) : kUsualJoints;
+  const std::size_t count = std::min(known, most);
+  const std::size_t across = std::max<std::size_t>((size.columns + 1) / kCell, 1);  // a cell ends with a blank
+  const std::size_t rows = (most + across - 1) / across;
   for (std::size_t row = 0; row < rows; ++row) {
     std::string text;
-    const std::size_t count = s.view.joints ? std::min<std::size_t>(s.view.joints->joint_count, kJoints) : 0;
     for (std::size_t j = row; j < count; j += rows) text += joint_cell(*s.view.joints, j);
     lines.push_back(text);
   }
@@ -128,9 +133,11 @@ std::string mission_line(const TeleopScreen& s) {
   return fmt::format("mission    {} {} of {}  {}", m.state, m.object_index, m.object_count, m.reason);
 }
 
-std::vector<std::string> event_lines(const TeleopScreen& s) {
+/// The newest events, at most `most`.
+std::vector<std::string> event_lines(const TeleopScreen& s, std::size_t most) {
   std::vector<std::string> lines = {"events"};
-  lines.insert(lines.end(), s.view.events.begin(), s.view.events.end());
+  const std::size_t count = std::min(most, s.view.events.size());
+  lines.insert(lines.end(), s.view.events.end() - static_cast<std::ptrdiff_t>(count), s.view.events.end());
   return lines;
 }
 
@@ -158,17 +165,22 @@ std::vector<std::string> render(const TeleopScreen& s, ScreenSize size) {
                               {2, {task_line(s)}},
                               {5, {mission_line(s)}},
                               {1, {drive}},
-                              {7, joint_lines(s, size.columns)},
+                              {7, joint_lines(s, size)},
                               {6, {contact_line(s)}},
-                              {4, event_lines(s)},
+                              {4, event_lines(s, kUsualEvents)},
                               {3, help_lines(size.columns)}};
-  fit(above, size.rows - 3);  // the lines below are always there
+  fit(above, size.rows - kLinesBelow);
+  std::size_t used = kLinesBelow;
+  for (const Block& block : above) used += block.lines.size();
+  Block& events = above[above.size() - 2];
+  // The rows that are left show earlier events.
+  if (!events.lines.empty() && used < size.rows) events.lines = event_lines(s, kUsualEvents + size.rows - used);
   const std::vector<std::string> help = std::move(above.back().lines);
   above.pop_back();
 
   std::vector<std::string> lines;
   for (const Block& block : above) lines.insert(lines.end(), block.lines.begin(), block.lines.end());
-  while (lines.size() + help.size() + 3 < size.rows) lines.emplace_back();
+  while (lines.size() + help.size() + kLinesBelow < size.rows) lines.emplace_back();
   lines.push_back(s.prompt ? "" : s.notice);
   lines.insert(lines.end(), help.begin(), help.end());
   // In the prompt the space bar is a blank between words.

@@ -9,7 +9,7 @@
 namespace constrictor::cli {
 namespace {
 
-constexpr std::size_t kEvents = 3;
+constexpr std::size_t kEvents = 64;  // a large terminal shows them
 
 template <class T>
 std::string name(const Topic<T>& topic) {

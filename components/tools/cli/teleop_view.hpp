@@ -19,7 +19,7 @@ struct TeleopView {
   std::optional<msg::MissionStatus> mission;
   std::optional<msg::JointState> joints;
   std::optional<msg::ContactState> contacts;
-  std::deque<std::string> events;  ///< the last few, oldest first
+  std::deque<std::string> events;  ///< the last ones, oldest first
   double silent_s = 0.0;           ///< [s] since the newest `run` (RunAttachment::silent_s)
 };
 

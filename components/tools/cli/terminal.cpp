@@ -62,6 +62,10 @@ Terminal::Terminal() {
   guardian_pipe_ = ends[1];
   catch_interrupts();
   ::signal(SIGPIPE, SIG_IGN);
+  // A handler that does nothing: a change of the size ends read(), so that the screen is drawn anew at once.
+  struct sigaction resized {};
+  resized.sa_handler = [](int) {};
+  ::sigaction(SIGWINCH, &resized, nullptr);
   ::signal(SIGTSTP, SIG_IGN);  // `input` would regard a suspended operator as dead
   termios raw = before_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | IEXTEN);

@@ -22,7 +22,8 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Waits for keys, at most `bound`; `typed` is empty if there were none. Returns false if the terminal is gone.
+  /// Waits for keys or for another size of the terminal, at most `bound`; `typed` is empty if there were no keys.
+  /// Returns false if the terminal is gone.
   bool read(std::string& typed, std::chrono::milliseconds bound);
   /// Present size; 80x24 if the terminal does not report one.
   [[nodiscard]] ScreenSize size() const;

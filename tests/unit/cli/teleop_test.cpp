@@ -275,6 +275,18 @@ TEST(TeleopScreen, ShowsAuthorityPromptSeedPauseAndSilence) {
   EXPECT_NE(render(s)[0].find("SILENT for 12 s"), std::string::npos) << render(s)[0];
 }
 
+TEST(TeleopScreen, ALargeTerminalShowsAllJointsAndEarlierEvents) {
+  TeleopScreen s = full_screen();
+  s.view.events.clear();
+  for (int i = 0; i < 64; ++i) s.view.joints->torque_nm[i] = 0, s.view.events.push_back(std::to_string(i) + " e.");
+  const auto shows = [&](ScreenSize size, const std::string& text) {
+    const auto lines = render(s, size);
+    return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return line.find(text) != line.npos; });
+  };
+  EXPECT_TRUE(shows({80, 24}, "61 e.") && !shows({80, 24}, "60 e.") && !shows({80, 24}, "63 +0.00|"));
+  EXPECT_TRUE(shows({200, 60}, "63 e.") && shows({200, 60}, "40 e.") && shows({200, 60}, "63 +0.00|"));
+}
+
 TEST(TeleopScreen, TheLengthOfABarIsProportionalToTheTorque) {
   TeleopScreen s;
   s.view.joints = msg::JointState{};

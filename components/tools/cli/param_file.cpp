@@ -1,0 +1,144 @@
+#include "cli/param_file.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "component/data_path.hpp"
+#include "configuration/closest_name.hpp"
+#include "configuration/configuration.hpp"
+
+namespace constrictor::cli {
+namespace {
+
+/// A value of the file with its place.
+struct Found {
+  int line = 0;
+  std::string text;
+  bool scalar = false;
+};
+
+int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
+
+/// Reads one file and collects its mistakes.
+class Reader {
+ public:
+  Reader(std::string file, const ParameterView& view, const std::function<bool(const std::string&)>& is_fixed)
+      : file_(std::move(file)), view_(view), is_fixed_(is_fixed) {}
+
+  void collect(const YAML::Node& map, const std::string& path) {
+    for (const auto& entry : map) {
+      const std::string key = path.empty() ? entry.first.Scalar() : path + "." + entry.first.Scalar();
+      const int line = line_of(entry.first);
+      if (entry.second.IsMap()) {
+        collect(entry.second, key);
+      } else if (const auto before = lines_.find(key); before != lines_.end()) {
+        mistake(line, key, fmt::format("found twice, first in line {}, accepted once", before->second));
+      } else {
+        lines_[key] = line;
+        check(key,
+              {line, entry.second.IsScalar() ? entry.second.Scalar() : "a list or nothing", entry.second.IsScalar()});
+      }
+    }
+  }
+  void mistake(int line, const std::string& key, const std::string& what) {
+    mistakes_ +=
+        fmt::format("{}{}:{}: {}{}", mistakes_.empty() ? "" : "\n", file_, line, key.empty() ? "" : key + ": ", what);
+  }
+  [[nodiscard]] const std::string& mistakes() const { return mistakes_; }
+  [[nodiscard]] std::vector<ParameterValue> take_values() { return std::move(values_); }
+
+ private:
+  void check(const std::string& name, const Found& found) {
+    const auto known = view_.parameters.find(name);
+    if (known == view_.parameters.end()) return mistake(found.line, name, why_not(name));
+    const msg::Parameter& p = known->second.parameter;
+    char* end = nullptr;
+    const double value = std::strtod(found.text.c_str(), &end);
+    const bool number = found.scalar && !found.text.empty() && *end == '\0' && std::isfinite(value);
+    const bool accepted =
+        number && value >= p.minimum && value <= p.maximum && (!p.is_integer || value == std::round(value));
+    if (!accepted) return mistake(found.line, name, fmt::format("found {}, accepted {}", found.text, accepted_text(p)));
+    if (value != (p.pending_tick < 0 ? p.value : p.pending_value)) values_.push_back({name, value});
+  }
+  [[nodiscard]] std::string why_not(const std::string& name) const {
+    const std::string component = name.substr(0, name.find('.'));
+    if (is_fixed_(name)) {
+      return fmt::format(
+          "cannot change while the run goes on; accepted in a configuration file, for the next run: "
+          "`constrictor run --config {}=FILE`",
+          component);
+    }
+    std::vector<std::string> names;
+    for (const auto& [each, owned] : view_.parameters) names.push_back(each);
+    return "found no such parameter, accepted those of `constrictor param list`" + did_you_mean(name, names);
+  }
+
+  std::string file_;
+  const ParameterView& view_;
+  const std::function<bool(const std::string&)>& is_fixed_;
+  std::map<std::string, int> lines_;
+  std::string mistakes_;
+  std::vector<ParameterValue> values_;
+};
+
+/// The number in as few digits as give the same number again.
+std::string exact(double value) { return fmt::format("{}", value); }
+
+}  // namespace
+
+std::string parameter_file(const ParameterView& view, const std::string& title, bool changed) {
+  std::string text =
+      fmt::format("# {}\n# To set these values in a run that goes on: constrictor param load FILE\n", title);
+  for (const auto& [name, owned] : view.parameters) {
+    const msg::Parameter& p = owned.parameter;
+    if (changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
+    const double value = p.pending_tick < 0 ? p.value : p.pending_value;
+    text += fmt::format("{}: {}  # {}; {}\n", name, exact(value), accepted_text(p), p.doc);
+  }
+  return text;
+}
+
+std::vector<ParameterValue> read_parameter_file(const std::string& text, const std::string& file,
+                                                const ParameterView& view,
+                                                const std::function<bool(const std::string&)>& is_fixed) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(text);
+  } catch (const YAML::ParserException& error) {
+    throw ConfigurationError(fmt::format("{}:{}: {}", file, error.mark.line + 1, error.msg));
+  }
+  Reader reader(file, view, is_fixed);
+  if (root.IsMap()) reader.collect(root, "");
+  else if (!root.IsNull()) reader.mistake(1, "", "found no map, accepted lines as NAME: VALUE");
+  if (!reader.mistakes().empty()) throw ConfigurationError(reader.mistakes());
+  return reader.take_values();
+}
+
+bool is_in_configuration(const std::string& name) {
+  const std::string component = name.substr(0, name.find('.'));
+  if (component.empty() || component.find('/') != std::string::npos) return false;
+  const auto file = data_path(std::filesystem::path("components") / component / (component + ".yaml"));
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return false;
+  try {
+    YAML::Node node = YAML::LoadFile(file.string());
+    for (std::size_t at = component.size(); at < name.size();) {
+      const std::size_t end = std::min(name.find('.', at + 1), name.size());
+      const YAML::Node next = node.IsMap() ? node[name.substr(at + 1, end - at - 1)] : YAML::Node();
+      if (!next.IsDefined() || next.IsNull()) return false;
+      node.reset(next);
+      at = end;
+    }
+    return name.size() > component.size();
+  } catch (const YAML::Exception&) {
+    return false;
+  }
+}
+
+}  // namespace constrictor::cli
