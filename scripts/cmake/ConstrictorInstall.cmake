@@ -51,7 +51,7 @@ install(CODE "
 # Each file by itself, because install(DIRECTORY) also makes the folders from which no file is installed.
 file(GLOB_RECURSE DATA RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
      components/*.yaml components/tools/dashboard/page/*
-     sim/*.yaml deploy/*.yaml deploy/*.xml deploy/README.md idl/*.idl idl/*.md)
+     sim/*.yaml deploy/*.yaml deploy/*.xml deploy/*.md idl/*.idl idl/*.md)
 foreach(file IN LISTS DATA)
   get_filename_component(folder ${file} DIRECTORY)
   install(FILES ${file} DESTINATION ${SHARE}/${folder})

@@ -76,7 +76,10 @@ void add_recording_options(CLI::App& app, RecordingOptions& options) {
 }  // namespace
 
 int component_main(int argc, char** argv, ComponentFactory factory) {
-  return host_main(argc, argv, {std::move(factory)});
+  ensure_numeric_environment(argv);  // before a word is left out: it may start the program again
+  // The launcher starts a program that a manifest names as `PROGRAM NAME OPTIONS`.
+  const int named = argc > 1 && argv[1] == factory.name ? 1 : 0;
+  return host_main(argc - named, argv + named, {std::move(factory)});
 }
 
 int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {

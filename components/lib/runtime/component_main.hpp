@@ -7,7 +7,8 @@
 
 namespace constrictor {
 
-/// Parses arguments, builds and hosts one component. Returns the exit status; see exit_status in host.hpp.
+/// Parses arguments, builds and hosts one component. The name of the component may come before the options, as the
+/// launcher writes it for a program of a manifest. Returns the exit status; see exit_status in host.hpp.
 int component_main(int argc, char** argv, ComponentFactory factory);
 
 /// The same for several components in one process.

@@ -2,7 +2,11 @@
 // (tests/integration) produces the same faults with real processes.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+
 #include "cli/introspection/diagnosis.hpp"
+#include "component/data_path.hpp"
 #include "cyclone/endpoint.hpp"
 
 namespace constrictor::cli {
@@ -136,6 +140,27 @@ TEST(Diagnosis, FindsSmallSocketBuffersBetweenHosts) {
   facts.receive_buffer_max_bytes = 212'992;  // Linux's default
   facts.dds_configuration = on_interface("name=\"eth0\"");
   EXPECT_EQ(faults(facts), Names{"small socket buffers"});
+}
+
+// The page for people and the rules must not drift apart.
+TEST(Troubleshooting, HasASectionWithCauseAndRemedyForEachFaultAndNoOther) {
+  std::ifstream file(data_path(kTroubleshooting));
+  std::vector<std::string> headings;
+  std::string text;
+  std::map<std::string, std::string> sections;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("### ")) headings.push_back(line.substr(4));
+    if (line.starts_with("## ")) headings.emplace_back();  // the end of a section
+    else if (!headings.empty()) sections[headings.back()] += line + "\n";
+  }
+  std::erase(headings, "");
+  EXPECT_EQ(headings, Names(kFaultNames.begin(), kFaultNames.end()));
+  for (const auto& name : headings) {
+    EXPECT_NE(sections[name].find("**Cause:**"), std::string::npos) << name;
+    EXPECT_NE(sections[name].find("**Remedy:**"), std::string::npos) << name;
+  }
+  EXPECT_EQ(Fault("two members of one name").anchor(), "two-members-of-one-name");
+  EXPECT_EQ(Fault("differing IDL hash").anchor(), "differing-idl-hash") << "as GitHub makes it from the heading";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <regex>
 #include <set>
@@ -167,7 +168,7 @@ void check_qos(const Facts& facts, Findings& found) {
       if (!told.insert(what).second) continue;
       const bool same_type = writer.type == reader.type && writer.keyed == reader.keyed;
       found.push_back(
-          {same_type ? "differing QoS" : "differing type", what,
+          {same_type ? Fault("differing QoS") : Fault("differing type"), what,
            same_type ? "let the reader request no more than the writer offers; idl/README.md lists both for every topic"
                      : "build both with the same IDL"});
     }
@@ -175,6 +176,13 @@ void check_qos(const Facts& facts, Findings& found) {
 }
 
 }  // namespace
+
+std::string Fault::anchor() const {
+  std::string text(name_);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return c == ' ' ? '-' : static_cast<char>(std::tolower(c)); });
+  return text;
+}
 
 std::vector<Finding> diagnose(const Facts& facts) {
   Findings found;

@@ -1,8 +1,11 @@
 // The rules of `constrictor doctor`: what is wrong with a DDS domain or this host, derived from facts alone. Pure.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "constrictor/messages.hpp"
@@ -30,8 +33,49 @@ struct Facts {
   std::string idl_hash;            ///< of this program
 };
 
+/// The faults that `doctor` can find, in the order of deploy/TROUBLESHOOTING.md, which has a section for each.
+inline constexpr std::array<std::string_view, 18> kFaultNames{"empty domain",
+                                                              "wrong domain",
+                                                              "unreadable configuration",
+                                                              "wrong interface",
+                                                              "missing multicast",
+                                                              "small socket buffers",
+                                                              "two plants",
+                                                              "two members of one name",
+                                                              "differing IDL hash",
+                                                              "differing QoS",
+                                                              "differing type",
+                                                              "no DDS",
+                                                              "no address",
+                                                              "host silent",
+                                                              "port in use",
+                                                              "ports closed",
+                                                              "hosts differ",
+                                                              "host refused"};
+
+/// One of kFaultNames; any other name does not compile.
+class Fault {
+ public:
+  template <std::size_t N>
+  consteval Fault(const char (&name)[N]) : name_(name, N - 1) {  // NOLINT(google-explicit-constructor)
+    if (std::find(kFaultNames.begin(), kFaultNames.end(), name_) == kFaultNames.end())
+      throw "kFaultNames does not contain this name";
+  }
+  operator std::string() const { return std::string(name_); }  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] std::string_view name() const { return name_; }
+  bool operator==(const Fault&) const = default;
+  /// The heading of its section as an anchor: "two-plants".
+  [[nodiscard]] std::string anchor() const;
+
+ private:
+  std::string_view name_;
+};
+
+/// The page with a section for each fault, as a path for data_path().
+inline constexpr const char* kTroubleshooting = "deploy/TROUBLESHOOTING.md";
+
 struct Finding {
-  std::string fault;  ///< short name, also for scripts: "two plants"
+  Fault fault;
   std::string what;
   std::string cure;
 };

@@ -16,6 +16,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "component/data_path.hpp"
 #include "constrictor/json.hpp"
 #include "cyclone/endpoint.hpp"
 #include "runtime/host.hpp"
@@ -109,7 +110,7 @@ Diagnosis examine(std::uint32_t domain, const Facts& host) {
   if (!error.empty()) {
     // The domain was not examined, so whether processes are in it is unknown.
     std::erase_if(findings, [](const Finding& finding) {
-      return finding.fault == "empty domain" || finding.fault == "wrong domain";
+      return finding.fault == Fault("empty domain") || finding.fault == Fault("wrong domain");
     });
     findings.push_back({"no DDS", error,
                         findings.empty() ? "unset CYCLONEDDS_URI, or correct it (deploy/README.md)"
@@ -118,20 +119,30 @@ Diagnosis examine(std::uint32_t domain, const Facts& host) {
   return result;
 }
 
+nlohmann::ordered_json json_of(const Finding& finding) {
+  return {{"fault", finding.fault.name()},
+          {"what", finding.what},
+          {"cure", finding.cure},
+          {"page", fmt::format("{}#{}", kTroubleshooting, finding.fault.anchor())}};
+}
+
+void tell(const Finding& finding) {
+  fmt::print("\n{}: {}\n  cure: {}\n  more: {}#{}\n", finding.fault.name(), finding.what, finding.cure,
+             data_path(kTroubleshooting).string(), finding.fault.anchor());
+}
+
 nlohmann::ordered_json json_of(const Diagnosis& diagnosis) {
   nlohmann::ordered_json json = {{"domain", diagnosis.facts.domain},
                                  {"participants", diagnosis.facts.participants.size()}};
   auto& list = json["findings"] = nlohmann::ordered_json::array();
-  for (const auto& finding : diagnosis.findings)
-    list.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
+  for (const auto& finding : diagnosis.findings) list.push_back(json_of(finding));
   return json;
 }
 
 void tell(const Diagnosis& diagnosis) {
   fmt::print("domain {}: {} processes, {} readers and writers\n", diagnosis.facts.domain,
              diagnosis.facts.participants.size(), diagnosis.facts.endpoints.size());
-  for (const auto& finding : diagnosis.findings)
-    fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+  for (const auto& finding : diagnosis.findings) tell(finding);
   if (diagnosis.findings.empty()) fmt::print("no fault found\n");
 }
 
@@ -151,8 +162,8 @@ int check_manifest(const DoctorOptions& options) {
     auto findings = nlohmann::ordered_json::array();
     if (!options.json) fmt::print("host {}: {}\n", host.name, host.facts.empty() ? "not reached" : host.facts);
     for (const auto& finding : host.findings) {
-      findings.push_back({{"fault", finding.fault}, {"what", finding.what}, {"cure", finding.cure}});
-      if (!options.json) fmt::print("\n{}: {}\n  cure: {}\n", finding.fault, finding.what, finding.cure);
+      findings.push_back(json_of(finding));
+      if (!options.json) tell(finding);
     }
     list.push_back({{"host", host.name}, {"facts", host.facts}, {"findings", findings}});
   }
@@ -194,7 +205,8 @@ void add_doctor(CLI::App& app, Action& action) {
       "Finds: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two "
       "members\n"
       "of one name, small socket buffers. Without --run it examines the domains of all runs on this host; --json then\n"
-      "prints a list if there are several. With --manifest, it connects to each host of the manifest and checks "
+      "prints a list if there are several. Each fault has a section in deploy/TROUBLESHOOTING.md. With --manifest, it "
+      "connects to each host of the manifest and checks "
       "release,\n"
       "libraries, numeric profile, and whether packets pass in both directions; clocks need not agree.",
       {"constrictor doctor", "constrictor doctor --run 7 --json", "constrictor doctor --manifest my_hosts.yaml"},
