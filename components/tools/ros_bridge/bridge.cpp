@@ -69,6 +69,7 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   line_out_ = node_.writer<Path>("line", 1);
   plan_out_ = node_.writer<Path>("plan", 1);
   diagnostics_out_ = node_.writer<DiagnosticArray>("diagnostics", 1);
+  log_out_ = node_.writer<Log>("rosout", 256);
   stopped_out_ = node_.writer<std_msgs_msg_dds__Bool_>("emergency_stop/state", 1);
   task_answer_out_ = node_.writer<Text>("task/answer", 16);
   task_status_out_ = node_.writer<Text>("task/status", 1);
@@ -102,6 +103,7 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   camera_info_ = dds::Reader<msg::CameraInfo>::member(robot_side, "camera/info");
   task_command_ = dds::Reader<msg::TaskCommand>::member(robot_side, "task/command");
   task_event_ = dds::Reader<msg::TaskEvent>::member(robot_side, "task/event");
+  log_ = dds::Reader<msg::LogLine>::member(robot_side, "log");
   wait_set_ = dds::WaitSet(robot_side);
   for (const auto reader : {tick_.get(), joints_.get(), imu_.get(), pose_.get(), camera_info_.get(),
                             camera_image_.get(), percept_image_.get(), overview_image_.get()}) {
@@ -141,6 +143,7 @@ void Bridge::take_fit(const dds::Reader<T>& reader, Use&& use) {
 void Bridge::pass_robot() {
   take_fit(tick_, [this](const msg::Tick& tick) {
     health_.take(tick);
+    period_ns_ = tick.period_ns;
     clock_out_.write(translator_.clock(tick.time_ns));
   });
   take_fit(imu_, [this](const msg::ImuState& imu) {
@@ -201,6 +204,9 @@ void Bridge::pass_surroundings() {
 }
 
 void Bridge::pass_health(SteadyClock::time_point now) {
+  // Lines that the run keeps for late readers wait for the first tick, from which their times follow.
+  if (period_ns_ > 0)
+    take_fit(log_, [this](const msg::LogLine& line) { log_out_.write(translator_.log(line, period_ns_)); });
   run_state_.take([this](const msg::RunState& state) { health_.take(state); });
   component_status_.take([this](const msg::ComponentStatus& status) { health_.take(status); });
   if (now - health_told_ < 1s) return;

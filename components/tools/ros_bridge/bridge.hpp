@@ -94,6 +94,7 @@ class Bridge {
   dds::Reader<msg::TaskCommand> task_command_;
   dds::Reader<msg::TaskStatus> task_status_;
   dds::Reader<msg::TaskEvent> task_event_;
+  dds::Reader<msg::LogLine> log_;
 
   // ROS 2's side.
   dds::Writer<Clock> clock_out_;
@@ -106,6 +107,7 @@ class Bridge {
   dds::Writer<MarkerArray> map_markers_out_, line_markers_out_, object_markers_out_;
   dds::Writer<Path> line_out_, plan_out_;
   dds::Writer<DiagnosticArray> diagnostics_out_;
+  dds::Writer<Log> log_out_;
   dds::Writer<std_msgs_msg_dds__Bool_> stopped_out_;
   dds::Writer<Text> task_answer_out_, task_status_out_, task_event_out_, description_out_;
   Subscription<Twist> velocity_;
@@ -117,6 +119,7 @@ class Bridge {
   msg::ImuState last_imu_{};
   std::optional<msg::CameraInfo> last_info_;
   std::string last_task_status_;
+  std::int64_t period_ns_ = 0;   ///< of a tick
   std::uint64_t plan_goal_ = 0;  ///< the goal whose path /plan shows; 0: none
   std::optional<bool> stopped_;  ///< as ROS 2 was told
   std::uint64_t number_ = 0;     ///< of the pilot's request that is not answered yet; 0: none

@@ -73,8 +73,14 @@ int main(int argc, char** argv) {
       (localhost && std::string(localhost) == "1") || (range && std::string(range) == "LOCALHOST");
 
   CLI::App app{
-      "Shows a run to ROS 2 (joints, tf, odometry, images, map, diagnostics), and takes velocities, tasks and\n"
+      "Shows a run to ROS 2 (joints, tf, odometry, images, map, diagnostics, logs), and takes velocities, tasks and\n"
       "emergency stops from ROS 2. Without options it bridges the only run on this host to ROS_DOMAIN_ID."};
+  app.footer(
+      "EXAMPLES\n  ros_bridge\n  ros_bridge --run 3 --ros-domain 7 --localhost\n"
+      "  ros2 topic echo /joint_states        # in another terminal, where ROS 2 is installed\n\n"
+      "EXIT STATUS\n  0 the run has ended, or SIGTERM, or Ctrl-C; 64 wrong usage; 70 no run, several and none chosen, "
+      "or\n"
+      "  DDS fails; 78 wrong robot file");
   app.set_version_flag("--version", [] { return version_text("ros_bridge"); });
   app.add_option("--run,--domain", domain,
                  "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")

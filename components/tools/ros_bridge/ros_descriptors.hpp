@@ -25,6 +25,7 @@ std::string type_user_data() {
 // ros_types.idl, so that a field in a wrong place is noticed.
 #define CONSTRICTOR_ROS_TYPES(X)                                                                                   \
   X(rosgraph_msgs_msg_dds__Clock_, "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564")             \
+  X(rcl_interfaces_msg_dds__Log_, "e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac")              \
   X(sensor_msgs_msg_dds__JointState_, "a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e")          \
   X(sensor_msgs_msg_dds__Imu_, "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b")                 \
   X(sensor_msgs_msg_dds__Image_, "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47")               \

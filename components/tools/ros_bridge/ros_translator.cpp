@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "constrictor/image.hpp"
+#include "constrictor/text.hpp"
 #include "robot/description.hpp"
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_values.hpp"
@@ -35,6 +37,12 @@ std::string unfit(const msg::Tick& tick) {
 }
 
 std::string unfit(const msg::JointState& joints) { return broken(joints); }
+
+std::string unfit(const msg::LogLine& line) {
+  auto violation = validate(line);
+  return violation ? *std::move(violation) : "";
+}
+
 std::string unfit(const msg::RobotPose& pose) { return broken(pose); }
 
 std::string unfit(const msg::ImuState& imu) {
@@ -169,6 +177,23 @@ TFMessage Translator::camera_transform(const msg::CameraInfo& info) {
                          text(kCameraFrame),
                          {vector_of(info.X_HC.position_m), rotation_of(info.X_HC.orientation)}});
   return tf_message();
+}
+
+Log Translator::log(const msg::LogLine& line, std::int64_t period_ns) {
+  // Source: rcl_interfaces/msg/Log.msg.
+  constexpr std::uint8_t kInfo = 20, kWarn = 30, kError = 40;
+  logger_ = printable(line.component[0] != '\0' ? text_of(line.component) : text_of(line.process));
+  message_ = printable(text_of(line.message));
+  const bool known =
+      line.tick > 0 && period_ns > 0 && line.tick <= std::numeric_limits<std::int64_t>::max() / period_ns;
+  const std::int64_t time_ns = known ? line.tick * period_ns : 0;
+  Log message{};
+  message.stamp = time_of(sayable(time_ns) ? time_ns : 0);
+  message.level = line.level == msg::kLogInfo ? kInfo : line.level == msg::kLogWarning ? kWarn : kError;
+  message.name = text(logger_);
+  message.msg = text(message_);
+  message.file = message.function = text("");
+  return message;
 }
 
 Drive drive_of(const Twist& twist, const DriveConfig& config) {

@@ -26,6 +26,7 @@ using CameraInfo = sensor_msgs_msg_dds__CameraInfo_;
 using Odometry = nav_msgs_msg_dds__Odometry_;
 using TFMessage = tf2_msgs_msg_dds__TFMessage_;
 using Twist = geometry_msgs_msg_dds__Twist_;
+using Log = rcl_interfaces_msg_dds__Log_;
 
 /// Why ROS 2 cannot represent a message of the robot; empty if it can. Reasons: a value outside the range in the IDL, a
 /// time that ROS 2 cannot express, a quaternion that is not a rotation, an image with missing pixels. ROS 2 tools do
@@ -36,6 +37,7 @@ using Twist = geometry_msgs_msg_dds__Twist_;
 [[nodiscard]] std::string unfit(const msg::RobotPose& pose);
 [[nodiscard]] std::string unfit(const msg::CameraInfo& info);
 [[nodiscard]] std::string unfit(const msg::CameraImage& image);
+[[nodiscard]] std::string unfit(const msg::LogLine& line);
 
 /// Translates messages for which unfit() is empty. The returned messages point into memory of the translator (names)
 /// and of the argument (pixels): write them before either changes.
@@ -58,6 +60,9 @@ class Translator {
   [[nodiscard]] Odometry odometry(const msg::RobotPose& pose, const msg::ImuState& imu);
   /// odom -> base_link by the estimate, and the chain of modules by the joint angles, at the pose's time.
   [[nodiscard]] TFMessage transforms(const msg::RobotPose& pose, const msg::JointState& joints);
+  /// The name of the logger is that of the component, or of the process. `period_ns`: of a tick, from which the time of
+  /// the line follows; a line from before the first tick has the time 0.
+  [[nodiscard]] Log log(const msg::LogLine& line, std::int64_t period_ns);
   /// base_link -> camera_optical; constant in a run.
   [[nodiscard]] TFMessage camera_transform(const msg::CameraInfo& info);
 
@@ -69,6 +74,7 @@ class Translator {
   std::vector<std::string> joint_names_, module_frames_;
   std::vector<char*> joint_name_pointers_;
   std::vector<TransformStamped> transforms_;
+  std::string logger_, message_;
 };
 
 /// The constants that convert a velocity into an undulation.

@@ -129,6 +129,7 @@ TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) 
   EXPECT_GT(std::count_if(percept_stamps.begin(), percept_stamps.end(),
                           [&](const auto& stamp) { return image_stamps.contains(stamp); }),
             5);
+  EXPECT_GT(count["rosout"], 5) << "each process logs at its start";
   EXPECT_GT(count["task/status"], 1);
   EXPECT_GT(count["task/event"], 1);
   EXPECT_GT(line_points, 5u);

@@ -118,6 +118,9 @@ void read_surroundings(example::Participant& node, Answers& answers) {
                     [name](const auto& m) { std::printf("%s %s\n", name, m.data().c_str()); });
   node.read<Text>("rt/robot_description", true, 1,
                   [](const auto& m) { std::printf("robot_description %zu\n%s", m.data().size(), m.data().c_str()); });
+  node.read<rcl_interfaces::msg::dds_::Log_PubSubType>("rt/rosout", true, 256, [](const auto& m) {
+    std::printf("rosout %d %s %s\n", int{m.level()}, m.name().c_str(), m.msg().c_str());
+  });
   node.read<std_msgs::msg::dds_::Bool_PubSubType>("rt/emergency_stop/state", true, 1, [&answers](const auto& m) {
     answers.stopped = m.data();
     std::printf("stopped %s\n", m.data() ? "true" : "false");

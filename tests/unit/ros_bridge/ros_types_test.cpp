@@ -102,7 +102,8 @@ std::vector<Difference> differences() {
 }
 
 /// Messages that ROS 1 does not have. `time` and `duration` were basic types of its .msg files.
-const std::set<std::string> kOnlyRos2 = {"builtin_interfaces/Time",
+const std::set<std::string> kOnlyRos2 = {"rcl_interfaces/Log",
+                                         "builtin_interfaces/Time",
                                          "builtin_interfaces/Duration",
                                          "visualization_msgs/UVCoordinate",
                                          "visualization_msgs/MeshFile",

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "component/data_path.hpp"
+#include "constrictor/text.hpp"
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_translator.hpp"
 
@@ -143,6 +144,32 @@ TEST(RosTranslator, ThePrincipalPointCountsPixelCentresFromZero) {
   EXPECT_EQ(out.k[5], 119.5);
   EXPECT_EQ(out.p[2], 159.5);
   EXPECT_EQ(out.d._length, 5u);
+}
+
+TEST(RosTranslator, LogLinesHaveRosLevelsAndTheTimeOfTheirTick) {
+  Translator translator(mamba());
+  msg::LogLine line{};
+  set_text(line.process, "navigation,control");
+  set_text(line.message, "line lost\x1b[2J");
+  line.tick = 75;
+  line.level = msg::kLogWarning;
+  Log out = translator.log(line, 20'000'000);
+  EXPECT_EQ(out.stamp.sec, 1);
+  EXPECT_EQ(out.stamp.nanosec, 500'000'000u);
+  EXPECT_EQ(out.level, 30);  // WARN of rcl_interfaces/msg/Log.msg
+  EXPECT_STREQ(out.name, "navigation,control");
+  EXPECT_STREQ(out.msg, "line lost?[2J");
+  set_text(line.component, "control");
+  line.tick = -1;
+  line.level = msg::kLogError;
+  out = translator.log(line, 20'000'000);
+  EXPECT_STREQ(out.name, "control");
+  EXPECT_EQ(out.stamp.sec, 0);
+  EXPECT_EQ(out.level, 40);
+  line.level = msg::kLogInfo;
+  EXPECT_EQ(translator.log(line, 20'000'000).level, 20);
+  line.tick = std::numeric_limits<std::int64_t>::max();
+  EXPECT_GE(translator.log(line, 20'000'000).stamp.sec, 0);
 }
 
 Twist twist(double speed_m_s, double turn_rad_s) {
