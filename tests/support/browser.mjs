@@ -131,16 +131,23 @@ function framesOf(events) {
   const tasks = events.filter((event) => event.name === "RunTask" && event.ph === "X" && thread(event) === busiest)
     .sort((a, b) => a.ts - b.ts);
   const begins = starts.filter((event) => thread(event) === busiest).map((event) => event.ts).sort((a, b) => a - b);
-  const busy = new Array(Math.max(0, begins.length - 1)).fill(0);
+  const empty = () => new Array(Math.max(0, begins.length - 1)).fill(0);
+  const wall = empty(); // includes the time for which other programs had the core
+  const cpu = empty();
   let frame = 0;
   for (const task of tasks) {
     // A task belongs to the frame in which it ends: the task of an animation frame begins before its callback.
-    while (frame < busy.length && task.ts + task.dur > begins[frame + 1]) ++frame;
-    if (frame < busy.length && task.ts + task.dur >= begins[0]) busy[frame] += task.dur / 1000;
+    while (frame < wall.length && task.ts + task.dur > begins[frame + 1]) ++frame;
+    if (frame >= wall.length || task.ts + task.dur < begins[0]) continue;
+    wall[frame] += task.dur / 1000;
+    cpu[frame] += (task.tdur ?? task.dur) / 1000;
   }
-  busy.sort((a, b) => a - b);
-  const at = (share) => Number((busy[Math.min(busy.length - 1, Math.floor(share * busy.length))] ?? NaN).toFixed(2));
-  return { frames: busy.length, p50_ms: at(0.5), p95_ms: at(0.95), p99_ms: at(0.99), most_ms: at(1) };
+  const summary = (times) => {
+    times.sort((a, b) => a - b);
+    const at = (share) => Number((times[Math.min(times.length - 1, Math.floor(share * times.length))] ?? NaN).toFixed(2));
+    return { p50: at(0.5), p95: at(0.95), p99: at(0.99), most: at(1) };
+  };
+  return { frames: wall.length, wall_ms: summary(wall), cpu_ms: summary(cpu) };
 }
 
 async function open() {
@@ -191,5 +198,9 @@ try {
 const ended = new Promise((done) => chromium.once("exit", done));
 chromium.kill("SIGKILL");
 await ended;
-rmSync(folder, { recursive: true, force: true, maxRetries: 5 });
+try {
+  rmSync(folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 }); // its processes still write there
+} catch (error) {
+  console.error(`${folder} is left: ${error.message}`);
+}
 process.exit(status);

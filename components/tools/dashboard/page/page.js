@@ -18,12 +18,12 @@ const services = {
   task_start: "task", task_cancel: "stand", parameter_read: "param_list",
 };
 const plain = ["stop", "clear_stop", "take", "release", "pause", "resume"]; // buttons whose request is empty
-const texts_ms = 200; // people do not read faster, and texts cost more time than drawings
+const part_ms = 60; // each part of the page beside the scene is shown anew after four times this
 
 let state = null;
 let scenes = false; // whether the scene must be drawn
-let plots = false;
-let written = 0; // time at which the texts were written
+let shown = 0; // time at which a part of the page was shown
+let part = 0; // the part that is shown next
 
 const scene = new Scene(() => (scenes = true));
 const history = new TorqueHistory(element("history"));
@@ -62,7 +62,7 @@ function onMessage(topic, view, from) {
   if (topic !== "view/state") return drawImage(element(topic === "view/camera" ? "camera" : "processed"), view, from);
   state = JSON.parse(new TextDecoder().decode(new Uint8Array(view.buffer, from)));
   if (state.world && state.torque_nm) history.add(state.world.time_s, state.torque_nm);
-  scenes = plots = true;
+  scenes = true;
 }
 
 /** Shows the pace of the run, or the speed of the replay, unless the user is just choosing another one. */
@@ -88,16 +88,23 @@ function frame() {
     scenes = false;
     scene.draw(state);
   }
-  if (!plots || performance.now() - written < texts_ms) return;
-  plots = false;
-  written = performance.now();
-  drawTorques(element("torques"), state.torque_nm ?? []);
-  history.draw();
-  showMission(state.mission);
-  showPace();
-  timeline.show(state.replay);
-  showTexts(state);
+  // One part in a frame: all together would take longer than the time between two frames of the screen.
+  if (performance.now() - shown < part_ms) return;
+  shown = performance.now();
+  parts[part]();
+  part = (part + 1) % parts.length;
 }
+
+const parts = [
+  () => drawTorques(element("torques"), state.torque_nm ?? []),
+  () => history.draw(),
+  () => showTexts(state),
+  () => {
+    showMission(state.mission);
+    showPace();
+    timeline.show(state.replay);
+  },
+];
 
 const connection = new Connection(["view/state", "view/camera", "view/processed"], {
   message: onMessage,
@@ -111,7 +118,7 @@ const timeline = new Timeline(connection, call);
 buildTasks(call);
 new Drive(connection, say, () => call("stop", {}));
 new Parameters(connection, call);
-addEventListener("resize", () => (scenes = plots = true));
+addEventListener("resize", () => (scenes = true));
 
 machine = new Machine(element("machine"), await (await fetch("machine.json")).json());
 requestAnimationFrame(frame);

@@ -3,12 +3,24 @@ import * as THREE from "./three/three.module.min.js";
 import { OrbitControls } from "./three/OrbitControls.js";
 import { discard, Estimate, Forces, Objects, Robot, scenery } from "./scene_3d_parts.js";
 
+/** True where the browser draws with the processor, as in many virtual machines: smooth edges cost too much there. */
+function drawnBySoftware() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  if (!probe) throw new Error("it has no WebGL 2");
+  const info = probe.getExtension("WEBGL_debug_renderer_info");
+  const name = probe.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : probe.RENDERER);
+  probe.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 /** Draws states on a canvas. A mouse or fingers turn, zoom and move the view; `changed` is called after each of them. */
 export class Scene3d {
   constructor(canvas, changed) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    const slow = drawnBySoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !slow });
+    this.renderer.setPixelRatio(slow ? 1 : Math.min(window.devicePixelRatio || 1, 2));
+    this.renderer.debug.checkShaderErrors = false; // the check waits for the graphics card
     this.world = new THREE.Scene();
     this.world.background = new THREE.Color("#f8faf9");
     this.world.add(new THREE.HemisphereLight("#ffffff", "#b0b4b0", 2.2));
@@ -22,7 +34,8 @@ export class Scene3d {
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02; // not from below the ground
     this.controls.minDistance = 0.3;
     this.controls.maxDistance = 60;
-    this.controls.addEventListener("change", changed);
+    this.drawing = false;
+    this.controls.addEventListener("change", () => this.drawing || changed()); // following the robot is no change
     this.key = null; // of the scene that is drawn
     this.followed = null; // the place of the robot at which the view points
   }
@@ -75,7 +88,9 @@ export class Scene3d {
       this.camera.aspect = width / Math.max(1, height);
       this.camera.updateProjectionMatrix();
     }
+    this.drawing = true;
     this.controls.update();
+    this.drawing = false;
     this.renderer.render(this.world, this.camera);
   }
 }
