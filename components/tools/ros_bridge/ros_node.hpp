@@ -26,7 +26,7 @@ template <class T>
 class Subscription {
  public:
   Subscription() = default;
-  Subscription(dds_entity_t reader) : reader_(reader, "dds_create_reader") {}
+  explicit Subscription(dds_entity_t reader) : reader_(reader, "dds_create_reader") {}
   template <class Use>
   void take(Use&& use) const {
     dds::take_all_from(reader_.get(), [&](void* message, dds_instance_handle_t) { use(*static_cast<T*>(message)); });

@@ -229,6 +229,11 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   Process stop = ros({"--stop"});
   EXPECT_TRUE(until([&] { return authority.emergency_stop; }, 30s));
   EXPECT_TRUE(stop.wait_for("stopped true", 30s)) << stop.output();
+  stop.signal(SIGTERM);
+  EXPECT_EQ(stop.wait(20s), 0);
+  Process clear = ros({"--clear"});
+  EXPECT_TRUE(until([&] { return !authority.emergency_stop; }, 30s));
+  EXPECT_TRUE(clear.wait_for("stopped false", 30s)) << clear.output();
   launcher.signal(SIGTERM);
   EXPECT_TRUE(launcher.wait(15s));
 }

@@ -1,8 +1,8 @@
 // ros_probe: acts as a ROS 2 node on another vendor's DDS with ROS's topic and type names. It prints a line for each
 // sample, and for each reader and writer that it discovers. With --drive it writes velocities, as teleop_twist_keyboard
-// does; with --task and --stop it requests a task or an emergency stop until the bridge has answered: the first sample
-// of a new writer may be lost, because its reader has not discovered it yet.
-//   ros_probe --domain N --for SECONDS [--drive SPEED,TURN] [--task LINE] [--stop] [--humble]
+// does; with --task, --stop and --clear it requests a task, an emergency stop or the end of the stop, until the bridge
+// has answered: the first sample of a new writer may be lost, because its reader has not discovered it yet.
+//   ros_probe --domain N --for SECONDS [--drive SPEED,TURN] [--task LINE] [--stop] [--clear] [--humble]
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -176,10 +176,11 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { g_stop = 1; });
   unsigned domain = 0;
   double seconds = 5, speed_m_s = 0, turn_rad_s = 0;
-  bool drive = false, stop = false, humble = false;
+  bool drive = false, stop = false, clear = false, humble = false;
   Answers answers;
   for (int i = 1; i < argc; ++i) {
     stop = stop || !std::strcmp(argv[i], "--stop");
+    clear = clear || !std::strcmp(argv[i], "--clear");
     humble = humble || !std::strcmp(argv[i], "--humble");
     if (i + 1 == argc) break;
     if (!std::strcmp(argv[i], "--domain")) domain = static_cast<unsigned>(std::atoi(argv[i + 1]));
@@ -199,7 +200,10 @@ int main(int argc, char** argv) {
   auto* velocity = drive ? node.write<geometry_msgs::msg::dds_::Twist_PubSubType>("rt/cmd_vel", 1, false) : nullptr;
   auto* tasks =
       answers.task.empty() ? nullptr : node.write<std_msgs::msg::dds_::String_PubSubType>("rt/task/request", 1, false);
-  auto* stops = stop ? node.write<std_msgs::msg::dds_::Empty_PubSubType>("rt/emergency_stop", 1, false) : nullptr;
+  using Empty = std_msgs::msg::dds_::Empty_PubSubType;
+  auto* stops = stop ? node.write<Empty>("rt/emergency_stop", 1, false) : nullptr;
+
+  auto* clears = clear ? node.write<Empty>("rt/emergency_stop/clear", 1, false) : nullptr;
 
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -213,6 +217,7 @@ int main(int argc, char** argv) {
       if (tasks && !answers.task_answered) tasks->write(&line);
       std_msgs::msg::dds_::Empty_ empty;
       if (stops && !answers.stopped) stops->write(&empty);
+      if (clears && answers.stopped) clears->write(&empty);
     }
     if (!velocity || Clock::now() < next) continue;
     next = Clock::now() + std::chrono::milliseconds(100);
