@@ -13,7 +13,17 @@ std::string own_host() {
 }
 
 LogPublisher::LogPublisher(dds_entity_t participant, Log log, const std::string& process, std::uint32_t incarnation)
-    : log_(std::move(log)), process_(process), writer_(participant, barrier_topics::kLog) {
+    : log_(std::move(log)), process_(process) {
+  try {
+    writer_ = {participant, barrier_topics::kLog};
+  } catch (const dds::Error& error) {
+    // In a secured run with old permissions, for example. The lines are in the log file.
+    log_.warning(
+        "the log lines of this process are not published: {}; in a secured run, `constrictor keys` renews the "
+        "rights",
+        error.what());
+    return;
+  }
   set_text(line_.host, own_host());
   line_.pid = ::getpid();
   set_text(line_.process, process);

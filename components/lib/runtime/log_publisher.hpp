@@ -23,7 +23,8 @@ class LogPublisher {
   static constexpr int kMostTrouble = 200;
 
   /// `process`: names of the components of this process, comma separated, or the name of the program. Lines about one
-  /// of several components carry its name. The log must not be destroyed before this object. Throws dds::Error.
+  /// of several components carry its name. The log must not be destroyed before this object. If the topic cannot
+  /// be written, a warning is logged and nothing is published.
   LogPublisher(dds_entity_t participant, Log log, const std::string& process, std::uint32_t incarnation);
   ~LogPublisher();
   LogPublisher(const LogPublisher&) = delete;
