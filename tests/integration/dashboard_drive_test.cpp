@@ -24,6 +24,8 @@ class DashboardDrive : public CliFixture {
     port_ = static_cast<std::uint16_t>(std::stoi(output.substr(output.find("127.0.0.1:") + 10)));
   }
   void TearDown() override {
+    // If the test has killed the dashboard, the end of the run waits for it, until DDS knows that it is dead (10 s).
+    if (!dashboard_) return launcher_->signal(SIGKILL);
     EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
     EXPECT_EQ(launcher_->wait(20s), 128 + SIGTERM);
     EXPECT_EQ(dashboard_->wait(20s), exit_status::kOk) << dashboard_->errors();
@@ -67,8 +69,10 @@ TEST_F(DashboardDrive, TheRobotMovesOnlyWhileAViewerRepeatsTheDrive) {
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
 }
 
-TEST_F(DashboardDrive, ADriveThatWasStoppedDoesNotTakeAuthorityBack) {
+// A stopped drive must not take authority back by itself.
+TEST_F(DashboardDrive, ADriveEndsWithAStopAndWithTheDashboard) {
   Viewer driver(port_), stopper(port_);
+  Watcher watcher(domain());
   const std::string forwards = R"({"speed_m_s":0.3,"turn_rad_s":0})";
   ASSERT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s");
   ASSERT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s");
@@ -77,6 +81,11 @@ TEST_F(DashboardDrive, ADriveThatWasStoppedDoesNotTakeAuthorityBack) {
   EXPECT_TRUE(driver.ask("drive", forwards).starts_with("failure: drive: ")) << "the stop is latched";
   EXPECT_EQ(stopper.ask("clear_stop", "{}"), "emergency stop cleared");
   EXPECT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s") << "a new wish, after the stop was cleared";
+  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
+  dashboard_->signal(SIGKILL);
+  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone, 5s)) << "nobody asserts that the dashboard is alive";
+  EXPECT_TRUE(stands(watcher));
+  dashboard_.reset();
 }
 
 TEST_F(DashboardDrive, TasksAndParametersAreObeyedOrRefusedWithTheReason) {

@@ -1,7 +1,9 @@
-// The diagram of the page against the state machine of the planner.
+// The files of the page: the diagram against the state machine of the planner, and what no script may do.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -48,6 +50,21 @@ TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
     for (const MissionState to : next)
       EXPECT_TRUE(drawn.contains({row.name, name_of(to)})) << row.name << " to " << name_of(to);
   }
+}
+
+/// Names and reasons come from the run, and from whoever can send to it.
+TEST(Page, InsertsNothingAsHtml) {
+  int files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page")) {
+    if (entry.path().extension() != ".js") continue;
+    ++files;
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (const char* word : {"innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "DOMParser"})
+      EXPECT_EQ(text.find(word), std::string::npos) << entry.path() << ": " << word;
+  }
+  EXPECT_GT(files, 10);
 }
 
 }  // namespace
