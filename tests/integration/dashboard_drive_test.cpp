@@ -17,7 +17,7 @@ class DashboardDrive : public CliFixture {
           "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
     launcher_.emplace(start(
         {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "2x"}));
-    ASSERT_TRUE(launcher_->wait_for("simulated", 30s)) << launcher_->errors();
+    ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->errors();
     dashboard_.emplace(start({"dashboard", "--port", "0"}));
     ASSERT_TRUE(dashboard_->wait_for("Ctrl-C ends the dashboard", 20s)) << dashboard_->errors();
     const std::string output = dashboard_->output();
