@@ -21,10 +21,11 @@ class GamepadDrive : public CliFixture {
           "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
           "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
   }
-  [[nodiscard]] Process begin() const {
+  [[nodiscard]] Process begin() {
     Process run =
         start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
-    EXPECT_TRUE(run.wait_for("simulated", 30s)) << run.output() << run.errors();
+    const std::vector<std::string> ready = {"param", "get", "navigation.travel.frequency_hz"};
+    EXPECT_TRUE(eventually([&] { return domain() != 0 && command(ready) == 0; }, 30s)) << run.output() << run.errors();
     return run;
   }
   void press(int pad, std::uint16_t type, std::uint16_t code, std::int32_t value) const {

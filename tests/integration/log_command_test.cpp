@@ -46,7 +46,6 @@ class LogCommand : public Introspection {
 
 TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
   Process run = toys();
-  ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
   std::vector<json> all;
   // A process that is still starting has written no line yet.
   ASSERT_TRUE(eventually([&] {
@@ -91,7 +90,7 @@ TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
 
 TEST_F(LogCommand, FollowsARunUntilItsEndAndShowsHowAProcessDies) {
   Process run = toys();
-  ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
+  ASSERT_TRUE(eventually([&] { return json_of({"status"}).value("tick", -1) > 0; })) << output_;
   Process follow = start({"log", "--follow"});
   ASSERT_TRUE(follow.wait_for("info navigation,control: starts", 20s)) << follow.output() << follow.errors();
   const json node = json_of({"node", "info", "control"});
