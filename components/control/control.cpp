@@ -6,9 +6,15 @@
 #include <string>
 #include <string_view>
 
+#include "constrictor/text.hpp"
 #include "robot/gate_messages.hpp"
 
 namespace constrictor {
+namespace {
+
+constexpr std::string_view kDrive = "drive";  // DesiredTrajectory.method
+
+}  // namespace
 
 Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
     : TunableComponent(wiring, setup, topics::kControlParameters),
@@ -18,12 +24,20 @@ Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
       gate_(robot_, {0, config_.relax_after_ticks}),
       registry_(std::move(methods)) {}
 
+void Control::name_drive_method(msg::DesiredTrajectory& desired) const {
+  const std::string& chosen = drive_methods().at(config_.drive_method);
+  const ControlMethod* method = registry_.find(chosen);
+  const bool usable = method && method->accepts(desired, chain_);
+  set_text(desired.method, usable ? chosen : drive_methods().front());
+}
+
 msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
   msg::DesiredTrajectory desired{};
   known = false;
   const char* fallback = "hold";
   if (trajectory_in_) {
     desired = *trajectory_in_;
+    if (std::string_view(desired.method) == kDrive) name_drive_method(desired);
     method = registry_.find(desired.method);
     known = method && method->accepts(desired, chain_);
     if (trajectory_in_.age_ticks() > config_.relax_after_ticks) fallback = "relax";

@@ -38,6 +38,9 @@ class Control : public TunableComponent<ControlState, ControlConfig> {
   void step(const Tick& tick) override;
 
  private:
+  /// Replaces "drive" by the name of the method that moves the robot: the configured one, or undulation if that one
+  /// does not accept the trajectory (a body that holds an object).
+  void name_drive_method(msg::DesiredTrajectory& desired) const;
   /// The trajectory to follow now, by the rules on age and validity, and its method.
   [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
   [[nodiscard]] Perceived perceived() const;

@@ -10,7 +10,15 @@
 
 namespace constrictor {
 
+/// The methods that move the body along a path, by the values of `drive.method`.
+inline const std::vector<std::string>& drive_methods() {
+  static const std::vector<std::string> names{"undulation", "sidewinding", "rolling", "pitch_wave", "concertina"};
+  return names;
+}
+
 struct ControlConfig : ParameterSet {
+  std::uint8_t drive_method = add(drive_method, "drive.method", 0, drive_methods(), kWhileRunning,
+                                  "Method that moves a body without an object; with one it is always undulation");
   WaveWeights weights{
       add(weights.head, "wave.head_weights", {0.0, 0.5, 0.8}, "", {0.0, 1.0}, {0, 16},
           "Share of the wave's amplitude in the first links (1 in all others); 0 keeps the head on the mean heading"),
@@ -28,6 +36,23 @@ struct ControlConfig : ParameterSet {
                                 "Speed of each joint towards a new posture, unless the trajectory names a speed");
   double blend_rate_rad_s = add(blend_rate_rad_s, "posture.blend_rate_rad_s", 0.5, "rad/s", {0.01, 4.0}, kWhileRunning,
                                 "Speed at which each joint leaves an earlier posture");
+  double sidewinding_yaw_rad = add(sidewinding_yaw_rad, "sidewinding.yaw_rad", 0.5, "rad", {0.05, 1.2}, kWhileRunning,
+                                   "Amplitude of the yaw joints when the robot moves by sidewinding");
+  double sidewinding_pitch_rad =
+      add(sidewinding_pitch_rad, "sidewinding.pitch_rad", 0.15, "rad", {0.0, 0.8}, kWhileRunning,
+          "Amplitude of the pitch joints when the robot moves by sidewinding");
+  double sidewinding_wavelength_m = add(sidewinding_wavelength_m, "sidewinding.wavelength_m", 1.07, "m", {0.3, 5.0},
+                                        kWhileRunning, "Wavelength of sidewinding along the body");
+  double rolling_rad = add(rolling_rad, "rolling.amplitude_rad", 0.15, "rad", {0.02, 0.4}, kWhileRunning,
+                           "Amplitude of all joints when the robot rolls: the arc that its body forms");
+  double pitch_wave_rad = add(pitch_wave_rad, "pitch_wave.amplitude_rad", 0.4, "rad", {0.02, 1.0}, kWhileRunning,
+                              "Amplitude of the pitch joints when the robot moves by a vertical wave");
+  double pitch_wave_wavelength_m = add(pitch_wave_wavelength_m, "pitch_wave.wavelength_m", 0.8, "m", {0.3, 5.0},
+                                       kWhileRunning, "Wavelength of the vertical wave along the body");
+  double concertina_rad = add(concertina_rad, "concertina.amplitude_rad", 0.9, "rad", {0.05, 1.4}, kWhileRunning,
+                              "Amplitude of the yaw joints when the body folds between two walls");
+  double concertina_wavelength_m = add(concertina_wavelength_m, "concertina.wavelength_m", 1.07, "m", {0.3, 5.0},
+                                       kWhileRunning, "Wavelength of the folds along the body");
   double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
   double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.1, "rad/s", {0.001, 2.0}, kWhileRunning,

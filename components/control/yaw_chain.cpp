@@ -6,7 +6,8 @@
 
 namespace constrictor {
 
-YawChain::YawChain(const RobotModel& robot) : joints_(robot.yaw_joints()) {
+YawChain::YawChain(const RobotModel& robot)
+    : joints_(robot.yaw_joints()), has_pitch_joints_(joints_.size() < robot.joints.size()) {
   const double spacing_m = robot.module_length_m;
   // Joint j lies half a module behind the centre of module j.
   auto joint_arc_m = [&](std::size_t k) { return (static_cast<double>(joints_[k]) + 0.5) * spacing_m; };

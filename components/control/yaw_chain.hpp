@@ -37,6 +37,8 @@ class YawChain {
   explicit YawChain(const RobotModel& robot);
 
   [[nodiscard]] std::size_t joint_count() const { return joints_.size(); }
+  /// Whether the robot also has pitch joints.
+  [[nodiscard]] bool has_pitch_joints() const { return has_pitch_joints_; }
   [[nodiscard]] std::size_t link_count() const { return joints_.size() + 1; }
   /// Index among all joints of the robot of yaw joint k.
   [[nodiscard]] std::size_t joint_index(std::size_t k) const { return joints_[k]; }
@@ -68,6 +70,7 @@ class YawChain {
   std::vector<double> length_m_;
   LinkArray arc_m_{};
   double link_length_m_ = 0.0;
+  bool has_pitch_joints_ = false;
 };
 
 }  // namespace constrictor

@@ -47,7 +47,7 @@ void stand(const Grip& grip, TaskOutput& output) {
 }
 
 void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
-  begin("undulation", output);
+  begin("drive", output);
   set_gait(gait, curvature_1_m, direction, output);
   set_posture(grip, output);
 }

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "client/polling.hpp"
+#include "component/parameters.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/discovery.hpp"
 #include "cyclone/endpoint.hpp"
@@ -103,11 +106,34 @@ msg::ParameterChange ParameterSetter::set(const std::string& name, double value,
       CommandError::Cause::kNoAnswer);
 }
 
+namespace {
+
+/// The name of a value; null if the parameter is a number.
+std::optional<std::string> name_of(const msg::Parameter& parameter, double value) {
+  const auto names = choices_of(parameter);
+  if (!(value >= 0.0 && value < static_cast<double>(names.size()))) return std::nullopt;
+  return names[static_cast<std::size_t>(value)];
+}
+
+}  // namespace
+
+std::optional<double> value_from(const msg::Parameter& parameter, const std::string& text) {
+  const auto names = choices_of(parameter);
+  if (const auto found = std::find(names.begin(), names.end(), text); found != names.end())
+    return static_cast<double>(found - names.begin());
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 std::string value_text(const msg::Parameter& parameter, double value) {
+  if (const auto name = name_of(parameter, value)) return *name;
   return *parameter.unit ? fmt::format("{:g} {}", value, parameter.unit) : fmt::format("{:g}", value);
 }
 
 std::string accepted_text(const msg::Parameter& parameter) {
+  if (const auto names = choices_of(parameter); !names.empty()) return fmt::format("one of {}", fmt::join(names, ", "));
   return fmt::format("{}{:g} to {}", parameter.is_integer ? "whole, " : "", parameter.minimum,
                      value_text(parameter, parameter.maximum));
 }
@@ -115,7 +141,10 @@ std::string accepted_text(const msg::Parameter& parameter) {
 nlohmann::ordered_json to_json(const OwnedParameter& owned) {
   using Json = nlohmann::ordered_json;
   const msg::Parameter& p = owned.parameter;
-  const auto number = [&](double value) { return p.is_integer ? Json(static_cast<std::int64_t>(value)) : Json(value); };
+  const auto number = [&](double value) {
+    if (const auto name = name_of(p, value)) return Json(*name);
+    return p.is_integer ? Json(static_cast<std::int64_t>(value)) : Json(value);
+  };
   return {{"name", std::string(p.name)},
           {"owner", owned.owner},
           {"value", number(p.value)},
@@ -124,6 +153,7 @@ nlohmann::ordered_json to_json(const OwnedParameter& owned) {
           {"minimum", number(p.minimum)},
           {"maximum", number(p.maximum)},
           {"whole", p.is_integer},
+          {"choices", choices_of(p)},
           {"changed_tick", p.changed_tick < 0 ? Json(nullptr) : Json(p.changed_tick)},
           {"pending",
            p.pending_tick < 0 ? Json(nullptr) : Json{{"tick", p.pending_tick}, {"value", number(p.pending_value)}}},

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,12 +47,14 @@ class ParameterSetter {
   dds::Reader<msg::ParameterChange> changes_;
 };
 
-/// The accepted values with their unit, for people: "0.05 to 2 Hz".
+/// The value that a text stands for: a finite number, or one of the parameter's names. Empty: neither.
+std::optional<double> value_from(const msg::Parameter& parameter, const std::string& text);
+/// The accepted values with their unit, for people: "0.05 to 2 Hz", "one of undulation, rolling".
 std::string accepted_text(const msg::Parameter& parameter);
-/// A value with its unit, for people: "0.7 Hz".
+/// A value with its unit, for people: "0.7 Hz", "undulation".
 std::string value_text(const msg::Parameter& parameter, double value);
-/// All fields of a parameter, for scripts. `pending` is null if no change is waiting; `changed_tick` is null if the
-/// parameter has not been changed.
+/// All fields of a parameter, for scripts. A value that has a name is given by its name. `pending` is null if no change
+/// is waiting; `changed_tick` is null if the parameter has not been changed.
 nlohmann::ordered_json to_json(const OwnedParameter& owned);
 
 }  // namespace constrictor

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <stdexcept>
 
 #include "constrictor/text.hpp"
@@ -28,9 +29,22 @@ std::string number(double value) {
 
 }  // namespace
 
+std::vector<std::string> choices_of(const msg::Parameter& parameter) {
+  std::vector<std::string> names;
+  std::istringstream words(text_of(parameter.choices));
+  for (std::string word; words >> word;) names.push_back(word);
+  return names;
+}
+
 std::string parameter_refusal(const msg::Parameter& parameter, double value) {
   const bool whole = !parameter.is_integer || value == std::trunc(value);
   if (std::isfinite(value) && whole && value >= parameter.minimum && value <= parameter.maximum) return {};
+  if (const auto names = choices_of(parameter); !names.empty()) {
+    std::string accepted;
+    for (const auto& name : names) accepted += (accepted.empty() ? "" : ", ") + name;
+    return text_of(parameter.name) + ": found " + number(value) + ", accepted the number of one of " + accepted +
+           " (from 0)";
+  }
   const std::string unit = text_of(parameter.unit);
   return text_of(parameter.name) + ": found " + number(value) + ", accepted " +
          (parameter.is_integer ? "whole numbers from " : "") + number(parameter.minimum) + " to " +
@@ -51,7 +65,11 @@ Parameters::Parameters(Wiring& wiring, const Topic<msg::ParameterList>& topic, P
     row.field = config.field(described);
     row.get = described.get;
     row.set = described.set;
-    row.facts.is_integer = described.text.is_integer;
+    const auto& names = described.text.names;
+    row.facts.is_integer = described.text.is_integer || !names.empty();
+    std::string choices;
+    for (const auto& name : names) choices += (choices.empty() ? "" : " ") + name;
+    set_whole_text(row.facts.choices, choices);
     add(row, described.text.key, described.text.unit, {described.text.bounds.min, described.text.bounds.max},
         described.text.meaning);
   }

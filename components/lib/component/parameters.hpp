@@ -42,6 +42,9 @@ struct ParameterBounds {
   double max = 0.0;
 };
 
+/// The names of the values 0, 1, 2, ... of a parameter that is chosen by name; empty for a number.
+std::vector<std::string> choices_of(const msg::Parameter& parameter);
+
 /// Empty if the parameter accepts the value. Otherwise: what was found and what is accepted.
 std::string parameter_refusal(const msg::Parameter& parameter, double value);
 

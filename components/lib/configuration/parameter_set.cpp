@@ -124,9 +124,22 @@ std::vector<double> ParameterSet::add(std::vector<double>& field, const std::str
 
 std::uint8_t ParameterSet::add(std::uint8_t& field, const std::string& key, std::uint8_t fallback,
                                const std::vector<std::string>& names, const std::string& meaning) {
+  return add(field, key, fallback, names, Changes::kAtStart, meaning);
+}
+
+std::uint8_t ParameterSet::add(std::uint8_t& field, const std::string& key, std::uint8_t fallback,
+                               const std::vector<std::string>& names, Changes changes, const std::string& meaning) {
   check(fallback < names.size() && !names[fallback].empty(), key, "the default has no name");
   Row row;
-  row.text = {key, "", choice_text(usable(names)), meaning, names[fallback], {}, Changes::kAtStart};
+  row.text = {key, "", choice_text(usable(names)), meaning, names[fallback], {}, changes};
+  if (changes == Changes::kWhileRunning) {
+    for (const auto& name : names)
+      check(!name.empty() && name.find(' ') == std::string::npos, key, "a name is empty or has a blank");
+    row.text.names = names;
+    row.text.bounds = {0.0, static_cast<double>(names.size()) - 1.0};
+    row.get = [](const void* at) { return static_cast<double>(as<std::uint8_t>(at)); };
+    row.set = [](void* at, double value) { *static_cast<std::uint8_t*>(at) = static_cast<std::uint8_t>(value); };
+  }
   row.print = [names](const void* at) { return names.at(as<std::uint8_t>(at)); };
   row.read = [fallback, names](Configuration& section, const std::string& name, void* at) {
     *static_cast<std::uint8_t*>(at) = index_of(names, section.text(name, usable(names), names[fallback]));

@@ -26,9 +26,10 @@ struct ParameterRow {
   std::string default_value;  ///< of a parameter that the configuration file does not name
   std::string value;          ///< in force
   Changes changes = Changes::kAtStart;
-  bool is_number = false;   ///< one number, within `bounds`
-  bool is_integer = false;  ///< one whole number
-  Range bounds{0.0, 0.0};   ///< of a number
+  bool is_number = false;            ///< one number, within `bounds`
+  bool is_integer = false;           ///< one whole number
+  Range bounds{0.0, 0.0};            ///< of a number
+  std::vector<std::string> names{};  ///< of a named number that may change during a run: its values 0, 1, 2, ...
 };
 
 /// How many elements a list may have.
@@ -61,7 +62,7 @@ class ParameterSet {
     std::ptrdiff_t offset = 0;  ///< [byte] of the field from the set
     std::function<void(Configuration& section, const std::string& key, void* field)> read;
     std::function<std::string(const void* field)> print;
-    // Null unless the parameter is a number.
+    // Null unless the parameter is a number, or a named number.
     double (*get)(const void* field) = nullptr;
     void (*set)(void* field, double value) = nullptr;
   };
@@ -90,6 +91,9 @@ class ParameterSet {
   /// A named number: the file holds one of `names`, the field its index. Unnamed (empty) indices are not accepted.
   std::uint8_t add(std::uint8_t& field, const std::string& key, std::uint8_t fallback,
                    const std::vector<std::string>& names, const std::string& meaning);
+  /// The same for one that may change during a run. All indices have names without blanks.
+  std::uint8_t add(std::uint8_t& field, const std::string& key, std::uint8_t fallback,
+                   const std::vector<std::string>& names, Changes changes, const std::string& meaning);
   /// A list of named numbers.
   std::vector<std::uint8_t> add(std::vector<std::uint8_t>& field, const std::string& key,
                                 const std::vector<std::uint8_t>& fallback, const std::vector<std::string>& names,

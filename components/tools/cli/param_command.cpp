@@ -21,6 +21,7 @@
 #include "cli/usage.hpp"
 #include "client/parameters.hpp"
 #include "client/run_registry.hpp"
+#include "component/parameters.hpp"
 #include "configuration/configuration.hpp"
 #include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
@@ -48,6 +49,16 @@ std::string pending_text(const msg::Parameter& p) {
   return p.pending_tick < 0 ? "" : fmt::format("  -> {} at tick {}", value_text(p, p.pending_value), p.pending_tick);
 }
 
+/// A value without its unit, which has a column of its own.
+std::string cell(const msg::Parameter& p, double value) {
+  return *p.choices ? value_text(p, value) : fmt::format("{:g}", value);
+}
+
+std::string accepted_cell(const msg::Parameter& p) {
+  return *p.choices ? fmt::format("one of {} names", choices_of(p).size())
+                    : fmt::format("{:g} to {:g}", p.minimum, p.maximum);
+}
+
 void report_silent(const ParameterView& view) {
   for (const auto& owner : view.silent) {
     std::fprintf(stderr,
@@ -63,10 +74,15 @@ int list(const Options& options) {
   bool begins = false;  // whether any name begins with the prefix
   std::size_t shown = 0;
   std::size_t width = 0;
-  for (const auto& [name, owned] : view.parameters) width = std::max(width, name.size());
+  std::size_t value_width = 9;
+  for (const auto& [name, owned] : view.parameters) {
+    width = std::max(width, name.size());
+    for (const double value : {owned.parameter.value, owned.parameter.default_value})
+      value_width = std::max(value_width, cell(owned.parameter, value).size());
+  }
   if (!options.view.json && !options.names)
-    fmt::print("  {:<{}} {:>9} {:>9} {:<11} {:<18} {}\n", "name", width, "value", "default", "unit", "accepted",
-               "meaning");
+    fmt::print("  {:<{}} {:>{}} {:>{}} {:<11} {:<18} {}\n", "name", width, "value", value_width, "default", value_width,
+               "unit", "accepted", "meaning");
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (name.rfind(options.name, 0) != 0) continue;
@@ -76,8 +92,9 @@ int list(const Options& options) {
     if (options.view.json) json.push_back(to_json(owned));
     else if (options.names) fmt::print("{}\n", name);
     else
-      fmt::print("{} {:<{}} {:>9g} {:>9g} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, width, p.value,
-                 p.default_value, p.unit, fmt::format("{:g} to {:g}", p.minimum, p.maximum), p.doc, pending_text(p));
+      fmt::print("{} {:<{}} {:>{}} {:>{}} {:<11} {:<18} {}{}\n", p.changed_tick < 0 ? ' ' : '*', name, width,
+                 cell(p, p.value), value_width, cell(p, p.default_value), value_width, p.unit, accepted_cell(p), p.doc,
+                 pending_text(p));
   }
   if (options.view.json) fmt::print("{}\n", json_text(json, 2));
   report_silent(view);
@@ -117,16 +134,25 @@ int set(const Options& options) {
     std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
     return exit_status::kUsage;
   }
+  // Only a value that is no number needs the parameters' names of values.
   std::vector<ParameterValue> values;
+  std::optional<ParameterView> view;
   for (std::size_t i = 0; i < options.changes.size() / 2; ++i) {
+    const std::string& name = options.changes[2 * i];
     const std::string& text = options.changes[2 * i + 1];
-    char* end = nullptr;
-    values.push_back({options.changes[2 * i], std::strtod(text.c_str(), &end)});
-    if (text.empty() || *end != '\0' || !std::isfinite(values.back().value)) {
-      std::fprintf(stderr, "param: VALUE of %s: found '%s', accepted a number\n", options.changes[2 * i].c_str(),
-                   text.c_str());
-      return exit_status::kUsage;
+    std::optional<double> value = value_from({}, text);
+    if (!value) {
+      if (!view) view = read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
+      const auto found = view->parameters.find(name);
+      const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
+      value = value_from(known, text);
+      if (!value) {
+        std::fprintf(stderr, "param: VALUE of %s: found '%s', accepted %s\n", name.c_str(), text.c_str(),
+                     *known.choices ? accepted_text(known).c_str() : "a number");
+        return exit_status::kUsage;
+      }
     }
+    values.push_back({name, *value, text});
   }
   return set_all(options, values);
 }
@@ -175,14 +201,14 @@ int set_all(const Options& options, const std::vector<ParameterValue>& values) {
   Json json = Json::array();
   int status = exit_status::kOk;
   for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
-    const auto& [name, value] = values[i];
+    const auto& [name, value, text] = values[i];
     try {
       const msg::ParameterChange change = setter.set(name, value, options.at_tick);
       json.push_back({{"name", name},
                       {"value", change.value},
                       {"effective_tick", change.effective_tick},
                       {"accepted_tick", change.header.tick}});
-      if (!options.view.json) fmt::print("{}: {:g} from tick {} on\n", name, change.value, change.effective_tick);
+      if (!options.view.json) fmt::print("{}: {} from tick {} on\n", name, text, change.effective_tick);
     } catch (const CommandError& error) {
       status = error.cause() == CommandError::Cause::kRefused       ? exit_status::kFailed
                : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
@@ -222,6 +248,7 @@ void add_param(CLI::App& app, Action& action) {
       {"constrictor param list", "constrictor param list navigation.follow_line",
        "constrictor param get navigation.travel.frequency_hz",
        "constrictor param set navigation.travel.frequency_hz 0.9",
+       "constrictor param set control.drive.method sidewinding",
        "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
        "2000",
        "constrictor param list --changed --json", "constrictor param dump tuned.yaml --changed",
@@ -258,7 +285,8 @@ void add_param(CLI::App& app, Action& action) {
   add_token_option(*set_app);
   set_app
       ->add_option("CHANGES", options->changes,
-                   "NAME VALUE, as often as needed. They are set in this order; the first refusal ends the command")
+                   "NAME VALUE, as often as needed; a value is a number or one of the names that `get` shows. They are "
+                   "set in this order; the first refusal ends the command")
       ->required()
       ->expected(2, 64)
       ->option_text("NAME VALUE...");

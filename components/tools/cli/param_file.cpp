@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
@@ -58,13 +58,12 @@ class Reader {
     const auto known = view_.parameters.find(name);
     if (known == view_.parameters.end()) return mistake(found.line, name, why_not(name));
     const msg::Parameter& p = known->second.parameter;
-    char* end = nullptr;
-    const double value = std::strtod(found.text.c_str(), &end);
-    const bool number = found.scalar && !found.text.empty() && *end == '\0' && std::isfinite(value);
+    const std::optional<double> known_value = found.scalar ? value_from(p, found.text) : std::nullopt;
+    const double value = known_value.value_or(0.0);
     const bool accepted =
-        number && value >= p.minimum && value <= p.maximum && (!p.is_integer || value == std::round(value));
+        known_value && value >= p.minimum && value <= p.maximum && (!p.is_integer || value == std::round(value));
     if (!accepted) return mistake(found.line, name, fmt::format("found {}, accepted {}", found.text, accepted_text(p)));
-    if (value != (p.pending_tick < 0 ? p.value : p.pending_value)) values_.push_back({name, value});
+    if (value != (p.pending_tick < 0 ? p.value : p.pending_value)) values_.push_back({name, value, found.text});
   }
   [[nodiscard]] std::string why_not(const std::string& name) const {
     const std::string component = name.substr(0, name.find('.'));
@@ -87,8 +86,10 @@ class Reader {
   std::vector<ParameterValue> values_;
 };
 
-/// The number in as few digits as give the same number again.
-std::string exact(double value) { return fmt::format("{}", value); }
+/// The name of the value, or the number in as few digits as give the same number again.
+std::string exact(const msg::Parameter& parameter, double value) {
+  return *parameter.choices ? value_text(parameter, value) : fmt::format("{}", value);
+}
 
 }  // namespace
 
@@ -99,7 +100,7 @@ std::string parameter_file(const ParameterView& view, const std::string& title, 
     const msg::Parameter& p = owned.parameter;
     if (changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
     const double value = p.pending_tick < 0 ? p.value : p.pending_value;
-    text += fmt::format("{}: {}  # {}; {}\n", name, exact(value), accepted_text(p), p.doc);
+    text += fmt::format("{}: {}  # {}; {}\n", name, exact(p, value), accepted_text(p), p.doc);
   }
   return text;
 }

@@ -13,6 +13,7 @@ namespace constrictor::cli {
 struct ParameterValue {
   std::string name;  ///< "navigation.travel.frequency_hz"
   double value = 0;
+  std::string text;  ///< the value as a person wrote it: a number or a name
 };
 
 /// The parameters as a YAML file that read_parameter_file() reads: one line for each, with unit, accepted values and

@@ -149,6 +149,12 @@ def test_parameters_are_read_set_and_refused(run):
         run.set_parameter(name, 9)
     with pytest.raises(KeyError, match="no parameter"):
         run.get_parameter("navigation.nothing")
+    assert run.get_parameter("control.drive.method") == "undulation"
+    run.set_parameter("control.drive.method", "rolling")
+    assert eventually(lambda: run.get_parameter("control.drive.method") == "rolling")
+    run.set_parameter("control.drive.method", "undulation")
+    with pytest.raises(ValueError, match="found 'moonwalk', accepted undulation, "):
+        run.set_parameter("control.drive.method", "moonwalk")
 
 
 def test_time_is_commanded(run):

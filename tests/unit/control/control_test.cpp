@@ -228,11 +228,13 @@ TEST(Control, HoldsPostureWhenAuthorityIsNoLongerPublished) {
 TEST(Control, ChangesOfMethodDoNotJump) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
     const auto phase = tick.index / 150;
-    static constexpr const char* kMethods[] = {"undulation", "hold", "bend", "wrap", "squeeze", "undulation", "bend"};
-    set_method(desired, kMethods[phase % 7], static_cast<std::uint64_t>(phase));
-    desired.frequency_hz = 0.7;
+    static constexpr const char* kMethods[] = {"undulation", "hold",    "bend",       "wrap",
+                                               "squeeze",    "bend",    "undulation", "sidewinding",
+                                               "concertina", "rolling", "undulation", "pitch_wave"};
+    set_method(desired, kMethods[phase % 12], static_cast<std::uint64_t>(phase));
+    desired.frequency_hz = phase < 7 ? 0.7 : 0.5;
     desired.amplitude_rad = 0.5;
-    desired.curvature_1_m = phase == 5 ? -1.0 : 0.5;
+    desired.curvature_1_m = phase == 6 ? -1.0 : phase < 7 ? 0.5 : 0.2;
     if (phase >= 3 && phase < 6) set_u(desired);
     desired.speed_m_s = 0.2;
     desired.squeeze_rad = 0.3;
@@ -240,7 +242,72 @@ TEST(Control, ChangesOfMethodDoNotJump) {
   });
   run.advance(1);
   // The servos allow 0.08 rad in a tick. The gait itself needs about 0.05 rad.
-  EXPECT_LT(largest_step_rad(run, 1050), 0.07);
+  EXPECT_LT(largest_step_rad(run, 1800), 0.07);
+}
+
+/// Stands for the component `input`: from tick 50 on, the parameter drive.method of control has this value.
+ComponentFactory choosing_input(double value) {
+  return testing::scripted_writer<msg::ParameterChange>(
+      "input", topics::kParameterChange, [value](const Tick& tick, const auto& out) {
+        if (tick.index != 40) return;
+        msg::ParameterChange change{};
+        std::snprintf(change.name, sizeof change.name, "control.drive.method");
+        change.value = value;
+        change.effective_tick = 50;
+        out.write(change);
+      });
+}
+
+/// The method that moves a robot that drives on, with a straight body or with a U from tick 100 on.
+std::string driving_method(double parameter, int ticks, bool to_u = false) {
+  LocalRun run = make_run(
+      [to_u](const Tick& tick, msg::DesiredTrajectory& desired) {
+        set_method(desired, "drive", 1);
+        desired.frequency_hz = 0.7;
+        desired.amplitude_rad = 0.5;
+        if (to_u && tick.index >= 100) set_u(desired);
+        return true;
+      },
+      make_control_factory(), {choosing_input(parameter)});
+  run.advance(ticks);
+  EXPECT_TRUE(run.latest(topics::kMotionStatus)->accepted);
+  return run.latest(topics::kMotionStatus)->method;
+}
+
+TEST(Control, DrivesWithTheMethodOfTheParameter) {
+  EXPECT_EQ(driving_method(1, 30), "undulation") << "before the change";
+  for (std::size_t i = 0; i < drive_methods().size(); ++i)
+    EXPECT_EQ(driving_method(static_cast<double>(i), 80), drive_methods()[i]);
+  EXPECT_EQ(driving_method(99, 80), "undulation") << "a value without a name is refused";
+}
+
+TEST(Control, ABodyInAPostureDrivesByUndulation) {
+  EXPECT_EQ(driving_method(1, 90, true), "sidewinding");
+  EXPECT_EQ(driving_method(1, 110, true), "undulation");
+}
+
+TEST(Control, ARobotWithoutPitchJointsRefusesVerticalWaves) {
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  for (auto& joint : robot.joints) joint.axis = JointAxis::kYaw;
+  const MethodRegistry registry;
+  const YawChain flat(robot);
+  msg::DesiredTrajectory straight{};
+  straight.wavelength_m = 1.0;
+  for (const char* name : {"sidewinding", "rolling", "pitch_wave"})
+    EXPECT_FALSE(registry.find(name)->accepts(straight, flat)) << name;
+  for (const char* name : {"undulation", "concertina"}) EXPECT_TRUE(registry.find(name)->accepts(straight, flat));
+}
+
+TEST(Control, TheDriveMethodsExistAndAcceptAStraightBody) {
+  const MethodRegistry registry;
+  const YawChain chain(load_robot(data_path("components/lib/robot/mamba.yaml")));
+  msg::DesiredTrajectory straight{};
+  straight.wavelength_m = 1.0;
+  for (const auto& name : drive_methods()) {
+    const ControlMethod* method = registry.find(name);
+    ASSERT_TRUE(method) << name;
+    EXPECT_TRUE(method->accepts(straight, chain)) << name;
+  }
 }
 
 TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {
@@ -278,11 +345,12 @@ TEST(Control, TorqueLimitAppliesToTheBaseOfTheUOnly) {
 
 TEST(Control, ContinuesIdenticallyAfterARestart) {
   const Script script = [](const Tick& tick, msg::DesiredTrajectory& desired) {
-    set_method(desired, tick.index < 80 ? "undulation" : "wrap", tick.index < 80 ? 1 : 2);
+    const bool wraps = tick.index >= 80 && tick.index < 200;
+    set_method(desired, tick.index < 80 ? "undulation" : wraps ? "wrap" : "sidewinding", tick.index < 80 ? 1 : 2);
     desired.frequency_hz = 0.7;
     desired.amplitude_rad = 0.5;
     desired.speed_m_s = 0.2;
-    if (tick.index >= 80) set_u(desired);
+    if (wraps) set_u(desired);
     return true;
   };
   LocalRun whole = make_run(script);
@@ -290,7 +358,9 @@ TEST(Control, ContinuesIdenticallyAfterARestart) {
   whole.advance(300);
   broken.advance(123);
   broken.restart("control");
-  broken.advance(177);
+  broken.advance(100);
+  broken.restart("control");  // while the waves of sidewinding grow
+  broken.advance(77);
   EXPECT_EQ(whole.output_hashes().at("control"), broken.output_hashes().at("control"));
 }
 

@@ -42,7 +42,7 @@ TEST_F(DirectMotion, DrivesForwardsBackwardsAndInCurves) {
   const TaskOutput back = ask(msg::kMotionDrive, -0.5);
   EXPECT_EQ(back.desired.frequency_hz, -0.5);
   EXPECT_FALSE(back.new_motion) << "another speed continues the same motion";
-  EXPECT_STREQ(back.desired.method, "undulation");
+  EXPECT_STREQ(back.desired.method, "drive");
 }
 
 TEST_F(DirectMotion, LooksLeftWithThePositiveSign) {

@@ -145,7 +145,7 @@ TEST(Goals, FollowLineWaitsForTheFirstPercept) {
 TEST(Goals, HoldsWhenThePoseIsStale) {
   GoalRun r({{10, start(1, msg::kTaskRotate)}});
   r.run->advance(400);
-  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "undulation");
+  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "drive");
   r.run->advance(60);
   EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
 }

@@ -48,7 +48,7 @@ class DrivenPoint : public StatefulComponent<Driven> {
   DrivenPoint(Wiring& wiring, const Setup&)
       : out_(wiring.output(topics::kRobotPose)), desired_(wiring.latest(topics::kDesiredTrajectory)) {}
   void step(const Tick& tick) override {
-    if (desired_ && std::string(desired_->method) == "undulation") {
+    if (desired_ && std::string(desired_->method) == "drive") {
       const double step_m = kSpeed_m_s * tick.dt_s();
       state_.yaw_rad += desired_->curvature_1_m * step_m;
       state_.x_m += step_m * std::cos(state_.yaw_rad);

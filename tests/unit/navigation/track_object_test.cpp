@@ -99,7 +99,7 @@ class TrackRun {
     const auto guidance = testing::scripted_member("guidance", [this](Wiring& wiring) -> testing::StepFunction {
       return [this, desired = wiring.latest(topics::kDesiredTrajectory),
               out = wiring.output(topics::kRobotPose)](const Tick& tick) {
-        if (desired && std::string(desired->method) == "undulation") {
+        if (desired && std::string(desired->method) == "drive") {
           const double step_m = std::copysign(kSpeed_m_s, desired->frequency_hz) * tick.dt_s();
           body_->drive(step_m, kCurvatureShare * desired->curvature_1_m, tick.dt_s());
         }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr const char* kGain = "control.wave.gain";
 constexpr const char* kImages = "control.watch.images";
+constexpr const char* kColour = "control.watch.colour";
 
 struct Asked {
   std::int64_t at;  ///< tick of the step that writes the change
@@ -60,6 +61,7 @@ struct OwnerState {
 struct OwnerConfig : ParameterSet {
   double gain = add(gain, "wave.gain", 0.5, "1/m", {0.0, 2.0}, Changes::kWhileRunning, "a gain");
   int images = add(images, "watch.images", 3, "", {1, 10}, Changes::kWhileRunning, "a number of images");
+  std::uint8_t colour = add(colour, "watch.colour", 1, {"red", "green", "blue"}, Changes::kWhileRunning, "a colour");
   double fixed = add(fixed, "watch.fixed", 1.0, "", {0.0, 2.0}, Changes::kAtStart, "a number for the start only");
 };
 
@@ -209,12 +211,26 @@ TEST_F(ParametersTest, ListHasOnlyParametersThatMayChangeDuringARun) {
   run->advance(1);
   const auto* list = run->latest(topics::kControlParameters);
   ASSERT_NE(list, nullptr);
-  ASSERT_EQ(list->count, 2);
-  EXPECT_STREQ(list->parameters[0].name, kImages);
-  EXPECT_STREQ(list->parameters[1].name, kGain);
-  EXPECT_STREQ(list->parameters[1].doc, "a gain");
-  EXPECT_TRUE(list->parameters[0].is_integer);
-  EXPECT_EQ(list->parameters[0].maximum, 10.0);
+  ASSERT_EQ(list->count, 3);
+  EXPECT_STREQ(list->parameters[0].name, kColour);
+  EXPECT_STREQ(list->parameters[1].name, kImages);
+  EXPECT_STREQ(list->parameters[2].name, kGain);
+  EXPECT_STREQ(list->parameters[2].doc, "a gain");
+  EXPECT_TRUE(list->parameters[1].is_integer);
+  EXPECT_EQ(list->parameters[1].maximum, 10.0);
+  EXPECT_TRUE(choices_of(list->parameters[1]).empty());
+}
+
+TEST_F(ParametersTest, AParameterIsChosenByName) {
+  script_ = {{1, kColour, 2, 4}, {2, kColour, 3, 5}, {2, kColour, 0.5, 6}};
+  const auto run = make();
+  run->advance(3);
+  EXPECT_EQ(find(*run, kColour).value, 1.0);
+  EXPECT_EQ(choices_of(find(*run, kColour)), (std::vector<std::string>{"red", "green", "blue"}));
+  run->advance(10);
+  EXPECT_EQ(find(*run, kColour).value, 2.0) << "numbers without a name are refused";
+  EXPECT_EQ(parameter_refusal(find(*run, kColour), 3.0),
+            "control.watch.colour: found 3, accepted the number of one of red, green, blue (from 0)");
 }
 
 TEST_F(ParametersTest, ResetRestoresTheDefaults) {

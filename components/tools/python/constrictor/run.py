@@ -206,23 +206,29 @@ class Run(Domain):
     def parameters(self, prefix: str = "") -> dict[str, dict[str, Any]]:
         """Returns the run-time parameters whose names begin with ``prefix``.
 
-        Each has value, default, unit, minimum, maximum, whole, owner, changed_tick, pending and doc.
+        Each has value, default, unit, minimum, maximum, whole, choices, owner, changed_tick, pending and doc.
         """
         return {name: entry for name, entry in self._session.parameters().items() if name.startswith(prefix)}
 
-    def get_parameter(self, name: str) -> float:
-        """Returns the value in force. Raises KeyError if there is no such parameter."""
+    def get_parameter(self, name: str) -> float | str:
+        """Returns the value in force; its name if the parameter is chosen by name. Raises KeyError if there is no such parameter."""
         found = self._session.parameters().get(name)
         if found is None:
             raise KeyError(f"no parameter '{name}'; parameters() returns all")
-        value: float = found["value"]
+        value: float | str = found["value"]
         return value
 
-    def set_parameter(self, name: str, value: float, at_tick: int = 0) -> int:
+    def set_parameter(self, name: str, value: float | str, at_tick: int = 0) -> int:
         """Sets a parameter at a tick (0: the next one). Returns the tick from which the value is in force.
 
-        Takes no authority. Raises RefusedError with the accepted values, NoAnswerError.
+        ``value`` may be the name of a value, such as "sidewinding". Takes no authority. Raises RefusedError with the
+        accepted values, NoAnswerError; ValueError if there is no value of this name.
         """
+        if isinstance(value, str):
+            choices = self._session.parameters().get(name, {}).get("choices", [])
+            if value not in choices:
+                raise ValueError(f"{name}: found '{value}', accepted {', '.join(choices) or 'a number'}")
+            value = float(choices.index(value))
         return self._session.set_parameter(name, value, at_tick)[1]
 
     # --- the time of the run; each returns the RunState right after the command ---

@@ -1,0 +1,152 @@
+#include "bench/gaits/gait_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+#include "constrictor/text.hpp"
+#include "sim/world/world.hpp"
+
+namespace constrictor::gaits {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kPeriod_s = 0.02;
+constexpr double kGravity_m_s2 = 9.81;
+
+Outline outline_of(const World& world, double time_s) {
+  Outline outline{time_s, {}};
+  for (std::size_t i = 0; i < world.module_count(); ++i)
+    outline.modules_m.emplace_back(world.module_pose(i).translation().head<2>());
+  return outline;
+}
+
+Vector2d centre_of(const Outline& body) {
+  Vector2d sum = Vector2d::Zero();
+  for (const Vector2d& module : body.modules_m) sum += module;
+  return sum / static_cast<double>(body.modules_m.size());
+}
+
+/// Of the line from tail to head.
+double direction_of(const Outline& body) {
+  const Vector2d axis = body.modules_m.front() - body.modules_m.back();
+  return std::atan2(axis.y(), axis.x());
+}
+
+Scenario scene_of(const Trial& trial) {
+  constexpr double kWall_m = 0.05;
+  constexpr double kHeight_m = 0.15;
+  constexpr double kLength_m = 12.0;
+  Scenario scene;
+  if (trial.channel_m <= 0.0) return scene;
+  for (const double side : {-1.0, 1.0}) {
+    ScenarioObstacle wall;
+    wall.shape = BodyShape::kBox;
+    wall.size_m = {kLength_m, kWall_m, kHeight_m};
+    wall.position_m = {0.0, side * 0.5 * (trial.channel_m + kWall_m)};
+    scene.obstacles.push_back(wall);
+  }
+  return scene;
+}
+
+/// Control's method and limiter, without the component around them.
+class Driver {
+ public:
+  Driver(const RobotModel& robot, const Trial& trial)
+      : robot_(robot), trial_(trial), chain_(robot), limiter_(robot, 1.0), method_(registry_.find(trial.method)) {
+    if (!method_) throw std::invalid_argument("control has no method '" + trial.method + "'");
+    set_text(desired_.method, trial.method);
+    desired_.frequency_hz = trial.frequency_hz;
+    desired_.amplitude_rad = 0.5;
+    desired_.wavelength_m = 1.07;
+    desired_.curvature_1_m = trial.curvature_1_m;
+    if (!method_->accepts(desired_, chain_)) throw std::invalid_argument(trial.method + " does not accept the trial");
+  }
+
+  void drive(World& world) {
+    JointArray measured_rad{};
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j) measured_rad[j] = world.joint_angle_rad(j);
+    const JointArray commanded_rad = started_ ? limit_.position_rad : measured_rad;
+    const MethodInput input{robot_,       chain_,        trial_.config, desired_, measured_rad,
+                            JointArray{}, commanded_rad, kPeriod_s,     {}};
+    if (!started_) method_->start(input, body_);
+    started_ = true;
+    Setpoints setpoints{commanded_rad, {}};
+    method_->step(input, body_, setpoints);
+    const msg::JointCommand command = limiter_.limit(setpoints, measured_rad, kPeriod_s, limit_);
+    const std::size_t n = robot_.joints.size();
+    world.set_servo({command.position_rad, n}, {command.velocity_rad_s, n}, {command.torque_limit_nm, n});
+    world.advance(kPeriod_s);
+  }
+
+ private:
+  const RobotModel& robot_;
+  const Trial& trial_;
+  YawChain chain_;
+  JointLimiter limiter_;
+  MethodRegistry registry_;
+  const ControlMethod* method_;
+  msg::DesiredTrajectory desired_{};
+  BodyState body_;
+  LimiterState limit_;
+  bool started_ = false;
+};
+
+}  // namespace
+
+Course run(const RobotModel& robot_of_file, const Trial& trial) {
+  RobotModel robot = robot_of_file;
+  if (trial.friction) robot.friction_along = robot.friction_across = *trial.friction;
+  World world(robot, scene_of(trial));
+  Driver driver(robot, trial);
+  const double gait_s = std::max(1.0 / std::abs(trial.frequency_hz), kPeriod_s);
+  const auto settle = static_cast<int>(std::lround(kSettle_s / kPeriod_s));
+  // Whole periods of the gait, so that its own to and fro does not count.
+  const double measured_s = gait_s * std::max(1.0, std::floor((trial.duration_s - kSettle_s) / gait_s + 1e-9));
+  const auto end = settle + static_cast<int>(std::lround(measured_s / kPeriod_s));
+  Course course;
+  course.outlines.push_back(outline_of(world, 0.0));
+  Outline from;
+  double work_j = 0.0;
+  double way_m = 0.0;
+  double turned_rad = 0.0;
+  Outline before = course.outlines.front();
+  for (int tick = 0; tick < end; ++tick) {
+    if (tick == settle) from = before;
+    driver.drive(world);
+    Outline now = outline_of(world, (tick + 1) * kPeriod_s);
+    if (tick >= settle) {
+      turned_rad += std::remainder(direction_of(now) - direction_of(before), 2.0 * std::numbers::pi);
+      for (std::size_t j = 0; j < world.joint_count(); ++j) {
+        const double torque_nm = world.joint_torque_nm(j);
+        work_j += std::max(0.0, torque_nm * world.joint_rate_rad_s(j)) * kPeriod_s;
+        course.largest_torque_nm = std::max(course.largest_torque_nm, std::abs(torque_nm));
+      }
+    }
+    if (tick + 1 == end / 2 || tick + 1 == end) course.outlines.push_back(now);
+    before = std::move(now);
+  }
+  const Vector2d moved = centre_of(before) - centre_of(from);
+  const double direction = direction_of(from);
+  const Vector2d forward(std::cos(direction), std::sin(direction));
+  const double duration_s = (end - settle) * kPeriod_s;
+  way_m = moved.norm();
+  course.forward_m_s = moved.dot(forward) / duration_s;
+  course.left_m_s = (forward.x() * moved.y() - forward.y() * moved.x()) / duration_s;
+  course.turn_rad_s = turned_rad / duration_s;
+  const double weight_n = kGravity_m_s2 * robot.module_mass_kg * static_cast<double>(robot.module_count);
+  course.transport = work_j / (weight_n * way_m);
+  return course;
+}
+
+double sidewinding_without_slip_m_s(const RobotModel& robot, const ControlConfig& config, double frequency_hz) {
+  const double link_m = YawChain(robot).link_length_m();
+  const double wavelength_m = config.sidewinding_wavelength_m;
+  const double heading_rad = config.sidewinding_yaw_rad / (2.0 * std::sin(std::numbers::pi * link_m / wavelength_m));
+  return frequency_hz * wavelength_m * std::sin(heading_rad);
+}
+
+}  // namespace constrictor::gaits
