@@ -18,6 +18,7 @@ constexpr std::size_t kMostObjects = 16;
 constexpr std::size_t kMostZones = 8;
 constexpr std::size_t kMostObstacles = 64;
 constexpr std::size_t kMostSegments = 64;
+constexpr std::size_t kMostRandomObjects = 3;  // one behind the other, beyond the end of the line
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<std::string>& colours() {
@@ -204,11 +205,51 @@ Variation read_variation(Configuration from) {
 
 }  // namespace
 
+namespace {
+
+/// The mission of a random scene, for which the scene is made.
+RandomMission read_random_mission(Configuration mission) {
+  RandomMission wanted;
+  for (const std::string& colour : mission.texts("sequence", colours()))
+    wanted.colours.push_back(colour_number(colour));
+  wanted.line_colour = colour_number(mission.text("line_colour", colours()));
+  std::vector<std::uint8_t> distinct = wanted.colours;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  if (wanted.colours.empty() || wanted.colours.size() > kMostRandomObjects || distinct.size() > kMostRandomZones) {
+    throw mission.error("sequence",
+                        fmt::format("found {} colours, {} of them different, accepted 1 to {} colours, at "
+                                    "most {} of them different",
+                                    wanted.colours.size(), distinct.size(), kMostRandomObjects, kMostRandomZones));
+  }
+  if (std::count(distinct.begin(), distinct.end(), wanted.line_colour) > 0)
+    throw mission.error("line_colour", "found the colour of an object, accepted another colour");
+  mission.finish();
+  return wanted;
+}
+
+void read_random(Configuration& root, ScenarioDraft& draft) {
+  for (const char* key : {"line", "objects", "zones", "obstacles", "perturbations", "start", "variation"}) {
+    if (root.has(key))
+      throw root.error(key, "found a section that the random scene replaces, accepted either this section or `random`");
+  }
+  draft.random = read_random_scene(root.section("random"));
+  draft.mission = read_random_mission(root.section("mission"));
+  read_surroundings(root, draft.fixed);
+  root.finish();
+}
+
+}  // namespace
+
 ScenarioDraft read_scenario_draft(Configuration root) {
   ScenarioDraft draft;
   draft.fixed.name = root.text("name");
   if (draft.fixed.name.empty() || draft.fixed.name.size() > 63) {
     throw root.error("name", fmt::format("found {} letters, accepted 1 to 63", draft.fixed.name.size()));
+  }
+  if (root.has("random")) {
+    read_random(root, draft);
+    return draft;
   }
   if (root.has("line")) read_line(root.section("line"), draft);
   read_bodies(root, draft);

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "configuration/configuration.hpp"
 #include "sim/scenario_loader/line_path.hpp"
+#include "sim/scenario_loader/random_scene.hpp"
 #include "sim/scenario_loader/scenario.hpp"
 
 namespace constrictor {
-
-inline constexpr std::size_t kMostLinePoints = 512;  ///< size of the arrays in SceneDescription (simulation.idl)
 
 /// A position relative to the world or to an end of the line.
 struct Placement {
@@ -42,6 +42,8 @@ struct ScenarioDraft {
   std::vector<Placement> obstacles;
   Placement start;
   Variation variation;
+  std::optional<RandomScene> random;  ///< the seed draws the whole scene; the placements and the variation are empty
+  RandomMission mission;              ///< of a random scene
 };
 
 /// Reads and checks the keys of a scenario file. Throws ConfigurationError.

@@ -102,6 +102,13 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
 
 Scenario read_scenario(Configuration root, std::uint64_t seed) {
   const ScenarioDraft draft = read_scenario_draft(root);
+  if (draft.random) {
+    const auto scene = make_random_scene(*draft.random, draft.mission, draft.fixed, seed);
+    if (scene && find_overlap(*scene, kBodyLength_m, kHalfWidth_m).empty()) return *scene;
+    throw root.error("random", fmt::format("found no scene for seed {} in which the mission is possible, accepted "
+                                           "ranges that leave more room",
+                                           seed));
+  }
   // The layout without variation must be free of overlaps for every seed.
   const std::string overlap = find_overlap(draw_scene(draft, Variation{}, seed, 0), kBodyLength_m, kHalfWidth_m);
   if (!overlap.empty())
