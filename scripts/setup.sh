@@ -6,6 +6,7 @@
 #   tools   what formatting, static analysis and the documentation need in addition
 #   bench   MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
 #   browser Chromium, for the long test of the dashboard's page
+#   cluster GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
 # Example: scripts/setup.sh core tests
 set -euo pipefail
 
@@ -58,6 +59,8 @@ tools=(clang-format clang-tidy doxygen graphviz shellcheck)
 bench=(libmujoco-dev)
 # for the long tests: the page of the dashboard
 browser=(chromium)
+# evaluations on several machines
+cluster=(parallel slurm-wlm munge)
 
 packages=()
 for group in "${@:-core}"; do
@@ -67,8 +70,12 @@ for group in "${@:-core}"; do
     tools) packages+=("${tools[@]}") ;;
     bench) packages+=("${bench[@]}") ;;
     browser) packages+=("${browser[@]}") ;;
-    --help) sed -n '2,9s/^# //p' "$0"; exit 0 ;;
-    *) echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench, browser" >&2; exit 2 ;;
+    cluster) packages+=("${cluster[@]}") ;;
+    --help) sed -n '2,10s/^# //p' "$0"; exit 0 ;;
+    *)
+      echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench, browser, cluster" >&2
+      exit 2
+      ;;
   esac
 done
 

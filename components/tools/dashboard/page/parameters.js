@@ -40,7 +40,12 @@ export class Parameters {
       if (document.activeElement !== input) input.value = parameter.pending?.value ?? parameter.value;
       input.setAttribute("aria-label", `${parameter.name} [${parameter.unit}]`);
       unit.textContent = parameter.unit;
-      accepted.textContent = `${parameter.whole ? "whole, " : ""}${parameter.minimum} to ${parameter.maximum}`;
+      const choices = parameter.choices ?? [];
+      input.dataset.choices = choices.join(" ");
+      accepted.textContent =
+        choices.length > 0
+          ? `one of ${choices.join(", ")}`
+          : `${parameter.whole ? "whole, " : ""}${parameter.minimum} to ${parameter.maximum}`;
     });
   }
 
@@ -50,8 +55,10 @@ export class Parameters {
     Object.assign(input, { type: "text", inputMode: "decimal", size: 8 });
     // The run decides what it accepts, so its reason is shown for a refused value.
     input.addEventListener("change", async () => {
-      const value = Number(input.value.trim().replace(",", "."));
-      await this.call("param_set", { name: input.dataset.name, value: input.value.trim() ? value : null });
+      const text = input.value.trim();
+      const choice = text ? input.dataset.choices.split(" ").indexOf(text) : -1;
+      const value = choice >= 0 ? choice : Number(text.replace(",", "."));
+      await this.call("param_set", { name: input.dataset.name, value: text ? value : null });
       await this.read();
     });
     row.children[1].append(input);
