@@ -61,6 +61,24 @@ TEST(ParameterFile, IsReadBackWithTheSameNumbers) {
   EXPECT_EQ(values[1].value, 1.0 / 3.0) << "bit for bit";
 }
 
+TEST(ParameterFile, KeepsNamesOfValues) {
+  ParameterView named = view();
+  OwnedParameter method = parameter("control.drive.method", 1, 0, 2, true);
+  set_text(method.parameter.choices, "undulation sidewinding rolling");
+  named.parameters["control.drive.method"] = method;
+  const std::string text = parameter_file(named, "Parameters", false);
+  EXPECT_NE(text.find("\ncontrol.drive.method: sidewinding  # one of undulation, sidewinding, rolling; "),
+            std::string::npos)
+      << text;
+  EXPECT_TRUE(read_parameter_file(text, "f.yaml", named, is_fixed).empty()) << "the value is in force already";
+  const auto values = read_parameter_file("control.drive.method: rolling\n", "f.yaml", named, is_fixed);
+  ASSERT_EQ(values.size(), 1u);
+  EXPECT_EQ(values[0].value, 2);
+  EXPECT_EQ(values[0].text, "rolling");
+  EXPECT_THROW(static_cast<void>(read_parameter_file("control.drive.method: hop\n", "f.yaml", named, is_fixed)),
+               ConfigurationError);
+}
+
 TEST(ParameterFile, OfChangesHasNothingElse) {
   ParameterView changed = view();
   changed.parameters["navigation.travel.frequency_hz"].parameter.changed_tick = 300;

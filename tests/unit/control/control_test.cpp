@@ -5,86 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
-#include <functional>
 #include <limits>
 
-#include "barrier/local_run.hpp"
-#include "component/data_path.hpp"
-#include "support/scripted_members.hpp"
+#include "unit/control/control_run.hpp"
 
 namespace constrictor {
 namespace {
-
-/// Joints that reach every commanded position at once.
-class IdealServos : public testing::PlantBase {
- public:
-  IdealServos(Wiring& wiring, const Setup&)
-      : command_(wiring.latest(topics::kJointCommand)), joints_(wiring.output(topics::kJointState)) {
-    state_.joint_count = 23;
-    state_.position_rad[6] = 0.4;
-  }
-  void sample(const Tick&) override { joints_.write(state_); }
-  void step(const Tick&) override {
-    if (!command_) return;
-    for (int j = 0; j < 23; ++j) {
-      if (command_->torque_limit_nm[j] > 0.0) state_.position_rad[j] = command_->position_rad[j];
-    }
-  }
-
- private:
-  Latest<msg::JointCommand> command_;
-  Output<msg::JointState> joints_;
-  msg::JointState state_{};
-};
-
-using Script = std::function<bool(const Tick&, msg::DesiredTrajectory&)>;
-
-/// Stands for navigation: writes the trajectory that the script fills in, where it returns true.
-ComponentFactory scripted_navigation(Script script) {
-  return testing::scripted_writer<msg::DesiredTrajectory>(
-      "navigation", topics::kDesiredTrajectory, [script = std::move(script)](const Tick& tick, const auto& out) {
-        msg::DesiredTrajectory desired{};
-        desired.wavelength_m = 1.07;
-        if (script(tick, desired)) out.write(desired);
-      });
-}
-
-void set_method(msg::DesiredTrajectory& desired, const char* method, std::uint64_t motion_id) {
-  std::snprintf(desired.method, sizeof desired.method, "%s", method);
-  desired.motion_id = motion_id;
-}
-
-void set_u(msg::DesiredTrajectory& desired) {
-  desired.shape_count = 12;
-  for (int k = 5; k <= 7; ++k) desired.shape_rad[k] = 1.047;
-}
-
-/// A run of control with a plant and a script. `more`: additional components.
-template <class Servos = IdealServos>
-LocalRun make_run(Script script, ComponentFactory control = make_control_factory(),
-                  std::vector<ComponentFactory> more = {}) {
-  Setup setup;
-  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  more.insert(more.begin(), testing::member_of_class<Servos>("physics"));
-  more.push_back(std::move(control));
-  more.push_back(scripted_navigation(std::move(script)));
-  return LocalRun(more, setup);
-}
-
-/// Largest change of any setpoint from one tick to the next, over a run.
-double largest_step_rad(LocalRun& run, int ticks) {
-  double largest = 0.0;
-  msg::JointCommand previous = *run.latest(topics::kJointCommand);
-  for (int i = 0; i < ticks; ++i) {
-    run.advance(1);
-    const msg::JointCommand& now = *run.latest(topics::kJointCommand);
-    for (int j = 0; j < 23; ++j) largest = std::max(largest, std::abs(now.position_rad[j] - previous.position_rad[j]));
-    previous = now;
-  }
-  return largest;
-}
 
 TEST(Control, HoldsTheMeasuredPostureBeforeTheFirstTrajectory) {
   LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory&) { return false; });
@@ -243,71 +170,6 @@ TEST(Control, ChangesOfMethodDoNotJump) {
   run.advance(1);
   // The servos allow 0.08 rad in a tick. The gait itself needs about 0.05 rad.
   EXPECT_LT(largest_step_rad(run, 1800), 0.07);
-}
-
-/// Stands for the component `input`: from tick 50 on, the parameter drive.method of control has this value.
-ComponentFactory choosing_input(double value) {
-  return testing::scripted_writer<msg::ParameterChange>(
-      "input", topics::kParameterChange, [value](const Tick& tick, const auto& out) {
-        if (tick.index != 40) return;
-        msg::ParameterChange change{};
-        std::snprintf(change.name, sizeof change.name, "control.drive.method");
-        change.value = value;
-        change.effective_tick = 50;
-        out.write(change);
-      });
-}
-
-/// The method that moves a robot that drives on, with a straight body or with a U from tick 100 on.
-std::string driving_method(double parameter, int ticks, bool to_u = false) {
-  LocalRun run = make_run(
-      [to_u](const Tick& tick, msg::DesiredTrajectory& desired) {
-        set_method(desired, "drive", 1);
-        desired.frequency_hz = 0.7;
-        desired.amplitude_rad = 0.5;
-        if (to_u && tick.index >= 100) set_u(desired);
-        return true;
-      },
-      make_control_factory(), {choosing_input(parameter)});
-  run.advance(ticks);
-  EXPECT_TRUE(run.latest(topics::kMotionStatus)->accepted);
-  return run.latest(topics::kMotionStatus)->method;
-}
-
-TEST(Control, DrivesWithTheMethodOfTheParameter) {
-  EXPECT_EQ(driving_method(1, 30), "undulation") << "before the change";
-  for (std::size_t i = 0; i < drive_methods().size(); ++i)
-    EXPECT_EQ(driving_method(static_cast<double>(i), 80), drive_methods()[i]);
-  EXPECT_EQ(driving_method(99, 80), "undulation") << "a value without a name is refused";
-}
-
-TEST(Control, ABodyInAPostureDrivesByUndulation) {
-  EXPECT_EQ(driving_method(1, 90, true), "sidewinding");
-  EXPECT_EQ(driving_method(1, 110, true), "undulation");
-}
-
-TEST(Control, ARobotWithoutPitchJointsRefusesVerticalWaves) {
-  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
-  for (auto& joint : robot.joints) joint.axis = JointAxis::kYaw;
-  const MethodRegistry registry;
-  const YawChain flat(robot);
-  msg::DesiredTrajectory straight{};
-  straight.wavelength_m = 1.0;
-  for (const char* name : {"sidewinding", "rolling", "pitch_wave"})
-    EXPECT_FALSE(registry.find(name)->accepts(straight, flat)) << name;
-  for (const char* name : {"undulation", "concertina"}) EXPECT_TRUE(registry.find(name)->accepts(straight, flat));
-}
-
-TEST(Control, TheDriveMethodsExistAndAcceptAStraightBody) {
-  const MethodRegistry registry;
-  const YawChain chain(load_robot(data_path("components/lib/robot/mamba.yaml")));
-  msg::DesiredTrajectory straight{};
-  straight.wavelength_m = 1.0;
-  for (const auto& name : drive_methods()) {
-    const ControlMethod* method = registry.find(name);
-    ASSERT_TRUE(method) << name;
-    EXPECT_TRUE(method->accepts(straight, chain)) << name;
-  }
 }
 
 TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {

@@ -211,7 +211,10 @@ class Run(Domain):
         return {name: entry for name, entry in self._session.parameters().items() if name.startswith(prefix)}
 
     def get_parameter(self, name: str) -> float | str:
-        """Returns the value in force; its name if the parameter is chosen by name. Raises KeyError if there is no such parameter."""
+        """Returns the value in force; its name if the parameter is chosen by name.
+
+        Raises KeyError if there is no such parameter.
+        """
         found = self._session.parameters().get(name)
         if found is None:
             raise KeyError(f"no parameter '{name}'; parameters() returns all")
