@@ -128,26 +128,29 @@ function framesOf(events) {
   const starts = events.filter((event) => event.name === "FireAnimationFrame" && event.ph === "X");
   for (const event of starts) counts.set(thread(event), (counts.get(thread(event)) ?? 0) + 1);
   const [busiest] = [...counts].sort((a, b) => b[1] - a[1])[0] ?? [""];
-  const tasks = events.filter((event) => event.name === "RunTask" && event.ph === "X" && thread(event) === busiest)
-    .sort((a, b) => a.ts - b.ts);
   const begins = starts.filter((event) => thread(event) === busiest).map((event) => event.ts).sort((a, b) => a - b);
-  const empty = () => new Array(Math.max(0, begins.length - 1)).fill(0);
-  const wall = empty(); // includes the time for which other programs had the core
-  const cpu = empty();
-  let frame = 0;
-  for (const task of tasks) {
-    // A task belongs to the frame in which it ends: the task of an animation frame begins before its callback.
-    while (frame < wall.length && task.ts + task.dur > begins[frame + 1]) ++frame;
-    if (frame >= wall.length || task.ts + task.dur < begins[0]) continue;
-    wall[frame] += task.dur / 1000;
-    cpu[frame] += (task.tdur ?? task.dur) / 1000;
-  }
+  const sums = (name, time) => {
+    const busy = new Array(Math.max(0, begins.length - 1)).fill(0);
+    const tasks = events.filter((event) => event.name === name && event.ph === "X" && thread(event) === busiest)
+      .sort((a, b) => a.ts - b.ts);
+    let frame = 0;
+    for (const task of tasks) {
+      // A task belongs to the frame in which it ends: the task of an animation frame begins before its callback.
+      while (frame < busy.length && task.ts + task.dur > begins[frame + 1]) ++frame;
+      if (frame < busy.length && task.ts + task.dur >= begins[0]) busy[frame] += time(task) / 1000;
+    }
+    return busy;
+  };
+  const wall = sums("RunTask", (task) => task.dur); // includes the time for which other programs had the core
+  const commits = sums("Commit", (task) => task.dur); // and the wait for the process that draws
+  const cpu = sums("RunTask", (task) => task.tdur ?? task.dur);
   const summary = (times) => {
-    times.sort((a, b) => a - b);
-    const at = (share) => Number((times[Math.min(times.length - 1, Math.floor(share * times.length))] ?? NaN).toFixed(2));
+    const sorted = [...times].sort((a, b) => a - b);
+    const at = (share) => Number((sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? NaN).toFixed(2));
     return { p50: at(0.5), p95: at(0.95), p99: at(0.99), most: at(1) };
   };
-  return { frames: wall.length, wall_ms: summary(wall), cpu_ms: summary(cpu) };
+  const own = wall.map((time, i) => time - commits[i]);
+  return { frames: wall.length, wall_ms: summary(wall), without_commit_ms: summary(own), cpu_ms: summary(cpu) };
 }
 
 async function open() {
@@ -198,9 +201,14 @@ try {
 const ended = new Promise((done) => chromium.once("exit", done));
 chromium.kill("SIGKILL");
 await ended;
-try {
-  rmSync(folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 }); // its processes still write there
-} catch (error) {
-  console.error(`${folder} is left: ${error.message}`);
+// Its other processes still write there for a moment.
+for (let left = 50; left >= 0; --left) {
+  try {
+    rmSync(folder, { recursive: true, force: true });
+    break;
+  } catch (error) {
+    if (left === 0) console.error(`${folder} is left: ${error.message}`);
+    await pause(100);
+  }
 }
 process.exit(status);
