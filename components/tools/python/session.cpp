@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -74,7 +75,13 @@ Session::Session(const SessionOptions& options, std::function<bool()> interrupte
   if (note_) monitor_ = std::make_unique<RunMonitor>(*note_, participant_->participant());
 }
 
-Session::~Session() { close(); }
+Session::~Session() {
+  try {
+    close();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "constrictor: while leaving the run: %s\n", error.what());
+  }
+}
 
 void Session::close() {
   if (closing_.exchange(true)) return;

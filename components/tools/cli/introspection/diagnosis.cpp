@@ -31,6 +31,7 @@ std::string process_of(const Facts& facts, const dds::Guid& participant) {
 
 std::string processes_of(const Facts& facts, const std::set<dds::Guid>& participants) {
   std::vector<std::string> names;
+  names.reserve(participants.size());
   for (const auto& participant : participants) names.push_back(process_of(facts, participant));
   return fmt::format("{}", fmt::join(names, " and "));
 }

@@ -70,6 +70,7 @@ std::vector<Json> nodes(const DomainView& view) {
   const auto participants = view.discovery().participants();
   const auto endpoints = view.discovery().endpoints();
   std::vector<Json> list;
+  list.reserve(participants.size());
   for (const auto& participant : participants) list.push_back(node_json(participant, participants, endpoints, members));
   std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) { return a["node"] < b["node"]; });
   return list;

@@ -33,6 +33,7 @@ std::vector<std::string> recorded_roster(const std::filesystem::path& file) {
                              const auto roster = metadata.entries.find("roster");
                              if (metadata.name != "recording" || roster == metadata.entries.end()) return;
                              std::istringstream list(roster->second);
+                             // NOLINTNEXTLINE(performance-inefficient-vector-operation): their number is not known
                              for (std::string name; std::getline(list, name, ',');) names.push_back(name);
                            }});
   if (names.empty())

@@ -57,6 +57,7 @@ SshConnection::SshConnection(const HostPlan& host, const std::string& token, boo
   command.push_back(host.ssh);
   command.push_back(remote_command(host, token, attach));
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (auto& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   errors_ = Descriptor(::memfd_create("ssh", MFD_CLOEXEC));
