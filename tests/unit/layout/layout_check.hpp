@@ -19,6 +19,10 @@ std::vector<std::string> long_files(const std::filesystem::path& root);
 /// columns". In README files, table rows and lines with a link may be longer because they cannot be wrapped.
 std::vector<std::string> long_lines(const std::filesystem::path& root);
 
+/// Links of Markdown files to files of the project that do not exist, and to headings that the file does not have, as
+/// "file:12: target".
+std::vector<std::string> broken_links(const std::filesystem::path& root);
+
 /// A static library of the project.
 struct Library {
   std::string folder;  ///< "components/control", "sim/world", "idl"

@@ -48,6 +48,8 @@ TEST(Layout, FilesAreShort) { EXPECT_EQ(text_of(long_files(CONSTRICTOR_ROOT)), "
 
 TEST(Layout, LinesAreShort) { EXPECT_EQ(text_of(long_lines(CONSTRICTOR_ROOT)), ""); }
 
+TEST(Layout, LinksLeadSomewhere) { EXPECT_EQ(text_of(broken_links(CONSTRICTOR_ROOT)), ""); }
+
 /// Every library of the build, with its symbols.
 std::vector<Library> libraries_with_symbols() {
   std::vector<Library> list = declared_libraries(CONSTRICTOR_ROOT);
@@ -232,6 +234,16 @@ TEST(LayoutChecker, FindsLongLines) {
             "CONTRIBUTING.md:1: 129 columns\ncomponents/control/b.hpp:2: 121 columns\n"
             "components/control/c.yaml:1: 122 columns\nscripts/run.sh:1: 121 columns\n"
             "tests/README.md:3: 121 columns\n");
+}
+
+TEST(LayoutChecker, FindsBrokenLinks) {
+  const Tree tree;
+  tree.add("README.md",
+           "# The `robot`, in *short*\n[a](sim/README.md) [b](sim/none.png)\n"
+           "[c](#the-robot-in-short) [d](#other) [e](https://example.org/x)\n");
+  tree.add("sim/README.md", "[up](../README.md#the-robot-in-short)\n\n[up](../README.md#nothing)\n");
+  EXPECT_EQ(text_of(broken_links(tree.root())),
+            "README.md:2: sim/none.png\nREADME.md:3: #other\nsim/README.md:3: ../README.md#nothing\n");
 }
 
 }  // namespace
