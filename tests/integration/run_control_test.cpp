@@ -135,16 +135,24 @@ TEST_F(RunControl, StepWaitsLongerThanTheBoundOnAnAnswerWhileTicksAdvance) {
   const dds::Domain observer(domain());
   const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
   std::int64_t tick = paused;
-  const auto take = [&] { states.take([&](const msg::RunState& state) { tick = std::max(tick, state.tick); }); };
+  int newer = 0;  // states with another tick than the one before
+  const auto take = [&] {
+    states.take([&](const msg::RunState& state) {
+      if (state.tick > tick) ++newer;
+      tick = std::max(tick, state.tick);
+    });
+  };
   constexpr long kSteps = 15000;  // some seconds: the plant must be stopped twice before they are done
   Process steps = start({"step", std::to_string(kSteps)});
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 2; ++i) {
     take();
-    const std::int64_t before = tick;
-    const auto advances = [&] {  // the command has been answered
+    newer = 0;
+    // The plant sends a state to one reader after the other. Stopped right after the first state reached this test, it
+    // would not have sent it to the command.
+    const auto advances = [&] {
       take();
-      return tick > before;
+      return newer >= 3;
     };
     ASSERT_TRUE(eventually(advances, 20s, 1ms)) << "the run does no step: " << steps.errors();
     ::kill(plant, SIGSTOP);

@@ -142,7 +142,10 @@ int set(const Options& options) {
     const std::string& text = options.changes[2 * i + 1];
     std::optional<double> value = value_from({}, text);
     if (!value) {
-      if (!view) view = read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
+      // Without a run there are no names, and the value is as wrong as any other text.
+      const bool no_run = !options.view.domain && live_runs().empty();
+      if (!view)
+        view = no_run ? ParameterView{} : read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
       const auto found = view->parameters.find(name);
       const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
       value = value_from(known, text);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
+#include <iterator>
+#include <string>
 #include <system_error>
 
 #include "log/log.hpp"
@@ -21,6 +23,19 @@ std::uintmax_t size_of(const fs::path& file) {
   return missing ? 0 : size;
 }
 
+/// Removes the last line if the process was still writing it when it was copied.
+void drop_unfinished_line(const fs::path& copy) {
+  constexpr std::uintmax_t kLongest = 65'536;  // a line that is longer stays as it is
+  const std::uintmax_t size = size_of(copy);
+  const std::uintmax_t from = size - std::min(size, kLongest);
+  std::ifstream stream(copy, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(from));
+  const std::string end{std::istreambuf_iterator<char>(stream), {}};
+  const auto newline = end.rfind('\n');
+  std::error_code ignored;
+  if (newline != std::string::npos) fs::resize_file(copy, from + newline + 1, ignored);
+}
+
 /// Copies a log to which a process goes on writing. Returns false if the disk has no room.
 bool copy_whole(const fs::path& log, const fs::path& copy) {
   std::error_code error;
@@ -34,6 +49,7 @@ bool copy_whole(const fs::path& log, const fs::path& copy) {
     more << rest.rdbuf();
     if (!more.flush()) return false;
   }
+  drop_unfinished_line(copy);
   return true;
 }
 
