@@ -134,27 +134,27 @@ TEST_F(RunControl, StepWaitsLongerThanTheBoundOnAnAnswerWhileTicksAdvance) {
   const pid_t plant = nlohmann::json::parse(output_)["components"][0]["pid"];
   const dds::Domain observer(domain());
   const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
+  const auto ticks = dds::Reader<msg::Tick>::member(observer.participant(), dds::barrier_topics::kTick);
   std::int64_t tick = paused;
-  int newer = 0;  // states with another tick than the one before
-  const auto take = [&] {
-    states.take([&](const msg::RunState& state) {
-      if (state.tick > tick) ++newer;
-      tick = std::max(tick, state.tick);
-    });
-  };
+  const auto take = [&] { states.take([&](const msg::RunState& state) { tick = std::max(tick, state.tick); }); };
   constexpr long kSteps = 15000;  // some seconds: the plant must be stopped twice before they are done
   Process steps = start({"step", std::to_string(kSteps)});
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 2; ++i) {
     take();
-    newer = 0;
-    // The plant sends a state to one reader after the other. Stopped right after the first state reached this test, it
-    // would not have sent it to the command.
-    const auto advances = [&] {
+    const std::int64_t before = tick;
+    const auto advances = [&] {  // the command has been answered
       take();
-      return newer >= 3;
+      return tick > before;
     };
     ASSERT_TRUE(eventually(advances, 20s, 1ms)) << "the run does no step: " << steps.errors();
+    // The plant sends a state to one reader after the other. It writes later ticks only when the command has it, too.
+    const auto sent_to_all = [&] {
+      std::int64_t newest = 0;
+      ticks.take([&](const msg::Tick& each) { newest = std::max<std::int64_t>(newest, each.index); });
+      return newest > tick + 1;
+    };
+    ASSERT_TRUE(eventually(sent_to_all, 20s, 1ms));
     ::kill(plant, SIGSTOP);
     std::this_thread::sleep_for(5100ms);
     EXPECT_TRUE(steps.running()) << "the steps ended before the plant was stopped: " << steps.output()
