@@ -30,6 +30,7 @@ void StatusMeter::fill(msg::ComponentStatus& status) {
   status.step_time_p50_us = quantile(steps_us_, 0.5);
   status.step_time_p99_us = quantile(steps_us_, 0.99);
   status.cpu_s = cpu_seconds();
+  status.jitter_p50_us = status.jitter_p99_us = status.jitter_max_us = std::numeric_limits<double>::quiet_NaN();
   next_tick_ = status.tick + kInterval_ticks;
   steps_us_.clear();
 }
