@@ -70,7 +70,7 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
 }
 
 Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                     const ObjectSizes& sizes) {
+                                     const ObjectSizes& sizes, const Change& change) {
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
   find_regions(labels_, camera, config_, line_colour, region_buffers_, regions_);
@@ -83,6 +83,7 @@ Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& cam
   percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
   percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
   std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);
+  if (change) change(percepts.line, percepts.objects);
   draw_percepts(rgb, labels_.image, camera, percepts.line, percepts.objects, picture_);
   percepts.picture = picture_;
   return percepts;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -30,10 +31,13 @@ class LineAndBlobDetector {
  public:
   explicit LineAndBlobDetector(const PerceptionConfig& config);
 
+  /// Changes percepts before they are drawn into the picture.
+  using Change = std::function<void(msg::LinePercept&, msg::ObjectPercepts&)>;
+
   /// `rgb`: CV_8UC3 of the camera's size. `sizes`: what earlier images have shown. The caller fills in exposure_tick
   /// and the headers of the percepts.
   [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                const ObjectSizes& sizes = {});
+                                const ObjectSizes& sizes = {}, const Change& change = {});
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 

@@ -24,10 +24,17 @@ std::uint64_t fingerprint(const dds_sequence_octet& bytes) {
   return hash;
 }
 
+/// [rad] yaw of the x axis in the ground plane.
+double yaw_of(const msg::Quaternion& q) {
+  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
+}
+
 }  // namespace
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
-    : TunableComponent(wiring, setup, topics::kPerceptionParameters), detector_(config_) {
+    : TunableComponent(wiring, setup, topics::kPerceptionParameters),
+      detector_(config_),
+      seed_(setup.component_seed()) {
   const RobotModel robot = load_robot(setup.robot_file);
   // The robot lies on its modules: the centre of the head is one radius above the ground.
   head_height_m_ = robot.module_radius_m;
@@ -77,7 +84,15 @@ void Perception::step(const Tick& tick) {
   const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
   const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_, head_);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
-  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes);
+  perception::LineAndBlobDetector::Change errors;
+  if (config_.errors.any()) {
+    errors = [&](msg::LinePercept& line, msg::ObjectPercepts& objects) {
+      const double exposure_s = static_cast<double>(image_->exposure_tick) * tick.period_s();
+      const double yaw_rad = yaw_of(attitude_at(image_->exposure_tick));
+      perception::PerceptErrors(config_.errors, seed_).apply(exposure_s, yaw_rad, camera, line, objects);
+    };
+  }
+  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, errors);
   state_.sizes.learn(percepts.measured);
 
   percepts.line.exposure_tick = image_->exposure_tick;

@@ -50,6 +50,7 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
 
   perception::LineAndBlobDetector detector_;
+  std::uint64_t seed_;  // of the errors that are added to percepts
   double head_height_m_ = 0.0;
   perception::HeadShape head_;
   Latest<msg::CameraImage> image_ = wiring_.latest(topics::kCameraImage);

@@ -9,6 +9,7 @@
 #include "configuration/parameter_set.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/messages.hpp"
+#include "perception/percept_errors.hpp"
 
 namespace constrictor::perception {
 
@@ -47,6 +48,7 @@ struct PerceptionConfig : ParameterSet {
   std::array<HueRange, msg::kColourCount> hues{
       HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
       add_hues(msg::kColourBlue, 195.0, 262.0), add_hues(msg::kColourYellow, 42.0, 72.0)};
+  PerceptErrorConfig errors = add_section(errors, "error");
 
  private:
   /// By number; "unknown" has no name here, because no file may ask for it.

@@ -1,5 +1,7 @@
 #include "sim/camera/camera.hpp"
 
+#include <utility>
+
 #include "sim/render/image_message.hpp"
 #include "sim/render/scene_from_messages.hpp"
 
@@ -14,7 +16,8 @@ Camera::Camera(Wiring& wiring, const Setup& setup)
       model_(load_robot(setup.robot_file).camera),
       timing_{static_cast<std::uint16_t>(model_.period_ticks), static_cast<std::uint16_t>(model_.latency_ticks)},
       X_HC_(camera_mount(model_)),
-      seed_(setup.component_seed()) {}
+      seed_(setup.component_seed()),
+      errors_(config_.errors) {}
 
 void Camera::build(const msg::SceneDescription& description) {
   RenderOptions options;
@@ -40,19 +43,40 @@ void Camera::write_info(const Tick& tick) {
   info_.write(info);
 }
 
-void Camera::step(const Tick& tick) {
-  if (!world_ || !description_ || world_->module_count == 0) return;
-  if (!renderer_) build(*description_);
-  const ScenePoses poses = poses_of(*world_);
+void Camera::draw(const ScenePoses& poses) {
   PinholeCamera camera = camera_intrinsics(model_);
   camera.X_WC = poses.X_WModule.front() * X_HC_;
   // The shadow region is in front of the robot, where it looks and acts.
   const Eigen::Vector3d ahead = camera.X_WC.translation() + 0.6 * config_.shadow_radius_m * camera.X_WC.linear().col(2);
   rgb_ = renderer_->draw(poses, camera, {ahead.head<2>(), config_.shadow_radius_m});
-  noise_->add(rgb_, world_->header.tick);
+}
+
+void Camera::step(const Tick& tick) {
+  const msg::WorldState* before = nullptr;
+  const msg::WorldState* now = nullptr;
+  for (const msg::WorldState& world : worlds_) before = std::exchange(now, &world);
+  if (now == nullptr || !description_ || now->module_count == 0) return;
+  if (!renderer_) build(*description_);
+  const std::int64_t exposed = now->header.tick;
+  if (image_is_dropped(config_.errors.dropped_share, seed_, exposed)) return;
+  const double between_s =
+      before == nullptr ? 0.0 : static_cast<double>(exposed - before->header.tick) * tick.period_s();
+  const std::vector<double> instants = exposure_instants(between_s > 0.0 ? config_.errors.exposure_s : 0.0);
+  if (instants.size() == 1 && !errors_.change_single_frames()) {
+    draw(poses_of(*now));
+  } else {
+    const ScenePoses poses = poses_of(*now);
+    errors_.begin(instants.size());
+    for (const double later_s : instants) {
+      draw(later_s == 0.0 ? poses : extrapolated(poses_of(*before), poses, later_s / between_s));
+      errors_.expose(rgb_);
+    }
+    errors_.finish(model_.width, rgb_);
+  }
+  noise_->add(rgb_, exposed);
 
   if (state_.frames == 0) write_info(tick);
-  image_.write(image_message(camera, rgb_, world_->header.tick));
+  image_.write(image_message(camera_intrinsics(model_), rgb_, exposed));
   ++state_.frames;
 }
 

@@ -8,6 +8,7 @@
 #include "robot/camera_mount.hpp"
 #include "robot/robot_model.hpp"
 #include "sim/camera/camera_config.hpp"
+#include "sim/camera/camera_errors.hpp"
 #include "sim/render/frame_count.hpp"
 #include "sim/render/pixel_noise.hpp"
 #include "sim/render/renderer.hpp"
@@ -20,7 +21,7 @@ namespace constrictor {
 /// The component `camera`. It writes an image of the world every period, and CameraInfo with the first image. An image
 /// is a function of the world of its tick, the scene and the seed, so a restarted camera repeats its images. The
 /// component writes nothing before scene and world are known. Intrinsics, mount, period and latency come from the robot
-/// file, light and noise from the scene, the quality of the drawing from camera.yaml.
+/// file, light and noise from the scene, the quality of the drawing and further errors from camera.yaml.
 class Camera : public ConfiguredComponent<FrameCount, CameraConfig> {
  public:
   Camera(Wiring& wiring, const Setup& setup);
@@ -30,12 +31,15 @@ class Camera : public ConfiguredComponent<FrameCount, CameraConfig> {
  private:
   void build(const msg::SceneDescription& description);
   void write_info(const Tick& tick);
+  void draw(const ScenePoses& poses);
 
   CameraModel model_;
   Timing timing_;
   Eigen::Isometry3d X_HC_;
   std::uint64_t seed_;
-  Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
+  ImageErrors errors_;
+  // Every tick since the last step: motion blur needs the velocity.
+  Events<msg::WorldState> worlds_ = wiring_.events(topics::kWorldState);
   Latest<msg::SceneDescription> description_ = wiring_.latest(topics::kSceneDescription);
   Output<msg::CameraInfo> info_ = wiring_.output(topics::kCameraInfo);
   Output<msg::CameraImage> image_ = wiring_.output(topics::kCameraImage);

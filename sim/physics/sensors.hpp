@@ -2,9 +2,9 @@
 // simulation publishes.
 #pragma once
 
+#include "component/random.hpp"
 #include "constrictor/messages.hpp"
 #include "robot/robot_model.hpp"
-#include "sim/scenario_loader/random.hpp"
 #include "sim/world/world.hpp"
 
 namespace constrictor {

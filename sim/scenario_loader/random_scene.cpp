@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "component/random.hpp"
 #include "constrictor/messages.hpp"
 #include "sim/scenario_loader/line_path.hpp"
-#include "sim/scenario_loader/random.hpp"
 
 namespace constrictor {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "component/random.hpp"
 #include "sim/scenario_loader/layout_check.hpp"
-#include "sim/scenario_loader/random.hpp"
 #include "sim/scenario_loader/scenario_draft.hpp"
 
 namespace constrictor {

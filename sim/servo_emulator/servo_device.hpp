@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "component/random.hpp"
 #include "dynamixel/bus_plan.hpp"
-#include "sim/scenario_loader/random.hpp"
 #include "sim/servo_emulator/bus_device.hpp"
 
 namespace constrictor::servo_emulator {

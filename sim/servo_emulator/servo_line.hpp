@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "component/random.hpp"
 #include "dynamixel/packet_parser.hpp"
-#include "sim/scenario_loader/random.hpp"
 #include "sim/servo_emulator/bus_device.hpp"
 
 namespace constrictor::servo_emulator {

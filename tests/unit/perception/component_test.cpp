@@ -2,7 +2,11 @@
 // and can be restarted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
@@ -15,6 +19,7 @@
 #include "perception/perception.hpp"
 #include "ray_caster.hpp"
 #include "support/scripted_members.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
@@ -103,13 +108,14 @@ class Desk : public StatefulComponent<int> {
   Output<msg::ParameterChange> change_;
 };
 
-std::unique_ptr<LocalRun> make_run(bool with_changes = false) {
+std::unique_ptr<LocalRun> make_run(bool with_changes = false, const std::filesystem::path& config = {}) {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   std::vector<ComponentFactory> factories{imu(), testing::member_of_class<Eye>("camera"), tasks(),
                                           make_perception_factory()};
   if (with_changes) factories.push_back(testing::member_of_class<Desk>("input"));
-  return std::make_unique<LocalRun>(factories, setup);
+  return std::make_unique<LocalRun>(factories, setup,
+                                    std::map<std::string, std::filesystem::path>{{"perception", config}});
 }
 
 TEST(PerceptionComponent, AFrozenCameraIsNoticedAndForgivenWhenItGoesOn) {
@@ -173,6 +179,34 @@ TEST(PerceptionComponent, RestartChangesNothing) {
     if (i == 11 || i == 33 || i == 34) broken->restart("perception");
   }
   EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
+}
+
+TEST(PerceptionComponent, ErrorsAreAddedToWhatItWritesAndRepeatedAfterARestart) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "perception.yaml";
+  std::ofstream(file) << "error: {line_noise_m: 0.05, false_share: 0.5, missed_line_share: 0.3}\n";
+  auto clean = make_run(), whole = make_run(false, file), broken = make_run(false, file);
+  std::vector<double> offsets;
+  int lost = 0, invented = 0;
+  whole->subscribe<msg::LinePercept>(topics::kLinePercept, [&](const msg::LinePercept& line) {
+    if (line.visible) offsets.push_back(line.offset_m);
+    else ++lost;
+  });
+  whole->subscribe<msg::ObjectPercepts>(topics::kObjectPercepts, [&](const msg::ObjectPercepts& objects) {
+    for (int i = 0; i < objects.blob_count; ++i) invented += objects.blobs[i].colour != msg::kColourYellow;
+  });
+  for (auto* run : {&clean, &whole}) (*run)->advance(30);  // then a task names another line
+  for (int i = 0; i < 30; ++i) {
+    if (i == 11 || i == 26) broken->restart("perception");
+    broken->advance(1);
+  }
+  EXPECT_NE(clean->output_hashes().at("perception"), whole->output_hashes().at("perception"));
+  EXPECT_EQ(whole->output_hashes(), broken->output_hashes());
+  ASSERT_GE(offsets.size(), 2u);
+  EXPECT_GT(*std::max_element(offsets.begin(), offsets.end()) - *std::min_element(offsets.begin(), offsets.end()),
+            0.02);
+  EXPECT_EQ(static_cast<int>(offsets.size()) + lost, 5);  // images
+  EXPECT_GE(invented, 1);
 }
 
 /// Ticks of the exposures in which the yellow cylinder was reported (first set) and was not reported (second set).

@@ -1,4 +1,4 @@
-#include "sim/scenario_loader/random.hpp"
+#include "component/random.hpp"
 
 #include <gtest/gtest.h>
 
