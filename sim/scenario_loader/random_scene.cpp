@@ -8,6 +8,7 @@
 
 #include "component/random.hpp"
 #include "constrictor/messages.hpp"
+#include "sim/scenario_loader/layout_check.hpp"
 #include "sim/scenario_loader/line_path.hpp"
 
 namespace constrictor {
@@ -26,7 +27,6 @@ constexpr double kTurning_m = 1.0;     // around objects and zones, where it tur
 constexpr double kLineApart_m = 1.6;   // between parts of the line that are not neighbours
 constexpr double kNeighbours_m = 2.0;  // along the line
 constexpr double kStart_m = 0.3;       // the line begins ahead of the world's origin, as in the case study
-constexpr double kBodyLength_m = 2.2;
 constexpr double kPegRadius_m = 0.04;
 constexpr double kPegHeight_m = 0.2;
 
@@ -69,7 +69,6 @@ double distance_to_line_m(const std::vector<Vector2d>& line_m, const Vector2d& p
   return nearest;
 }
 
-/// The nearest point on a segment.
 double distance_to_segment_m(const Vector2d& from, const Vector2d& to, const Vector2d& point_m) {
   const Vector2d along = to - from;
   const double share = std::clamp((point_m - from).dot(along) / std::max(along.squaredNorm(), 1e-12), 0.0, 1.0);
@@ -146,7 +145,7 @@ bool is_beside_the_way(const Scenario& scene, std::size_t mission_objects, const
     if (distance_to_segment_m(before, scene.objects[i].position_m, at) < kTurning_m) return false;
     before = scene.objects[i].position_m;
   }
-  if (distance_to_segment_m(scene.start_m, scene.start_m - Vector2d(kBodyLength_m, 0.0), at) < kWay_m) return false;
+  if (distance_to_segment_m(scene.start_m, scene.start_m - Vector2d(kLongestBody_m, 0.0), at) < kWay_m) return false;
   return std::all_of(scene.zones.begin(), scene.zones.end(), [&](const ScenarioZone& zone) {
     return (zone.position_m - at).norm() >= zone.radius_m + kTurning_m;
   });
@@ -155,7 +154,7 @@ bool is_beside_the_way(const Scenario& scene, std::size_t mission_objects, const
 /// A free place around the scene, not next to another one of `taken`; empty: none was found.
 std::optional<Vector2d> draw_place(const Scenario& scene, std::size_t mission_objects, std::vector<Vector2d>& taken,
                                    Random& random) {
-  Vector2d low = scene.start_m - Vector2d(kBodyLength_m, 0.0);
+  Vector2d low = scene.start_m - Vector2d(kLongestBody_m, 0.0);
   Vector2d high = low;
   for (const Vector2d& point : scene.line_m) {
     low = low.cwiseMin(point);
@@ -247,7 +246,7 @@ std::optional<Scenario> make_random_scene(const RandomScene& ranges, const Rando
     Random surroundings = stream("random surroundings");
     Scenario scene = draw_scene(ranges, mission, base, layout);
     scene.seed = seed;
-    if (!has_room(scene) || !add_others(ranges, mission, scene, others)) continue;
+    if (!has_room(scene) || !add_others(ranges, mission, scene, others) || !find_overlap(scene).empty()) continue;
     draw_surroundings(ranges, scene, surroundings);
     return scene;
   }

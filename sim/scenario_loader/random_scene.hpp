@@ -35,9 +35,10 @@ struct RandomMission {
 };
 inline constexpr std::size_t kMostRandomZones = 2;  ///< one on each side of the start
 
-/// A scene in which the mission is possible; empty if 200 draws have found none. `base`: what does not depend on the
-/// draw. The objects stand beyond the end of the line, one behind the other; the zones lie on both sides of the start,
-/// which is that of the case study; pegs and strangers keep off the robot's way. Equal arguments give equal scenes.
+/// A scene without overlapping bodies in which the mission is possible; empty if 200 draws have found none. `base`:
+/// what does not depend on the draw. The objects stand beyond the end of the line, one behind the other; the zones lie
+/// on both sides of the start, which is that of the case study; pegs and strangers keep off the robot's way. Equal
+/// arguments give equal scenes.
 [[nodiscard]] std::optional<Scenario> make_random_scene(const RandomScene& ranges, const RandomMission& mission,
                                                         const Scenario& base, std::uint64_t seed);
 

@@ -203,10 +203,6 @@ Variation read_variation(Configuration from) {
   return variation;
 }
 
-}  // namespace
-
-namespace {
-
 /// The mission of a random scene, for which the scene is made.
 RandomMission read_random_mission(Configuration mission) {
   RandomMission wanted;

@@ -11,9 +11,6 @@
 namespace constrictor {
 namespace {
 
-// The overlap check assumes the longest supported robot.
-constexpr double kBodyLength_m = 2.2;
-constexpr double kHalfWidth_m = 0.06;
 constexpr int kMostDraws = 200;
 
 /// The direction of the light, tilted about the x axis and turned about the vertical axis by random angles.
@@ -103,19 +100,18 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
 Scenario read_scenario(Configuration root, std::uint64_t seed) {
   const ScenarioDraft draft = read_scenario_draft(root);
   if (draft.random) {
-    const auto scene = make_random_scene(*draft.random, draft.mission, draft.fixed, seed);
-    if (scene && find_overlap(*scene, kBodyLength_m, kHalfWidth_m).empty()) return *scene;
+    if (const auto scene = make_random_scene(*draft.random, draft.mission, draft.fixed, seed)) return *scene;
     throw root.error("random", fmt::format("found no scene for seed {} in which the mission is possible, accepted "
                                            "ranges that leave more room",
                                            seed));
   }
   // The layout without variation must be free of overlaps for every seed.
-  const std::string overlap = find_overlap(draw_scene(draft, Variation{}, seed, 0), kBodyLength_m, kHalfWidth_m);
+  const std::string overlap = find_overlap(draw_scene(draft, Variation{}, seed, 0));
   if (!overlap.empty())
     throw root.error("objects", fmt::format("found that {}, accepted bodies that do not overlap", overlap));
   for (int attempt = 0; attempt < kMostDraws; ++attempt) {
     Scenario scene = draw_scene(draft, draft.variation, seed, attempt);
-    if (find_overlap(scene, kBodyLength_m, kHalfWidth_m).empty()) return scene;
+    if (find_overlap(scene).empty()) return scene;
   }
   throw root.error("variation",
                    fmt::format("found overlapping bodies in {} draws, accepted smaller ranges", kMostDraws));

@@ -176,6 +176,23 @@ TEST(RandomScene, SaysWhenThereIsNoRoom) {
             std::string::npos);
 }
 
+// Strangers and pegs of this size often overlap in a draw; then there is another draw.
+TEST(RandomScene, BodiesThatOverlapAreDrawnAgain) {
+  const std::string file = kFile + "random: {object_radius_m: [0.2, 0.2], pegs: 6, strangers: 3}\n";
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scenario scene = read_scenario(Configuration::parse(file, "x.yaml"), seed);
+    ASSERT_EQ(scene.objects.size(), 5u);
+    ASSERT_EQ(scene.obstacles.size(), 6u);
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GE((scene.objects[i].position_m - scene.objects[j].position_m).norm(), 0.4);
+      for (const ScenarioObstacle& peg : scene.obstacles)
+        EXPECT_GE((scene.objects[i].position_m - peg.position_m).norm(), 0.24);
+    }
+  }
+}
+
 TEST(RandomScene, TwoObjectsOfOneColourShareAZone) {
   const std::string file = "name: x\nmission: {sequence: [green, green], line_colour: blue}\nrandom: {}\n";
   const Scenario scene = read_scenario(Configuration::parse(file, "x.yaml"), 1);
