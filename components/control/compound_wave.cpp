@@ -43,19 +43,17 @@ MethodProgress CompoundGait::step(const MethodInput& input, BodyState& body, Set
   pitch_rad = approach(pitch_rad, moves ? wave.pitch_rad : 0.0, step_rad);
   const double wave_number = wave.wavelength_m > 0.0 ? kTurn / wave.wavelength_m : 0.0;
   const double bend_rad = wave.curvature_1_m * input.chain.link_length_m();
+  fade_residual(input, body, setpoints);
   for (std::size_t j = 0; j < input.robot.joints.size(); ++j) {
-    body.residual_rad[j] = approach(body.residual_rad[j], 0.0, input.config.blend_rate_rad_s * input.dt_s);
     const double arc_m = static_cast<double>(j + 1) * spacing_m;
     const double argument = body.wave.phase_rad + wave_number * arc_m;
     const double amplitude_rad = yaw_rad * (1.0 + wave.cone * (2.0 * arc_m / length_m - 1.0));
     const double fold = wave.stretches ? std::cos(wave_number * arc_m) * 0.5 *
                                              (1.0 - std::cos(body.wave.phase_rad - kTurn * arc_m / length_m))
                                        : std::sin(argument);
-    const double angle_rad = input.robot.joints[j].axis == JointAxis::kYaw
-                                 ? bend_rad + amplitude_rad * fold
-                                 : pitch_rad * std::sin(argument + wave.lead_rad);
-    setpoints.position_rad[j] = body.residual_rad[j] + angle_rad;
-    setpoints.torque_limit_nm[j] = input.robot.joints[j].max_torque_nm;
+    setpoints.position_rad[j] += input.robot.joints[j].axis == JointAxis::kYaw
+                                     ? bend_rad + amplitude_rad * fold
+                                     : pitch_rad * std::sin(argument + wave.lead_rad);
   }
   return {};
 }

@@ -16,8 +16,8 @@ namespace constrictor {
 ///
 ///     yaw joint at arc length s:    bend + amplitude(s) cos(2 pi s / lambda) (1 - cos(phase - 2 pi s / length)) / 2
 ///
-///  Source: the compound serpenoid curve of M. Tesch et al.,
-/// "Parameterized and scripted gaits for modular snake robots", Advanced Robotics 23 (2009), 1131-1158.
+/// Source: the compound serpenoid curve of M. Tesch et al., "Parameterized and scripted gaits for modular snake
+/// robots", Advanced Robotics 23 (2009), 1131-1158.
 struct CompoundWave {
   double yaw_rad = 0.0;       ///< amplitude of the yaw joints in the middle of the body
   double pitch_rad = 0.0;     ///< amplitude of the pitch joints
@@ -29,9 +29,9 @@ struct CompoundWave {
 };
 
 /// A gait of such waves. It moves a body without an object: it refuses trajectories with a posture, and robots without
-/// pitch joints if it has a vertical wave. The trajectory
-/// gives the frequency (its sign is the direction) and the curvature of the path; an amplitude of 0 stops the waves.
-/// The form of the waves is in the configuration. It is never done.
+/// pitch joints if it has a vertical wave. The trajectory gives the frequency (its sign is the direction) and the
+/// curvature of the path; an amplitude of 0 stops the waves. The form of the waves is in the configuration. It is never
+/// done.
 class CompoundGait : public ControlMethod {
  public:
   [[nodiscard]] bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const final;

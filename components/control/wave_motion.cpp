@@ -48,13 +48,17 @@ double advance_shape(const MethodInput& input, const LinkArray& target_rad, doub
   return left_rad;
 }
 
-void ride(const MethodInput& input, const LinkArray& base_rad, BodyState& body, Setpoints& setpoints) {
-  const LinkArray angle = input.chain.joint_angles(body.shape_rad, body.wave, input.config.weights);
+void fade_residual(const MethodInput& input, BodyState& body, Setpoints& setpoints) {
   for (std::size_t j = 0; j < input.robot.joints.size(); ++j) {
     body.residual_rad[j] = approach(body.residual_rad[j], 0.0, input.config.blend_rate_rad_s * input.dt_s);
     setpoints.position_rad[j] = body.residual_rad[j];
     setpoints.torque_limit_nm[j] = input.robot.joints[j].max_torque_nm;
   }
+}
+
+void ride(const MethodInput& input, const LinkArray& base_rad, BodyState& body, Setpoints& setpoints) {
+  const LinkArray angle = input.chain.joint_angles(body.shape_rad, body.wave, input.config.weights);
+  fade_residual(input, body, setpoints);
   for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
     const std::size_t j = input.chain.joint_index(k);
     setpoints.position_rad[j] += angle[k];

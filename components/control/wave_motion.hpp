@@ -12,6 +12,10 @@ void advance_wave(const MethodInput& input, double field, BodyState& body);
 /// [rad].
 double advance_shape(const MethodInput& input, const LinkArray& target_rad, double rate_rad_s, BodyState& body);
 
+/// Begins the setpoints of all joints with the remainder of an earlier posture, which fades, and with the robot's own
+/// torque limits.
+void fade_residual(const MethodInput& input, BodyState& body, Setpoints& setpoints);
+
 /// Fills in the setpoints: the wave on the posture, plus the remainder of an earlier posture; pitch joints at 0. Joints
 /// in the base of the U that the posture `base_rad` defines get the torque limit of the trajectory, if it names one.
 void ride(const MethodInput& input, const LinkArray& base_rad, BodyState& body, Setpoints& setpoints);

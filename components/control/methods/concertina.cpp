@@ -2,9 +2,6 @@
 // the stretched part travels from the head to the tail and carries the body forward. It needs the walls: on open ground
 // the folds slide. Source: the gait that H. Marvi and D. L. Hu describe in "Friction enhancement in concertina
 // locomotion of snakes", J. R. Soc. Interface 9 (2012), 3067-3080; the travelling stretch is this project's own.
-#include <cmath>
-#include <numbers>
-
 #include "control/compound_wave.hpp"
 
 namespace constrictor {

@@ -3,7 +3,6 @@
 // Burdick, J. Radford and G. S. Chirikjian, "A sidewinding locomotion gait for hyper-redundant robots", Advanced
 // Robotics 9 (1995), 195-216.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "control/compound_wave.hpp"

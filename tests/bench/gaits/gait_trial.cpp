@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "constrictor/text.hpp"
 #include "sim/world/world.hpp"
@@ -17,22 +18,22 @@ using Eigen::Vector2d;
 constexpr double kPeriod_s = 0.02;
 constexpr double kGravity_m_s2 = 9.81;
 
+Vector2d module_m(const World& world, std::size_t module) { return world.module_pose(module).translation().head<2>(); }
+
 Outline outline_of(const World& world, double time_s) {
   Outline outline{time_s, {}};
-  for (std::size_t i = 0; i < world.module_count(); ++i)
-    outline.modules_m.emplace_back(world.module_pose(i).translation().head<2>());
+  for (std::size_t i = 0; i < world.module_count(); ++i) outline.modules_m.push_back(module_m(world, i));
   return outline;
 }
 
 Vector2d centre_of(const Outline& body) {
-  Vector2d sum = Vector2d::Zero();
-  for (const Vector2d& module : body.modules_m) sum += module;
-  return sum / static_cast<double>(body.modules_m.size());
+  return std::accumulate(body.modules_m.begin(), body.modules_m.end(), Vector2d(0.0, 0.0)) /
+         static_cast<double>(body.modules_m.size());
 }
 
 /// Of the line from tail to head.
-double direction_of(const Outline& body) {
-  const Vector2d axis = body.modules_m.front() - body.modules_m.back();
+double direction_of(const World& world) {
+  const Vector2d axis = module_m(world, 0) - module_m(world, world.module_count() - 1);
   return std::atan2(axis.y(), axis.x());
 }
 
@@ -109,36 +110,36 @@ Course run(const RobotModel& robot_of_file, const Trial& trial) {
   const auto end = settle + static_cast<int>(std::lround(measured_s / kPeriod_s));
   Course course;
   course.outlines.push_back(outline_of(world, 0.0));
-  Outline from;
-  double work_j = 0.0;
-  double way_m = 0.0;
+  Vector2d from_m = Vector2d::Zero();
+  double from_rad = 0.0;
+  double direction_rad = 0.0;
   double turned_rad = 0.0;
-  Outline before = course.outlines.front();
+  double work_j = 0.0;
   for (int tick = 0; tick < end; ++tick) {
-    if (tick == settle) from = before;
+    if (tick == settle) {
+      from_m = centre_of(outline_of(world, tick * kPeriod_s));
+      from_rad = direction_rad = direction_of(world);
+    }
     driver.drive(world);
-    Outline now = outline_of(world, (tick + 1) * kPeriod_s);
     if (tick >= settle) {
-      turned_rad += std::remainder(direction_of(now) - direction_of(before), 2.0 * std::numbers::pi);
+      const double before_rad = std::exchange(direction_rad, direction_of(world));
+      turned_rad += std::remainder(direction_rad - before_rad, 2.0 * std::numbers::pi);
       for (std::size_t j = 0; j < world.joint_count(); ++j) {
         const double torque_nm = world.joint_torque_nm(j);
         work_j += std::max(0.0, torque_nm * world.joint_rate_rad_s(j)) * kPeriod_s;
         course.largest_torque_nm = std::max(course.largest_torque_nm, std::abs(torque_nm));
       }
     }
-    if (tick + 1 == end / 2 || tick + 1 == end) course.outlines.push_back(now);
-    before = std::move(now);
+    if (tick + 1 == end / 2 || tick + 1 == end) course.outlines.push_back(outline_of(world, (tick + 1) * kPeriod_s));
   }
-  const Vector2d moved = centre_of(before) - centre_of(from);
-  const double direction = direction_of(from);
-  const Vector2d forward(std::cos(direction), std::sin(direction));
+  const Vector2d moved = centre_of(course.outlines.back()) - from_m;
+  const Vector2d forward(std::cos(from_rad), std::sin(from_rad));
   const double duration_s = (end - settle) * kPeriod_s;
-  way_m = moved.norm();
   course.forward_m_s = moved.dot(forward) / duration_s;
   course.left_m_s = (forward.x() * moved.y() - forward.y() * moved.x()) / duration_s;
   course.turn_rad_s = turned_rad / duration_s;
   const double weight_n = kGravity_m_s2 * robot.module_mass_kg * static_cast<double>(robot.module_count);
-  course.transport = work_j / (weight_n * way_m);
+  course.transport = work_j / (weight_n * moved.norm());
   return course;
 }
 

@@ -37,7 +37,7 @@ struct Course {
   double turn_rad_s = 0.0;         ///< mean rate of the body's direction, from tail to head
   double transport = 0.0;          ///< cost of transport: positive work of the joints for weight times way
   double largest_torque_nm = 0.0;  ///< of any joint after `kSettle_s`
-  std::vector<Outline> outlines;   ///< one at the start, then one after each half of `duration_s`
+  std::vector<Outline> outlines;   ///< one at the start, then one after each half of the time
 };
 
 /// [s] until the waves have their amplitude and the body follows them.
