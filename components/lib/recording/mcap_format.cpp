@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace constrictor::mcap {
 
@@ -58,6 +59,36 @@ Texts Decoder::texts() {
   return entries;
 }
 
+namespace {
+
+/// The fields of a record one after the other, each in the form of its type.
+template <class... Fields>
+std::string encoded(const Fields&... fields) {
+  std::string bytes;
+  Encoder encoder(bytes);
+  const auto put = [&](const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, std::string>) encoder.text(field);
+    else if constexpr (std::is_same_v<Field, Texts>) encoder.texts(field);
+    else encoder.number(field);
+  };
+  (put(fields), ...);
+  return bytes;
+}
+
+/// A list of pairs of numbers, to be written as a text.
+template <class Pairs>
+std::string pairs(const Pairs& numbers) {
+  std::string bytes;
+  for (Encoder encoder(bytes); const auto& [first, second] : numbers) {
+    encoder.number(first);
+    encoder.number(second);
+  }
+  return bytes;
+}
+
+}  // namespace
+
 void append_record(std::string& bytes, Op op, std::string_view content) {
   Encoder encoder(bytes);
   encoder.number(static_cast<std::uint8_t>(op));
@@ -65,121 +96,44 @@ void append_record(std::string& bytes, Op op, std::string_view content) {
   encoder.raw(content);
 }
 
-std::string encode(const Schema& schema) {
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(schema.id);
-  encoder.text(schema.name);
-  encoder.text(schema.encoding);
-  encoder.text(schema.data);
-  return bytes;
-}
+std::string encode(const Schema& schema) { return encoded(schema.id, schema.name, schema.encoding, schema.data); }
 
 std::string encode(const Channel& channel) {
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(channel.id);
-  encoder.number(channel.schema_id);
-  encoder.text(channel.topic);
-  encoder.text(channel.message_encoding);
-  encoder.texts(channel.metadata);
-  return bytes;
+  return encoded(channel.id, channel.schema_id, channel.topic, channel.message_encoding, channel.metadata);
 }
 
 std::string encode(const ChunkIndex& index) {
-  std::string offsets;
-  for (Encoder encoder(offsets); const auto& [channel, offset] : index.message_index_offsets) {
-    encoder.number(channel);
-    encoder.number(offset);
-  }
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(index.start_time);
-  encoder.number(index.end_time);
-  encoder.number(index.offset);
-  encoder.number(index.length);
-  encoder.text(offsets);
-  encoder.number(index.message_index_length);
-  encoder.text(index.compression);
-  encoder.number(index.compressed_size);
-  encoder.number(index.uncompressed_size);
-  return bytes;
+  return encoded(index.start_time, index.end_time, index.offset, index.length, pairs(index.message_index_offsets),
+                 index.message_index_length, index.compression, index.compressed_size, index.uncompressed_size);
 }
 
 std::string encode(const Statistics& statistics) {
-  std::string counts;
-  for (Encoder encoder(counts); const auto& [channel, count] : statistics.channel_message_counts) {
-    encoder.number(channel);
-    encoder.number(count);
-  }
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(statistics.message_count);
-  encoder.number(statistics.schema_count);
-  encoder.number(statistics.channel_count);
-  encoder.number(statistics.attachment_count);
-  encoder.number(statistics.metadata_count);
-  encoder.number(statistics.chunk_count);
-  encoder.number(statistics.start_time);
-  encoder.number(statistics.end_time);
-  encoder.text(counts);
-  return bytes;
+  return encoded(statistics.message_count, statistics.schema_count, statistics.channel_count,
+                 statistics.attachment_count, statistics.metadata_count, statistics.chunk_count, statistics.start_time,
+                 statistics.end_time, pairs(statistics.channel_message_counts));
 }
 
 std::string encode(const Attachment& attachment) {
-  std::string bytes;
+  // The second time is that at which it was created.
+  std::string bytes = encoded(attachment.log_time, attachment.log_time, attachment.name, attachment.media_type,
+                              static_cast<std::uint64_t>(attachment.data.size()));
   Encoder encoder(bytes);
-  encoder.number(attachment.log_time);
-  encoder.number(attachment.log_time);  // when it was created
-  encoder.text(attachment.name);
-  encoder.text(attachment.media_type);
-  encoder.number(static_cast<std::uint64_t>(attachment.data.size()));
   encoder.raw(attachment.data);
   encoder.number(crc32(bytes_of(bytes)));
   return bytes;
 }
 
-std::string encode(const Metadata& metadata) {
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.text(metadata.name);
-  encoder.texts(metadata.entries);
-  return bytes;
-}
+std::string encode(const Metadata& metadata) { return encoded(metadata.name, metadata.entries); }
 
 std::string encode(const AttachmentIndex& index) {
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(index.offset);
-  encoder.number(index.length);
-  encoder.number(index.log_time);
-  encoder.number(index.log_time);
-  encoder.number(index.data_size);
-  encoder.text(index.name);
-  encoder.text(index.media_type);
-  return bytes;
+  return encoded(index.offset, index.length, index.log_time, index.log_time, index.data_size, index.name,
+                 index.media_type);
 }
 
-std::string encode(const MetadataIndex& index) {
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(index.offset);
-  encoder.number(index.length);
-  encoder.text(index.name);
-  return bytes;
-}
+std::string encode(const MetadataIndex& index) { return encoded(index.offset, index.length, index.name); }
 
 std::string encode_message_index(std::uint16_t channel, const MessageIndex& index) {
-  std::string entries;
-  for (Encoder encoder(entries); const auto& [time, offset] : index) {
-    encoder.number(time);
-    encoder.number(offset);
-  }
-  std::string bytes;
-  Encoder encoder(bytes);
-  encoder.number(channel);
-  encoder.text(entries);
-  return bytes;
+  return encoded(channel, pairs(index));
 }
 
 Schema decode_schema(Bytes bytes) {
