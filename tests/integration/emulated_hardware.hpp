@@ -39,15 +39,7 @@ class EmulatedHardware : public CliFixture {
   void order(const std::string& command) const {
     std::ofstream(run_dir_ / "camera_emulator.commands") << command << std::endl;
   }
-  /// Processes whose command line names this test's folder.
-  [[nodiscard]] std::map<std::string, pid_t> processes() const {
-    std::map<std::string, pid_t> found;
-    for (const auto& [pid, line] : command_lines()) {
-      if (line.find(run_dir_.string()) == std::string::npos) continue;
-      found[std::filesystem::path(line.substr(0, line.find('\0'))).filename().string()] = pid;
-    }
-    return found;
-  }
+  [[nodiscard]] std::map<std::string, pid_t> processes() const { return processes_naming(run_dir_); }
   void expect_nothing_left() const {
     EXPECT_TRUE(eventually([&] { return processes().empty(); })) << processes().begin()->first << " is left";
     for (const char* name : {"camera_emulator.url", "camera_emulator.commands", "world.state", "bus0"})

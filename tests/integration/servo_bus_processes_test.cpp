@@ -67,15 +67,7 @@ class ServoBusProcesses : public CliFixture {
   [[nodiscard]] bool rests() const {
     return eventually([&] { return motion_rad(0.6) < 0.02; }, 30s);
   }
-  /// Processes whose command line names this test's folder.
-  [[nodiscard]] std::map<std::string, pid_t> processes() const {
-    std::map<std::string, pid_t> found;
-    for (const auto& [pid, line] : command_lines()) {
-      if (line.find(run_dir_.string()) == std::string::npos) continue;
-      found[std::filesystem::path(line.substr(0, line.find('\0'))).filename().string()] = pid;
-    }
-    return found;
-  }
+  [[nodiscard]] std::map<std::string, pid_t> processes() const { return processes_naming(run_dir_); }
   void end(Process& launcher) {
     EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
     EXPECT_EQ(launcher.wait(20s), 128 + SIGTERM);

@@ -26,4 +26,14 @@ inline std::map<pid_t, std::string> command_lines() {
   return found;
 }
 
+/// The processes whose command line names this folder, by the names of their programs.
+inline std::map<std::string, pid_t> processes_naming(const std::filesystem::path& folder) {
+  std::map<std::string, pid_t> found;
+  for (const auto& [pid, line] : command_lines()) {
+    if (line.find(folder.string()) == std::string::npos) continue;
+    found[std::filesystem::path(line.substr(0, line.find('\0'))).filename().string()] = pid;
+  }
+  return found;
+}
+
 }  // namespace constrictor::testing
