@@ -5,13 +5,13 @@
 
 #include <chrono>
 
+#include "cyclone/own_host.hpp"
+
 namespace constrictor {
 
 std::string unique_source(const std::string& name) {
-  char host[64] = {};
-  ::gethostname(host, sizeof(host) - 1);
   // A source holds 31 bytes. The process id must not be cut: it makes the name unique.
-  return fmt::format("{:.11}.{:.11}.{}", name, host, ::getpid());
+  return fmt::format("{:.11}.{:.11}.{}", name, own_host(), ::getpid());
 }
 
 std::uint64_t first_sequence_number() {

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "cyclone/own_host.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/host_context.hpp"

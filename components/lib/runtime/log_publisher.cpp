@@ -4,13 +4,9 @@
 
 #include <chrono>
 
-namespace constrictor {
+#include "cyclone/own_host.hpp"
 
-std::string own_host() {
-  char name[64] = {};
-  ::gethostname(name, sizeof(name) - 1);
-  return name;
-}
+namespace constrictor {
 
 LogPublisher::LogPublisher(dds_entity_t participant, Log log, const std::string& process, std::uint32_t incarnation)
     : log_(std::move(log)), process_(process) {

@@ -11,9 +11,6 @@
 
 namespace constrictor {
 
-/// The name of this host, as it is in messages.
-[[nodiscard]] std::string own_host();
-
 /// Lines are published in the thread that logs them. That does not delay it: the writer never waits for a reader, and a
 /// process that logs without end publishes only part of its lines, which readers see by the gaps in LogLine.number.
 class LogPublisher {

@@ -1,7 +1,6 @@
 #include "runtime/recorded_run.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <fstream>
@@ -35,12 +34,6 @@ T number_of(const std::string& text) {
 }
 
 }  // namespace
-
-ScratchFolder::ScratchFolder() {
-  std::string name = (fs::temp_directory_path() / "constrictor-replay-XXXXXX").string();
-  if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a folder in " + name);
-  path_ = name;
-}
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;

@@ -9,6 +9,7 @@
 
 #include "component/component.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/temporary_folder.hpp"
 #include "recording/mcap_format.hpp"
 #include "runtime/replayed_member.hpp"
 
@@ -17,8 +18,8 @@ namespace constrictor {
 /// A folder for the attached files and for what components write; its destructor removes it.
 class ScratchFolder {
  public:
-  /// Throws std::runtime_error.
-  ScratchFolder();
+  /// Throws std::system_error.
+  ScratchFolder() : path_(new_temporary_folder("replay")) {}
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;

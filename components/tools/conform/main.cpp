@@ -1,6 +1,5 @@
 // conform: does a part keep the contract of idl/README.md? `constrictor conform` becomes this program.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "component/data_path.hpp"
+#include "configuration/temporary_folder.hpp"
 #include "conform/hardware_port.hpp"
 #include "conform/manifest_run.hpp"
 #include "conform/plant_conformance.hpp"
@@ -69,16 +69,9 @@ std::filesystem::path manifest_file(const std::string& name) {
   return data_path("deploy/" + name + ".yaml");
 }
 
-/// A new folder for the run, below the folder for temporary files.
-std::filesystem::path new_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "constrictor-conform-XXXXXX").string();
-  if (!::mkdtemp(name.data())) throw std::runtime_error(name + ": cannot be created");
-  return name;
-}
-
 /// Checks the plant of a manifest, which is a member of a run.
 int plant_of_manifest(const Options& options) {
-  const std::filesystem::path folder = new_folder();
+  const std::filesystem::path folder = new_temporary_folder("conform");
   if (options.profile.empty()) std::ofstream(folder / "profile.yaml") << "{}\n";
   else std::filesystem::copy_file(options.profile, folder / "profile.yaml");
   bool found = false;

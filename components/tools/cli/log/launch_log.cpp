@@ -6,6 +6,7 @@
 
 #include "cli/log/log_files.hpp"
 #include "constrictor/messages.hpp"
+#include "cyclone/own_host.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {

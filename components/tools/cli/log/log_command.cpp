@@ -19,8 +19,8 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "cyclone/domain.hpp"
+#include "cyclone/own_host.hpp"
 #include "runtime/host.hpp"
-#include "runtime/log_publisher.hpp"
 
 namespace constrictor::cli {
 namespace {

@@ -6,7 +6,6 @@
 #include <net/if.h>
 #include <netdb.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <fstream>
@@ -18,6 +17,7 @@
 #include "cli/remote/message_channel.hpp"
 #include "constrictor/messages.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/own_host.hpp"
 #include "runtime/version.hpp"
 
 namespace constrictor::cli {
@@ -90,10 +90,8 @@ nlohmann::json describe_this_host() {
                                 {"network", this_network()},
                                 {"used_domains", used_domains()},
                                 {"receive_buffer_bytes", receive_buffer()},
-                                {"libraries", nlohmann::json::object()}};
-  std::array<char, 64> name{};
-  ::gethostname(name.data(), name.size() - 1);
-  description["host"] = name.data();
+                                {"libraries", nlohmann::json::object()},
+                                {"host", own_host()}};
   for (const auto& line : ask_host("--describe")) {
     const auto space = line.find(' ');
     const std::string key = line.substr(0, space), value = space == std::string::npos ? "" : line.substr(space + 1);
