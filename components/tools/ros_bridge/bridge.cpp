@@ -96,7 +96,6 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
   line_percept_ = dds::Reader<msg::LinePercept>::observer(robot_side, "perception/line", 2);
   object_percepts_ = dds::Reader<msg::ObjectPercepts>::observer(robot_side, "perception/objects", 2);
   map_ = dds::Reader<msg::FieldMap>::observer(robot_side, "guidance/map", 1);
-  run_state_ = dds::Reader<msg::RunState>::observer(robot_side, "run_state", 1);
   component_status_ = dds::Reader<msg::ComponentStatus>::observer(robot_side, "component_status", 4);
   task_status_ = dds::Reader<msg::TaskStatus>::observer(robot_side, "task/status", 4);
   // Written seldom: a member's reader also receives what was written before this process started.
@@ -207,10 +206,11 @@ void Bridge::pass_health(SteadyClock::time_point now) {
   // Lines that the run keeps for late readers wait for the first tick, from which their times follow.
   if (period_ns_ > 0)
     take_fit(log_, [this](const msg::LogLine& line) { log_out_.write(translator_.log(line, period_ns_)); });
-  run_state_.take([this](const msg::RunState& state) { health_.take(state); });
   component_status_.take([this](const msg::ComponentStatus& status) { health_.take(status); });
   if (now - health_told_ < 1s) return;
   health_told_ = now;
+  if (monitor_.state()) health_.take(*monitor_.state());
+  if (counts_.refused != desk_.refused()) counts_.last_reason = "refused a request: " + desk_.last_reason();
   counts_.refused = desk_.refused();
   counts_.unanswered = desk_.waiting().size();
   diagnostics_out_.write(health_.report(counts_));

@@ -81,7 +81,6 @@ class Bridge {
 
   // The robot's side.
   dds::Reader<msg::Tick> tick_;
-  dds::Reader<msg::RunState> run_state_;
   dds::Reader<msg::ComponentStatus> component_status_;
   dds::Reader<msg::JointState> joints_;
   dds::Reader<msg::ImuState> imu_;

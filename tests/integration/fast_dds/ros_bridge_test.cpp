@@ -213,7 +213,8 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   {
     Process wrong = ros({"--task", "dance"});
     EXPECT_TRUE(wrong.wait_for(R"("request":"dance","state":"refused")", 30s)) << wrong.output();
-    EXPECT_TRUE(wrong.wait_for("diagnostics 1 constrictor: ros_bridge", 30s)) << "the refusal is counted";
+    EXPECT_TRUE(wrong.wait_for("diagnostics 1 constrictor: ros_bridge refused a request: task: found 'dance'", 30s))
+        << "the refusal is counted, with its reason";
     wrong.signal(SIGTERM);
     EXPECT_EQ(wrong.wait(20s), 0);
   }

@@ -106,7 +106,7 @@ void read_surroundings(example::Participant& node, Answers& answers) {
                   [](const auto& m) { std::printf("plan %s %zu\n", m.header().frame_id().c_str(), m.poses().size()); });
   node.read<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>("rt/diagnostics", true, 1, [](const auto& m) {
     for (const auto& status : m.status())
-      std::printf("diagnostics %d %s\n", int{status.level()}, status.name().c_str());
+      std::printf("diagnostics %d %s %s\n", int{status.level()}, status.name().c_str(), status.message().c_str());
   });
   using Text = std_msgs::msg::dds_::String_PubSubType;
   node.read<Text>("rt/task/answer", true, 64, [&answers](const auto& m) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <vector>
@@ -78,7 +79,7 @@ class RosFiller : public HostileFiller {
     m.height = static_cast<std::uint16_t>(1 + roll(16));
     const auto length = static_cast<std::uint32_t>(roll(4) == 0 ? roll(pixels_.size()) : m.width * m.height * 3u);
     m.data = {length, length, pixels_.data(), false};
-    if (roll(4) != 0) m.exposure_tick = m.header.tick - static_cast<std::int64_t>(roll(4));
+    make_exposed(m);
   }
   void make_relevant(msg::LinePercept& m) { make_exposed(m); }
   void make_relevant(msg::ObjectPercepts& m) { make_exposed(m); }
@@ -197,44 +198,23 @@ class CheckedTranslator {
   msg::ImuState last_imu_{};
 };
 
+template <class T>
+void translate(CheckedTranslator& checked, RosFiller& filler) {
+  checked.translate(filler.make<T>());
+}
+
 TEST(HostileRosBridge, MessagesToRosAreFiniteAndConsistent) {
+  constexpr void (*kTranslate[])(CheckedTranslator&, RosFiller&) = {
+      translate<msg::Tick>,        translate<msg::JointState>,     translate<msg::ImuState>,
+      translate<msg::RobotPose>,   translate<msg::CameraInfo>,     translate<msg::FieldMap>,
+      translate<msg::LinePercept>, translate<msg::ObjectPercepts>, translate<msg::TaskCommand>,
+      translate<msg::CameraImage>};
   CheckedTranslator checked(load_robot(data_path("components/lib/robot/mamba.yaml")));
   RosFiller filler(kSeed);
   double early_mib = 0.0;
   for (std::uint64_t i = 0; i < kMessages && !testing::Test::HasFatalFailure(); ++i) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << " message " << i);
-    switch (i % 10) {
-      case 0:
-        checked.translate(filler.make<msg::Tick>());
-        break;
-      case 1:
-        checked.translate(filler.make<msg::JointState>());
-        break;
-      case 2:
-        checked.translate(filler.make<msg::ImuState>());
-        break;
-      case 3:
-        checked.translate(filler.make<msg::RobotPose>());
-        break;
-      case 4:
-        checked.translate(filler.make<msg::CameraInfo>());
-        break;
-      case 5:
-        checked.translate(filler.make<msg::FieldMap>());
-        break;
-      case 6:
-        checked.translate(filler.make<msg::LinePercept>());
-        break;
-      case 7:
-        checked.translate(filler.make<msg::ObjectPercepts>());
-        break;
-      case 8:
-        checked.translate(filler.make<msg::TaskCommand>());
-        break;
-      default:
-        checked.translate(filler.make<msg::CameraImage>());
-        break;
-    }
+    kTranslate[i % std::size(kTranslate)](checked, filler);
     if (i == kMessages / 3) early_mib = resident_mib();
   }
   const double late_mib = resident_mib();
