@@ -12,6 +12,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/task_request.hpp"
 #include "cli/teleop_drive.hpp"
+#include "cli/teleop_request.hpp"
 #include "cli/teleop_screen.hpp"
 #include "cli/terminal.hpp"
 #include "cli/usage.hpp"
@@ -120,18 +121,8 @@ class Teleop {
 
   /// Sends the request of an action that is neither a drive nor a task. All but one also end the drive.
   void request(TeleopAction action) {
-    using enum TeleopAction;
-    if (action != kClearStop) screen_.drive.forward = screen_.drive.turn = 0.0;
-    if (action == kLookLeft || action == kLookAhead || action == kLookRight)
-      asked("look", client_.move(msg::kMotionLook, 0.0, 0.0, screen_.drive.look_rad));
-    if (action == kWrapLeft) asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, 1.0));
-    if (action == kWrapRight) asked("wrap", client_.move(msg::kMotionWrap, 0.0, 0.0, -1.0));
-    if (action == kSqueeze) asked("squeeze", client_.move(msg::kMotionSqueeze));
-    if (action == kOpen) asked("open", client_.move(msg::kMotionOpen));
-    if (action == kCancel) asked("cancel: stand", client_.move(msg::kMotionStand));
-    if (action == kEmergencyStop) asked("emergency stop", client_.ask(msg::kRequestEmergencyStop));
-    if (action == kClearStop) asked("clear stop", client_.ask(msg::kRequestClearStop));
-    if (action == kRelease) asked("release", client_.ask(msg::kRequestRelease));
+    if (action != TeleopAction::kClearStop) screen_.drive.forward = screen_.drive.turn = 0.0;
+    if (const auto sent = send_request(client_, action, screen_.drive.look_rad)) asked(sent->what, sent->number);
   }
 
   /// Takes keys for the task line.

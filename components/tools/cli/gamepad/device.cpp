@@ -62,8 +62,7 @@ fs::path choose_gamepad(const std::string& wanted, const std::vector<GamepadCand
   if (candidates.empty())
     throw std::runtime_error(
         "--gamepad auto: found no gamepad in /dev/input, accepted one that this user may read (is it connected? are "
-        "you "
-        "in the group `input`?), or the path of a device");
+        "you in the group `input`?), or the path of a device");
   std::string list;
   for (const auto& candidate : candidates)
     list += fmt::format("\n  --gamepad {}  ({})", candidate.device.string(), candidate.name);

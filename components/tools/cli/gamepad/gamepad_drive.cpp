@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
 #include "cli/teleop_drive.hpp"
+#include "cli/teleop_request.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
 #include "robot/drive_gait.hpp"
@@ -149,20 +151,11 @@ class GamepadTeleop {
     if (action == kEmergencyStop ? !run.may_stop() : !run.may_send())
       return say("not sent: `input` is missing; the launcher restarts it");
     static_cast<void>(look_.apply(action));  // keeps the angle of the head
+    if (const auto sent = send_request(client_, action, look_.look_rad)) ask(sent->what, sent->number);
     if (action == kEmergencyStop) {
-      ask("emergency stop", client_.ask(msg::kRequestEmergencyStop));
       driving_ = false;
       blocked_ = true;
     }
-    if (action == kClearStop) ask("clear stop", client_.ask(msg::kRequestClearStop));
-    if (action == kRelease) ask("release", client_.ask(msg::kRequestRelease));
-    if (action == kStand || action == kCancel) ask("stand", client_.move(msg::kMotionStand));
-    if (action == kLookLeft || action == kLookAhead || action == kLookRight)
-      ask("look", client_.move(msg::kMotionLook, 0.0, 0.0, look_.look_rad));
-    if (action == kWrapLeft) ask("wrap left", client_.move(msg::kMotionWrap, 0.0, 0.0, 1.0));
-    if (action == kWrapRight) ask("wrap right", client_.move(msg::kMotionWrap, 0.0, 0.0, -1.0));
-    if (action == kSqueeze) ask("squeeze", client_.move(msg::kMotionSqueeze));
-    if (action == kOpen) ask("open", client_.move(msg::kMotionOpen));
   }
   void ask(const std::string& what, std::uint64_t number) { asked_[number] = what; }
   void show_answers() {
