@@ -34,19 +34,16 @@ void LogReader::take(const Use& use) {
     // The number of processes that this map holds is bounded by what strangers may send: nothing is kept of the lines.
     constexpr std::size_t kMostProcesses = 1024;
     const auto key = std::pair(text_of(line.host), line.pid);
-    if (processes_.size() >= kMostProcesses && !processes_.contains(key)) processes_.clear();
-    Process& process = processes_[key];
-    const bool follows = process.newest > 0 && line.number > process.newest + 1;
-    const std::uint64_t lost = follows ? line.number - process.newest - 1 : 0;
-    process.newest = line.number;
-    use(line, lost);
+    if (newest_.size() >= kMostProcesses && !newest_.contains(key)) newest_.clear();
+    const std::uint64_t before = std::exchange(newest_[key], line.number);
+    use(line, before > 0 && line.number > before + 1 ? line.number - before - 1 : 0);
   });
 }
 
 bool LogReader::heard_all() const {
   const int writers =
       dds::check(dds_get_matched_publications(reader_.get(), nullptr, 0), "dds_get_matched_publications");
-  return writers > 0 && processes_.size() >= static_cast<std::size_t>(writers);
+  return writers > 0 && newest_.size() >= static_cast<std::size_t>(writers);
 }
 
 }  // namespace constrictor

@@ -28,11 +28,8 @@ class LogReader {
   [[nodiscard]] bool heard_all() const;
 
  private:
-  struct Process {
-    std::uint64_t newest = 0;  ///< number of its newest line
-  };
   dds::Entity reader_;
-  std::map<std::pair<std::string, std::int32_t>, Process> processes_;  ///< by host and pid
+  std::map<std::pair<std::string, std::int32_t>, std::uint64_t> newest_;  ///< number of the newest line by host and pid
 };
 
 }  // namespace constrictor

@@ -22,6 +22,13 @@ using namespace std::chrono_literals;
 /// Writers keep several lists for late readers. The lists arrive one after the other; the last one is valid.
 constexpr auto kQuiet = 300ms;
 
+/// The name of a value; null if the parameter is a number.
+std::optional<std::string> name_of(const msg::Parameter& parameter, double value) {
+  const auto names = choices_of(parameter);
+  if (!(value >= 0.0 && value < static_cast<double>(names.size()))) return std::nullopt;
+  return names[static_cast<std::size_t>(value)];
+}
+
 }  // namespace
 
 ParameterView read_parameters(std::int32_t participant, std::chrono::milliseconds bound) {
@@ -105,17 +112,6 @@ msg::ParameterChange ParameterSetter::set(const std::string& name, double value,
       "no answer within 5 s; if the run is paused, the change is made when the run resumes (constrictor resume)",
       CommandError::Cause::kNoAnswer);
 }
-
-namespace {
-
-/// The name of a value; null if the parameter is a number.
-std::optional<std::string> name_of(const msg::Parameter& parameter, double value) {
-  const auto names = choices_of(parameter);
-  if (!(value >= 0.0 && value < static_cast<double>(names.size()))) return std::nullopt;
-  return names[static_cast<std::size_t>(value)];
-}
-
-}  // namespace
 
 std::optional<double> value_from(const msg::Parameter& parameter, const std::string& text) {
   const auto names = choices_of(parameter);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -127,7 +125,40 @@ int get(const Options& options) {
 }
 
 /// Sets the parameters one after the other, until one is refused.
-int set_all(const Options& options, const std::vector<ParameterValue>& values);
+int set_all(const Options& options, const std::vector<ParameterValue>& values) {
+  const std::size_t count = values.size();
+  RequestClient client(find_domain(options.view.domain),
+                       operator_options(unique_source("param"), 0ms, /*detached=*/true));
+  ParameterSetter setter(client);
+  if (const int failed = connect(client, "param"); failed != exit_status::kOk) return failed;
+  Json json = Json::array();
+  int status = exit_status::kOk;
+  for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
+    const auto& [name, value, text] = values[i];
+    try {
+      const msg::ParameterChange change = setter.set(name, value, options.at_tick);
+      json.push_back({{"name", name},
+                      {"value", change.value},
+                      {"effective_tick", change.effective_tick},
+                      {"accepted_tick", change.header.tick}});
+      if (!options.view.json) fmt::print("{}: {} from tick {} on\n", name, text, change.effective_tick);
+    } catch (const CommandError& error) {
+      status = error.cause() == CommandError::Cause::kRefused       ? exit_status::kFailed
+               : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
+                                                                    : exit_status::kWaitedTooLong;
+      const bool refused = error.cause() == CommandError::Cause::kRefused;
+      if (refused) json.push_back({{"name", name}, {"value", value}, {"refused", error.what()}});
+      if (!refused || !options.view.json)
+        std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
+      if (!refused) {
+        client.flush();
+        std::fprintf(stderr, "  %zu of %zu parameters were set; authority has not changed\n", i, count);
+      }
+    }
+  }
+  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
+  return status;
+}
 
 int set(const Options& options) {
   if (options.changes.size() % 2 != 0) {
@@ -193,41 +224,6 @@ int load(const Options& options) {
   if (options.view.json) fmt::print("[]\n");
   else fmt::print("every parameter of the file has its value already\n");
   return exit_status::kOk;
-}
-
-int set_all(const Options& options, const std::vector<ParameterValue>& values) {
-  const std::size_t count = values.size();
-  RequestClient client(find_domain(options.view.domain),
-                       operator_options(unique_source("param"), 0ms, /*detached=*/true));
-  ParameterSetter setter(client);
-  if (const int failed = connect(client, "param"); failed != exit_status::kOk) return failed;
-  Json json = Json::array();
-  int status = exit_status::kOk;
-  for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
-    const auto& [name, value, text] = values[i];
-    try {
-      const msg::ParameterChange change = setter.set(name, value, options.at_tick);
-      json.push_back({{"name", name},
-                      {"value", change.value},
-                      {"effective_tick", change.effective_tick},
-                      {"accepted_tick", change.header.tick}});
-      if (!options.view.json) fmt::print("{}: {} from tick {} on\n", name, text, change.effective_tick);
-    } catch (const CommandError& error) {
-      status = error.cause() == CommandError::Cause::kRefused       ? exit_status::kFailed
-               : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
-                                                                    : exit_status::kWaitedTooLong;
-      const bool refused = error.cause() == CommandError::Cause::kRefused;
-      if (refused) json.push_back({{"name", name}, {"value", value}, {"refused", error.what()}});
-      if (!refused || !options.view.json)
-        std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
-      if (!refused) {
-        client.flush();
-        std::fprintf(stderr, "  %zu of %zu parameters were set; authority has not changed\n", i, count);
-      }
-    }
-  }
-  if (options.view.json) fmt::print("{}\n", json_text(json, 2));
-  return status;
 }
 
 }  // namespace

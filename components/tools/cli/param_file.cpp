@@ -4,12 +4,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "component/data_path.hpp"
+#include "component/parameters.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
 
@@ -24,6 +24,11 @@ struct Found {
 };
 
 int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
+
+/// The value that is in force or will be, when a pending change has taken effect.
+double wanted(const msg::Parameter& parameter) {
+  return parameter.pending_tick < 0 ? parameter.value : parameter.pending_value;
+}
 
 /// Reads one file and collects its mistakes.
 class Reader {
@@ -58,12 +63,10 @@ class Reader {
     const auto known = view_.parameters.find(name);
     if (known == view_.parameters.end()) return mistake(found.line, name, why_not(name));
     const msg::Parameter& p = known->second.parameter;
-    const std::optional<double> known_value = found.scalar ? value_from(p, found.text) : std::nullopt;
-    const double value = known_value.value_or(0.0);
-    const bool accepted =
-        known_value && value >= p.minimum && value <= p.maximum && (!p.is_integer || value == std::round(value));
-    if (!accepted) return mistake(found.line, name, fmt::format("found {}, accepted {}", found.text, accepted_text(p)));
-    if (value != (p.pending_tick < 0 ? p.value : p.pending_value)) values_.push_back({name, value, found.text});
+    const std::optional<double> value = found.scalar ? value_from(p, found.text) : std::nullopt;
+    if (!value || !parameter_refusal(p, *value).empty())
+      return mistake(found.line, name, fmt::format("found {}, accepted {}", found.text, accepted_text(p)));
+    if (*value != wanted(p)) values_.push_back({name, *value, found.text});
   }
   [[nodiscard]] std::string why_not(const std::string& name) const {
     const std::string component = name.substr(0, name.find('.'));
@@ -99,8 +102,7 @@ std::string parameter_file(const ParameterView& view, const std::string& title, 
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
-    const double value = p.pending_tick < 0 ? p.value : p.pending_value;
-    text += fmt::format("{}: {}  # {}; {}\n", name, exact(p, value), accepted_text(p), p.doc);
+    text += fmt::format("{}: {}  # {}; {}\n", name, exact(p, wanted(p)), accepted_text(p), p.doc);
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/log/log_files.hpp"
 #include "constrictor/constants.hpp"
@@ -112,27 +113,24 @@ std::vector<LogEntry> read_log_file(const fs::path& file, const LogFilter& filte
 
 std::vector<LogEntry> read_logs(const fs::path& folder, const LogFilter& filter) {
   const fs::path logs = fs::is_directory(folder / "logs") ? folder / "logs" : folder;
-  std::vector<LogEntry> all;
   const auto files = log_files(logs);
   if (files.empty())
     throw std::runtime_error(
         fmt::format("{}: found no log files (*.log), accepted the folder of a run's report", folder.string()));
-  std::vector<std::chrono::system_clock::time_point> keys;
-  std::vector<std::size_t> order;
+  using Timed = std::pair<std::chrono::system_clock::time_point, LogEntry>;
+  std::vector<Timed> timed;
   for (const auto& file : files) {
     // A clock that was set back must not tear the lines of a process apart.
     std::chrono::system_clock::time_point latest{};
     for (auto& entry : read_log_file(file, filter)) {
       latest = std::max(latest, entry.record.time);
-      keys.push_back(latest);
-      order.push_back(order.size());
-      all.push_back(std::move(entry));
+      timed.emplace_back(latest, std::move(entry));
     }
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+  std::stable_sort(timed.begin(), timed.end(), [](const Timed& a, const Timed& b) { return a.first < b.first; });
   std::vector<LogEntry> sorted;
-  sorted.reserve(all.size());
-  for (const std::size_t i : order) sorted.push_back(std::move(all[i]));
+  sorted.reserve(timed.size());
+  for (auto& [time, entry] : timed) sorted.push_back(std::move(entry));
   return sorted;
 }
 

@@ -1,13 +1,13 @@
 // `constrictor replay`: a recording onto DDS, or through components.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <optional>
 #include <sstream>
+#include <utility>
 
+#include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/launch_plan.hpp"
 #include "cli/recording/player.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -43,8 +43,7 @@ std::vector<std::string> recorded_roster(const std::filesystem::path& file) {
 
 /// This process becomes constrictor_host, which contains the components.
 int replay_components(const Options& options) {
-  const std::string program = (program_folder() / "constrictor_host").string();
-  std::vector<std::string> arguments = {program, "--replay", options.file};
+  std::vector<std::string> arguments = {"--replay", options.file};
   if (!options.restored.empty()) arguments.insert(arguments.end(), {"--restore", options.restored});
   else if (!options.output.empty()) arguments.insert(arguments.end(), {"--output", options.output});
   if (options.components == std::vector<std::string>{"all"}) {
@@ -52,12 +51,7 @@ int replay_components(const Options& options) {
   } else {
     arguments.insert(arguments.end(), options.components.begin(), options.components.end());
   }
-  std::vector<char*> pointers;
-  for (auto& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  ::execv(program.c_str(), pointers.data());
-  std::perror(program.c_str());
-  return exit_status::kSoftware;
+  return become("constrictor_host", std::move(arguments));
 }
 
 int replay(const Options& options) {
