@@ -76,6 +76,18 @@ std::string encoded(const Fields&... fields) {
   return bytes;
 }
 
+/// Reads fields in the form in which encoded() writes them.
+template <class... Fields>
+void decode(Decoder& decoder, Fields&... fields) {
+  const auto take = [&](auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, std::string>) field = decoder.text();
+    else if constexpr (std::is_same_v<Field, Texts>) field = decoder.texts();
+    else field = decoder.number<Field>();
+  };
+  (take(fields), ...);
+}
+
 /// A list of pairs of numbers, to be written as a text.
 template <class Pairs>
 std::string pairs(const Pairs& numbers) {
@@ -139,32 +151,23 @@ std::string encode_message_index(std::uint16_t channel, const MessageIndex& inde
 Schema decode_schema(Bytes bytes) {
   Decoder decoder(bytes, "Schema record");
   Schema schema;
-  schema.id = decoder.number<std::uint16_t>();
+  decode(decoder, schema.id);
   if (schema.id == 0) decoder.damaged("found id 0, accepted 1 to 65535");
-  schema.name = decoder.text();
-  schema.encoding = decoder.text();
-  schema.data = decoder.text();
+  decode(decoder, schema.name, schema.encoding, schema.data);
   return schema;
 }
 
 Channel decode_channel(Bytes bytes) {
   Decoder decoder(bytes, "Channel record");
   Channel channel;
-  channel.id = decoder.number<std::uint16_t>();
-  channel.schema_id = decoder.number<std::uint16_t>();
-  channel.topic = decoder.text();
-  channel.message_encoding = decoder.text();
-  channel.metadata = decoder.texts();
+  decode(decoder, channel.id, channel.schema_id, channel.topic, channel.message_encoding, channel.metadata);
   return channel;
 }
 
 Message decode_message(Bytes bytes) {
   Decoder decoder(bytes, "Message record");
   Message message;
-  message.channel_id = decoder.number<std::uint16_t>();
-  message.sequence = decoder.number<std::uint32_t>();
-  message.log_time = decoder.number<std::uint64_t>();
-  message.publish_time = decoder.number<std::uint64_t>();
+  decode(decoder, message.channel_id, message.sequence, message.log_time, message.publish_time);
   message.data = decoder.take(decoder.left());
   return message;
 }
@@ -172,10 +175,8 @@ Message decode_message(Bytes bytes) {
 Attachment decode_attachment(Bytes bytes) {
   Decoder decoder(bytes, "Attachment record");
   Attachment attachment;
-  attachment.log_time = decoder.number<std::uint64_t>();
-  decoder.number<std::uint64_t>();
-  attachment.name = decoder.text();
-  attachment.media_type = decoder.text();
+  std::uint64_t created = 0;
+  decode(decoder, attachment.log_time, created, attachment.name, attachment.media_type);
   attachment.data = std::string(text_of(decoder.take(decoder.number<std::uint64_t>())));
   const std::size_t checked = bytes.size() - decoder.left();
   const auto crc = decoder.number<std::uint32_t>();
@@ -187,22 +188,16 @@ Attachment decode_attachment(Bytes bytes) {
 Metadata decode_metadata(Bytes bytes) {
   Decoder decoder(bytes, "Metadata record");
   Metadata metadata;
-  metadata.name = decoder.text();
-  metadata.entries = decoder.texts();
+  decode(decoder, metadata.name, metadata.entries);
   return metadata;
 }
 
 Statistics decode_statistics(Bytes bytes) {
   Decoder decoder(bytes, "Statistics record");
   Statistics statistics;
-  statistics.message_count = decoder.number<std::uint64_t>();
-  statistics.schema_count = decoder.number<std::uint16_t>();
-  statistics.channel_count = decoder.number<std::uint32_t>();
-  statistics.attachment_count = decoder.number<std::uint32_t>();
-  statistics.metadata_count = decoder.number<std::uint32_t>();
-  statistics.chunk_count = decoder.number<std::uint32_t>();
-  statistics.start_time = decoder.number<std::uint64_t>();
-  statistics.end_time = decoder.number<std::uint64_t>();
+  decode(decoder, statistics.message_count, statistics.schema_count, statistics.channel_count,
+         statistics.attachment_count, statistics.metadata_count, statistics.chunk_count, statistics.start_time,
+         statistics.end_time);
   Decoder counts = decoder.part();
   while (counts.left() > 0) {
     const auto channel = counts.number<std::uint16_t>();
