@@ -64,33 +64,39 @@ void Control::step(const Tick& tick) {
     }
     return;
   }
-  JointArray measured_rad{};
-  JointArray torque_nm{};
+  JointArray measured_rad{}, rate_rad_s{}, torque_nm{}, exerted_nm{};
   const std::size_t count = robot_.joints.size();
   std::copy_n(body_.joints->position_rad, count, measured_rad.begin());
+  std::copy_n(body_.joints->velocity_rad_s, count, rate_rad_s.begin());
   std::copy_n(body_.joints->torque_nm, count, torque_nm.begin());
+  for (std::size_t j = 0; j < state_.gate.setpoints.size(); ++j) {
+    exerted_nm[j] = state_.gate.setpoints[j].torque_nm;
+    // Torques move the joints meanwhile, so that the next motion begins where they are now.
+    if (state_.gate.setpoints[j].torque_mode) state_.limiter.position_rad[j] = measured_rad[j];
+  }
   if (!state_.limiter.started) state_.limiter.position_rad = measured_rad;
 
   const ControlMethod* method = nullptr;
   bool known = false;
   const msg::DesiredTrajectory desired = choose(method, known);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_,    chain_,        config_,     desired,    measured_rad,
-                          torque_nm, commanded_rad, tick.dt_s(), perceived()};
+  const MethodInput input{robot_,        chain_,      config_,     desired,    measured_rad, torque_nm,
+                          commanded_rad, tick.dt_s(), perceived(), rate_rad_s, exerted_nm};
   if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     method->start(input, state_.body);
     state_.method = desired.method;
     state_.motion_id = desired.motion_id;
   }
-  Setpoints setpoints{commanded_rad, {}};
+  Setpoints setpoints;
+  setpoints.position_rad = commanded_rad;
   for (std::size_t j = 0; j < count; ++j) setpoints.torque_limit_nm[j] = robot_.joints[j].max_torque_nm;
   const MethodProgress progress = method->step(input, state_.body, setpoints);
   const bool relaxed = std::string_view(desired.method) == "relax";
   msg::JointCommand wanted = relaxed ? limiter_.relax(measured_rad, state_.limiter)
                                      : limiter_.limit(setpoints, measured_rad, tick.dt_s(), state_.limiter);
-  wanted.mode = relaxed ? msg::kServoRelaxed : msg::kServoFollow;
-  command_out_.write(gated(wanted, measured_rad, tick));
+  if (relaxed) wanted.mode = msg::kServoRelaxed;
+  command_out_.write(gated(wanted, measured_rad, rate_rad_s, tick));
 
   msg::MotionStatus status{};
   std::snprintf(status.method, sizeof status.method, "%s", desired.method);
@@ -102,7 +108,8 @@ void Control::step(const Tick& tick) {
   status_out_.write(status);
 }
 
-msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArray& measured_rad, const Tick& tick) {
+msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArray& measured_rad,
+                                 const JointArray& rate_rad_s, const Tick& tick) {
   const std::size_t count = robot_.joints.size();
   const GateInstant now{tick.run_id, tick.epoch, tick.index};
   msg::Header header{};  // as the runtime will fill it in when the command is published
@@ -114,13 +121,15 @@ msg::JointCommand Control::gated(const msg::JointCommand& wanted, const JointArr
   if (refusal != GateRefusal::kNone)
     wiring_.count_refusal(std::string("joint_command of ") + state_.method + ": " + text_of(refusal, state_.gate));
   const GateOrder order = gate_order(authority_in_.get(), authority_in_ ? authority_in_.age_ticks() : 0, state_.gate);
-  const auto& setpoints = gate_.setpoints(std::span(measured_rad).first(count), order, tick.dt_s(), state_.gate);
+  const MeasuredJoints measured{std::span(measured_rad).first(count), std::span(rate_rad_s).first(count)};
+  const auto& setpoints = gate_.setpoints(measured, order, tick.dt_s(), state_.gate);
   msg::JointCommand command = wanted;
-  command.mode = state_.gate.mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;
+  command.mode = servo_mode(state_.gate);
   for (std::size_t j = 0; j < count; ++j) {
     command.position_rad[j] = setpoints[j].position_rad;
     command.velocity_rad_s[j] = setpoints[j].velocity_rad_s;
     command.torque_limit_nm[j] = setpoints[j].torque_limit_nm;
+    command.torque_nm[j] = setpoints[j].torque_nm;
     // The motion after a hold begins at the held posture.
     if (state_.gate.mode != GateMode::kObeying) state_.limiter.position_rad[j] = setpoints[j].position_rad;
   }

@@ -46,7 +46,7 @@ class Control : public TunableComponent<ControlState, ControlConfig> {
   [[nodiscard]] Perceived perceived() const;
   /// The command for the servos: `wanted` after the safety gate.
   [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad,
-                                        const Tick& tick);
+                                        const JointArray& rate_rad_s, const Tick& tick);
 
   RobotModel robot_;
   YawChain chain_;

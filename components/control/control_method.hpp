@@ -54,6 +54,8 @@ struct MethodInput {
   const JointArray& commanded_rad;  ///< previous setpoints
   double dt_s;                      ///< > 0
   Perceived around{};
+  JointArray rate_rad_s{};  ///< measured rates of the joints
+  JointArray exerted_nm{};  ///< torques of the previous command, after the safety gate; 0 if it demanded none
 };
 
 struct MethodProgress {
@@ -77,7 +79,8 @@ class ControlMethod {
   /// Called before the first step of a motion: when motion_id or the method has changed.
   virtual void start(const MethodInput& input, BodyState& body) const;
   /// Writes the setpoints of the joints that the method moves. Before the call, `setpoints` holds the previous command
-  /// and the robot's own torque limit for every joint, so that a joint that the method leaves out keeps its posture.
+  /// and the robot's own torque limit for every joint, so that a joint that the method leaves out keeps its posture. A
+  /// method that sets `torque_mode` writes a torque for every joint instead; a joint that it leaves out exerts none.
   virtual MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const = 0;
 };
 

@@ -12,10 +12,12 @@ namespace constrictor {
 /// A value for each joint of the robot, head to tail; elements beyond the count are zero.
 using JointArray = std::array<double, msg::kMaxJoints>;
 
-/// The setpoints of all joints that a method demands.
+/// The setpoints of all joints that a method demands: angles, or in torque mode torques.
 struct Setpoints {
   JointArray position_rad{};
   JointArray torque_limit_nm{};
+  JointArray torque_nm{};    ///< used in torque mode only; sign as in JointState
+  bool torque_mode = false;  ///< all joints exert torque_nm
 };
 
 struct LimiterState {
@@ -30,15 +32,18 @@ struct LimiterState {
 
 /// Limits position, rate and torque of every setpoint to the limits in the robot's model. The first setpoint starts at
 /// the measured posture, so that the body does not jump when control starts. Where a demanded position is not finite,
-/// the joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies.
+/// the joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies; where a torque is
+/// not finite, the joint exerts none.
 class JointLimiter {
  public:
   /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1.
   JointLimiter(const RobotModel& robot, double speed_share);
 
-  /// `measured_rad`: joint positions, used in the first call only. `dt_s` > 0.
+  /// `measured_rad`: joint positions, used in the first call and in torque mode. `dt_s` > 0.
   msg::JointCommand limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s,
                           LimiterState& state) const;
+  /// The command that exerts torques; the setpoints follow the measured posture.
+  msg::JointCommand exert(const Setpoints& wanted, const JointArray& measured_rad, LimiterState& state) const;
   /// Relaxes the joints: no torque; the setpoints follow the measured posture.
   msg::JointCommand relax(const JointArray& measured_rad, LimiterState& state) const;
 

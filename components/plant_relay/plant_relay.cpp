@@ -11,6 +11,7 @@
 #include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
 #include "constrictor/text.hpp"
+#include "robot/gate_messages.hpp"
 
 namespace constrictor {
 namespace {
@@ -32,7 +33,7 @@ PlantRelay::PlantRelay(Wiring& wiring, const Setup& setup)
       config_(load_parameters<PlantRelayConfig>(setup.config_file)),
       robot_(load_robot(robot_file_of(setup))),
       judge_(robot_, config_),
-      gate_(wiring, robot_, config_.command),
+      gate_(wiring, robot_, config_.gate_limits()),
       link_(wiring.hardware_link()) {
   state_.angles_rad.resize(robot_.joints.size());
   state_.velocities_rad_s.resize(robot_.joints.size());
@@ -126,7 +127,8 @@ std::string PlantRelay::obstacle_of(const msg::HardwareJointState& sample) const
 void PlantRelay::watch_motion(const std::vector<double>& before_rad) {
   const auto& setpoints = gate_.state().setpoints;
   bool should_move = false;
-  if (gate_.state().mode == GateMode::kObeying && state_.obstacle.empty() && setpoints.size() == before_rad.size()) {
+  const bool follows = gate_.state().mode == GateMode::kObeying && !gate_.state().torque;  // a torque need not move
+  if (follows && state_.obstacle.empty() && setpoints.size() == before_rad.size()) {
     for (std::size_t i = 0; i < before_rad.size(); ++i) {
       const double error_rad = std::abs(setpoints[i].position_rad - before_rad[i]);
       should_move = should_move || (error_rad > config_.frozen_error_rad && setpoints[i].torque_limit_nm > 0.0);
@@ -185,7 +187,7 @@ void PlantRelay::write_imu(const std::vector<msg::HardwareImuState>& samples) {
 
 void PlantRelay::step(const Tick& tick) {
   if (!state_.following) return;  // without commands the process holds by itself
-  send(gate_.setpoints(tick, state_.angles_rad, !state_.obstacle.empty()), tick);
+  send(gate_.setpoints(tick, {state_.angles_rad, state_.velocities_rad_s}, !state_.obstacle.empty()), tick);
 }
 
 void PlantRelay::send(const std::vector<JointSetpoint>& setpoints, const Tick& tick) {
@@ -194,12 +196,13 @@ void PlantRelay::send(const std::vector<JointSetpoint>& setpoints, const Tick& t
   command.session = state_.session;
   command.sequence_number = ++state_.sent;
   command.period_ns = tick.period_ns;
-  command.mode = gate_.state().mode == GateMode::kRelaxed ? msg::kServoRelaxed : msg::kServoFollow;
+  command.mode = servo_mode(gate_.state());
   command.joint_count = static_cast<std::uint16_t>(setpoints.size());
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
     command.position_rad[i] = setpoints[i].position_rad;
     command.velocity_rad_s[i] = setpoints[i].velocity_rad_s;
     command.torque_limit_nm[i] = setpoints[i].torque_limit_nm;
+    command.torque_nm[i] = setpoints[i].torque_nm;
   }
   if (link_) link_->send(command);
 }

@@ -26,9 +26,14 @@ struct PlantRelayConfig : PlantParameters {
   double jump_tolerance_rad =
       add(jump_tolerance_rad, "hardware.jump_tolerance_rad", 0.2, "rad", {0.01, 3.0}, kAtStart,
           "A measured angle is refused if it differs by more than this from what the joint's largest speed allows");
+  bool torque_mode = add(torque_mode, "hardware.torque_mode", false,
+                         "The hardware obeys kServoTorque; if false, commands that demand torques are refused");
   GateLimits command = add_gate_limits(command);
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
+  [[nodiscard]] GateLimits gate_limits() const {
+    return {command.stale_after_ticks, command.relax_after_ticks, torque_mode};
+  }
   [[nodiscard]] std::int64_t patience_ticks() const { return std::llround(patience_s / control_period_s); }
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace constrictor {
 
@@ -19,7 +20,9 @@ constexpr double kSearchSlack_s = 0.004;  // in each tick: who is missed now is 
 constexpr std::pair<const char*, std::size_t> kStateRegisters[] = {
     {"present_current", 2},     {"present_velocity", 4},      {"present_position", 4}, {"hardware_error_status", 1},
     {"present_temperature", 1}, {"present_input_voltage", 2}, {"torque_enable", 1},    {"bus_watchdog", 1}};
-constexpr std::pair<const char*, std::size_t> kGoalRegisters[] = {{"goal_current", 2}, {"goal_position", 4}};
+/// The profile comes before the position that it applies to.
+constexpr std::pair<const char*, std::size_t> kGoalRegisters[] = {
+    {"goal_current", 2}, {"profile_velocity", 4}, {"goal_position", 4}};
 
 }  // namespace
 
@@ -184,21 +187,41 @@ void JointServos::look_for_one_lost() {
   }
 }
 
+JointServos::Goal JointServos::goal_of(const Joint& joint, const JointSetpoint& setpoint) const {
+  const dynamixel::ServoModel& model = plan_.model;
+  const double torque_nm = setpoint.torque_mode ? std::abs(setpoint.torque_nm) : setpoint.torque_limit_nm;
+  const std::int64_t current = joint.servo.current_units(model, torque_nm, joint.current_limit);
+  double goal_rad = setpoint.position_rad;
+  // A relaxed joint is moved by others: its goal follows, so that it does not jump when its torque comes back.
+  if (setpoint.torque_limit_nm <= 0.0 || !joint.reading.torque_on) goal_rad = joint.reading.angle_rad;
+  else if (setpoint.torque_mode) goal_rad = torque_goal_rad(joint, setpoint.torque_nm);
+  // The first goal after torque mode is where the joint is. A profile would begin at the last goal, which was ahead.
+  const bool profile = !setpoint.torque_mode && !joint.exerts;
+  return {current, profile ? config_.profile_ms() : 0, joint.servo.steps(model, goal_rad)};
+}
+
+double JointServos::torque_goal_rad(const Joint& joint, double torque_nm) const {
+  const double angle_rad = joint.reading.angle_rad;
+  if (torque_nm == 0.0) return angle_rad;
+  const double lead_rad = joint.limits.max_speed_rad_s * config_.control_period_s;
+  return std::clamp(angle_rad + std::copysign(lead_rad, torque_nm), joint.limits.min_rad, joint.limits.max_rad);
+}
+
 void JointServos::command(std::span<const JointSetpoint> setpoints) {
   const dynamixel::ServoModel& model = plan_.model;
   for (std::size_t port = 0; port < ports_.size(); ++port) {
     Bytes ids, goals, switched, torque;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const Joint& joint = joints_[i];
+      Joint& joint = joints_[i];
       const bool obeys = joint.state == ServoState::kReady && joint.reading.watchdog != dynamixel::kWatchdogTripped;
       if (joint.servo.port != port || !obeys) continue;
       const bool on = setpoints[i].torque_limit_nm > 0.0;
       ids.push_back(joint.servo.id);
-      dynamixel::put_number(goals, joint.servo.current_units(model, setpoints[i].torque_limit_nm, joint.current_limit),
-                            2);
-      // A relaxed joint is moved by others: its goal follows, so that it does not jump when its torque comes back.
-      const double goal_rad = on && joint.reading.torque_on ? setpoints[i].position_rad : joint.reading.angle_rad;
-      dynamixel::put_number(goals, joint.servo.steps(model, goal_rad), 4);
+      const Goal goal = goal_of(joint, setpoints[i]);
+      dynamixel::put_number(goals, goal.current, 2);
+      dynamixel::put_number(goals, goal.profile_ms, 4);
+      dynamixel::put_number(goals, goal.steps, 4);
+      joint.exerts = setpoints[i].torque_mode;
       if (on == joint.reading.torque_on) continue;
       switched.push_back(joint.servo.id);
       torque.push_back(on ? 1 : 0);

@@ -43,7 +43,8 @@ class JointServos {
   [[nodiscard]] std::vector<std::string> start();
   /// Reads all servos, and tries to bring back one that is lost.
   void measure();
-  /// Sends the setpoints, one for each joint. A torque limit of 0 switches the torque of a joint off.
+  /// Sends the setpoints, one for each joint. A torque limit of 0 switches the torque of a joint off. A joint in torque
+  /// mode gets the current of its torque as its limit, and a goal ahead of it in the direction of the torque.
   void command(std::span<const JointSetpoint> setpoints);
   /// Switches the torque of all servos off.
   void release();
@@ -69,12 +70,24 @@ class JointServos {
     std::int64_t current_limit = 0;  ///< largest goal: of the register, and of servo.load_share
     int misses = 0;                  ///< rounds without an answer
     int reboots = 0;
-    bool seen = false;  ///< in this round
+    bool seen = false;    ///< in this round
+    bool exerts = false;  ///< its last goal was one of torque mode
     std::uint8_t reported_errors = 0;
     bool reported_lock = false;
     std::string reported_failure;  ///< why it could not be brought back
   };
 
+  /// The block of goals of one servo, in its units.
+  struct Goal {
+    std::int64_t current = 0;
+    std::int64_t profile_ms = 0;  ///< 0: the servo goes to the goal at once
+    std::int64_t steps = 0;
+  };
+
+  [[nodiscard]] Goal goal_of(const Joint& joint, const JointSetpoint& setpoint) const;
+  /// The goal that lets the servo exert its whole goal current: as far ahead as the joint can come in one tick, at most
+  /// its limit.
+  [[nodiscard]] double torque_goal_rad(const Joint& joint, double torque_nm) const;
   [[nodiscard]] std::string name_of(std::size_t joint) const;
   [[nodiscard]] dynamixel::Bytes ids_at(std::size_t port, ServoState state, bool unseen_only = false) const;
   void read_port(std::size_t port);

@@ -46,6 +46,7 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       record_(setup.output_dir),
       gate_(wiring, robot_, config_.command),
       angles_rad_(robot_.joints.size()),
+      rates_rad_s_(robot_.joints.size()),
       torques_nm_(robot_.joints.size()) {}
 
 ServoBus::~ServoBus() {
@@ -90,6 +91,7 @@ void ServoBus::write_joints(double elapsed_s) {
   for (std::size_t i = 0; i < servos_.count(); ++i) {
     const JointReading& reading = servos_.reading(i);
     angles_rad_[i] = reading.angle_rad;
+    rates_rad_s_[i] = reading.rate_rad_s;
     torques_nm_[i] += (reading.torque_nm - torques_nm_[i]) * elapsed_s / (robot_.torque_filter_s + elapsed_s);
     state.position_rad[i] = reading.angle_rad;
     state.velocity_rad_s[i] = reading.rate_rad_s;
@@ -127,7 +129,7 @@ void ServoBus::step(const Tick& tick) {
   const bool hold = locked_ || !servos_.complete();
   if (held_ && !hold) gate_.begin_at_posture();
   held_ = hold;
-  servos_.command(gate_.setpoints(tick, angles_rad_, hold));
+  servos_.command(gate_.setpoints(tick, {angles_rad_, rates_rad_s_}, hold));
   if (bus_time_ns_ > 0) record_.add_duration(bus_time_ns_ + ports_.now_ns() - before_ns);
   if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
 }

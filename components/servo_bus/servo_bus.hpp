@@ -47,7 +47,7 @@ class ServoBus final : public Plant {
   SensorBoards boards_;
   BusRecord record_;
   PlantGate gate_;
-  std::vector<double> angles_rad_, torques_nm_;  ///< one entry for each joint; the torques are low-pass filtered
+  std::vector<double> angles_rad_, rates_rad_s_, torques_nm_;  ///< by joint; the torques are low-pass filtered
   bool started_ = false;
   bool continued_ = false;        ///< this process continues the run of its predecessor
   bool locked_ = false;           ///< a stop was ordered because a watchdog has tripped

@@ -34,10 +34,12 @@ void run(std::uint32_t domain, std::size_t count) {
         command.session = message.session();
         command.number = message.sequence_number();
         command.relaxed = message.mode() == msg::kServoRelaxed;
-        command.mode_known = command.relaxed || message.mode() == msg::kServoFollow;
+        command.torque = message.mode() == msg::kServoTorque;
+        command.mode_known = command.relaxed || command.torque || message.mode() == msg::kServoFollow;
         const std::size_t used = std::min<std::size_t>(message.joint_count(), msg::kMaxJoints);
         command.position_rad.assign(message.position_rad().begin(), message.position_rad().begin() + used);
         command.torque_limit_nm.assign(message.torque_limit_nm().begin(), message.torque_limit_nm().begin() + used);
+        command.torque_nm.assign(message.torque_nm().begin(), message.torque_nm().begin() + used);
         joints.take(command, now_s());
       });
   auto* states = participant.write<msg::HardwareJointStatePubSubType>("hardware/joint_state", 1, false);

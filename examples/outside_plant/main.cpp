@@ -101,10 +101,12 @@ class Process {
     command.session = message.session;
     command.number = message.sequence_number;
     command.relaxed = message.mode == constrictor_msg_kServoRelaxed;
-    command.mode_known = command.relaxed || message.mode == constrictor_msg_kServoFollow;
+    command.torque = message.mode == constrictor_msg_kServoTorque;
+    command.mode_known = command.relaxed || command.torque || message.mode == constrictor_msg_kServoFollow;
     const std::size_t joints = std::min<std::size_t>(message.joint_count, constrictor_msg_kMaxJoints);
     command.position_rad.assign(message.position_rad, message.position_rad + joints);
     command.torque_limit_nm.assign(message.torque_limit_nm, message.torque_limit_nm + joints);
+    command.torque_nm.assign(message.torque_nm, message.torque_nm + joints);
     joints_.take(command, now_s);
   }
 

@@ -33,9 +33,7 @@ Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const
       perturbations_(scenario),
       gate_(wiring, robot, config.command, config.stop_ticks()),
       angles_rad_(robot.joints.size()),
-      positions_rad_(robot.joints.size()),
-      rates_rad_s_(robot.joints.size()),
-      torques_nm_(robot.joints.size()) {}
+      rates_rad_s_(robot.joints.size()) {}
 
 void Physics::sample(const Tick& tick) {
   gate_.sample(tick);
@@ -54,14 +52,11 @@ void Physics::sample(const Tick& tick) {
 }
 
 void Physics::obey(const Tick& tick) {
-  for (std::size_t i = 0; i < angles_rad_.size(); ++i) angles_rad_[i] = world_.joint_angle_rad(i);
-  const std::vector<JointSetpoint>& setpoints = gate_.setpoints(tick, angles_rad_);
-  for (std::size_t i = 0; i < setpoints.size(); ++i) {
-    positions_rad_[i] = setpoints[i].position_rad;
-    rates_rad_s_[i] = setpoints[i].velocity_rad_s;
-    torques_nm_[i] = setpoints[i].torque_limit_nm;
+  for (std::size_t i = 0; i < angles_rad_.size(); ++i) {
+    angles_rad_[i] = world_.joint_angle_rad(i);
+    rates_rad_s_[i] = world_.joint_rate_rad_s(i);
   }
-  world_.set_servo(positions_rad_, rates_rad_s_, torques_nm_);
+  world_.set_servo(gate_.setpoints(tick, {angles_rad_, rates_rad_s_}));
 }
 
 void Physics::step(const Tick& tick) {

@@ -39,7 +39,7 @@ class Physics final : public Plant {
   Sensors sensors_;
   PerturbationScript perturbations_;
   PlantGate gate_;
-  std::vector<double> angles_rad_, positions_rad_, rates_rad_s_, torques_nm_;  ///< one entry for each joint
+  std::vector<double> angles_rad_, rates_rad_s_;  ///< one entry for each joint
 
   Output<msg::JointState> joint_state_ = wiring_.output(topics::kJointState);
   Output<msg::ContactState> contact_state_ = wiring_.output(topics::kContactState);

@@ -15,9 +15,7 @@ EmulatedRobot::EmulatedRobot(const RobotModel& robot, const Scenario& scenario, 
       world_(robot, scenario, settings),
       sensors_(robot, seed, scenario.sensor_noise),
       chains_(plan.ports.size()),
-      positions_rad_(robot.joints.size()),
-      rates_rad_s_(robot.joints.size()),
-      torques_nm_(robot.joints.size()),
+      orders_(robot.joints.size()),
       step_ns_(std::llround(settings.step_s * 1e9)) {
   if (plan.joints.size() != robot.joints.size())
     throw ConfigurationError(fmt::format("bus file: found {} joints, accepted {}, as robot {} has", plan.joints.size(),
@@ -55,13 +53,8 @@ int EmulatedRobot::advance_to(std::int64_t now_ns) {
 
 void EmulatedRobot::step() {
   const double step_s = static_cast<double>(step_ns_) * 1e-9;
-  for (std::size_t i = 0; i < servos_.size(); ++i) {
-    const JointOrder order = servos_[i]->order(step_s);
-    positions_rad_[i] = order.position_rad;
-    rates_rad_s_[i] = order.rate_rad_s;
-    torques_nm_[i] = order.torque_limit_nm;
-  }
-  world_.set_servo(positions_rad_, rates_rad_s_, torques_nm_);
+  for (std::size_t i = 0; i < servos_.size(); ++i) orders_[i] = servos_[i]->order(step_s);
+  world_.set_servo(orders_);
   world_.advance(step_s);
   for (std::size_t i = 0; i < servos_.size(); ++i) {
     // A servo measures the current of the moment; whoever reads it filters it, as the robot file says.

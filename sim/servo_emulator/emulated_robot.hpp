@@ -51,7 +51,7 @@ class EmulatedRobot {
   std::vector<std::unique_ptr<BoardDevice>> contacts_;
   std::vector<std::vector<ServoDevice*>> chains_;  ///< the servos of each port
   std::vector<std::unique_ptr<ServoLine>> lines_;
-  std::vector<double> positions_rad_, rates_rad_s_, torques_nm_;
+  std::vector<JointSetpoint> orders_;  ///< of the servos to their joints, in this step
   std::int64_t step_ns_;
   std::int64_t time_ns_ = 0;  ///< of the clock, up to which the world has moved
   std::int64_t left_out_ns_ = 0;

@@ -161,7 +161,7 @@ void ServoDevice::start_profile() {
   const double way = std::abs(static_cast<double>(value_of(*goal_position_)) - reference_steps_);
   const double limit = static_cast<double>(get("velocity_limit")) * model_.velocity_unit_rad_s * model_.steps_per_turn /
                        (2.0 * std::numbers::pi);
-  profile_speed_ = limit;
+  profile_speed_ = kUnlimited_steps_s;  // "0 represents an infinite velocity"
   if (profile <= 0.0) return;
   const double wanted = (get("drive_mode") & kTimeBasedProfile) != 0
                             ? way / (1e-3 * profile)
@@ -225,7 +225,7 @@ void ServoDevice::advance(double dt_s, std::int64_t now_ns, const JointMotion& m
   if (torque_on() && watchdog > 0 && now_ns - heard_ns_ > limit_ns) store(*watchdog_, dynamixel::kWatchdogTripped);
 }
 
-JointOrder ServoDevice::order(double dt_s) const {
+JointSetpoint ServoDevice::order(double dt_s) const {
   if (!torque_on()) return {motion_.angle_rad, 0.0, 0.0};
   const std::int64_t offset = get("homing_offset") - std::llround(turns_steps_);
   const double steps_per_rad = wiring_.steps_per_rad(model_);
@@ -236,13 +236,13 @@ JointOrder ServoDevice::order(double dt_s) const {
   const std::int64_t current = mode == OperatingMode::kPosition ? get("current_limit") : value_of(*goal_current_);
   const double torque_nm = wiring_.torque_nm(model_, current);
   if (mode == OperatingMode::kCurrent) {
-    // The joint's servo saturates: its torque is the limit, in the direction of the far setpoint.
     if (tripped()) return {motion_.angle_rad, 0.0, 0.0};
-    constexpr double kFar_rad = 10.0;
-    return {motion_.angle_rad + std::copysign(kFar_rad, torque_nm), 0.0, std::abs(torque_nm)};
+    return {motion_.angle_rad, 0.0, std::abs(torque_nm), torque_nm, true};
   }
   const double step = profile_step(dt_s);
-  return {angle_of(reference_steps_ + step), step / (steps_per_rad * dt_s), std::abs(torque_nm)};
+  // A goal without a profile is a step of the reference, which has no rate.
+  const double rate_rad_s = profile_speed_ < kUnlimited_steps_s ? step / (steps_per_rad * dt_s) : 0.0;
+  return {angle_of(reference_steps_ + step), rate_rad_s, std::abs(torque_nm)};
 }
 
 }  // namespace constrictor::servo_emulator

@@ -7,6 +7,7 @@
 
 #include "component/random.hpp"
 #include "dynamixel/bus_plan.hpp"
+#include "robot/joint_limits.hpp"
 #include "sim/servo_emulator/bus_device.hpp"
 
 namespace constrictor::servo_emulator {
@@ -16,13 +17,6 @@ struct JointMotion {
   double angle_rad = 0.0;
   double rate_rad_s = 0.0;
   double torque_nm = 0.0;  ///< of this moment, not filtered
-};
-
-/// What the servo makes its joint do.
-struct JointOrder {
-  double position_rad = 0.0;
-  double rate_rad_s = 0.0;
-  double torque_limit_nm = 0.0;  ///< 0: the joint is relaxed
 };
 
 /// Properties of the servo that are not in its registers.
@@ -60,7 +54,7 @@ class ServoDevice final : public BusDevice {
   /// temperature, protections, watchdog and motion profile.
   void advance(double dt_s, std::int64_t now_ns, const JointMotion& motion);
   /// What the joint must do during the next `dt_s`.
-  [[nodiscard]] JointOrder order(double dt_s) const;
+  [[nodiscard]] JointSetpoint order(double dt_s) const;
 
   /// The value of a register, and setting it without any rule: for faults and tests.
   [[nodiscard]] std::int64_t get(std::string_view name) const;

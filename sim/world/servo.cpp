@@ -32,6 +32,9 @@ ServoRow Servo::row(double angle_rad, double rate_rad_s) {
   const double h = step_s_;
   const double duration = h * steps_;
   const double u = static_cast<double>(++step_) / steps_;
+  // After torque mode the curve begins where the joint is, with its rate.
+  if (step_ == 1 && from_.torque_mode && !to_.torque_mode)
+    from_ = clamp_to_limits(model_, {angle_rad, rate_rad_s, 0.0});
   // Cubic Hermite curve from from_ to to_.
   const double d = to_.position_rad - from_.position_rad;
   const double a = from_.velocity_rad_s * duration;
@@ -40,34 +43,85 @@ ServoRow Servo::row(double angle_rad, double rate_rad_s) {
   reference_rate_rad_s_ = (a + u * (2.0 * (3.0 * d - 2.0 * a - b) + u * 3.0 * (a + b - 2.0 * d))) / duration;
   if (step_ == steps_) from_ = to_;
 
-  ServoRow row;
   if (to_.torque_limit_nm <= 0.0) {  // relaxed: only the friction of the gear resists
+    ServoRow row;
     row.softness = h / std::max(model_.rotor_inertia_kg_m2, 1e-9);
     row.velocity_rad_s = 0.0;
     row.torque_limit_nm = model_.gear_friction_nm;
     loose_ = false;
     return row;
   }
+  if (to_.torque_mode) {
+    reference_rad_ = angle_rad;
+    return torque_row(angle_rad, rate_rad_s);
+  }
+  return position_row(reference_rad_, reference_rate_rad_s_, angle_rad, rate_rad_s);
+}
+
+ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, double angle_rad, double rate_rad_s) {
+  const double h = step_s_;
   const double kp = model_.position_gain_nm_rad;
   const double kd = model_.velocity_gain_nm_s_rad;
   const double inertia = model_.rotor_inertia_kg_m2 / h;
   const double angle = model_.measured_rad(elastic() ? motor_angle_rad_ : angle_rad);
   const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
   const double sum = inertia + h * kp + kd;
-  const double wanted_rate = std::clamp(reference_rate_rad_s_, -model_.max_speed_rad_s, model_.max_speed_rad_s);
+  const double wanted_rate = std::clamp(reference_rate_rad_s, -model_.max_speed_rad_s, model_.max_speed_rad_s);
+  ServoRow row;
   row.softness = 1.0 / sum;
-  row.velocity_rad_s = (inertia * rate + kp * (reference_rad_ - angle) + kd * wanted_rate) / sum;
-  if (elastic()) {
-    loose_motor_rad_s_ = row.velocity_rad_s;
-    const double apart_rad = motor_angle_rad_ - angle_rad + h * (loose_motor_rad_s_ - rate_rad_s);
-    play_rad_ = std::copysign(0.5 * model_.backlash_rad, apart_rad);
-    loose_ = std::abs(apart_rad) < std::abs(play_rad_);
-    if (loose_) return {};  // no torque
-    const double spring = h * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
-    row.softness += 1.0 / spring;
-    row.velocity_rad_s += model_.stiffness_nm_rad * stretch_rad(angle_rad) / spring;
-  }
+  row.velocity_rad_s = (inertia * rate + kp * (reference_rad - angle) + kd * wanted_rate) / sum;
+  if (!attach(row, angle_rad, rate_rad_s)) return {};  // no torque
   row.torque_limit_nm = torque_limit_nm(rate_rad_s, row.velocity_rad_s - rate_rad_s);
+  return row;
+}
+
+bool Servo::attach(ServoRow& row, double angle_rad, double rate_rad_s) {
+  if (!elastic()) return true;
+  const double h = step_s_;
+  loose_motor_rad_s_ = row.velocity_rad_s;
+  const double apart_rad = motor_angle_rad_ - angle_rad + h * (loose_motor_rad_s_ - rate_rad_s);
+  play_rad_ = std::copysign(0.5 * model_.backlash_rad, apart_rad);
+  loose_ = std::abs(apart_rad) < std::abs(play_rad_);
+  if (loose_) return false;
+  const double spring = h * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
+  row.softness += 1.0 / spring;
+  row.velocity_rad_s += model_.stiffness_nm_rad * stretch_rad(angle_rad) / spring;
+  return true;
+}
+
+double Servo::motor_torque_nm(double motor_rate_rad_s) const {
+  const double inertia = model_.rotor_inertia_kg_m2 / step_s_;
+  const double limit = torque_limit_nm(motor_rate_rad_s, to_.torque_nm);
+  double torque = std::clamp(to_.torque_nm, -limit, limit);
+  const double fastest = model_.max_speed_rad_s;
+  if (inertia > 0.0) {
+    // The rotor alone would reach the maximum speed in this step; whatever turns with it makes it slower.
+    torque = std::clamp(torque, std::min(0.0, inertia * (-fastest - motor_rate_rad_s)),
+                        std::max(0.0, inertia * (fastest - motor_rate_rad_s)));
+  } else if (torque * motor_rate_rad_s > 0.0 && std::abs(motor_rate_rad_s) >= fastest) {
+    torque = 0.0;
+  }
+  // Coulomb friction at most stops the rotor: more would turn it round within the step.
+  const double friction = model_.gear_friction_nm;
+  return torque - std::clamp(torque + inertia * motor_rate_rad_s, -friction, friction);
+}
+
+ServoRow Servo::torque_row(double angle_rad, double rate_rad_s) {
+  const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
+  const double torque = motor_torque_nm(rate);
+  // Near a limit of the position the servo's own position loop stops the joint.
+  const double angle = elastic() ? motor_angle_rad_ : angle_rad;
+  const auto to_stop_at = [&](double end_rad) {
+    return model_.position_gain_nm_rad * (end_rad - angle) - model_.velocity_gain_nm_s_rad * rate;
+  };
+  if (to_stop_at(model_.max_rad) < torque) return position_row(model_.max_rad, 0.0, angle_rad, rate_rad_s);
+  if (to_stop_at(model_.min_rad) > torque) return position_row(model_.min_rad, 0.0, angle_rad, rate_rad_s);
+  const double inertia = std::max(model_.rotor_inertia_kg_m2, 1e-9) / step_s_;
+  ServoRow row;
+  row.softness = 1.0 / inertia;
+  row.velocity_rad_s = rate + torque / inertia;
+  if (!attach(row, angle_rad, rate_rad_s)) return {};
+  row.torque_limit_nm = model_.max_torque_nm;  // of the gear: the rotor's inertia acts on the joint, too
   return row;
 }
 

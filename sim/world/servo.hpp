@@ -22,7 +22,12 @@ struct ServoRow {
 ///   spring:   t = k e + d e', where e = m - q, less half of the backlash towards 0, is the stretch of the series
 ///             elastic element; t = 0 while m - q is within the backlash; without an elastic element, m = q
 ///   encoder:  the controller reads m (q without an elastic element) with the encoder's resolution
-///   limit:    |t| <= the smallest of the commanded limit and the speed-torque curve, minus the friction of the gear
+///   limit:    |t| <= the smallest of the commanded limit and the speed-torque curve
+/// In torque mode the motor's equation is, with the commanded torque u and the friction f of the gear:
+///   motor:    J m" = u - f - t, |f| <= the friction of the robot file, so large that it only slows the motor down
+///   limits:   |u| <= the commanded limit and the speed-torque curve; u never accelerates the motor beyond the joint's
+///             maximum speed; u is at most what the position controller would exert to stop the joint at its upper
+///             limit, and at least what it would exert to stop it at its lower limit
 /// Both equations are integrated by the implicit Euler method together with the bodies, so that every step is stable.
 class Servo {
  public:
@@ -51,6 +56,15 @@ class Servo {
 
  private:
   [[nodiscard]] double torque_limit_nm(double rate_rad_s, double driving) const;
+  /// The row of the position controller towards a reference.
+  [[nodiscard]] ServoRow position_row(double reference_rad, double reference_rate_rad_s, double angle_rad,
+                                      double rate_rad_s);
+  [[nodiscard]] ServoRow torque_row(double angle_rad, double rate_rad_s);
+  /// The commanded torque within its limits, minus the friction of the gear, for a motor with this rate.
+  [[nodiscard]] double motor_torque_nm(double motor_rate_rad_s) const;
+  /// Puts the spring, if there is one, between the motor and the joint. `row` is that of the motor. False: the gear is
+  /// loose in this step.
+  bool attach(ServoRow& row, double angle_rad, double rate_rad_s);
   /// Stretch of the elastic element on the side of the backlash on which the gear will touch at the end of the step.
   [[nodiscard]] double stretch_rad(double angle_rad) const;
 

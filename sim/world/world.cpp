@@ -137,6 +137,13 @@ void World::set_servo(std::span<const double> position_rad, std::span<const doub
   }
 }
 
+void World::set_servo(std::span<const JointSetpoint> setpoints) {
+  if (setpoints.size() != drives_.size())
+    throw std::invalid_argument(fmt::format("World::set_servo: found {} setpoints, accepted {} (one for each joint)",
+                                            setpoints.size(), drives_.size()));
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->set(setpoints[i]);
+}
+
 void World::apply_force(std::size_t object, const Vector3d& force_n) { forces_n_.at(object) += force_n; }
 
 void World::advance(double duration_s, const std::function<void()>& after_step) {

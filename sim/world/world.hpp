@@ -44,6 +44,8 @@ class World {
   /// torque. A torque limit of 0 relaxes a joint.
   void set_servo(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
                  std::span<const double> torque_limit_nm);
+  /// The same with one setpoint for each joint, which may demand a torque instead of an angle.
+  void set_servo(std::span<const JointSetpoint> setpoints);
   /// Applies a force (in W) to the centre of an object during the next advance() only. Several forces add up.
   void apply_force(std::size_t object, const Eigen::Vector3d& force_n);
   /// Integrates round(duration / step) steps, at least one. `after_step`, if it is given, is called after each of them.

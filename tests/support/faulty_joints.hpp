@@ -20,7 +20,7 @@ class FaultyJoints {
   static constexpr double kSilence_s = 0.1;
 
   FaultyJoints(std::size_t count, std::string fault) : fault_(std::move(fault)), position_(count) {
-    goal_ = velocity_ = torque_ = feed_ = limit_ = friction_ = position_;
+    goal_ = velocity_ = torque_ = feed_ = limit_ = friction_ = push_ = position_;
   }
 
   /// A command as it arrived. `session`, `number`: as its writer says.
@@ -43,24 +43,36 @@ class FaultyJoints {
     else if (silent) number_ = number;
     session_ = has("obeys_stranger") && stranger && !silent ? session_ : session;
     heard_s_ = now_s;
+    if (command.torque && has("no_torque_mode")) return;
     relaxed_ = command.relaxed;
+    pushed_ = command.torque;
     for (std::size_t i = 0; i < std::min(count, command.position_rad.size()); ++i) {
       if (!std::isfinite(command.position_rad[i])) continue;
       goal_[i] = command.position_rad[i] * (has("degrees_in") ? M_PI / 180.0 : 1.0);
       feed_[i] = command.velocity_rad_s[i];
       limit_[i] = command.torque_limit_nm[i];
+      const double bound = has("torque_unbound") ? 100.0 : limit_[i];
+      push_[i] = std::clamp(command.torque_nm[i], -bound, bound) * (has("push_sign") && i == 6 ? -1.0 : 1.0);
     }
+    if (has("push_swapped")) std::swap(push_[3], push_[5]);
   }
 
   void move(double now_s, double passed_s) {
     holding_ = session_ == 0 || now_s - heard_s_ > kSilence_s;
-    if (holding_ && !was_holding_) goal_ = position_;
+    if (holding_ && !was_holding_ && !(pushed_ && has("pushes_on"))) {
+      goal_ = position_;
+      pushed_ = false;
+    }
     was_holding_ = holding_;
     for (std::size_t i = 0; i < position_.size(); ++i) {
       if (holding_ && has("ignores_silence")) goal_[i] += feed_[i] * passed_s;
       const double limit = relaxed_ ? 0.0 : has("ignores_torque") ? 100.0 : limit_[i];
       const double error = goal_[i] - position_[i];
       const double largest = limit > kFriction_nm ? kSpeed_rad_s * passed_s : 0.0;
+      if (pushed_) {
+        push(i, passed_s);
+        continue;
+      }
       const bool loose = (has("dead") && i == 4) || (has("drifts") && i == 7);
       const double step = loose ? 0.0 : std::clamp(error, -largest, largest);
       position_[i] += step + (has("drifts") && i == 7 ? 0.05 * passed_s : 0.0);
@@ -124,12 +136,23 @@ class FaultyJoints {
   std::uint64_t own_session = 4711;
 
  private:
+  /// A joint without inertia: what is left of its torque after dry friction turns it against viscous friction.
+  void push(std::size_t i, double passed_s) {
+    const double left_nm = std::max(0.0, std::abs(push_[i]) - kFriction_nm);
+    const double rate = std::clamp(std::copysign(left_nm, push_[i]) / kViscous_nm_s_rad, -kSpeed_rad_s, kSpeed_rad_s);
+    position_[i] = std::clamp(position_[i] + rate * passed_s, -kLimit_rad, kLimit_rad);
+    velocity_[i] = rate;
+    torque_[i] = push_[i];
+    goal_[i] = position_[i];
+  }
+
+  static constexpr double kViscous_nm_s_rad = 1.0;
   std::string fault_;
-  std::vector<double> position_, goal_, velocity_, torque_, feed_, limit_, friction_;
+  std::vector<double> position_, goal_, velocity_, torque_, feed_, limit_, friction_, push_;
   std::deque<std::vector<double>> past_;
   std::uint64_t session_ = 0, number_ = 0, written_ = 0, calls_ = 0;
   double heard_s_ = -1.0;
-  bool holding_ = true, was_holding_ = true, relaxed_ = false;
+  bool holding_ = true, was_holding_ = true, relaxed_ = false, pushed_ = false;
 };
 
 }  // namespace constrictor::testing

@@ -18,8 +18,7 @@ void PlantGate::stop(const std::string& source) {
   if (const auto orders = wiring_.stop_orders()) orders->add(source);
 }
 
-const std::vector<JointSetpoint>& PlantGate::setpoints(const Tick& tick, std::span<const double> measured_rad,
-                                                       bool hold) {
+const std::vector<JointSetpoint>& PlantGate::setpoints(const Tick& tick, const MeasuredJoints& measured, bool hold) {
   if (command_) {
     const std::uint64_t refused_before = refused_count(state_);
     const GateRefusal refusal =
@@ -29,7 +28,7 @@ const std::vector<JointSetpoint>& PlantGate::setpoints(const Tick& tick, std::sp
   GateOrder order = stop_.in_force() ? SafetyGate::order_of(true, msg::kAuthorityNone, {}, state_)
                                      : gate_order(authority_.get(), authority_ ? authority_.age_ticks() : 0, state_);
   if (hold && order == GateOrder::kObey) order = GateOrder::kHold;
-  return gate_.setpoints(measured_rad, order, tick.period_s(), state_);
+  return gate_.setpoints(measured, order, tick.period_s(), state_);
 }
 
 }  // namespace constrictor

@@ -25,11 +25,10 @@ class PlantGate {
   /// Whether a stop is in force. Call it in Plant::step().
   [[nodiscard]] bool stopped() { return stop_.in_force(); }
 
-  /// The setpoints of this tick for joints that are at `measured_rad`. The plant's own stop comes first: it holds
+  /// The setpoints of this tick for joints that move as `measured`. The plant's own stop comes first: it holds
   /// whatever `input` publishes, and also if `input` publishes nothing. `hold`: the posture is held although commands
   /// arrive, because the plant is not able to obey them.
-  const std::vector<JointSetpoint>& setpoints(const Tick& tick, std::span<const double> measured_rad,
-                                              bool hold = false);
+  const std::vector<JointSetpoint>& setpoints(const Tick& tick, const MeasuredJoints& measured, bool hold = false);
   /// The next command that is obeyed begins at the measured posture, as after a takeover.
   void begin_at_posture() { state_.take_over = true; }
   /// The same, and a hold begins at the measured posture, too: the joints may have moved while nobody measured them.

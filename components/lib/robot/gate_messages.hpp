@@ -19,7 +19,14 @@ namespace constrictor {
           command.mode,
           std::span(command.position_rad, count),
           std::span(command.velocity_rad_s, count),
-          std::span(command.torque_limit_nm, count)};
+          std::span(command.torque_limit_nm, count),
+          std::span(command.torque_nm, count)};
+}
+
+/// The mode of the command that carries the gate's setpoints on.
+[[nodiscard]] inline std::uint8_t servo_mode(const GateState& state) {
+  if (state.mode == GateMode::kRelaxed) return msg::kServoRelaxed;
+  return state.mode == GateMode::kObeying && state.torque ? msg::kServoTorque : msg::kServoFollow;
 }
 
 /// The order that the newest Authority message, which is `age_ticks` old, gives to the gate. Before the first message

@@ -24,6 +24,7 @@ enum class GateRefusal : std::uint8_t {
   kWrongCount,  ///< the robot has another number of joints
   kNotFinite,
   kBeyondLimits,  ///< a position beyond the joint's limits, or a negative torque limit
+  kNoTorqueMode,  ///< the command demands torques of a plant that cannot exert them
   kCount,
 };
 /// The reason in words, for people.
@@ -44,7 +45,7 @@ enum class GateOrder : std::uint8_t {
   kStop,  ///< emergency stop, which `input` latches
 };
 
-/// A command as it arrived. `mode`: kServoFollow or kServoRelaxed of plant.idl.
+/// A command as it arrived. `mode`: kServo... of plant.idl.
 struct GateCommand {
   std::uint64_t run_id = 0;
   std::uint32_t epoch = 0;
@@ -54,6 +55,13 @@ struct GateCommand {
   std::span<const double> position_rad;
   std::span<const double> velocity_rad_s;
   std::span<const double> torque_limit_nm;
+  std::span<const double> torque_nm{};  ///< used in torque mode only
+};
+
+/// What was measured at the joints; one entry for each joint.
+struct MeasuredJoints {
+  std::span<const double> angle_rad;
+  std::span<const double> rate_rad_s{};  ///< used in torque mode only; empty: not known, and no torque is exerted
 };
 
 /// The present instant.
@@ -66,6 +74,7 @@ struct GateInstant {
 struct GateLimits {
   std::int64_t stale_after_ticks = 5;    ///< an older command is not obeyed: the posture is held
   std::int64_t relax_after_ticks = 250;  ///< after this time without an acceptable command the joints relax
+  bool torque_mode = true;               ///< the joints can exert torques on command
 };
 
 /// `input` publishes authority every 50 ticks. If the newest message is older than this limit, `input` hangs or is
@@ -82,6 +91,7 @@ struct GateState {
   bool started = false;    ///< `setpoints` are in force
   bool accepted = false;   ///< a command has been accepted since the last setpoints()
   bool relax = false;      ///< that command demands relaxed joints
+  bool torque = false;     ///< that command demands torques
   bool commanded = false;  ///< a source has had authority in this run
   std::uint8_t level = 0;  ///< authority level of the source that is obeyed; 0: none, or stopped
   std::string source;      ///< the source that is obeyed
@@ -95,8 +105,8 @@ struct GateState {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(mode, started, accepted, relax, commanded, level, source, take_over, silent_ticks, last_sequence, offered,
-            setpoints);
+    archive(mode, started, accepted, relax, torque, commanded, level, source, take_over, silent_ticks, last_sequence,
+            offered, setpoints);
     for (std::uint64_t& count : refused) archive(count);
   }
 };
@@ -125,10 +135,11 @@ class SafetyGate {
 
   /// The setpoints for the next `dt_s`. There may be at most one offer() between two calls. The first setpoints are the
   /// measured posture; afterwards no setpoint moves faster than its joint can. The first obeyed command after a
-  /// takeover starts at the measured posture (a joint without a finite measurement: at its setpoint). A hold keeps the
-  /// last setpoint of each joint where it agrees with the measured angle, and the measured angle elsewhere. It keeps
-  /// the torque limits, so that a grasped object stays grasped.
-  const std::vector<JointSetpoint>& setpoints(std::span<const double> measured_rad, GateOrder order, double dt_s,
+  /// takeover, or after torque mode, starts at the measured posture (a joint without a finite measurement: at its
+  /// setpoint). A hold keeps the last setpoint of each joint where it agrees with the measured angle, and the measured
+  /// angle elsewhere and after torque mode. It keeps the torque limits, so that a grasped object stays grasped. In
+  /// torque mode each torque is at most the limit of the command and of the joint, and safe_torque_nm() of it.
+  const std::vector<JointSetpoint>& setpoints(const MeasuredJoints& measured, GateOrder order, double dt_s,
                                               GateState& state) const;
 
   [[nodiscard]] static std::uint64_t refused(const GateState& state, GateRefusal reason) {
@@ -138,6 +149,7 @@ class SafetyGate {
  private:
   [[nodiscard]] GateRefusal judge(const GateCommand& command, const GateInstant& now) const;
   void follow(std::span<const double> measured_rad, double dt_s, GateState& state) const;
+  void exert(const MeasuredJoints& measured, double dt_s, GateState& state) const;
   void hold(std::span<const double> measured_rad, GateState& state) const;
   void relax(std::span<const double> measured_rad, GateState& state) const;
 

@@ -72,12 +72,16 @@ void HardwarePort::send(const PlantCommand& command) {
                             : command.origin == Origin::kStranger ? 1'000'000 + number_
                                                                   : number_;
   message.period_ns = period_ns_;
-  message.mode = command.unknown_mode ? 7 : command.relaxed ? msg::kServoRelaxed : msg::kServoFollow;
+  message.mode = command.unknown_mode ? 7
+                 : command.relaxed    ? msg::kServoRelaxed
+                 : command.torque     ? msg::kServoTorque
+                                      : msg::kServoFollow;
   const std::size_t count = std::min<std::size_t>(command.position_rad.size(), msg::kMaxJoints);
   message.joint_count = static_cast<std::uint16_t>(count);
   std::copy_n(command.position_rad.begin(), count, message.position_rad);
   std::copy_n(command.velocity_rad_s.begin(), count, message.velocity_rad_s);
   std::copy_n(command.torque_limit_nm.begin(), count, message.torque_limit_nm);
+  std::copy_n(command.torque_nm.begin(), count, message.torque_nm);
   writer_.write(message);
 }
 
@@ -136,6 +140,7 @@ void HardwarePort::hold() {
   command.position_rad = posture_rad_;
   command.velocity_rad_s.resize(posture_rad_.size());
   command.torque_limit_nm = limits_nm_;
+  command.torque_nm.resize(posture_rad_.size());
   for (int i = 0; i < kLastHolds; ++i) {
     send(command);
     std::this_thread::sleep_for(std::chrono::nanoseconds(period_ns_));

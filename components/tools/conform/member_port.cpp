@@ -30,12 +30,13 @@ class ConformControl final : public Component {
     if (exchange_.finished()) wiring_.request_end_of_run();
     if (!command) return;
     msg::JointCommand message{};
-    message.mode = command->relaxed ? msg::kServoRelaxed : msg::kServoFollow;
+    message.mode = command->relaxed ? msg::kServoRelaxed : command->torque ? msg::kServoTorque : msg::kServoFollow;
     const std::size_t count = std::min<std::size_t>(command->position_rad.size(), msg::kMaxJoints);
     message.joint_count = static_cast<std::uint16_t>(count);
     std::copy_n(command->position_rad.begin(), count, message.position_rad);
     std::copy_n(command->velocity_rad_s.begin(), count, message.velocity_rad_s);
     std::copy_n(command->torque_limit_nm.begin(), count, message.torque_limit_nm);
+    std::copy_n(command->torque_nm.begin(), count, message.torque_nm);
     out_.write(message);
   }
   [[nodiscard]] std::string save() const override { return {}; }

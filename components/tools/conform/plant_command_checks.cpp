@@ -47,12 +47,14 @@ void PlantConformance::check_commands() {
   wrong.position_rad.pop_back();
   wrong.velocity_rad_s.pop_back();
   wrong.torque_limit_nm.pop_back();
+  wrong.torque_nm.pop_back();
   refuses("too_few", wrong, false, "compare joint_count with the number of joints before anything moves");
   wrong = moved;
   if (wrong.position_rad.size() < 64) {
     wrong.position_rad.push_back(0.0);
     wrong.velocity_rad_s.push_back(0.0);
     wrong.torque_limit_nm.push_back(0.0);
+    wrong.torque_nm.push_back(0.0);
     refuses("too_many", wrong, false, "compare joint_count with the number of joints before anything moves");
   } else {
     report_.skip("too_many", "the robot has as many joints as a message can hold");
@@ -63,7 +65,7 @@ void PlantConformance::check_commands() {
     refuses("not_finite", wrong, false, "ignore the whole command if any value is not finite");
     wrong = moved;
     wrong.unknown_mode = true;
-    refuses("unknown_mode", wrong, false, "ignore the whole command if its mode is neither follow nor relaxed");
+    refuses("unknown_mode", wrong, false, "ignore the whole command if its mode is none of kServo...");
   } else {
     skip_all({"not_finite", "unknown_mode"}, "a member cannot send such a message: the runtime refuses it");
   }
@@ -78,6 +80,7 @@ void PlantConformance::check_commands() {
     skip_all({"old_command", "stranger"}, "the run itself stamps the commands of a member, and refuses strangers");
   }
   check_torque_limit(joint);
+  check_torque_mode();
   check_silence(joint);
   check_return(joint, "returns", "obey commands again as soon as they arrive, from the measured posture on");
   if (port_.abilities().sessions) {

@@ -48,6 +48,18 @@ class PlantConformance {
   void refuses(const char* name, const PlantCommand& wrong, bool beside_proper, const char* todo);
   void check_torque_limit(std::size_t joint);
   void check_relaxed();
+  // Commands that demand torques (plant_torque_checks.cpp).
+  struct Pushed {
+    double turned_rad = 0.0;  ///< along the torque
+    std::size_t other = 0;    ///< the joint that turned most, apart from the pushed one
+    double other_rad = 0.0;   ///< how far
+    double demanded_nm = 0.0;
+    double largest_nm = 0.0;  ///< measured
+  };
+  /// Pushes a joint until it turns, and moves all joints back. The other joints exert no torque.
+  Pushed push_joint(std::size_t joint, double limit_nm);
+  void check_torque_mode();
+  void check_torque_silence(std::size_t joint);
   void check_silence(std::size_t joint);
   void check_return(std::size_t joint, const char* name, const char* todo);
   void check_stop(std::size_t joint);

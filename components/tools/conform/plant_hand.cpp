@@ -43,7 +43,25 @@ PlantCommand PlantHand::command() const {
   command.position_rad = setpoints_rad_;
   command.velocity_rad_s.resize(setpoints_rad_.size());
   command.torque_limit_nm = limits_nm_;
+  command.torque_nm.resize(setpoints_rad_.size());
   return command;
+}
+
+void PlantHand::return_to(const std::vector<double>& goals_rad) {
+  const double step_rad = profile_.rate_rad_s * profile_.period_s;
+  for (bool there = false; !there;) {
+    there = true;
+    PlantCommand now = command();
+    for (std::size_t i = 0; i < setpoints_rad_.size(); ++i) {
+      const double left_rad = goals_rad[i] - setpoints_rad_[i];
+      there = there && std::abs(left_rad) <= step_rad;
+      setpoints_rad_[i] += std::clamp(left_rad, -step_rad, step_rad);
+      if (left_rad != 0.0) now.velocity_rad_s[i] = std::clamp(left_rad, -step_rad, step_rad) / profile_.period_s;
+    }
+    now.position_rad = setpoints_rad_;
+    advance({now}, nullptr);
+  }
+  hold(profile_.settle_s);
 }
 
 void PlantHand::begin_at_posture() {

@@ -30,6 +30,8 @@ class PlantHand {
   /// the measured posture, when any joint is more than three amplitudes away from its setpoint: `*escaped` is then
   /// true.
   std::vector<Instant> move(std::size_t joint, double goal_rad, bool* escaped = nullptr);
+  /// Moves all setpoints together at the rate of the profile, then holds for the settling time.
+  void return_to(const std::vector<double>& goals_rad);
   /// The setpoints become the measured posture.
   void begin_at_posture();
 

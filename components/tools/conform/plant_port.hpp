@@ -35,8 +35,9 @@ struct ContactSample {
 
 /// What the joints shall do. Size and values may be wrong on purpose.
 struct PlantCommand {
-  std::vector<double> position_rad, velocity_rad_s, torque_limit_nm;
+  std::vector<double> position_rad, velocity_rad_s, torque_limit_nm, torque_nm;
   bool relaxed = false;
+  bool torque = false;  ///< the joints exert torque_nm, and the positions do not count
   bool unknown_mode = false;
   /// Where the port can choose it: an older number than the newest, or a session beside its own.
   enum class Origin { kProper, kOld, kStranger } origin = Origin::kProper;

@@ -26,6 +26,10 @@ struct PlantProfile : ParameterSet {
       add(settle_s, "motion.settle_s", 0.3, "s", {0.1, 10.0}, kAtStart, "Time that a joint needs to come to rest");
   double torque_share = add(torque_share, "motion.torque_share", 1.0, "", {0.01, 1.0}, kAtStart,
                             "Torque limit while moving, as a share of the robot file's");
+  bool torque_mode = add(torque_mode, "torque.mode", true,
+                         "The plant exerts torques on command (kServoTorque); false: this is not checked");
+  double push_nm = add(push_nm, "torque.push_nm", 2.0, "Nm", {0.05, 100.0}, kAtStart,
+                       "Largest torque that pushes a joint; it rises within a second, until the joint turns");
   double gain_tolerance = add(gain_tolerance, "tolerance.gain", 0.35, "", {0.01, 0.9}, kAtStart,
                               "A joint may move further or less far by this share of the motion");
   double rest_rad = add(rest_rad, "tolerance.rest_rad", 0.02, "rad", {0.0001, 0.2}, kAtStart,

@@ -13,7 +13,8 @@ namespace {
 
 const std::filesystem::path kProject = PROJECT_DIR;
 
-/// Swings the yaw joints, so that the robot crawls; relaxes them for a while; and pauses, so that commands get stale.
+/// Swings the yaw joints, so that the robot crawls; pushes them by torques; relaxes them for a while; and pauses, so
+/// that commands get stale.
 class Driver final : public Component {
  public:
   explicit Driver(Wiring& wiring) : output_(wiring.output(topics::kJointCommand)) {}
@@ -22,8 +23,10 @@ class Driver final : public Component {
     msg::JointCommand command{};
     command.joint_count = 23;
     command.mode = tick.index % 300 > 290 ? msg::kServoRelaxed : msg::kServoFollow;
+    if (tick.index % 300 > 250 && tick.index % 300 <= 290) command.mode = msg::kServoTorque;
     for (std::size_t i = 0; i < 23; ++i) {
       command.torque_limit_nm[i] = 6.0;
+      command.torque_nm[i] = command.mode == msg::kServoTorque ? 0.8 * std::sin(0.7 * static_cast<double>(i)) : 0.0;
       if (i % 2 == 0)
         command.position_rad[i] =
             0.5 * std::sin(0.088 * static_cast<double>(tick.index) - 0.52 * static_cast<double>(i));

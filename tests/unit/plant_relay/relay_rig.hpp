@@ -27,8 +27,8 @@ inline constexpr std::int64_t kPeriod_ns = 20'000'000;
 
 class Relay : public ::testing::Test {
  protected:
-  Relay() {
-    std::ofstream(folder_.path() / "relay.yaml") << "hardware: {patience_s: 1}\n";
+  explicit Relay(const std::string& config = "hardware: {patience_s: 1}\n") {
+    std::ofstream(folder_.path() / "relay.yaml") << config;
     constrictor::Setup setup;
     setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
     const ComponentFactory control = commander(

@@ -116,11 +116,12 @@ TEST_F(SafetyGateTest, TakeOverThroughBothGatesKeepsASqueeze) {
                 GateRefusal::kNone);
     }
     const double there =
-        at_plant.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), plant), kDt_s, plant)[0]
+        at_plant.setpoints({measured}, SafetyGate::order_of(false, level, std::string("x"), plant), kDt_s, plant)[0]
             .position_rad;
     at_control.offer({7, 2, now, number, 0, wanted, zeros, torques}, {7, 2, now}, control);
     sent[0] = sent[1] =
-        at_control.setpoints(measured, SafetyGate::order_of(false, level, std::string("x"), control), kDt_s, control)[0]
+        at_control
+            .setpoints({measured}, SafetyGate::order_of(false, level, std::string("x"), control), kDt_s, control)[0]
             .position_rad;
     EXPECT_TRUE(std::abs(there - before) <= kFastest_rad + 1e-8 || (now == 30 && there <= 0.6 + kFastest_rad + 1e-8))
         << now;
@@ -155,7 +156,7 @@ TEST_F(SafetyGateTest, ContinuesIdenticallyFromItsSavedState) {
   const std::vector<double> torque(2, 5.0);
   other.offer({7, 2, now_.tick - 1, sequence_, 0, position, zeros, torque}, now_, restored);
   tick();
-  const auto& again = other.setpoints(measured_, GateOrder::kObey, kDt_s, restored);
+  const auto& again = other.setpoints({measured_}, GateOrder::kObey, kDt_s, restored);
   EXPECT_EQ(again[0].position_rad, state_.setpoints[0].position_rad);
   EXPECT_EQ(restored.refused, state_.refused);
 }

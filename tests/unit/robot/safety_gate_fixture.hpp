@@ -32,7 +32,7 @@ class SafetyGateTest : public ::testing::Test {
   }
   const std::vector<JointSetpoint>& tick(GateOrder order = GateOrder::kObey) {
     ++now_.tick;
-    return gate_.setpoints(measured_, order, kDt_s, state_);
+    return gate_.setpoints({measured_, rates_}, order, kDt_s, state_);
   }
   /// Obeys until both joints' setpoints are there.
   void drive_to(double a, double b) {
@@ -54,6 +54,7 @@ class SafetyGateTest : public ::testing::Test {
   std::uint64_t sequence_ = 0;
   double velocity_ = 0.0;
   std::vector<double> measured_{0.25, -0.25};
+  std::vector<double> rates_{0.0, 0.0};
 };
 
 }  // namespace constrictor

@@ -69,7 +69,7 @@ TEST_F(SafetyGateTest, RefusesTheWholeMessageAndCountsByReason) {
        }},
       {GateRefusal::kUnknownMode,
        [&] {
-         return offer({0.0, 0.0}, {5, 5}, 1, 2);
+         return offer({0.0, 0.0}, {5, 5}, 1, 3);
        }},
       {GateRefusal::kWrongCount,
        [&] {

@@ -108,7 +108,7 @@ TEST(ServoDevice, TheBusWatchdogStopsTheServoAndLocksItsGoals) {
     EXPECT_EQ(servo.write(name, 1), StatusError::kDataRange) << name;
   servo.pass(0.5);
   EXPECT_EQ(servo.device.order(0.004).position_rad, stopped_rad);
-  EXPECT_EQ(servo.device.order(0.004).rate_rad_s, 0.0);
+  EXPECT_EQ(servo.device.order(0.004).velocity_rad_s, 0.0);
   EXPECT_EQ(servo.write("bus_watchdog", 0), StatusError::kNone);
   EXPECT_EQ(servo.write("goal_position", 2100), StatusError::kNone);
 }
@@ -123,10 +123,19 @@ TEST(ServoDevice, ATimeBasedProfileTakesItsTime) {
   const double way_rad = 100 * 2 * M_PI / 4096;
   servo.pass(0.048);
   EXPECT_NEAR(servo.device.order(0.004).position_rad, way_rad * 0.52, 1e-9);
-  EXPECT_NEAR(servo.device.order(0.004).rate_rad_s, way_rad / 0.1, 1e-9);
+  EXPECT_NEAR(servo.device.order(0.004).velocity_rad_s, way_rad / 0.1, 1e-9);
   servo.pass(0.1);
   EXPECT_NEAR(servo.device.order(0.004).position_rad, way_rad, 1e-9);
-  EXPECT_EQ(servo.device.order(0.004).rate_rad_s, 0.0);
+  EXPECT_EQ(servo.device.order(0.004).velocity_rad_s, 0.0);
+}
+
+TEST(ServoDevice, WithoutAProfileTheServoGoesToItsGoalAtOnce) {
+  NamedServo servo;
+  ASSERT_EQ(servo.write("operating_mode", 5), StatusError::kNone);
+  ASSERT_EQ(servo.write("torque_enable", 1), StatusError::kNone);
+  ASSERT_EQ(servo.write("goal_position", 2048 + 1000), StatusError::kNone);
+  EXPECT_NEAR(servo.device.order(0.004).position_rad, 1000 * 2 * M_PI / 4096, 1e-9);
+  EXPECT_EQ(servo.device.order(0.004).velocity_rad_s, 0.0);
 }
 
 TEST(ServoDevice, TheGoalCurrentLimitsTheTorque) {
@@ -143,7 +152,8 @@ TEST(ServoDevice, CurrentControlPushesInTheDirectionOfTheCurrent) {
   ASSERT_EQ(servo.write("operating_mode", 0), StatusError::kNone);
   ASSERT_EQ(servo.write("torque_enable", 1), StatusError::kNone);
   ASSERT_EQ(servo.write("goal_current", -100), StatusError::kNone);
-  EXPECT_LT(servo.device.order(0.004).position_rad, -1.0);
+  EXPECT_TRUE(servo.device.order(0.004).torque_mode);
+  EXPECT_NEAR(servo.device.order(0.004).torque_nm, -100 * 0.00269 * 2.0, 1e-9);
   EXPECT_NEAR(servo.device.order(0.004).torque_limit_nm, 100 * 0.00269 * 2.0, 1e-9);
 }
 

@@ -1,0 +1,64 @@
+// A joint of one inertia instead of a robot, for tests of the servo.
+#pragma once
+
+#include <cmath>
+
+#include "sim/world/servo.hpp"
+#include "sim/world/solver_settings.hpp"
+
+namespace constrictor {
+
+inline constexpr int kSteps = 5;
+inline constexpr double kStep_s = SolverSettings{}.step_s;
+inline constexpr double kTick_s = kSteps * kStep_s;
+
+/// A body that turns about one fixed axis, moved by a servo.
+struct Joint {
+  explicit Joint(const JointModel& model, double inertia = 0.02) : servo(model), inertia_kg_m2(inertia) {}
+
+  void step() {
+    const ServoRow row = servo.row(angle_rad, rate_rad_s);
+    // The row is implicit: w = w0 + h (velocity - w) / (softness I) + h load / I, unless the torque is at its limit.
+    const double free = rate_rad_s + kStep_s * load_nm / inertia_kg_m2;
+    const double share = kStep_s / (row.softness * inertia_kg_m2);
+    double after = (free + share * row.velocity_rad_s) / (1.0 + share);
+    torque_nm = (after - free) * inertia_kg_m2 / kStep_s;
+    if (std::abs(torque_nm) > row.torque_limit_nm) {
+      torque_nm = std::copysign(row.torque_limit_nm, torque_nm);
+      after = free + kStep_s * torque_nm / inertia_kg_m2;
+      if (row.velocity_rad_s == 0.0 && free * after < 0.0) after = 0.0;
+    }
+    const double before = angle_rad;
+    rate_rad_s = after;
+    angle_rad += kStep_s * rate_rad_s;
+    servo.advance(row, before, rate_rad_s);
+  }
+  void tick(const JointSetpoint& setpoint) {
+    servo.set(setpoint);
+    servo.begin_tick(kSteps, kStep_s);
+    for (int i = 0; i < kSteps; ++i) step();
+  }
+
+  Servo servo;
+  double inertia_kg_m2;
+  double load_nm = 0.0;
+  double angle_rad = 0.0;
+  double rate_rad_s = 0.0;
+  double torque_nm = 0.0;
+};
+
+inline JointModel model() {
+  JointModel model;
+  model.max_torque_nm = 100.0;
+  model.max_speed_rad_s = 50.0;
+  return model;
+}
+
+inline JointModel elastic_model() {
+  JointModel elastic = model();
+  elastic.stiffness_nm_rad = 60.0;
+  elastic.damping_nm_s_rad = 0.5;
+  return elastic;
+}
+
+}  // namespace constrictor
