@@ -92,7 +92,9 @@ count_done() {
   local total=0 name
   while IFS=$'\t' read -r name _; do
     if [ -d "$output/$name/runs" ]; then
-      total=$((total + $(find "$output/$name/runs" -maxdepth 3 -name outcome.json | wc -l)))
+      # A study that had more seeds before keeps them; they do not count now.
+      total=$((total + $(find "$output/$name/runs" -maxdepth 3 -name outcome.json -printf '%h\n' |
+        sed 's/.*seed_0*//' | awk -v last="$seeds" '$1 <= last' | wc -l)))
     fi
   done < <(printf 'reference\t0\n%s\n' "$table")
   echo "$total"

@@ -14,11 +14,14 @@ using figure::Colour;
 using figure::Rect;
 
 constexpr int kColumns = 4;
-constexpr double kPanelWidth = 330.0, kPanelHeight = 344.0;
+constexpr double kPanelWidth = 330.0, kPanelHeight = 366.0;
 constexpr double kHeader = 66.0, kMargin = 12.0;
 constexpr double kLeft = 46.0, kRight = 14.0, kTop = 36.0;  // of the strips in a panel
 constexpr double kGap = 27.0;
 constexpr Colour kBlue{0.0, 0.447, 0.698}, kOrange{0.835, 0.369, 0.0}, kGreen{0.0, 0.620, 0.451};  // Okabe and Ito
+
+// Objects that were dropped farther away are drawn at the top, with their distance: the axis stays readable.
+constexpr double kFarthest_m = 0.6;
 
 /// One quantity over the levels.
 struct Strip {
@@ -62,6 +65,7 @@ std::vector<Strip> strips_for(const std::vector<std::vector<LevelResult>>& resul
       if (std::isfinite(level.time_s.high)) time_s = std::max(time_s, level.time_s.high);
     }
   }
+  placement_m = std::min(placement_m, kFarthest_m);
   const double placement_step = step_to(placement_m, 3), time_step = step_to(time_s, 3);
   return {{"missions that succeed [%]", kBlue, 96.0, 100.0, 25.0, 0},
           {"placement [m]", kOrange, 52.0, 3 * placement_step, placement_step, placement_step < 0.1 ? 2 : 1},
@@ -99,6 +103,9 @@ void draw_strip(Canvas& canvas, const Rect& area, const Strip& strip, int index,
     const figure::Point& point = line[at++];
     // Hollow: without the error.
     canvas.fill({point.x - 4.0, point.y - 4.0, 8.0, 8.0}, strip.colour);
+    const double value = value_of(levels[i], index).middle;
+    if (value > strip.full)
+      canvas.text(fmt::format("{:.1f}", value), {point.x + 7.0, point.y + 9.0}, {9.5, strip.colour, true});
     if (levels[i].reference) canvas.fill({point.x - 2.4, point.y - 2.4, 4.8, 4.8}, figure::kWhite);
   }
 }
