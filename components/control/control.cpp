@@ -84,6 +84,7 @@ void Control::step(const Tick& tick) {
                           commanded_rad, tick.dt_s(), perceived(), rate_rad_s, exerted_nm};
   if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
+    state_.body.sliding = {};
     method->start(input, state_.body);
     state_.method = desired.method;
     state_.motion_id = desired.motion_id;

@@ -12,7 +12,22 @@ namespace constrictor {
 
 /// The methods that move the body along a path, by the values of `drive.method`.
 inline const std::vector<std::string>& drive_methods() {
-  static const std::vector<std::string> names{"undulation", "sidewinding", "rolling", "pitch_wave", "concertina"};
+  static const std::vector<std::string> names{"undulation", "sidewinding", "rolling",
+                                              "pitch_wave", "concertina",  "sliding_mode"};
+  return names;
+}
+
+/// Of the method "sliding_mode"; methods/sliding_mode.cpp has the law.
+struct SlidingParameters {
+  double surface_1_s = 0.0;
+  double reaching_rad_s2 = 0.0;
+  double layer_rad_s = 0.0;
+  double estimate_s = 0.0;
+  double mass_share = 0.0;
+  std::uint8_t inertia = 0;
+};
+inline const std::vector<std::string>& sliding_inertias() {
+  static const std::vector<std::string> names{"whole_body", "each_joint"};
   return names;
 }
 
@@ -53,6 +68,19 @@ struct ControlConfig : ParameterSet {
                               "Amplitude of the yaw joints when the body folds between two walls");
   double concertina_wavelength_m = add(concertina_wavelength_m, "concertina.wavelength_m", 1.07, "m", {0.3, 5.0},
                                        kWhileRunning, "Wavelength of the folds along the body");
+  SlidingParameters sliding{
+      add(sliding.surface_1_s, "sliding_mode.surface_1_s", 8.0, "1/s", {0.1, 100.0}, kWhileRunning,
+          "Slope of the sliding surface: rate at which an error of the angle fades on it"),
+      add(sliding.reaching_rad_s2, "sliding_mode.reaching_rad_s2", 60.0, "rad/s2", {0.1, 1000.0}, kWhileRunning,
+          "Acceleration towards the sliding surface, outside of the boundary layer"),
+      add(sliding.layer_rad_s, "sliding_mode.layer_rad_s", 5.0, "rad/s", {0.01, 100.0}, kWhileRunning,
+          "Half width of the boundary layer; at least as wide as the tick allows"),
+      add(sliding.estimate_s, "sliding_mode.estimate_s", 0.05, "s", {0.0, 10.0}, kWhileRunning,
+          "Time constant of the estimate of unknown torques"),
+      add(sliding.mass_share, "sliding_mode.mass_share", 0.5, "", {0.0, 2.0}, kWhileRunning,
+          "Share of the modules' mass that the law counts with: a body lighter than this share swings"),
+      add(sliding.inertia, "sliding_mode.inertia", 0, sliding_inertias(), kWhileRunning,
+          "Inertia that the law knows: of the whole body, or of each joint by itself")};
   double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
   double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.1, "rad/s", {0.001, 2.0}, kWhileRunning,

@@ -12,6 +12,24 @@
 
 namespace constrictor {
 
+/// What sliding mode control remembers from one tick to the next. Serialisable.
+struct SlidingState {
+  bool started = false;
+  JointArray reference_rad{};   ///< of the previous tick
+  JointArray reference2_rad{};  ///< of the tick before
+  JointArray rate_rad_s{};      ///< measured at the previous tick
+  JointArray exerted_nm{};      ///< MethodInput::exerted_nm of the previous tick
+  JointArray unknown_nm{};      ///< estimated torque of friction, gravity and whatever else the model lacks
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(started);
+    for (JointArray* values : {&reference_rad, &reference2_rad, &rate_rad_s, &exerted_nm, &unknown_nm}) {
+      for (double& value : *values) archive(value);
+    }
+  }
+};
+
 /// The present motion of the body. All methods share this state, so that one method continues where another one left
 /// off. Serialisable.
 struct BodyState {
@@ -20,6 +38,7 @@ struct BodyState {
   LinkArray shape_rad{};            ///< posture, one angle for each yaw joint
   JointArray residual_rad{};        ///< remainder of an earlier posture; it is added to the setpoints and fades
   JointArray held_rad{};            ///< posture that "hold" keeps
+  SlidingState sliding;             ///< begins anew when a motion starts
   std::array<double, 8> scratch{};  ///< for the method's own use; zero when a motion starts
 
   template <class Archive>
@@ -28,6 +47,7 @@ struct BodyState {
     for (double& value : shape_rad) archive(value);
     for (double& value : residual_rad) archive(value);
     for (double& value : held_rad) archive(value);
+    archive(sliding);
     for (double& value : scratch) archive(value);
   }
 };

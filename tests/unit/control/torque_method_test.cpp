@@ -102,6 +102,24 @@ TEST(TorqueMethod, AMotionAfterTorquesBeginsWhereTheJointsAre) {
   EXPECT_NEAR(before_rad, 0.0, 0.01);
 }
 
+TEST(TorqueMethod, SlidingModeContinuesIdenticallyAfterARestart) {
+  const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
+    set_method(desired, "sliding_mode", 1);
+    desired.frequency_hz = 0.7;
+    desired.amplitude_rad = 0.5;
+    return true;
+  };
+  LocalRun whole = make_run<ViscousJoints>(script);
+  LocalRun broken = make_run<ViscousJoints>(script);
+  whole.advance(150);
+  EXPECT_EQ(whole.latest(topics::kJointCommand)->mode, msg::kServoTorque);
+  EXPECT_NE(whole.latest(topics::kJointCommand)->torque_nm[4], 0.0);
+  broken.advance(77);
+  broken.restart("control");
+  broken.advance(73);
+  EXPECT_EQ(whole.output_hashes().at("control"), broken.output_hashes().at("control"));
+}
+
 TEST(TorqueMethod, NoTorquePushesAJointBeyondItsLimit) {
   LocalRun run = run_of("hold", 100000);
   run.advance(400);  // joint 4 would be at -8 rad
