@@ -163,13 +163,14 @@ void add_commands(CLI::App& app, Action& action) {
           "  wrong; 130 Ctrl-C\n\n"
           "ENVIRONMENT\n  CONSTRICTOR_DATA   directory of the default files");
 
-  app.add_subcommand("conform", "check whether a part keeps the contract: plant")
+  app.add_subcommand("conform", "check whether a part keeps the contract: plant, camera, perception, control, planner")
       ->footer(
           "The process becomes the program `conform`, which shows its options with `constrictor conform plant "
           "--help`.\n"
           "\nEXAMPLES\n"
           "  constrictor conform plant --domain 5          # a process that drives joints on the topics hardware/*\n"
-          "  constrictor conform plant --list              # all checks, and what they expect\n\n"
+          "  constrictor conform plant --list              # all checks, and what they expect\n"
+          "  constrictor conform control --manifest mine.yaml   # a control of your own, in a run of its own\n\n"
           "EXIT STATUS\n"
           "  0 it conforms; 1 a check failed or was not made; 64 wrong usage, or not agreed; 78 a file is wrong;\n"
           "  130 Ctrl-C\n\n"

@@ -59,34 +59,62 @@ bool ended(pid_t pid) { return ::waitpid(pid, nullptr, WNOHANG) == pid; }
 
 }  // namespace
 
-std::string conform_manifest(const fs::path& manifest, const fs::path& folder) {
-  Configuration root = Configuration::load(manifest);
-  const std::string plant = root.text("plant");
-  std::string process;
+namespace {
+
+/// The process of `component` in a manifest, hosting this component only.
+std::string process_of(Configuration& root, const std::string& component, const std::string& why) {
   for (Configuration& entry : root.list("processes")) {
     const auto components = entry.texts("components");
-    if (std::find(components.begin(), components.end(), plant) == components.end()) continue;
-    process = fmt::format("  - {{components: [{}], restarts: 0", plant);
+    if (std::find(components.begin(), components.end(), component) == components.end()) continue;
+    std::string process = fmt::format("  - {{components: [{}], restarts: 0", component);
     if (entry.has("program")) process += ", program: " + entry.one_line("program");
     if (entry.has("environment")) process += ", environment: " + entry.one_line("environment");
     Configuration configs = entry.section("config", false);
-    if (configs.has(plant)) process += fmt::format(", config: {{{}: {}}}", plant, configs.one_line(plant));
-    process += "}\n";
+    if (configs.has(component)) process += fmt::format(", config: {{{}: {}}}", component, configs.one_line(component));
+    return process + "}\n";
   }
-  if (process.empty()) throw root.error("plant", "found " + plant + ", accepted a component of processes");
-  std::string text = fmt::format("plant: {}\nreal_time: true\nrobot: {}\nscenario: {}\npatience_s: 30\n", plant,
-                                 root.one_line("robot"), root.one_line("scenario"));
+  throw root.error(why, fmt::format("found no {}, accepted a component of processes", component));
+}
+
+std::string head_of(Configuration& root, const std::string& plant, bool real_time) {
+  return fmt::format("plant: {}\nreal_time: {}\nrobot: {}\nscenario: {}\npatience_s: 30\n", plant, real_time,
+                     root.one_line("robot"), root.one_line("scenario"));
+}
+
+}  // namespace
+
+std::string plant_manifest(const fs::path& manifest, const fs::path& folder) {
+  Configuration root = Configuration::load(manifest);
+  const std::string plant = root.text("plant");
+  std::string text = head_of(root, plant, true);
   if (root.has("beside")) text += "beside: " + root.one_line("beside") + "\n";
-  return text + "processes:\n" + process + "  - {components: [input]}\n" +
+  return text + "processes:\n" + process_of(root, plant, "plant") + "  - {components: [input]}\n" +
          fmt::format(
              "  - {{components: [control], program: conform_control, restarts: 0, environment: "
              "['CONSTRICTOR_CONFORM={}']}}\n",
              folder.string());
 }
 
-bool run_manifest(const fs::path& manifest, const fs::path& folder, const std::function<bool()>& interrupted,
+std::string part_manifest(const PartPlace& place, const fs::path& manifest, const fs::path& folder) {
+  Configuration root = Configuration::load(manifest);
+  StandBoard* const none = nullptr;  // only the names are needed
+  std::string stands;
+  for (const auto& factory : stand_factories(place, *none)) stands += (stands.empty() ? "" : ", ") + factory.name;
+  const std::string surroundings = fmt::format(
+      "  - {{components: [{}], program: conform_part, restarts: 0, environment: ['CONSTRICTOR_CONFORM={}', "
+      "'CONSTRICTOR_CONFORM_PART={}']}}\n",
+      stands, folder.string(), place.part);
+  const std::string part = process_of(root, place.part, "processes");
+  if (place.own_plant) return head_of(root, kStandPlant, false) + "processes:\n" + surroundings + part;
+  const std::string plant = root.text("plant");
+  std::string text = head_of(root, plant, root.flag("real_time", false));
+  if (root.has("beside")) text += "beside: " + root.one_line("beside") + "\n";
+  return text + "processes:\n" + process_of(root, plant, "plant") + part + "  - {components: [input]}\n" + surroundings;
+}
+
+bool run_manifest(const std::string& manifest, const fs::path& folder, const std::function<bool()>& interrupted,
                   const std::function<void(const std::string&)>& print) {
-  std::ofstream(folder / "manifest.yaml") << conform_manifest(manifest, folder);
+  std::ofstream(folder / "manifest.yaml") << manifest;
   const pid_t pid = start(folder / "manifest.yaml", folder);
   std::streamoff read = 0;
   const auto print_new = [&] {
@@ -97,9 +125,9 @@ bool run_manifest(const fs::path& manifest, const fs::path& folder, const std::f
       read = lines.tellg();
     }
   };
-  bool told = false, gone = false;
+  bool told = false;
   auto end = Clock::time_point::max();
-  while (!(gone = ended(pid))) {
+  while (!ended(pid)) {
     print_new();
     const bool done = fs::exists(folder / "result.json");
     if ((interrupted() || done) && !told) {

@@ -1,19 +1,28 @@
-// Checks the plant of a manifest: starts a run of this plant, of `input`, and of conform_control in place of `control`.
+// Checks a part of a manifest: starts a run of this part in which programs of this folder take the places of others.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <string>
 
+#include <string>
+#include "conform/part_stand.hpp"
+
 namespace constrictor::conform {
 
-/// The manifest of such a run: plant, robot, scenario and companions of `manifest`. Throws ConfigurationError.
-[[nodiscard]] std::string conform_manifest(const std::filesystem::path& manifest, const std::filesystem::path& folder);
+/// The manifest of a run of the plant of `manifest`, with its robot, scenario and companions; conform_control takes the
+/// place of control, and all other members but `input` are left out. Throws ConfigurationError.
+[[nodiscard]] std::string plant_manifest(const std::filesystem::path& manifest, const std::filesystem::path& folder);
+
+/// The manifest of a run of this part of `manifest`; conform_part takes the places of the members around it. Throws
+/// ConfigurationError.
+[[nodiscard]] std::string part_manifest(const PartPlace& place, const std::filesystem::path& manifest,
+                                        const std::filesystem::path& folder);
 
 /// Starts the run in `folder`, which must contain profile.yaml, and calls `print` with each line of the results. The
-/// run is ended when the checks have ended, or when `interrupted()` is true: its joints hold, then relax, as after
+/// run is ended when the checks have ended, or when `interrupted()` is true: real joints hold, then relax, as after
 /// every end of a run. Returns false if there is no result: `log` in the folder says why.
-bool run_manifest(const std::filesystem::path& manifest, const std::filesystem::path& folder,
+bool run_manifest(const std::string& manifest, const std::filesystem::path& folder,
                   const std::function<bool()>& interrupted, const std::function<void(const std::string&)>& print);
 
 }  // namespace constrictor::conform

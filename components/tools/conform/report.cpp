@@ -48,6 +48,11 @@ void Report::fail(const std::string& name, const std::string& found, const std::
   set(name, Verdict::kFailed, found, todo);
 }
 void Report::skip(const std::string& name, const std::string& reason) { set(name, Verdict::kSkipped, reason, {}); }
+void Report::skip_rest(const std::string& reason) {
+  for (std::size_t i = 0; i < checks_.size(); ++i) {
+    if (checks_[i].verdict == Verdict::kNotChecked) skip(checks_[i].name, reason);
+  }
+}
 
 std::size_t Report::count(Verdict verdict) const {
   return static_cast<std::size_t>(

@@ -27,6 +27,8 @@ class Report {
   void pass(const std::string& name, const std::string& found);
   void fail(const std::string& name, const std::string& found, const std::string& todo);
   void skip(const std::string& name, const std::string& reason);
+  /// Skips every check that has no result yet.
+  void skip_rest(const std::string& reason);
   /// fail() if `failed`, pass() if not.
   void judge(const std::string& name, bool failed, const std::string& found, const std::string& todo) {
     if (failed) fail(name, found, todo);

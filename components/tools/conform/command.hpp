@@ -1,0 +1,53 @@
+// What the subcommands of `constrictor conform` have in common.
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "configuration/parameter_set.hpp"
+#include "conform/report.hpp"
+
+namespace constrictor::conform {
+
+struct Options {
+  std::uint32_t domain = 0;
+  std::uint16_t robot_id = 1;
+  std::string robot = "mamba", profile, json, manifest;
+  std::optional<std::uint32_t> observed;  ///< domain of a run that goes on, of a part that can be observed
+  bool yes = false, list = false, show_profile = false;
+};
+
+/// The number of the signal that has asked this process to end; 0: none has.
+[[nodiscard]] int signal_number();
+/// From this call on, SIGINT, SIGTERM and SIGHUP are noted instead of ending the process.
+void note_signals();
+
+/// The robot file with this path or name.
+[[nodiscard]] std::filesystem::path robot_file(const std::string& name);
+/// The manifest with this path or name.
+[[nodiscard]] std::filesystem::path manifest_file(const std::string& name);
+void print_line(const std::string& line);
+
+/// --list and --show-profile. True if one of them was asked for.
+[[nodiscard]] bool shown(const Options& options, const std::vector<Check>& checks,
+                         const std::vector<ParameterRow>& profile);
+/// Whether the user agrees to what `warning` says; asks only on a terminal.
+[[nodiscard]] bool agreed(const std::string& warning);
+/// Prints the summary, writes the file of --json, and returns the exit status. `gone`: why the checks have ended early.
+[[nodiscard]] int concluded(const Options& options, const Report& report, const std::string& gone);
+
+/// Checks the part in a run that `manifest(folder)` describes, and returns the exit status.
+[[nodiscard]] int check_in_run(const Options& options,
+                               std::string (*manifest)(const Options&, const std::string& part,
+                                                       const std::filesystem::path& folder),
+                               const std::string& part);
+
+// The subcommands. Each returns the exit status; they throw ConfigurationError.
+[[nodiscard]] int plant_command(const Options& options);
+[[nodiscard]] int part_command(const Options& options, const std::string& part);
+
+}  // namespace constrictor::conform

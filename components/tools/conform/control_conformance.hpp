@@ -1,0 +1,82 @@
+// Checks whether a control keeps the contract of idl/README.md. No real joint moves: the checks play the plant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conform/control_hand.hpp"
+#include "conform/control_profile.hpp"
+#include "conform/report.hpp"
+
+namespace constrictor::conform {
+
+/// All checks, in the order in which they are made.
+[[nodiscard]] std::vector<Check> control_checks();
+
+class ControlConformance {
+ public:
+  /// All arguments must outlive this object.
+  ControlConformance(PartPort& port, const RobotModel& robot, const ControlProfile& profile, Report& report)
+      : port_(port), robot_(robot), profile_(profile), report_(report), hand_(port, robot), yaw_(robot.yaw_joints()) {}
+
+  /// Makes all checks that can be made. Throws PartGone; the report then has the results so far.
+  void run();
+
+ private:
+  using Steps = std::vector<ControlStep>;
+  // At rest (control_rest_checks.cpp). False: the other checks make no sense.
+  bool check_arrival();
+  void check_refusals();
+  // Postures (control_posture_checks.cpp).
+  void check_bend();
+  void judge_posture(const std::vector<double>& shape_rad, const std::vector<double>& reached_rad);
+  void judge_course(const Steps& steps, const std::vector<double>& shape_rad);
+  void check_squeeze();
+  void check_limits();
+  // Undulation (control_wave_checks.cpp).
+  void check_wave();
+  void judge_wave(const Steps& steps);
+  void check_curvature();
+  void check_drive();
+  // Silence, authority, stops, epochs (control_safety_checks.cpp).
+  void check_relax();
+  void check_silence();
+  void check_authority();
+  void check_stop();
+  void check_wrong_joints();
+  void check_epoch();
+
+  /// Goes on, and notes what holds for all commands at all times.
+  Steps go(double seconds);
+  /// Bends the body to a posture, one angle for each yaw joint, and waits until it must have been reached.
+  Steps bend(const std::vector<double>& shape_rad, double rate_rad_s);
+  /// Begins to undulate forwards along a straight path, without waiting.
+  void undulate(double frequency_hz, double curvature_1_m);
+  /// [rad] how far the setpoint that moved most is from `posture_rad` in any of the ticks from `from_s` on.
+  [[nodiscard]] static double strayed_rad(const Steps& steps, const std::vector<double>& posture_rad,
+                                          double from_s = 0.0);
+  /// [rad] by how much any setpoint changed between the ticks from `from_s` on.
+  [[nodiscard]] static double moved_rad(const Steps& steps, double from_s);
+  [[nodiscard]] static const msg::JointCommand* last_command(const Steps& steps);
+  [[nodiscard]] static const msg::MotionStatus* last_state(const Steps& steps);
+  /// Of the yaw joints.
+  [[nodiscard]] std::vector<double> yaw_angles(const msg::JointCommand& command) const;
+
+  PartPort& port_;
+  const RobotModel& robot_;
+  const ControlProfile& profile_;
+  Report& report_;
+  ControlHand hand_;
+  std::vector<std::size_t> yaw_;
+  bool bends_ = false, undulates_ = false;
+  // What holds for all commands.
+  bool judges_rate_ = true;
+  std::vector<double> previous_rad_;       ///< setpoints of the last command; empty: none, or the joints were displaced
+  double largest_rate_ = 0.0;              ///< of a setpoint, as a share of its joint's largest speed
+  std::size_t fastest_ = 0;                ///< the joint of this setpoint
+  double beyond_rad_ = 0.0;                ///< of a joint's limits
+  double beyond_nm_ = 0.0;                 ///< of a joint's torque
+  std::size_t unlike_ = 0, compared_ = 0;  ///< velocities that are not the rate of their setpoint, of all
+};
+
+}  // namespace constrictor::conform

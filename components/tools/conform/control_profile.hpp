@@ -1,0 +1,31 @@
+// What `constrictor conform control` expects of a control, and how it is tried: one row for each value.
+#pragma once
+
+#include "configuration/parameter_set.hpp"
+
+namespace constrictor::conform {
+
+struct ControlProfile : ParameterSet {
+  double patience_s =
+      add(patience_s, "patience_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Time to wait for the first command");
+  double answer_s = add(answer_s, "answer_s", 0.2, "s", {0.02, 5.0}, kAtStart,
+                        "Time after which motion_status shows a new trajectory");
+  double posture_rad = add(posture_rad, "tolerance.posture_rad", 0.02, "rad", {0.0001, 0.3}, kAtStart,
+                           "A setpoint differs from the posture that is demanded by less than this");
+  double gain_tolerance = add(gain_tolerance, "tolerance.gain", 0.35, "", {0.01, 0.9}, kAtStart,
+                              "Amplitudes, curvatures and rates may be wrong by this share");
+  double rate_hz = add(rate_hz, "motion.frequency_hz", 0.5, "Hz", {0.1, 2.0}, kAtStart, "Of the undulation");
+  double amplitude_rad =
+      add(amplitude_rad, "motion.amplitude_rad", 0.5, "rad", {0.1, 1.2}, kAtStart, "Of the undulation's links");
+  double wavelength_m =
+      add(wavelength_m, "motion.wavelength_m", 1.07, "m", {0.3, 5.0}, kAtStart, "Of the undulation, along the body");
+  double curvature_1_m = add(curvature_1_m, "motion.curvature_1_m", 0.8, "1/m", {0.1, 3.0}, kAtStart, "Of the path");
+  double settle_s = add(settle_s, "motion.settle_s", 4.0, "s", {0.5, 60.0}, kAtStart,
+                        "Time in which frequency, amplitude and curvature reach what is demanded");
+  double hold_within_s = add(hold_within_s, "hold_within_s", 0.5, "s", {0.02, 10.0}, kAtStart,
+                             "Time after which the setpoints rest when trajectories or authority end");
+  double relax_within_s = add(relax_within_s, "relax_within_s", 10.0, "s", {0.1, 600.0}, kAtStart,
+                              "Time after which the joints are relaxed when trajectories end");
+};
+
+}  // namespace constrictor::conform

@@ -1,0 +1,139 @@
+#include "conform/exchange_port.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "client/run_control_client.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor::conform {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kMostSilence = 30s;  // a part that is slower is dead
+constexpr auto kStatusBound = 3s;
+constexpr std::int64_t kStatusEvery_ticks = 50;
+
+}  // namespace
+
+/// What an operator does and sees. Made at the first use, when the run has begun.
+struct ExchangePort::Operator {
+  explicit Operator(std::uint32_t domain)
+      : participant(dds::create_participant(domain, dds::Reach::kLoopback, "operator")),
+        status(dds::Reader<msg::ComponentStatus>::observer(participant.get(), barrier_topics::kStatus.name, 8)),
+        control(participant.get(), domain, 10s) {}
+  dds::Entity participant;
+  dds::Reader<msg::ComponentStatus> status;
+  RunControlClient control;
+  std::uint64_t refused = 0;
+  std::int64_t status_tick = -1;
+};
+
+ExchangePort::ExchangePort(std::string part, std::uint32_t domain) : part_(std::move(part)), domain_(domain) {}
+
+ExchangePort::~ExchangePort() = default;
+
+ExchangePort::Operator& ExchangePort::client() {
+  if (!operator_) operator_ = std::make_unique<Operator>(domain_);
+  return *operator_;
+}
+
+void ExchangePort::begin_tick(const Tick&) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return awaited_ || ended_ || finished_; });
+  current_.clear();
+  // A reset may drop a tick after it has begun. The checks still wait for it then, and have nothing new to write.
+  if (decided_) current_ = *std::exchange(decided_, std::nullopt);
+}
+
+std::vector<Sample> ExchangePort::take(std::size_t topic) {
+  const std::lock_guard lock(mutex_);
+  std::vector<Sample> taken;
+  std::erase_if(current_, [&](const Letter& letter) {
+    if (letter.topic == topic) taken.push_back(letter.sample);
+    return letter.topic == topic;
+  });
+  return taken;
+}
+
+void ExchangePort::deliver(const Tick& tick, std::vector<Letter> arrived) {
+  const std::lock_guard lock(mutex_);
+  delivered_ = std::move(arrived);
+  delivered_tick_ = tick.index;
+  delivered_epoch_ = tick.epoch;
+  ++deliveries_;
+  awaited_ = false;
+  changed_.notify_all();
+}
+
+void ExchangePort::exchange(std::vector<Letter> outgoing) {
+  std::unique_lock lock(mutex_);
+  decided_ = std::move(outgoing);
+  awaited_ = true;
+  const std::uint64_t before = deliveries_;
+  changed_.notify_all();
+  const bool came = changed_.wait_for(lock, kMostSilence, [&] { return ended_ || deliveries_ != before; });
+  if (ended_) throw PartGone("the run has ended; its log says why");
+  if (!came) throw PartGone("the run makes no ticks: " + part_ + " does not finish its step");
+  arrived_ = std::exchange(delivered_, {});
+  tick_ = delivered_tick_;
+  epoch_ = delivered_epoch_;
+  client();  // early, so that its reader is matched when the first status is asked for
+}
+
+void ExchangePort::begin_epoch() {
+  const std::uint32_t before = epoch_;
+  Operator& person = client();
+  // The conductor answers between two ticks, so the run must go on meanwhile.
+  std::string refusal;
+  std::atomic<bool> answered{false};
+  std::thread asks([&] {
+    try {
+      person.control.reset(1);
+    } catch (const std::exception& error) {
+      refusal = error.what();
+    }
+    answered = true;
+  });
+  try {
+    while (epoch_ == before && !(answered && !refusal.empty())) advance();
+  } catch (...) {
+    asks.join();
+    throw;
+  }
+  asks.join();
+  person.status_tick = -1;
+  if (epoch_ == before) throw PartGone("no new epoch begins: " + refusal);
+}
+
+std::uint64_t ExchangePort::refused() {
+  Operator& person = client();
+  const auto bound = std::chrono::steady_clock::now() + kStatusBound;
+  const std::int64_t wanted = tick_ - kStatusEvery_ticks - 2;
+  while (true) {
+    person.status.take([&](const msg::ComponentStatus& status) {
+      if (text_of(status.component) != part_ || status.epoch != epoch_) return;
+      person.refused = status.refused_count;
+      person.status_tick = status.tick;
+    });
+    if (person.status_tick >= wanted || std::chrono::steady_clock::now() > bound) return person.refused;
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+void ExchangePort::end() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+}
+
+void ExchangePort::finish() {
+  const std::lock_guard lock(mutex_);
+  finished_ = true;
+  changed_.notify_all();
+}
+
+}  // namespace constrictor::conform

@@ -1,0 +1,49 @@
+// The project's own control passes; each of many faults of controls is found, and the first check that fails names it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "conform/control_conformance.hpp"
+#include "control/control.hpp"
+#include "support/faulty_controls.hpp"
+#include "support/local_part.hpp"
+#include "unit/conform/part_report.hpp"
+
+namespace constrictor::conform {
+namespace {
+
+Report examine(const std::string& fault, long interrupt_at = 0) {
+  Setup setup;
+  setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+  const RobotModel robot = load_robot(setup.robot_file);
+  const ControlProfile profile;
+  testing::LocalPart port("control", testing::faulty_control(fault), setup, {}, interrupt_at);
+  Report report(control_checks());
+  try {
+    ControlConformance(port, robot, profile, report).run();
+  } catch (const PartGone&) {}
+  return report;
+}
+
+TEST(ControlConformance, OurControlPassesEveryCheck) {
+  const Report report = examine("");
+  EXPECT_TRUE(report.conforms()) << testing::text_of(report);
+  EXPECT_EQ(report.count(Verdict::kPassed), control_checks().size()) << testing::text_of(report);
+}
+
+TEST(ControlConformance, AnInterruptLeavesTheRestNotChecked) {
+  const Report report = examine("", 500);
+  EXPECT_GT(report.count(Verdict::kPassed), 5u);
+  EXPECT_GT(report.count(Verdict::kNotChecked), 5u);
+  EXPECT_FALSE(report.conforms());
+}
+
+class FindsTheFaultOfAControl : public ::testing::TestWithParam<testing::NamedFault> {};
+
+TEST_P(FindsTheFaultOfAControl, AndNamesIt) { testing::expect_named(examine(GetParam().fault), GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(Controls, FindsTheFaultOfAControl, ::testing::ValuesIn(testing::control_faults()),
+                         [](const auto& test) { return std::string(test.param.fault); });
+
+}  // namespace
+}  // namespace constrictor::conform
