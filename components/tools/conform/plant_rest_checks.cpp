@@ -47,7 +47,7 @@ std::vector<Check> plant_checks() {
       one("stranger", "a command of a second session is ignored while the first one is alive"),
       one("torque_limit", "the torque stays within the limit of the command"),
       one("torque_turns", "in the mode torque each joint turns as its torque pushes it"),
-      one("torque_order", "the joint whose torque is demanded turns, and no other turns further"),
+      one("torque_order", "the joint whose torque is demanded turns, and no other in its place"),
       one("torque_bound", "a demanded torque stays within the limit of the command"),
       one("torque_silence", "torques end with the commands, and the posture is held"),
       one("silence", "without commands the joints come to rest, and the plant says that it holds"),

@@ -12,6 +12,8 @@ namespace {
 constexpr double kRise_s = 1.0;       // in which the torque rises to its largest value
 constexpr double kTurnedShare = 0.5;  // of the amplitude: further, and the push ends; a fifth of it is no motion
 constexpr double kNoneShare = 0.1;
+constexpr double kStillShare =
+    0.15;  // of the other joint's angle: less, and the pushed joint is not the one that turns
 
 }  // namespace
 
@@ -58,7 +60,8 @@ void PlantConformance::check_torque_mode() {
     least_nm = std::min(least_nm, pushed.demanded_nm);
     most_nm = std::max(most_nm, pushed.demanded_nm);
     const double none_rad = kNoneShare * profile_.amplitude_rad;
-    if (pushed.other_rad > std::max(none_rad, std::abs(pushed.turned_rad)))
+    // The free end of the body may turn further than the joint that pushes it, but then both turn.
+    if (pushed.other_rad > none_rad && std::abs(pushed.turned_rad) < kStillShare * pushed.other_rad)
       order +=
           fmt::format("{}joint {} turned when joint {} was pushed", order.empty() ? "" : "; ", pushed.other, joint);
     else if (pushed.turned_rad < -none_rad)
