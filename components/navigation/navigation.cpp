@@ -1,6 +1,7 @@
 #include "navigation/navigation.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "component/task_parameters.hpp"
 #include "constrictor/text.hpp"
@@ -131,7 +132,23 @@ void Navigation::start_goal(const msg::TaskCommand& command, TaskInput input) {
   write_event(msg::kEventNone, msg::kGoalRunning, 0, 0, "accepted");
 }
 
+std::int64_t Navigation::silent_images() const {
+  if (!field_.line && !field_.objects) return 0;
+  const auto age_ticks = [](const auto& percepts) {
+    return percepts ? percepts.age_ticks() : std::numeric_limits<std::int64_t>::max();
+  };
+  return std::min(age_ticks(field_.line), age_ticks(field_.objects)) / robot_.camera.period_ticks;
+}
+
 void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
+  const bool seen_before = !state_.blind;
+  state_.blind = state_.task->steers_by_sight() && silent_images() > config_.blind_after_images;
+  if (state_.blind) {
+    if (seen_before)
+      wiring_.count_refusal("perception/line and perception/objects: silent; the robot stands until they come again");
+    state_.goal.phase = "blind";
+    return;
+  }
   state_.task->step(input, state_.grip, output);
   state_.goal.phase = output.phase;
   if (output.direction != msg::kDirectionNone) state_.goal.parameters.direction = output.direction;

@@ -38,18 +38,19 @@ struct NavigationState {
   std::uint64_t motion_id = 0;
   std::string method;  ///< control method of the newest motion
   DirectMotionState direct;
+  bool blind = false;  ///< the task waits for percepts
   ParameterState parameters;
 
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, sightings, motion_id, method, direct, parameters, task != nullptr, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, blind, parameters, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, sightings, motion_id, method, direct, parameters, has_task, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, blind, parameters, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }
@@ -73,6 +74,9 @@ class Navigation : public TunableComponent<NavigationState, NavigationConfig> {
   void cancel(const msg::TaskCommand& command);
   void take_direct_motions();
   void start_goal(const msg::TaskCommand& command, TaskInput input);
+  /// Number of images whose percepts should have come since the newest ones; 0: none has ever come, as without camera.
+  [[nodiscard]] std::int64_t silent_images() const;
+  /// The task's step; while the task is blind, the robot stands.
   void run_task(const TaskInput& input, TaskOutput& output);
   /// Reports the loss of a held object and aborts the running goal.
   void monitor_grip(const TaskInput& input, TaskOutput& output);

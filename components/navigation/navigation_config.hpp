@@ -267,6 +267,9 @@ struct NavigationConfig : NavigationSection {
   Gait creep = add(creep, "creep", {0.4, 0.35, 1.07}, kWhileRunning, "Small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,
                                        "The robot stands still when joints, contacts or pose are older than this");
+  std::int64_t blind_after_images =
+      add(blind_after_images, "blind_after_images", 15, "images", {2, 10000}, kAtStart,
+          "Tasks that steer by sight stand still when as many images have brought no percepts");
   LineTrackerConfig line = add_section(line, "line_tracker");
   ObjectTrackerConfig object = add_section(object, "object_tracker");
   GripConfig grip = add_section(grip, "grip");

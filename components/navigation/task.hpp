@@ -82,6 +82,8 @@ class Task {
     static_cast<void>(grip);
     return {};
   }
+  /// Whether the task must not move while the camera, or perception, is silent.
+  [[nodiscard]] virtual bool steers_by_sight() const { return true; }
   virtual void start(const TaskInput& input, Grip& grip) = 0;
   virtual void step(const TaskInput& input, Grip& grip, TaskOutput& output) = 0;
   [[nodiscard]] virtual std::string save() const = 0;

@@ -111,6 +111,12 @@ void PlantRelay::lose(const Tick& tick) {
   HardwareJudge::forget(state_.hardware);
 }
 
+std::string PlantRelay::device_status() const {
+  if (!state_.following) return "no process drives the joints";
+  return state_.obstacle.empty() ? fmt::format("session {:x} drives the joints", state_.hardware.session)
+                                 : state_.obstacle;
+}
+
 std::string PlantRelay::obstacle_of(const msg::HardwareJointState& sample) const {
   if (const std::string fault = printable(text_of(sample.fault)); !fault.empty()) return "hardware: fault: " + fault;
   const auto patience = static_cast<std::uint64_t>(config_.deaf_after_ticks);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "component/component.hpp"
+#include "component/device_owner.hpp"
 #include "component/hardware_link.hpp"
 #include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
@@ -33,7 +34,7 @@ struct PlantRelayState {
   }
 };
 
-class PlantRelay final : public Plant {
+class PlantRelay final : public Plant, public DeviceOwner {
  public:
   /// Throws ConfigurationError.
   PlantRelay(Wiring& wiring, const Setup& setup);
@@ -44,6 +45,8 @@ class PlantRelay final : public Plant {
   /// Sends the setpoints of the gate; none while the posture is not known.
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
+  /// Whether the process that drives the joints is followed, and if it cannot obey, why.
+  [[nodiscard]] std::string device_status() const override;
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;
 

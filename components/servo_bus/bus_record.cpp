@@ -1,5 +1,7 @@
 #include "servo_bus/bus_record.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace constrictor {
@@ -9,10 +11,24 @@ const char* text_of(ServoState state) {
   return state == ServoState::kReady ? "ready" : state == ServoState::kLost ? "lost" : "shut down";
 }
 
+std::string summary_of(const JointServos& servos, const BusPorts& ports) {
+  std::size_t ready = 0;
+  for (std::size_t i = 0; i < servos.count(); ++i) ready += servos.state(i) == ServoState::kReady ? 1 : 0;
+  BusPorts::Counters sum{};
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    const BusPorts::Counters counts = ports.counters(i);
+    sum.timeouts += counts.timeouts;
+    sum.retries += counts.retries;
+    sum.crc_errors += counts.crc_errors;
+  }
+  return fmt::format("{} of {} servos ready, {} timeouts, {} retries, {} CRC errors", ready, servos.count(),
+                     sum.timeouts, sum.retries, sum.crc_errors);
+}
+
 }  // namespace
 
 void BusRecord::write(std::int64_t tick, const JointServos& servos, const BusPorts& ports) {
-  replace([&] {
+  replace(summary_of(servos, ports), [&] {
     nlohmann::json record = {{"tick", tick}};
     for (std::size_t i = 0; i < ports.size(); ++i) {
       const BusPorts::Counters counts = ports.counters(i);

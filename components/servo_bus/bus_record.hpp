@@ -9,7 +9,7 @@ namespace constrictor {
 /// The durations are the times that a tick spent on the buses.
 class BusRecord : public DeviceRecord {
  public:
-  explicit BusRecord(const std::filesystem::path& folder) : DeviceRecord(folder, "servo_bus.json", "round_ms") {}
+  explicit BusRecord(const std::filesystem::path& folder) : DeviceRecord(folder, "servo_bus.json", "round") {}
 
   void write(std::int64_t tick, const JointServos& servos, const BusPorts& ports);
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "component/device_owner.hpp"
 #include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
 #include "servo_bus/bus_record.hpp"
@@ -11,7 +12,7 @@
 
 namespace constrictor {
 
-class ServoBus final : public Plant {
+class ServoBus final : public Plant, public DeviceOwner {
  public:
   /// Reads the robot, the configuration and the bus file; opens no port. Throws ConfigurationError. `open`: replaces
   /// the serial ports in tests.
@@ -25,6 +26,7 @@ class ServoBus final : public Plant {
   /// Obeys the commands. Holds the posture while a servo is missing, and while the servos are locked.
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
+  [[nodiscard]] std::string device_status() const override { return record_.summary(); }
   /// Gate, stops and the last posture.
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;

@@ -9,7 +9,7 @@ namespace constrictor {
 /// The durations are the ages that the frames had when they were published.
 class CaptureRecord : public DeviceRecord {
  public:
-  explicit CaptureRecord(const std::filesystem::path& folder) : DeviceRecord(folder, "camera.json", "age_ms") {}
+  explicit CaptureRecord(const std::filesystem::path& folder) : DeviceRecord(folder, "camera.json", "age") {}
 
   void write(std::int64_t tick, std::uint64_t published, std::uint64_t late, const video::LiveCounters& counters);
 };

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "component/component.hpp"
+#include "component/device_owner.hpp"
 #include "robot/robot_model.hpp"
 #include "video/live_video.hpp"
 #include "video/picture_files.hpp"
@@ -27,12 +28,13 @@ struct VideoCaptureState {
 /// Publishes the newest frame at each tick at which there is a new one, and never waits for one. An image carries the
 /// tick of its exposure, so that readers know how old it is. Pictures of files are published at the times of the run:
 /// a run with them is repeatable, bit for bit.
-class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureConfig> {
+class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureConfig>, public DeviceOwner {
  public:
   /// Reads the configuration and the files; opens no camera before the first step. Throws ConfigurationError. `open`:
   /// replaces OpenCV in tests.
   VideoCapture(Wiring& wiring, const Setup& setup, video::OpenVideo open = nullptr);
   void step(const Tick& tick) override;
+  [[nodiscard]] std::string device_status() const override { return record_.summary(); }
 
  private:
   void step_live(const Tick& tick);

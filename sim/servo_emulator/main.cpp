@@ -9,8 +9,8 @@
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
-#include "plant/real_time.hpp"
 #include "robot/robot_model.hpp"
+#include "scheduling/scheduling.hpp"
 #include "sim/emulation/emulator_process.hpp"
 #include "sim/emulation/shared_world.hpp"
 #include "sim/emulation/verdict.hpp"
@@ -56,7 +56,7 @@ void emulate(const Options& options, const Log& log) {
   log.info("{} servos answer at {} ports in {}", plan.joints.size(), terminals.size(), options.output.string());
 
   // Real servos answer in time however busy the computer is.
-  if (const std::string refusal = prefer_this_process(kPriority); !refusal.empty())
+  for (const auto& refusal : apply(Scheduling{kPriority, false, {}}))
     log.warning("on a busy computer answers may be late: {}", refusal);
   const auto start = Clock::now();
   const auto now_ns = [&] { return std::chrono::nanoseconds(Clock::now() - start).count(); };

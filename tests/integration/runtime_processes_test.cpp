@@ -134,10 +134,12 @@ TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
   const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, bool> ended;
+  std::map<std::string, double> late_us;
   std::uint64_t ticks = 0;  // on a busy machine the report asks for the end a few ticks late
   const auto listen = [&] {
     statuses.take([&](const msg::ComponentStatus& status) {
       skipped[status.component] = status.overruns;
+      late_us[status.component] = status.jitter_max_us;
       if (std::string_view(status.component) == "physics") ticks = static_cast<std::uint64_t>(status.tick + 1);
       ended[status.component] = status.state == msg::kComponentEnded;
     });
@@ -165,6 +167,10 @@ TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
     EXPECT_LT(skipped[other], skipped["planner"]) << other;
   }
   EXPECT_EQ(skipped["physics"], 0u) << "the plant skips no tick";
+  for (const auto& [name, us] : late_us) {
+    EXPECT_GT(us, 0.0) << name << ": of 150 ticks, at least one comes later than a period after the one before";
+    EXPECT_LT(us, 1e-3 * static_cast<double>(std::chrono::nanoseconds(elapsed).count())) << name;
+  }
 }
 
 TEST(RuntimeProcesses, MaskedCpuFeaturesWithinTheSameNumericProfileDoNotChangeTheResult) {

@@ -1,5 +1,7 @@
 #include "component/device_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -19,8 +21,8 @@ double quantile_ms(const std::vector<std::int64_t>& sorted, double share) {
 
 }  // namespace
 
-DeviceRecord::DeviceRecord(const std::filesystem::path& folder, const char* file_name, std::string durations_key)
-    : durations_key_(std::move(durations_key)) {
+DeviceRecord::DeviceRecord(const std::filesystem::path& folder, const char* file_name, std::string durations)
+    : durations_(std::move(durations)) {
   if (!folder.empty()) file_ = folder / file_name;
 }
 
@@ -29,16 +31,20 @@ void DeviceRecord::add_news(const std::string& line) {
   news_.push_back(line);
 }
 
-void DeviceRecord::replace(const std::function<nlohmann::json()>& make_fields) {
+void DeviceRecord::replace(std::string state, const std::function<nlohmann::json()>& make_fields) {
   std::vector<std::int64_t> durations_ns = std::exchange(durations_ns_, {});
+  std::sort(durations_ns.begin(), durations_ns.end());
+  summary_ = std::move(state);
+  if (!durations_ns.empty())
+    summary_ += fmt::format(", {} {:.1f} ms (99 %: {:.1f})", durations_, quantile_ms(durations_ns, 0.5),
+                            quantile_ms(durations_ns, 0.99));
   if (file_.empty()) return;
   nlohmann::json record = make_fields();
   record["news"] = news_;
   if (!durations_ns.empty()) {
-    std::sort(durations_ns.begin(), durations_ns.end());
-    record[durations_key_] = {{"median", quantile_ms(durations_ns, 0.5)},
-                              {"p99", quantile_ms(durations_ns, 0.99)},
-                              {"longest", quantile_ms(durations_ns, 1.0)}};
+    record[durations_ + "_ms"] = {{"median", quantile_ms(durations_ns, 0.5)},
+                                  {"p99", quantile_ms(durations_ns, 0.99)},
+                                  {"longest", quantile_ms(durations_ns, 1.0)}};
   }
   const std::string text = json_text(record, 1) + "\n";
   try {

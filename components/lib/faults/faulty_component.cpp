@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "component/concluding.hpp"
+#include "component/device_owner.hpp"
 #include "faults/faulty_input.hpp"
 
 namespace constrictor {
@@ -55,7 +56,7 @@ class FaultyWiring : public Wiring {
 
 /// The component with its faulty inputs. `Base`: Component or Plant.
 template <class Base>
-class Faulty : public Base, public Concluding {
+class Faulty : public Base, public Concluding, public DeviceOwner {
  public:
   Faulty(std::string name, std::shared_ptr<const FaultPlan> plan, std::unique_ptr<FaultyWiring> wiring,
          std::unique_ptr<Component> inner, std::function<void(double)> wait_ms)
@@ -92,6 +93,10 @@ class Faulty : public Base, public Concluding {
   }
   void conclude(const Tick& last) override {
     if (auto* concluding = dynamic_cast<Concluding*>(inner_.get())) concluding->conclude(last);
+  }
+  [[nodiscard]] std::string device_status() const override {
+    const auto* owner = dynamic_cast<const DeviceOwner*>(inner_.get());
+    return owner ? owner->device_status() : std::string();
   }
 
  protected:

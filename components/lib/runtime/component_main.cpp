@@ -73,16 +73,34 @@ void add_recording_options(CLI::App& app, RecordingOptions& options) {
       "plant only: NAME=FILE: a file that --record adds to the recording; may be repeated");
 }
 
+void add_scheduling_options(CLI::App& app, Scheduling& scheduling) {
+  app.add_option("--priority", scheduling.priority,
+                 "1 to 99: ask for the real-time scheduler (SCHED_FIFO) with this priority; 0: the usual scheduler")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 99));
+  app.add_flag("--lock-memory", scheduling.lock_memory, "keep the memory of this process from being paged out");
+  app.add_option_function<std::string>(
+      "--cpus",
+      [&scheduling](const std::string& text) {
+        try {
+          scheduling.cpus = parse_cpus(text);
+        } catch (const std::invalid_argument& error) {
+          throw CLI::ValidationError("--cpus", error.what());
+        }
+      },
+      "processors that this process may use, for example 0,2-3 (default: all)");
+}
+
 }  // namespace
 
-int component_main(int argc, char** argv, ComponentFactory factory) {
+int component_main(int argc, char** argv, ComponentFactory factory, const Scheduling& usual) {
   ensure_numeric_environment(argv);  // before a word is left out: it may start the program again
   // The launcher starts a program that a manifest names as `PROGRAM NAME OPTIONS`.
   const int named = argc > 1 && argv[1] == factory.name ? 1 : 0;
-  return host_main(argc - named, argv + named, {std::move(factory)});
+  return host_main(argc - named, argv + named, {std::move(factory)}, usual);
 }
 
-int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
+int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Scheduling usual) {
   ensure_numeric_environment(argv);
   Host::heed_signals();  // after the line above, which may start the program again
   std::string names;
@@ -146,6 +164,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
   bool topics = false;
   app.add_flag("--topics", topics, "print which topics the components read and write, and exit; joins no run");
   add_recording_options(app, options.recording);
+  add_scheduling_options(app, usual);
   bool no_checkpoints = false;
   app.add_flag("--no-checkpoints", no_checkpoints,
                "plant only: keep no checkpoints in --output; the process can then not be restarted");
@@ -186,6 +205,8 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories) {
       for (const auto& line : topics_of_components(options, factories)) std::printf("%s\n", line.c_str());
       return exit_status::kOk;
     }
+    // Before the first message, so that the threads of DDS are treated alike.
+    for (const auto& refusal : apply(usual)) Log(names).warning("on a busy computer ticks may be late: {}", refusal);
     return Host(std::move(options), std::move(factories)).run();
   } catch (const ConfigurationError& error) {
     Log(names).error("configuration: {}", error.what());

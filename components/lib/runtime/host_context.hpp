@@ -11,6 +11,7 @@
 #include "cyclone/run_token.hpp"
 #include "log/log.hpp"
 #include "runtime/host.hpp"
+#include "scheduling/scheduling.hpp"
 
 namespace constrictor {
 
@@ -29,6 +30,7 @@ class HostContext {
   const std::string identity;     ///< names of the components of this process, comma separated
   const std::string config_hash;  ///< run_config_hash()
   const std::string host_name;
+  const std::string scheduling = scheduling_in_force();  ///< of this process, for people
   const Log log;
   std::optional<int> exit_status;  ///< set as soon as the process has to end
 

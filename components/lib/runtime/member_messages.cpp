@@ -214,6 +214,7 @@ void MemberSide::take_tick(const msg::Tick& tick) {
     if (local.member->newest_tick() <= newest) continue;
     context_.note_progress();
     context_.log.at(tick.run_id, tick.epoch, tick.index);
+    if (tick.realtime) local.jitter.arrived(HostContext::Clock::now(), tick.time_ns);
   }
 }
 
@@ -230,6 +231,7 @@ void MemberSide::take_run_state(const msg::RunState& state) {
   // The conductor sends RunState once a second. A run that is paused or held is not stuck.
   if (!state.paused && !state.ready_for_tick) return;
   const EpochId epoch{state.run_id, state.epoch};
+  if (state.paused) on_pause();
   for (const auto& local : members_) {
     if (local.member->in_epoch() && local.member->epoch() == epoch) context_.note_progress();
   }

@@ -39,7 +39,7 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
                                            static_cast<MemberSink&>(*this));
     if (member->name() == options.plant) plant_ = member.get();
     const std::string config_hash = component_config_hash(member->setup().config_file, member->setup().scenario_file);
-    members_.push_back({std::move(member), {}, false, config_hash, nullptr});
+    members_.push_back({std::move(member), {}, {}, false, config_hash, nullptr});
   }
   if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
     throw std::runtime_error(fmt::format("--plant: found '{}', accepted a component that is a plant", options.plant));
@@ -106,7 +106,12 @@ void MemberSide::on_epoch(const EpochId& epoch, std::uint64_t seed) {
     // The step of the previous epoch has been dropped. An epoch that is known already changes nothing.
     if (stepping && !local.member->stepping()) local.thread->collect();
     local.ready_sent = false;
+    local.jitter.begin();
   }
+}
+
+void MemberSide::on_pause() {
+  for (auto& local : members_) local.jitter.interrupt();
 }
 
 bool MemberSide::on_resume(const Resume& resume) {
@@ -120,7 +125,10 @@ bool MemberSide::on_resume(const Resume& resume) {
 
 void MemberSide::on_tick(const msg::Tick& tick) {
   context_.log.at(tick.run_id, tick.epoch, tick.index);
-  for (auto& local : members_) local.member->on_tick(tick);
+  for (auto& local : members_) {
+    local.member->on_tick(tick);
+    if (tick.realtime) local.jitter.arrived(HostContext::Clock::now(), tick.time_ns);
+  }
 }
 
 void MemberSide::send_ready() {
@@ -226,75 +234,6 @@ void MemberSide::done(const TickDone& step) {
   if (conductor_) return conductor_->on_done(step);
   std::string block;
   done_writer_.write(dds::to_wire(step, block));
-}
-
-void MemberSide::publish_status(LocalMember& local, std::uint8_t state) {
-  const Member& member = *local.member;
-  msg::ComponentStatus status{};
-  dds::set_text(status.component, member.name());
-  if (member.in_epoch()) {
-    status.run_id = member.epoch().run_id;
-    status.epoch = member.epoch().epoch;
-  }
-  status.incarnation = member.incarnation();
-  status.state = state;
-  status.tick = member.last_done();
-  local.meter.fill(status);
-  status.overruns = member.counters().skipped;
-  status.refused_count = member.counters().refused;
-  dds::set_text(status.last_refusal, member.counters().last_refusal);
-  dds::set_text(status.version, kVersion);
-  dds::set_text(status.idl_hash, std::string(msg::kIdlHash));
-  status.pid = ::getpid();
-  dds::set_text(status.host, context_.host_name);
-  status_writer_.write(status);
-}
-
-void MemberSide::report_waiting() {
-  if (!unmatched_.empty()) context_.log.warning("{}", bus_->explain(unmatched_));
-  for (auto& local : members_) {
-    if (local.member->stepping()) continue;
-    const MissingInput missing = local.member->missing();
-    if (missing.topic) {
-      report_waiting(*local.member, std::string(missing.topic->name), std::string(missing.topic->writer), missing.tick,
-                     missing.have, missing.want);
-    } else if (!conductor_) {
-      report_waiting(*local.member, local.member->in_epoch() ? "Tick" : "EpochStart", context_.options.plant,
-                     missing.tick, 0, 1);
-    }
-    publish_status(local, msg::kComponentWaiting);
-  }
-  // Whoever has not heard who this process is does not accept its messages. Nobody minds hearing it again.
-  send_hello();
-}
-
-void MemberSide::report_waiting(const Member& waiter, const std::string& topic, const std::string& writer,
-                                std::int64_t tick, std::uint64_t have, std::uint64_t want) {
-  context_.log.about(waiter.name())
-      .warning("waits for {} of {} at tick {} (has {}, needs {}) for {:.0f} s", topic, writer, tick, have, want,
-               context_.waited_s());
-  msg::Waiting message{};
-  dds::set_text(message.component, waiter.name());
-  if (waiter.in_epoch()) message.run_id = waiter.epoch().run_id;
-  message.tick = tick;
-  dds::set_text(message.topic, topic);
-  dds::set_text(message.writer, writer);
-  message.have = have;
-  message.want = want;
-  message.waited_s = context_.waited_s();
-  waiting_writer_.write(message);
-}
-
-void MemberSide::publish_last_statuses() {
-  // Only the final tick ends a run. A process that a signal ends earlier reports that its members are running.
-  for (auto& local : members_)
-    publish_status(local, local.member->ended() ? msg::kComponentEnded : msg::kComponentRunning);
-}
-
-void MemberSide::finish() {
-  publish_last_statuses();
-  // By the plant's last status the launcher knows that the run has ended.
-  if (plant_ && plant_->ended()) dds_wait_for_acks(status_writer_.get(), DDS_SECS(1));
 }
 
 }  // namespace constrictor

@@ -11,6 +11,7 @@
 #include "barrier/member.hpp"
 #include "runtime/client_link.hpp"
 #include "runtime/host_context.hpp"
+#include "runtime/jitter_meter.hpp"
 #include "runtime/links.hpp"
 #include "runtime/member_bus.hpp"
 #include "runtime/status_meter.hpp"
@@ -51,6 +52,8 @@ class MemberSide : private MemberSink {
   // Messages of the conductor of this process.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);
   void on_tick(const msg::Tick& tick);
+  /// Ticks stop on purpose, so that the next one is not late.
+  void on_pause();
   /// Returns whether the member is in this process.
   bool on_resume(const Resume& resume);
 
@@ -74,6 +77,7 @@ class MemberSide : private MemberSink {
   struct LocalMember {
     std::unique_ptr<Member> member;
     StatusMeter meter;
+    JitterMeter jitter;
     bool ready_sent = false;               ///< in the present epoch
     std::string config_hash;               ///< of its configuration and scenario file
     std::unique_ptr<StepThread> thread{};  ///< null: it steps in the thread of the process

@@ -2,18 +2,10 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <limits>
+#include "runtime/quantile.hpp"
 
 namespace constrictor {
 namespace {
-
-double quantile(std::vector<double>& values, double q) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 double cpu_seconds() {
   rusage usage{};
@@ -30,7 +22,6 @@ void StatusMeter::fill(msg::ComponentStatus& status) {
   status.step_time_p50_us = quantile(steps_us_, 0.5);
   status.step_time_p99_us = quantile(steps_us_, 0.99);
   status.cpu_s = cpu_seconds();
-  status.jitter_p50_us = status.jitter_p99_us = status.jitter_max_us = std::numeric_limits<double>::quiet_NaN();
   next_tick_ = status.tick + kInterval_ticks;
   steps_us_.clear();
 }

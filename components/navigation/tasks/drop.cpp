@@ -69,6 +69,8 @@ struct DropState : PhaseState {
 
 class Drop : public StatefulTask<DropState> {
  public:
+  /// The zone has a place in the map, and the object is let go by touch.
+  [[nodiscard]] bool steers_by_sight() const override { return false; }
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
     if (!grip.carrying) return "drop cannot run: the robot carries no object";
     if (!input.sightings.zones[input.parameters.drop_zone_colour].known)

@@ -25,6 +25,8 @@ struct FollowPathState {
 
 class FollowPath : public StatefulTask<FollowPathState> {
  public:
+  /// The path lies in the map.
+  [[nodiscard]] bool steers_by_sight() const override { return false; }
   std::string refusal(const TaskInput& input, const Grip&) const override {
     FollowPathState path = take(*input.path);
     advance(input.X_MH.p, path);

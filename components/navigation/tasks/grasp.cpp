@@ -27,6 +27,8 @@ struct GraspState : PhaseState {
 
 class Grasp : public StatefulTask<GraspState> {
  public:
+  /// The object is felt; the camera does not see it.
+  [[nodiscard]] bool steers_by_sight() const override { return false; }
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
     const std::uint16_t named = input.parameters.object_handle;
     if (grip.carrying) return "the body holds an object already";

@@ -80,6 +80,15 @@ std::vector<std::string> pace_arguments(const std::string& pace) {
   return {"--pace", fmt::format("{}", factor)};
 }
 
+/// The options of a process for its scheduling.
+std::vector<std::string> scheduling_arguments(const Scheduling& scheduling) {
+  std::vector<std::string> arguments;
+  if (scheduling.priority > 0) arguments.insert(arguments.end(), {"--priority", std::to_string(scheduling.priority)});
+  if (scheduling.lock_memory) arguments.emplace_back("--lock-memory");
+  if (!scheduling.cpus.empty()) arguments.insert(arguments.end(), {"--cpus", cpus_text(scheduling.cpus)});
+  return arguments;
+}
+
 /// The files that a recording contains besides those that every component has, by their names in it.
 std::map<std::string, fs::path> recorded_files(const RunOptions& options, const LaunchManifest& manifest) {
   std::map<std::string, fs::path> files;
@@ -192,7 +201,8 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
   common.insert(common.end(), latencies.begin(), latencies.end());
   if (options.max_sim_time_s > 0)
     common.insert(common.end(), {"--max-sim-time", fmt::format("{}", options.max_sim_time_s)});
-  std::vector<std::string> of_plant = pace_arguments(manifest.real_time ? "realtime" : options.pace);
+  const std::string pace = manifest.real_time ? "realtime" : options.pace;
+  std::vector<std::string> of_plant = pace_arguments(pace);
   if (options.record) {
     of_plant.insert(of_plant.end(), {"--record", "--images", options.images});
     for (const auto& [name, file] : recorded_files(options, manifest))
@@ -211,6 +221,10 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
     arguments.insert(arguments.end(), {"--incarnation", std::to_string(incarnation)});
     const auto configs = config_arguments(manifest, process.components);
     arguments.insert(arguments.end(), configs.begin(), configs.end());
+    if (pace == "realtime") {
+      const auto scheduling = scheduling_arguments(process.scheduling);
+      arguments.insert(arguments.end(), scheduling.begin(), scheduling.end());
+    }
     const auto& hosted = process.components;
     if (std::find(hosted.begin(), hosted.end(), manifest.plant) != hosted.end())
       arguments.insert(arguments.end(), of_plant.begin(), of_plant.end());

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <stdexcept>
 
 #include "component/component.hpp"
 #include "component/data_path.hpp"
@@ -24,6 +26,33 @@ std::vector<std::string> LaunchManifest::roster() const {
   for (const auto& process : processes) names.insert(names.end(), process.components.begin(), process.components.end());
   return names;
 }
+
+namespace {
+
+Scheduling read_scheduling(Configuration from) {
+  Scheduling scheduling;
+  scheduling.priority = static_cast<int>(from.integer("priority", 0, 99, scheduling.priority));
+  scheduling.lock_memory = from.flag("lock_memory", scheduling.lock_memory);
+  if (const std::string cpus = from.text("cpus", {}, ""); !cpus.empty()) {
+    try {
+      scheduling.cpus = parse_cpus(cpus);
+    } catch (const std::invalid_argument& error) {
+      throw from.error("cpus", error.what());
+    }
+  }
+  from.finish();
+  return scheduling;
+}
+
+/// Of a process that hosts the components of both.
+Scheduling join(const Scheduling& a, const Scheduling& b) {
+  Scheduling both{std::max(a.priority, b.priority), a.lock_memory || b.lock_memory, {}};
+  if (!a.cpus.empty() && !b.cpus.empty())
+    std::set_union(a.cpus.begin(), a.cpus.end(), b.cpus.begin(), b.cpus.end(), std::back_inserter(both.cpus));
+  return both;
+}
+
+}  // namespace
 
 LaunchManifest load_manifest(const std::filesystem::path& file) {
   Configuration root = Configuration::load(file);
@@ -64,6 +93,7 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
       }
     }
     configs.finish();
+    process.scheduling = read_scheduling(entry.section("scheduling", false));
     entry.finish();
     manifest.processes.push_back(std::move(process));
   }
@@ -102,6 +132,8 @@ void regroup(LaunchManifest& manifest, const std::vector<std::vector<std::string
             fmt::format("--group: found {} and {}, which the manifest puts on different hosts; "
                         "accepted components of one host, or --in-process",
                         together.components.front(), component));
+      together.scheduling =
+          together.components.empty() ? home->scheduling : join(together.scheduling, home->scheduling);
       together.host = home->host;
       together.components.push_back(component);
       if (!home->program.empty()) together.program = home->program;

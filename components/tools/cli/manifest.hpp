@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "scheduling/scheduling.hpp"
+
 namespace constrictor {
 class Configuration;
 }
@@ -29,6 +31,7 @@ struct ProcessPlan {
   int restarts = 100;   ///< largest number of restarts
   std::vector<std::string> environment;  ///< "NAME=VALUE", added to the launcher's environment
   std::string host = {};                 ///< name of the host that it runs on; empty: the launcher's
+  Scheduling scheduling = {};            ///< at real-time pace
 
   /// "control", or "navigation+control" if it hosts several.
   [[nodiscard]] std::string name() const;

@@ -1,10 +1,12 @@
 #include "cli/run_report.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "constrictor/json.hpp"
+#include "constrictor/text.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -18,6 +20,26 @@ std::uint64_t sum_over(const std::vector<std::string>& components, const std::ma
     if (found != counts.end()) sum += found->second;
   }
   return sum;
+}
+
+/// [us] of these components; null: none of them has measured it.
+Json largest_jitter(const std::vector<std::string>& components, const RunView& view) {
+  Json largest = nullptr;
+  for (const auto& component : components) {
+    const auto found = view.components.find(component);
+    if (found == view.components.end() || !std::isfinite(found->second.jitter_max_us)) continue;
+    if (largest.is_null() || largest < found->second.jitter_max_us) largest = found->second.jitter_max_us;
+  }
+  return largest;
+}
+
+/// Of a process with these components; null: it has sent no status.
+Json scheduling_of(const std::vector<std::string>& components, const RunView& view) {
+  for (const auto& component : components) {
+    const auto found = view.components.find(component);
+    if (found != view.components.end()) return std::string(text_of(found->second.scheduling));
+  }
+  return nullptr;
 }
 
 RunVerdict judge(const RunOutcome& outcome, const RunView& view, const Json& mission) {
@@ -65,6 +87,8 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                     {"max_pss_mib", process.max_pss_mib},
                     {"restarts", process.restarts},
                     {"overruns", sum_over(process.components, view.overruns)},
+                    {"jitter_max_us", largest_jitter(process.components, view)},
+                    {"scheduling", scheduling_of(process.components, view)},
                     {"refused", sum_over(process.components, view.refused)}});
   }
   report["processes"] = std::move(list);

@@ -2,6 +2,7 @@
 // files are those of the project, others are written by the tests.
 #include "cli/launch_plan.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,6 +144,18 @@ TEST_F(LaunchPlanTest, TheRosterDoesNotDependOnTheGroupingIntoProcesses) {
   EXPECT_EQ(each.manifest.processes.size(), each.roster.size());
   EXPECT_EQ(grouped.manifest.processes.size(), each.roster.size() - 1);
   EXPECT_EQ(one.manifest.processes.size(), 1u);
+}
+
+TEST_F(LaunchPlanTest, OnlyRealTimePaceAsksForScheduling) {
+  LaunchPlan plan = make_launch_plan(options_);
+  plan.manifest.processes[0].scheduling = {5, true, {0, 2}};
+  const auto arguments = [&] {
+    const auto line = make_command_line(options_, plan, 7, "r", 1)(plan.manifest.processes[0], 1);
+    return fmt::format("{}", fmt::join(line, " "));
+  };
+  EXPECT_EQ(arguments().find("--priority"), std::string::npos);
+  options_.pace = "realtime";
+  EXPECT_NE(arguments().find("--priority 5 --lock-memory --cpus 0,2"), std::string::npos) << arguments();
 }
 
 TEST_F(LaunchPlanTest, CommandLinesNameTheConfigurationOfTheHostedComponentsOnly) {

@@ -103,6 +103,34 @@ TEST(Manifest, RefusesALatencyThatCannotBe) {
             ":7: processes[1].latency_ticks: found 0, accepted a whole number 1 to 100");
 }
 
+TEST(Manifest, ReadsTheSchedulingOfProcesses) {
+  const File file(std::string(kHead) + "  - components: [physics]\n    scheduling: {priority: 5, lock_memory: true}\n" +
+                  "  - components: [a]\n    scheduling: {priority: 3, cpus: 0-1}\n" +
+                  "  - components: [b]\n    scheduling: {cpus: \"3\"}\n");
+  LaunchManifest manifest = load_manifest(file.path());
+  EXPECT_EQ(manifest.processes[0].scheduling.priority, 5);
+  EXPECT_TRUE(manifest.processes[0].scheduling.lock_memory);
+  EXPECT_EQ(manifest.processes[1].scheduling.cpus, (std::vector<int>{0, 1}));
+  regroup(manifest, {{"a", "b"}});
+  const Scheduling& together = manifest.processes[0].scheduling;
+  EXPECT_EQ(together.priority, 3);
+  EXPECT_EQ(together.cpus, (std::vector<int>{0, 1, 3}));
+  regroup(manifest, {{"physics", "a", "b"}});
+  EXPECT_EQ(manifest.processes[0].scheduling.priority, 5);
+  EXPECT_TRUE(manifest.processes[0].scheduling.cpus.empty()) << "physics may use all processors";
+}
+
+TEST(Manifest, RefusesASchedulingThatCannotBe) {
+  const auto error = [](const std::string& scheduling) {
+    return File(std::string(kHead) + "  - components: [physics]\n    scheduling: {" + scheduling + "}\n").error();
+  };
+  EXPECT_EQ(error("priority: 100"), ":6: processes[0].scheduling.priority: found 100, accepted a whole number 0 to 99");
+  EXPECT_EQ(error("cpus: 2-1"),
+            ":6: processes[0].scheduling.cpus: found '2-1', accepted numbers of processors from 0 to 1023, for example "
+            "0,2-3");
+  EXPECT_NE(error("nice: 3").find("processes[0].scheduling.nice"), std::string::npos);
+}
+
 TEST(Manifest, ReadsProcesses) {
   const File file(std::string(kHead) +
                   "  - components: [physics]\n  - components: [a, b]\n    restarts: 3\n    environment: [X=1]\n    "

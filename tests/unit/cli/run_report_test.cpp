@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "constrictor/text.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -37,6 +40,9 @@ TEST_F(RunReport, CombinesTheMissionWithTheProcesses) {
   view.overruns["a"] = 2;
   view.overruns["b"] = 3;
   view.refused["b"] = 4;
+  view.components["a"].jitter_max_us = std::nan("");
+  view.components["b"].jitter_max_us = 1500.0;
+  set_text(view.components["a"].scheduling, "FIFO 5");
   const std::vector<ProcessRecord> processes = {{"a+b", {"a", "b"}, 1.5, 30.0, 1}, {"c", {"c"}, 0.5, 10.0, 0}};
   const RunVerdict verdict = write_report(dir_, {"case_study", 7, 4.0, "", ""}, view, processes);
   EXPECT_TRUE(verdict.success);
@@ -54,6 +60,9 @@ TEST_F(RunReport, CombinesTheMissionWithTheProcesses) {
   EXPECT_EQ(json["processes"][0]["refused"], 4);
   EXPECT_EQ(json["processes"][0]["restarts"], 1);
   EXPECT_EQ(json["processes"][1]["refused"], 0);
+  EXPECT_EQ(json["processes"][0]["jitter_max_us"], 1500.0);
+  EXPECT_EQ(json["processes"][0]["scheduling"], "FIFO 5");
+  EXPECT_TRUE(json["processes"][1]["jitter_max_us"].is_null()) << "no component of the process has measured it";
 }
 
 TEST_F(RunReport, WithoutAMissionFileTheRunHasNoSuccess) {

@@ -139,6 +139,13 @@ std::string table(const RunNote& run, const RunView& view, const RateMeter& rate
                         number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name),
                         status.incarnation, status.pid);
     if (hosts.size() > 1) text += fmt::format("{:<12}on {}\n", "", status.host);
+    if (std::isfinite(status.jitter_p99_us))
+      text += wrapped(fmt::format("ticks {:.1f} ms late (99 %), {:.1f} at most; scheduling: {}",
+                                  1e-3 * status.jitter_p99_us, 1e-3 * status.jitter_max_us,
+                                  printable(text_of(status.scheduling))),
+                      12) +
+              "\n";
+    if (*status.device) text += wrapped(fmt::format("device: {}", printable(text_of(status.device))), 12) + "\n";
     if (*status.last_refusal) text += wrapped(fmt::format("last refusal: {}", status.last_refusal), 12) + "\n";
   }
   return text;
@@ -180,6 +187,11 @@ Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
                     {"step_time_p50_us", finite(status.step_time_p50_us)},
                     {"step_time_p99_us", finite(status.step_time_p99_us)},
                     {"overruns", view.overruns.at(name)},
+                    {"jitter_p50_us", finite(status.jitter_p50_us)},
+                    {"jitter_p99_us", finite(status.jitter_p99_us)},
+                    {"jitter_max_us", finite(status.jitter_max_us)},
+                    {"scheduling", std::string(status.scheduling)},
+                    {"device", std::string(status.device)},
                     {"refused", view.refused.at(name)},
                     {"last_refusal", std::string(status.last_refusal)},
                     {"incarnation", status.incarnation},
