@@ -2,26 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "robot/description.hpp"
+
 namespace constrictor {
-namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// [kg m²] of a homogeneous capsule across its axis, as the simulation has it. Source: cylinder and two half spheres.
-double capsule_kg_m2(double mass_kg, double radius_m, double length_m) {
-  const double cylinder_m3 = std::numbers::pi * radius_m * radius_m * length_m;
-  const double sphere_m3 = 4.0 / 3.0 * std::numbers::pi * radius_m * radius_m * radius_m;
-  const double cylinder_kg = mass_kg * cylinder_m3 / (cylinder_m3 + sphere_m3);
-  const double sphere_kg = mass_kg - cylinder_kg;
-  return cylinder_kg * (0.25 * radius_m * radius_m + length_m * length_m / 12.0) +
-         sphere_kg * (0.4 * radius_m * radius_m + 0.375 * radius_m * length_m + 0.25 * length_m * length_m);
-}
-
-}  // namespace
 
 JointInertia::JointInertia(const RobotModel& robot, std::vector<std::size_t> joints, double mass_share)
     : joints_(std::move(joints)) {
@@ -35,7 +23,7 @@ JointInertia::JointInertia(const RobotModel& robot, std::vector<std::size_t> joi
   }
   const VectorXd mass = module_kg * modules;
   const VectorXd length = robot.module_length_m * modules;
-  const double module_kg_m2 = capsule_kg_m2(module_kg, robot.module_radius_m, robot.module_length_m);
+  const double module_kg_m2 = mass_share * module_inertia(robot).across_kg_m2;
   own_kg_m2_.resize(n + 1);
   for (Eigen::Index i = 0; i <= n; ++i) {
     // Modules at equal distances in a row: the sum of (k - mean)^2 is m (m^2 - 1) / 12.

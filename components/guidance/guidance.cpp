@@ -11,6 +11,7 @@ namespace {
 constexpr std::int64_t kMapPeriodTicks = 5;
 constexpr std::size_t kTrackTicks = 110;  // covers the window of the speed and the delay of any camera
 
+/// [rad] yaw of the x axis in the ground plane, also if the length of the quaternion of an IMU is not exactly 1.
 double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }

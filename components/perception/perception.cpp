@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "robot/planar_message.hpp"
 #include "robot/robot_model.hpp"
 
 namespace constrictor {
@@ -22,11 +23,6 @@ std::uint64_t fingerprint(const dds_sequence_octet& bytes) {
     hash = (hash ^ word) * 0x100000001b3;
   }
   return hash;
-}
-
-/// [rad] yaw of the x axis in the ground plane.
-double yaw_of(const msg::Quaternion& q) {
-  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
 }
 
 }  // namespace

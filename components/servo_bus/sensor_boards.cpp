@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dynamixel/sensor_board.hpp"
+#include "robot/planar_message.hpp"
 
 namespace constrictor {
 
@@ -41,10 +42,6 @@ std::optional<msg::Quaternion> unit_quaternion(const BoardData& board) {
   const double length = std::sqrt(w * w + v.x * v.x + v.y * v.y + v.z * v.z);
   if (std::abs(length - 1.0) > 0.01) return std::nullopt;
   return msg::Quaternion{w / length, v.x / length, v.y / length, v.z / length};
-}
-
-double yaw_of(const msg::Quaternion& q) {
-  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
 }
 
 /// The orientation in a level frame that is turned to the left by `yaw_rad`.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/planar_message.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -23,11 +25,6 @@ void add(msg::Vector3& sum, const Eigen::Vector3d& v) {
   sum.x += v.x();
   sum.y += v.y();
   sum.z += v.z();
-}
-
-/// [rad] yaw of the x axis in the ground plane.
-double yaw_of(const Eigen::Quaterniond& q) {
-  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
 }  // namespace
@@ -81,7 +78,7 @@ msg::ImuState Sensors::imu(const World& world, double elapsed_s) {
   const ImuTruth truth = world.imu();
   if (!started_) {
     started_ = true;
-    start_yaw_rad_ = yaw_of(truth.q_WHead);
+    start_yaw_rad_ = yaw_of(quaternion(truth.q_WHead));
   } else if (noise_) {
     yaw_drift_rad_ += robot_.imu_yaw_drift_rad_sqrt_s * std::sqrt(elapsed_s) * imu_random_.normal();
   }

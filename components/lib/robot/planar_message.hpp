@@ -1,4 +1,4 @@
-// Poses of messages in the ground plane.
+// Poses and orientations of messages in the ground plane.
 #pragma once
 
 #include <cmath>
@@ -8,11 +8,14 @@
 
 namespace constrictor {
 
+/// [rad] yaw of the x axis in the ground plane. `q` must have the length 1.
+inline double yaw_of(const msg::Quaternion& q) {
+  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
+}
+
 /// Position in the ground plane, and yaw of the x axis.
 inline PlanarPose planar(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {{pose.position_m.x, pose.position_m.y},
-          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
+  return {{pose.position_m.x, pose.position_m.y}, yaw_of(pose.orientation)};
 }
 
 }  // namespace constrictor

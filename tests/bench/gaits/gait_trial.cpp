@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
-#include "constrictor/text.hpp"
+#include "bench/method_driver.hpp"
 #include "sim/world/world.hpp"
 
 namespace constrictor::gaits {
@@ -53,48 +52,15 @@ Scenario scene_of(const Trial& trial) {
   return scene;
 }
 
-/// Control's method and limiter, without the component around them.
-class Driver {
- public:
-  Driver(const RobotModel& robot, const Trial& trial)
-      : robot_(robot), trial_(trial), chain_(robot), limiter_(robot, 1.0), method_(registry_.find(trial.method)) {
-    if (!method_) throw std::invalid_argument("control has no method '" + trial.method + "'");
-    set_text(desired_.method, trial.method);
-    desired_.frequency_hz = trial.frequency_hz;
-    desired_.amplitude_rad = 0.5;
-    desired_.wavelength_m = 1.07;
-    desired_.curvature_1_m = trial.curvature_1_m;
-    if (!method_->accepts(desired_, chain_)) throw std::invalid_argument(trial.method + " does not accept the trial");
+void drive(World& world, MethodDriver& driver) {
+  JointArray angle_rad{}, rate_rad_s{};
+  for (std::size_t j = 0; j < world.joint_count(); ++j) {
+    angle_rad[j] = world.joint_angle_rad(j);
+    rate_rad_s[j] = world.joint_rate_rad_s(j);
   }
-
-  void drive(World& world) {
-    JointArray measured_rad{};
-    for (std::size_t j = 0; j < robot_.joints.size(); ++j) measured_rad[j] = world.joint_angle_rad(j);
-    const JointArray commanded_rad = started_ ? limit_.position_rad : measured_rad;
-    const MethodInput input{robot_,       chain_,        trial_.config, desired_, measured_rad,
-                            JointArray{}, commanded_rad, kPeriod_s,     {}};
-    if (!started_) method_->start(input, body_);
-    started_ = true;
-    Setpoints setpoints{commanded_rad, {}};
-    method_->step(input, body_, setpoints);
-    const msg::JointCommand command = limiter_.limit(setpoints, measured_rad, kPeriod_s, limit_);
-    const std::size_t n = robot_.joints.size();
-    world.set_servo({command.position_rad, n}, {command.velocity_rad_s, n}, {command.torque_limit_nm, n});
-    world.advance(kPeriod_s);
-  }
-
- private:
-  const RobotModel& robot_;
-  const Trial& trial_;
-  YawChain chain_;
-  JointLimiter limiter_;
-  MethodRegistry registry_;
-  const ControlMethod* method_;
-  msg::DesiredTrajectory desired_{};
-  BodyState body_;
-  LimiterState limit_;
-  bool started_ = false;
-};
+  world.set_servo(driver.step(angle_rad, rate_rad_s));
+  world.advance(kPeriod_s);
+}
 
 }  // namespace
 
@@ -102,7 +68,7 @@ Course run(const RobotModel& robot_of_file, const Trial& trial) {
   RobotModel robot = robot_of_file;
   if (trial.friction) robot.friction_along = robot.friction_across = *trial.friction;
   World world(robot, scene_of(trial));
-  Driver driver(robot, trial);
+  MethodDriver driver(robot, {trial.method, trial.config, kPeriod_s, trial.frequency_hz, trial.curvature_1_m});
   const double gait_s = std::max(1.0 / std::abs(trial.frequency_hz), kPeriod_s);
   const auto settle = static_cast<int>(std::lround(kSettle_s / kPeriod_s));
   // Whole periods of the gait, so that its own to and fro does not count.
@@ -120,7 +86,7 @@ Course run(const RobotModel& robot_of_file, const Trial& trial) {
       from_m = centre_of(outline_of(world, tick * kPeriod_s));
       from_rad = direction_rad = direction_of(world);
     }
-    driver.drive(world);
+    drive(world, driver);
     if (tick >= settle) {
       const double before_rad = std::exchange(direction_rad, direction_of(world));
       turned_rad += std::remainder(direction_rad - before_rad, 2.0 * std::numbers::pi);
