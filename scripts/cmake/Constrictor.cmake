@@ -225,7 +225,9 @@ function(constrictor_test name)
     return()
   endif()
   include(GoogleTest)
-  gtest_discover_tests(${name} TEST_PREFIX "${prefix}" DISCOVERY_TIMEOUT 60
+  # Without NO_PRETTY_VALUES, the bytes of a parameter that cannot be printed would become part of a name, and the
+  # names would change with each build.
+  gtest_discover_tests(${name} TEST_PREFIX "${prefix}" DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_SERIAL}
                FIXTURES_REQUIRED "${ARG_FIXTURE}")
 endfunction()
