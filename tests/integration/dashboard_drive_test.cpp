@@ -24,7 +24,6 @@ class DashboardDrive : public CliFixture {
     port_ = static_cast<std::uint16_t>(std::stoi(output.substr(output.find("127.0.0.1:") + 10)));
   }
   void TearDown() override {
-    // If the test has killed the dashboard, the end of the run waits for it, until DDS knows that it is dead (10 s).
     if (!dashboard_) return launcher_->signal(SIGKILL);
     EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
     EXPECT_EQ(launcher_->wait(20s), 128 + SIGTERM);

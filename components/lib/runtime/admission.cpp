@@ -35,6 +35,14 @@ bool Admission::announce(const std::string& component, std::uint32_t incarnation
   return true;
 }
 
+bool Admission::lives(const std::string& component) const {
+  const auto known = announced_.find(component);
+  if (known == announced_.end()) return false;
+  const auto& participants = known->second.participants;
+  return std::any_of(participants.begin(), participants.end(),
+                     [this](const dds::GuidPrefix& participant) { return book_.lives(participant); });
+}
+
 Admission::Verdict Admission::judge(const std::string& component, dds_instance_handle_t writer) {
   const auto known = announced_.find(component);
   if (known == announced_.end()) return Verdict::kUnknown;

@@ -26,6 +26,10 @@ class Admission {
   /// living participant has announced the member with the same or a higher incarnation: the Hello must be ignored.
   bool announce(const std::string& component, std::uint32_t incarnation, const dds::GuidPrefix& participant);
 
+  /// Whether a participant that has announced the component is in the domain. One that was killed counts until its
+  /// lease lapses.
+  [[nodiscard]] bool lives(const std::string& component) const;
+
   enum class Verdict {
     kAccepted,
     kUnknown,   ///< nobody has announced this member yet

@@ -231,10 +231,7 @@ void ConductorSide::report_waiting() {
   }
 }
 
-void ConductorSide::finish(bool wait_for_final_tick) {
-  // The final tick must reach every member before its writer is deleted. The wait is bounded, because a stopped process
-  // (SIGSTOP) must not prevent the end of the run.
-  if (wait_for_final_tick) dds_wait_for_acks(tick_writer_.get(), DDS_SECS(2));
+void ConductorSide::finish() {
   flush_hash_log();
   if (recorder_) recorder_->finish();
 }

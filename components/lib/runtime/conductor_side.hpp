@@ -62,9 +62,10 @@ class ConductorSide : private ConductorSink {
   [[nodiscard]] bool stays();
   /// Reports the members that delay the next tick.
   void report_waiting();
-  /// Closes hash log and recording. If `wait_for_final_tick` is true, first waits a limited time until all members have
-  /// received the final tick.
-  void finish(bool wait_for_final_tick);
+  /// True if all members in other processes have reported that they have ended.
+  [[nodiscard]] bool all_ended() const;
+  /// Closes hash log and recording.
+  void finish();
 
  private:
   // ConductorSink

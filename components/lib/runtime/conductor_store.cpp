@@ -104,10 +104,13 @@ bool ConductorSide::stays() {
     members_.publish_last_statuses();  // by them the launcher knows that the run is over
   }
   context_.note_progress();
+  return now < *stays_until_ && !all_ended();
+}
+
+bool ConductorSide::all_ended() const {
   const auto& roster = context_.options.roster;
-  return now < *stays_until_ && std::any_of(roster.begin(), roster.end(), [this](const std::string& name) {
-           return !ended_.contains(name) && !members_.hosts(name);
-         });
+  return std::all_of(roster.begin(), roster.end(),
+                     [this](const std::string& name) { return ended_.contains(name) || members_.hosts(name); });
 }
 
 void ConductorSide::flush_hash_log() {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 
+#include "cyclone/acknowledgements.hpp"
 #include "cyclone/own_host.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
@@ -21,6 +23,12 @@ namespace {
 
 constexpr double kWaitingReportAfter_s = 2.0;
 constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
+
+// Bounds on the time in which a process that ends waits until its last messages have been received.
+constexpr dds_duration_t kWaitForMembers_ns = DDS_SECS(2);   // the plant's process, while a member has not ended
+constexpr dds_duration_t kWaitForLauncher_ns = DDS_SECS(1);  // by the plant's last status it knows that the run is over
+constexpr dds_duration_t kWaitForPlant_ns = DDS_SECS(10);    // every other process, while the plant's is there
+constexpr dds_duration_t kWaitAlone_ns = DDS_MSECS(500);     // and after that, for readers that are not members
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
@@ -90,11 +98,29 @@ class Host::Impl {
     }
     const int status = context_.exit_status.value_or(exit_status::kOk);
     members_.finish();
-    if (conductor_) conductor_->finish(status == exit_status::kOk);
+    wait_for_readers();
+    if (conductor_) conductor_->finish();
     return status;
   }
 
  private:
+  /// Waits until the last messages have been received. An observer that was killed or stopped delays the end of the run
+  /// no longer than it takes to be sure that no member needs a message any more: the plant's process leaves when all
+  /// members have reported their end, and this is what the other processes wait for.
+  void wait_for_readers() const {
+    const bool ended = members_.all_ended();
+    dds_duration_t bound_ns = kWaitForLauncher_ns;
+    if (ended && !conductor_) bound_ns = kWaitForPlant_ns;
+    else if (ended && !conductor_->all_ended()) bound_ns = kWaitForMembers_ns;
+    std::optional<dds_time_t> alone_since;
+    const auto give_up = [&] {
+      if (!ended || conductor_) return false;
+      if (!members_.plant_lives() && !alone_since) alone_since = dds_time();
+      return g_stop != 0 || (alone_since && dds_time() - *alone_since > kWaitAlone_ns);
+    };
+    dds::wait_for_acknowledgements(links_.participant(), bound_ns, give_up);
+  }
+
   [[nodiscard]] dds_duration_t longest_wait_ns() const {
     const dds_duration_t idle_ns = members_.all_ready() ? DDS_MSECS(100) : DDS_MSECS(10);
     return conductor_ ? std::min<dds_duration_t>(conductor_->wait_ns(), idle_ns) : idle_ns;

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "cyclone/acknowledgements.hpp"
+#include "cyclone/create_domain.hpp"
 #include "cyclone/wait_set.hpp"
 
 namespace constrictor {
 
 Links::Links(std::uint32_t domain, const std::string& identity)
-    : domain_(domain, dds::Reach::kLoopback, identity),
-      wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
-      always_wait_set_(dds_create_waitset(domain_.participant()), "dds_create_waitset"),
-      woken_(dds_create_guardcondition(domain_.participant()), "dds_create_guardcondition") {
+    : domain_(dds::create_domain(domain, dds::Reach::kLoopback, dds::kNoLinger)),
+      participant_(dds::create_participant(domain, dds::Reach::kLoopback, identity)),
+      wait_set_(dds_create_waitset(participant_.get()), "dds_create_waitset"),
+      always_wait_set_(dds_create_waitset(participant_.get()), "dds_create_waitset"),
+      woken_(dds_create_guardcondition(participant_.get()), "dds_create_guardcondition") {
   const auto reset = [this] {
     bool woken = false;
     dds::check(dds_take_guardcondition(woken_.get(), &woken), "dds_take_guardcondition");

@@ -18,9 +18,10 @@ class Links {
   /// Receives the reason why a message on a topic was rejected.
   using Reject = std::function<void(const std::string& topic, const std::string& reason)>;
 
-  /// Joins `domain`, in a secured run with this identity. Throws what dds::Domain throws.
+  /// Joins `domain`, in a secured run with this identity. Writers do not wait for readers when they are deleted: call
+  /// dds::wait_for_acknowledgements() before. Throws what dds::Domain throws.
   Links(std::uint32_t domain, const std::string& identity);
-  [[nodiscard]] dds_entity_t participant() const { return domain_.participant(); }
+  [[nodiscard]] dds_entity_t participant() const { return participant_.get(); }
 
   /// Sets the function that receives rejections. Must be called before the first message is taken.
   void on_rejected(Reject reject) { reject_ = std::move(reject); }
@@ -80,7 +81,8 @@ class Links {
   void attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes);
 
   Admission admission_;  // first, because the readers of this process note their writers in it
-  dds::Domain domain_;
+  dds::Entity domain_;
+  dds::Entity participant_;
   dds::Entity wait_set_;         // of all readers
   dds::Entity always_wait_set_;  // of the readers with Wakes::kAlways
   dds::Entity woken_;            // a guard condition in both wait sets

@@ -79,8 +79,6 @@ void MemberSide::finish() {
   publish_last_statuses();
   // The ticks arrive once in a process, whichever of its members they are for.
   if (const std::string late = members_.front().jitter.histogram(); !late.empty()) context_.log.info("{}", late);
-  // By the plant's last status the launcher knows that the run has ended.
-  if (plant_ && plant_->ended()) dds_wait_for_acks(status_writer_.get(), DDS_SECS(1));
 }
 
 }  // namespace constrictor

@@ -212,6 +212,8 @@ bool MemberSide::all_ended() const {
   return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->ended(); });
 }
 
+bool MemberSide::plant_lives() const { return plant_ || links_.admission().lives(context_.options.plant); }
+
 bool MemberSide::want_inputs() const {
   return std::any_of(members_.begin(), members_.end(),
                      [](const auto& local) { return !local.ready_sent || local.member->has_due_tick(); });

@@ -43,6 +43,8 @@ class MemberSide : private MemberSink {
   /// Whether a member is stepping in a thread of its own.
   [[nodiscard]] bool stepping() const;
   [[nodiscard]] bool all_ended() const;
+  /// Whether the plant is in this process, or its process is known and has not left the domain.
+  [[nodiscard]] bool plant_lives() const;
   /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
   /// samples can wait for the next tick, too.
   [[nodiscard]] bool want_inputs() const;
@@ -68,7 +70,7 @@ class MemberSide : private MemberSink {
   void report_waiting(const Member& waiter, const std::string& topic, const std::string& writer, std::int64_t tick,
                       std::uint64_t have, std::uint64_t want);
   void publish_last_statuses();
-  /// Sends the last status of each member; at the end of the run also waits until it is received, with a bound.
+  /// Sends the last status of each member.
   void finish();
   /// Whether the component is in this process.
   [[nodiscard]] bool hosts(const std::string& component) const;

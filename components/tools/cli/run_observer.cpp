@@ -6,7 +6,8 @@
 
 #include "constrictor/constants.hpp"
 #include "constrictor/topics.hpp"
-#include "cyclone/domain.hpp"
+#include "cyclone/acknowledgements.hpp"
+#include "cyclone/create_domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "runtime/wire.hpp"
 
@@ -22,18 +23,19 @@ constexpr std::int64_t kMostAhead =
 
 struct RunObserver::Readers {
   explicit Readers(std::uint32_t number)
-      : domain(number),
+      : domain(dds::create_domain(number, dds::Reach::kLoopback, dds::kNoLinger)),
+        participant(dds::create_participant(number, dds::Reach::kLoopback, {})),
         // Reliable, because the report contains them, or sums of them.
-        hello(dds::Reader<msg::Hello>::member(domain.participant(), wire::kHello)),
-        status(dds::Reader<msg::ComponentStatus>::member(domain.participant(), wire::kStatus)),
-        waiting(dds::Reader<msg::Waiting>::member(domain.participant(), wire::kWaiting)),
-        tick(dds::Reader<msg::Tick>::observer(domain.participant(), wire::kTick)),
-        mission(
-            dds::Reader<msg::MissionStatus>::observer(domain.participant(), std::string(topics::kMissionStatus.name))),
-        task(dds::Reader<msg::TaskStatus>::observer(domain.participant(), std::string(topics::kTaskStatus.name))),
-        authority(dds::Reader<msg::Authority>::observer(domain.participant(), std::string(topics::kAuthority.name))),
-        run_state(dds::Reader<msg::RunState>::observer(domain.participant(), wire::kRunState)) {}
-  dds::Domain domain;
+        hello(dds::Reader<msg::Hello>::member(participant.get(), wire::kHello)),
+        status(dds::Reader<msg::ComponentStatus>::member(participant.get(), wire::kStatus)),
+        waiting(dds::Reader<msg::Waiting>::member(participant.get(), wire::kWaiting)),
+        tick(dds::Reader<msg::Tick>::observer(participant.get(), wire::kTick)),
+        mission(dds::Reader<msg::MissionStatus>::observer(participant.get(), std::string(topics::kMissionStatus.name))),
+        task(dds::Reader<msg::TaskStatus>::observer(participant.get(), std::string(topics::kTaskStatus.name))),
+        authority(dds::Reader<msg::Authority>::observer(participant.get(), std::string(topics::kAuthority.name))),
+        run_state(dds::Reader<msg::RunState>::observer(participant.get(), wire::kRunState)) {}
+  dds::Entity domain;
+  dds::Entity participant;
   dds::Reader<msg::Hello> hello;
   dds::Reader<msg::ComponentStatus> status;
   dds::Reader<msg::Waiting> waiting;
@@ -130,7 +132,7 @@ RunObserver::RunObserver(std::uint32_t domain, std::uint64_t run_id)
     : readers_(std::make_unique<Readers>(domain)), view_(run_id) {}
 RunObserver::~RunObserver() = default;
 
-std::int32_t RunObserver::participant() const { return readers_->domain.participant(); }
+std::int32_t RunObserver::participant() const { return readers_->participant.get(); }
 
 std::vector<std::string> RunObserver::poll() {
   const auto into_view = [this](const auto& message) { view_.take(message); };

@@ -6,11 +6,14 @@
 
 #include "cli/log/log_files.hpp"
 #include "constrictor/messages.hpp"
+#include "cyclone/acknowledgements.hpp"
 #include "cyclone/own_host.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
 namespace {
+
+constexpr dds_duration_t kLastWait_ns = DDS_MSECS(200);  // for readers of the last lines
 
 Log open_log(const std::filesystem::path& folder, bool continued) {
   std::filesystem::create_directories(folder);
@@ -23,10 +26,19 @@ Log open_log(const std::filesystem::path& folder, bool continued) {
 
 LaunchLog::LaunchLog(ProgressDisplay& display, const std::filesystem::path& folder, std::int32_t participant,
                      std::uint64_t run_id, bool continued)
-    : display_(display), run_id_(run_id), log_(open_log(folder, continued)), publisher_(participant, log_, kName, 1) {
+    : display_(display),
+      participant_(participant),
+      run_id_(run_id),
+      log_(open_log(folder, continued)),
+      publisher_(participant, log_, kName, 1) {
   log_.at(run_id_, 0, -1);
   const char* program = std::getenv(kLauncherVariable);
   log_.info("{}, IDL {:.12}, pid {} on {}", program ? program : "constrictor", msg::kIdlHash, ::getpid(), own_host());
+}
+
+LaunchLog::~LaunchLog() {
+  // An observer that was killed must not delay the end of the launcher for longer.
+  dds::wait_for_acknowledgements(participant_, kLastWait_ns);
 }
 
 void LaunchLog::say(const std::string& line) {

@@ -20,6 +20,9 @@ class LaunchLog {
   /// and participant must outlive this object. Throws std::exception if the file cannot be written.
   LaunchLog(ProgressDisplay& display, const std::filesystem::path& folder, std::int32_t participant,
             std::uint64_t run_id, bool continued);
+  /// Waits until the last lines have been received, at most 0.2 s.
+  ~LaunchLog();
+  LaunchLog(const LaunchLog&) = delete;
   /// Prints and logs a line.
   void say(const std::string& line);
   /// The same for something that should not happen.
@@ -29,6 +32,7 @@ class LaunchLog {
 
  private:
   ProgressDisplay& display_;
+  std::int32_t participant_;
   std::uint64_t run_id_;
   Log log_;
   LogPublisher publisher_;
