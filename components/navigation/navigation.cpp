@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "component/task_parameters.hpp"
+#include "component/task_refusal.hpp"
 #include "constrictor/text.hpp"
 #include "navigation/motions.hpp"
 
@@ -75,7 +76,7 @@ void Navigation::step(const Tick& tick) {
 void Navigation::take_commands_without_senses() {
   for (const auto& command : commands_in_) {
     if (command.command == msg::kCommandStart) {
-      write_refusal(command, "the joints, the contacts or the pose are missing or stale");
+      write_refusal(command, std::string(kNotReady) + "the joints, the contacts or the pose are missing or stale");
     } else {
       cancel(command);
     }

@@ -185,12 +185,20 @@ Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) cons
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
   const unsigned attempt = memory_.searches++;
   const auto turn_rad = wanted_turn_rad(inputs);
-  memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12;
+  memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12 && !refusals().rejected();
   Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
   if (memory_.search_by_memory) {
     move = move_for(*turn_rad, inputs);
   } else if (attempt % 2 == 1) {
     move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
+  }
+  // After a refusal the same move is pointless.
+  const bool again =
+      refusals().rejected() && move.task == memory_.refusals.task &&
+      (memory_.refusals.direction == msg::kDirectionNone || move.direction == memory_.refusals.direction);
+  if (again || refusals().barred(move.task, memory_.active_s)) {
+    move = move.task == msg::kTaskExplore ? Move{msg::kTaskRotate, side_for(1.0, inputs)}
+                                          : Move{msg::kTaskExplore, msg::kDirectionForwards};
   }
   memory_.search_task = move.task;
   memory_.direction = move.direction;

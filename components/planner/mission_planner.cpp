@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constrictor/text.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -10,8 +12,6 @@ using enum MissionState;
 
 /// Goal ids of the built-in planner on task/command: `input` adds this to the planner's own numbers.
 constexpr std::uint64_t kGoalBase = static_cast<std::uint64_t>(msg::kAuthorityPlanner) << 48;
-/// [s] for which navigation may still report an older goal, or contradict the state about a held object.
-constexpr double kPatience_s = 2.0;
 
 bool turns(MissionState state) { return state == kTurnRound || state == kTurnBack; }
 
@@ -28,7 +28,9 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
   note_drops(inputs);
-  if (!may_command(inputs)) return std::nullopt;
+  const bool mine = may_command(inputs, elapsed_s);
+  memory_.hindrance = hindrance(inputs);
+  if (!mine) return std::nullopt;
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   memory_.active_s += elapsed_s;
   // Navigation's report about a held object and the state change at different ticks, so a short contradiction is
@@ -45,9 +47,11 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
     memory_.side = inputs.status->parameters.direction;
   count_percepts(inputs);
   watch_placed_objects(inputs, elapsed_s);
-  if (memory_.requested) {
+  if (memory_.requested || refusals().any()) {
     if (const auto to = next(inputs)) enter(*to);
   }
+  if (const std::string reason = refusals().give_up(memory_.active_s); !reason.empty()) enter(fail(reason));
+  memory_.hindrance = hindrance(inputs);
   const bool over = memory_.state == kDone || memory_.state == kFailed;
   if (over && memory_.goals > 0) {  // no state will end the running task any more
     WantedTask cancel;
@@ -56,6 +60,10 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
     return cancel;
   }
   if (memory_.requested || over) return std::nullopt;
+  if (refusals().pausing(memory_.active_s) || barred(memory_.state)) {
+    memory_.entered_s += elapsed_s;  // the pause is no part of the state's time
+    return std::nullopt;
+  }
   memory_.requested = true;
   memory_.requested_s = memory_.active_s;
   return task_of_state(inputs);
@@ -77,7 +85,7 @@ void MissionPlanner::enter(MissionState state) {
   memory_.contradiction_s = 0.0;
 }
 
-bool MissionPlanner::may_command(const PlannerInputs& inputs) {
+bool MissionPlanner::may_command(const PlannerInputs& inputs, double elapsed_s) {
   if (!inputs.authority) return true;
   const std::uint8_t level = inputs.authority->level;
   const bool others = level == msg::kAuthorityExternal || level == msg::kAuthorityOperator;
@@ -87,7 +95,10 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
     memory_.stopped = false;  // the holder of authority will release it to the planner
   }
   if (memory_.stopped || others) {
+    memory_.suspended_s = memory_.suspended ? memory_.suspended_s + elapsed_s : 0.0;
     memory_.suspended = true;
+    if (memory_.suspended_s > config_.suspended_timeout_s)
+      enter(fail("suspended for " + std::to_string(std::lround(memory_.suspended_s)) + " s: it " + hindrance(inputs)));
     return false;
   }
   if (memory_.suspended) resume(inputs);
@@ -97,6 +108,7 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs) {
 // The robot may be anywhere after a suspension: the mission continues with a search.
 void MissionPlanner::resume(const PlannerInputs& inputs) {
   memory_.suspended = false;
+  refusals().forget();
   if (!config_.sequence.empty() && !choose_object()) {
     enter(end_of_sequence());
     return;
@@ -131,17 +143,19 @@ MissionState MissionPlanner::recover(MissionState to) {
 
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
   for (const auto* event : inputs.events) {
-    const bool own = event->goal_id == kGoalBase + memory_.goals;
+    const bool own = memory_.requested && event->goal_id == kGoalBase + memory_.goals;
     // The loss of an object may belong to the previous goal, if the event crossed a new request.
     const bool loss = holding() && event->event == msg::kEventObjectGraspLost && event->goal_id > kGoalBase &&
                       event->goal_id <= kGoalBase + memory_.goals;
     if (!own && !loss) continue;
+    if (own && event->goal_state == msg::kGoalRefused) return refused(text_of(event->detail), inputs);
+    if (own) refusals().accept(requested_task());
     if (const auto to = next_by_event(*event, inputs)) return to;
     if (!own) continue;
     if (const auto to = next_by_goal_state(event->goal_state, inputs)) return to;
   }
   if (const auto to = next_by_status(inputs)) return to;
-  if (const auto to = next_by_percepts(inputs)) return to;
+  if (const auto to = next_by_percepts(inputs); to && !barred(*to)) return to;
   return next_by_time(inputs);
 }
 
@@ -171,8 +185,7 @@ std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inp
 
 std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs) {
   const StateRow& row = row_of(memory_.state);
-  const bool failed =
-      goal_state == msg::kGoalAborted || goal_state == msg::kGoalRefused || goal_state == msg::kGoalCancelled;
+  const bool failed = goal_state == msg::kGoalAborted || goal_state == msg::kGoalCancelled;
   if (goal_state != msg::kGoalSucceeded && !failed) return std::nullopt;
   if (memory_.state == kInspect) return after_inspection(!failed, inputs);
   if (!failed) return memory_.state == kDrop ? after_drop(inputs) : row.succeeded;
@@ -180,16 +193,15 @@ std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal
 }
 
 std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& inputs) {
-  if (!inputs.status) return std::nullopt;
+  if (!inputs.status || !memory_.requested) return std::nullopt;
   const auto& status = *inputs.status;
-  if (status.goal_id != kGoalBase + memory_.goals) {
-    // The request was refused, or navigation runs another goal: request the task again.
-    if (memory_.active_s - memory_.requested_s > kPatience_s) return recover(memory_.state);
-    return std::nullopt;
-  }
+  if (status.goal_id != kGoalBase + memory_.goals) return next_without_answer(inputs);
+  if (status.goal_state == msg::kGoalRefused) return refused(text_of(status.reason), inputs);
+  refusals().accept(requested_task());
   if (const auto to = next_by_goal_state(status.goal_state, inputs)) return to;
   // During grasp and drop, `carrying` changes within the state.
-  if (memory_.contradiction_s < kPatience_s || memory_.state == kGrasp || memory_.state == kDrop) return std::nullopt;
+  if (memory_.contradiction_s < kMissionPatience_s || memory_.state == kGrasp || memory_.state == kDrop)
+    return std::nullopt;
   return recover(status.carrying ? kSearchLine : kSearchObject);
 }
 
@@ -238,6 +250,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   if (memory_.active_s > config_.mission_timeout_s) {
     return fail("the time limit of the mission passed in state " + std::string(name_of(memory_.state)));
   }
+  if (!memory_.requested) return std::nullopt;  // it pauses after a refusal
   const double in_state_s = memory_.active_s - memory_.entered_s;
   if (searches()) {
     if (in_state_s > scaled_s(config_.search_timeout_s)) {
@@ -250,7 +263,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     if (!memory_.search_by_memory) return std::nullopt;
     if (!exploring) return has_turned(inputs) ? std::optional(memory_.state) : std::nullopt;
     const auto turn_rad = wanted_turn_rad(inputs);
-    const bool astray = turn_rad && requested_for_s > kPatience_s && std::abs(*turn_rad) > config_.aligned_rad;
+    const bool astray = turn_rad && requested_for_s > kMissionPatience_s && std::abs(*turn_rad) > config_.aligned_rad;
     return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);

@@ -15,6 +15,7 @@
 #include "planner/line_trail.hpp"
 #include "planner/mission_state.hpp"
 #include "planner/planner_config.hpp"
+#include "planner/refusals.hpp"
 
 namespace constrictor {
 
@@ -96,7 +97,11 @@ struct MissionMemory {
   bool search_by_memory = false;                 ///< its direction comes from the memory of line, object or zone
   std::uint8_t direction = msg::kDirectionNone;  ///< of the last requested rotate or explore
   LineTrail trail;
-  std::string reason;  ///< why the mission failed
+  std::string reason;                  ///< why the mission failed
+  std::string hindrance;               ///< what keeps the mission from its task, as a predicate; empty: nothing
+  double suspended_s = 0.0;            ///< duration of the present suspension
+  std::uint64_t refused_sequence = 0;  ///< number of the planner's last request that `input` has refused
+  RefusalMemory refusals;
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -104,9 +109,12 @@ struct MissionMemory {
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick, placed,
-            displaced);
+            displaced, hindrance, suspended_s, refused_sequence, refusals);
   }
 };
+
+/// [s] for which navigation may still report an older goal, or contradict the state about a held object.
+inline constexpr double kMissionPatience_s = 2.0;
 
 class MissionPlanner {
  public:
@@ -120,7 +128,7 @@ class MissionPlanner {
 
  private:
   // Supervision.
-  [[nodiscard]] bool may_command(const PlannerInputs& inputs);
+  [[nodiscard]] bool may_command(const PlannerInputs& inputs, double elapsed_s);
   void resume(const PlannerInputs& inputs);
   // The next state, by cause; empty: the state stays.
   [[nodiscard]] std::optional<MissionState> next(const PlannerInputs& inputs);
@@ -157,6 +165,19 @@ class MissionPlanner {
   [[nodiscard]] MissionState recover(MissionState to);
   [[nodiscard]] MissionState fail(const std::string& reason);
   void enter(MissionState state);
+  // Refused requests.
+  [[nodiscard]] Refusals refusals() const { return {config_, memory_.refusals}; }
+  /// Task of the last request.
+  [[nodiscard]] std::uint8_t requested_task() const;
+  /// Whether navigation has refused this task a short time ago, so that the state must not begin yet.
+  [[nodiscard]] bool barred(MissionState state) const;
+  /// The state after navigation's refusal: the same one if the refusal passes by itself, otherwise the state that
+  /// follows a failure. It costs no recovery.
+  [[nodiscard]] MissionState refused(const std::string& reason, const PlannerInputs& inputs);
+  /// The same state if `input` has refused the request, or navigation has not taken it for a while.
+  [[nodiscard]] std::optional<MissionState> next_without_answer(const PlannerInputs& inputs);
+  /// What keeps the mission from its task, as a predicate: a source that has authority, a latched stop, or a refusal.
+  [[nodiscard]] std::string hindrance(const PlannerInputs& inputs) const;
   // Percepts.
   void count_percepts(const PlannerInputs& inputs);
   /// Whether entry `i` of the sequence is delivered.

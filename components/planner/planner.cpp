@@ -7,7 +7,9 @@
 namespace constrictor {
 
 Planner::Planner(Wiring& wiring, const Setup& setup)
-    : ConfiguredComponent(wiring, load_planner_config(setup.config_file, setup.mission)), planner_(config_, state_) {}
+    : ConfiguredComponent(wiring, load_planner_config(setup.config_file, setup.mission)),
+      log_(setup.log),
+      planner_(config_, state_) {}
 
 void Planner::step(const Tick& tick) {
   PlannerInputs inputs;
@@ -21,7 +23,13 @@ void Planner::step(const Tick& tick) {
   inputs.status = status_.get();
   inputs.authority = authority_.get();
   for (const auto& event : events_) inputs.events.push_back(&event);
-  if (const auto wanted = planner_.step(inputs)) {
+  const std::string hindrance = state_.hindrance;
+  const auto wanted = planner_.step(inputs);
+  if (state_.hindrance != hindrance) {
+    if (state_.hindrance.empty()) log_.info("the mission goes on in state {}", name_of(state_.state));
+    else log_.warning("the mission {}", state_.hindrance);
+  }
+  if (wanted) {
     msg::Request request{};
     set_text(request.source, "planner");
     request.level = msg::kAuthorityPlanner;
@@ -42,7 +50,7 @@ void Planner::step(const Tick& tick) {
   mission.object_count = static_cast<std::uint16_t>(config_.sequence.size());
   mission.colour = planner_.colour();
   mission.recoveries = memory.recoveries;
-  set_text(mission.reason, memory.reason);
+  set_text(mission.reason, memory.reason.empty() ? memory.hindrance : memory.reason);
   mission_.write(mission);
 }
 

@@ -15,6 +15,7 @@ class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig> {
   void step(const Tick& tick) override;
 
  private:
+  Log log_;
   MissionPlanner planner_;
   Latest<msg::TaskStatus> status_ = wiring_.latest(topics::kTaskStatus);
   Latest<msg::Authority> authority_ = wiring_.latest(topics::kAuthority);

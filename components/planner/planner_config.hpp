@@ -70,6 +70,16 @@ struct PlannerConfig : ParameterSet {
       add(mission_timeout_s, "mission_timeout_s", 3600.0, "s", {1, 86400}, kAtStart, "Time limit of the mission");
   double holding_factor = add(holding_factor, "holding_factor", 4.0, "", {1, 20}, kAtStart,
                               "Factor on the time limits of searching, turning and following with an object");
+  double refused_pause_s = add(refused_pause_s, "refused_pause_s", 0.5, "s", {0.02, 60}, kAtStart,
+                               "Pause after a refused request; it doubles with each further refusal");
+  double refused_longest_pause_s = add(refused_longest_pause_s, "refused_longest_pause_s", 4.0, "s", {0.02, 600},
+                                       kAtStart, "Longest pause between a refused request and the next one");
+  double refused_timeout_s =
+      add(refused_timeout_s, "refused_timeout_s", 120.0, "s", {1, 86400}, kAtStart,
+          "The mission fails when navigation has accepted no request, or not the same task, for this time");
+  double suspended_timeout_s =
+      add(suspended_timeout_s, "suspended_timeout_s", 3600.0, "s", {1, 86400}, kAtStart,
+          "The mission fails after such a time of another source's authority, or of a latched stop");
   int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, kAtStart,
                            "The mission fails after more recoveries than this");
 

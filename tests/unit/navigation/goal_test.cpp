@@ -9,6 +9,7 @@
 
 #include "barrier/local_run.hpp"
 #include "constrictor/constants.hpp"
+#include "constrictor/text.hpp"
 #include "navigation/navigation.hpp"
 #include "support/scripted_members.hpp"
 
@@ -159,6 +160,7 @@ TEST(Goals, AreCancelledWhileThePoseIsStale) {
   EXPECT_EQ(r.count(1, msg::kGoalCancelled), 1);
   EXPECT_EQ(r.ends(1), 1);
   EXPECT_EQ(r.count(2, msg::kGoalRefused), 1);
+  EXPECT_TRUE(text_of(r.events.back().detail).starts_with("not ready: ")) << "the same goal is accepted later";
 }
 
 TEST(Goals, ContinuesIdenticallyAfterARestart) {

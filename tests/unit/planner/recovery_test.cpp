@@ -159,14 +159,14 @@ TEST_F(PlannerTest, RepeatsARequestThatNavigationDoesNotTake) {
   EXPECT_EQ(memory_.state, kFollowLine);
 }
 
-TEST_F(PlannerTest, ARefusedGoalIsARecovery) {
+TEST_F(PlannerTest, ARefusedGoalLeadsToAnotherStateAndIsNoRecovery) {
   find_line();
   see(msg::kColourGreen, msg::kBlobObject, 1.0);
   steps(4);
   see_nothing();
   step({event(msg::kEventNone, msg::kGoalRefused)});
   EXPECT_EQ(memory_.state, kSearchObject);
-  EXPECT_EQ(memory_.recoveries, 1);
+  EXPECT_EQ(memory_.recoveries, 0);
 }
 
 TEST_F(PlannerTest, AfterADropFollowsTheLineOnlyTowardsTheObjectsAndWithAStraightBody) {

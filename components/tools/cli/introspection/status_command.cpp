@@ -113,6 +113,8 @@ std::string run_line(const RunView& view) {
                          authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }
+  if (view.mission && *view.mission->reason)
+    line += "\n" + wrapped("the mission " + printable(text_of(view.mission->reason)), 0);
   return line;
 }
 
@@ -165,6 +167,7 @@ Json json_of(const RunNote& run, const RunView& view, const RateMeter& rates) {
   json["paused"] = view.run_state ? Json(view.run_state->paused) : Json(nullptr);
   json["pace"] = view.run_state ? finite(view.run_state->pace) : Json(nullptr);
   json["mission"] = view.mission ? Json(std::string(view.mission->state)) : Json(nullptr);
+  json["mission_reason"] = view.mission ? Json(text_of(view.mission->reason)) : Json(nullptr);
   json["task"] = view.task ? Json(name_of(constants::kTask, view.task->task)) : Json(nullptr);
   if (view.authority) {
     json["authority"] = {{"level", words_of(constants::kAuthority, view.authority->level)},
