@@ -1,34 +1,12 @@
 // Viewers of the dashboard drive a robot that consists of the real components, and change its parameters.
-#include "integration/dashboard_viewer.hpp"
+#include "integration/dashboard_run.hpp"
 #include "integration/run_watcher.hpp"
-#include "runtime/host.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-using namespace std::chrono_literals;
-
-class DashboardDrive : public CliFixture {
+class DashboardDrive : public DashboardRun {
  protected:
-  void SetUp() override {
-    // No test here needs camera and perception, and the run is faster without them.
-    write("blind.yaml",
-          "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
-          "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
-    launcher_.emplace(start(
-        {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "2x"}));
-    ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->errors();
-    dashboard_.emplace(start({"dashboard", "--port", "0"}));
-    ASSERT_TRUE(dashboard_->wait_for("Ctrl-C ends the dashboard", 20s)) << dashboard_->errors();
-    const std::string output = dashboard_->output();
-    port_ = static_cast<std::uint16_t>(std::stoi(output.substr(output.find("127.0.0.1:") + 10)));
-  }
-  void TearDown() override {
-    if (!dashboard_) return launcher_->signal(SIGKILL);
-    EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
-    EXPECT_EQ(launcher_->wait(20s), 128 + SIGTERM);
-    EXPECT_EQ(dashboard_->wait(20s), exit_status::kOk) << dashboard_->errors();
-  }
   /// True when the setpoints have not changed for 60 ticks in a row.
   static bool stands(Watcher& watcher) {
     return eventually(
@@ -38,9 +16,6 @@ class DashboardDrive : public CliFixture {
         },
         20s);
   }
-
-  std::optional<Process> launcher_, dashboard_;
-  std::uint16_t port_ = 0;
 };
 
 TEST_F(DashboardDrive, TheRobotMovesOnlyWhileAViewerRepeatsTheDrive) {

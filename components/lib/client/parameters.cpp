@@ -31,53 +31,68 @@ std::optional<std::string> name_of(const msg::Parameter& parameter, double value
 
 }  // namespace
 
-ParameterView read_parameters(std::int32_t participant, std::chrono::milliseconds bound) {
-  struct Source {
-    const TopicInfo* topic;
-    dds::Reader<msg::ParameterList> reader;
-    std::optional<msg::ParameterList> newest;
-  };
-  std::vector<Source> sources;
+ParameterReader::ParameterReader(std::int32_t participant) {
   for (const auto& topic : topics::kInfos) {
     if (topic.type == topics::kNavigationParameters.type) {
-      sources.push_back(
+      sources_.push_back(
           {&topic, dds::Reader<msg::ParameterList>::member(participant, std::string(topic.name)), std::nullopt});
     }
   }
+}
+
+bool ParameterReader::poll() {
+  bool any = false;
+  for (auto& source : sources_) {
+    source.reader.take([&](const msg::ParameterList& list) {
+      source.newest = list;
+      any = true;
+    });
+  }
+  return any;
+}
+
+std::map<std::string, OwnedParameter> ParameterReader::parameters() const {
+  std::map<std::string, OwnedParameter> parameters;
+  for (const auto& source : sources_) {
+    const auto count = source.newest ? std::min<std::size_t>(source.newest->count, msg::kMaxParameters) : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& parameter = source.newest->parameters[i];
+      parameters[parameter.name] = {std::string(source.topic->writer), parameter};
+    }
+  }
+  return parameters;
+}
+
+std::vector<std::string> ParameterReader::silent(const std::function<bool(std::string_view)>& has_writer) const {
+  std::vector<std::string> silent;
+  for (const auto& source : sources_) {
+    if (!source.newest && has_writer(source.topic->name)) silent.emplace_back(source.topic->writer);
+  }
+  return silent;
+}
+
+bool ParameterReader::complete() const {
+  return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) { return source.newest.has_value(); });
+}
+
+ParameterView read_parameters(std::int32_t participant, std::chrono::milliseconds bound) {
+  ParameterReader reader(participant);
   const dds::Discovery discovery(participant);
-  const auto has_writer = [&](const Source& source) {
+  const auto has_writer = [&](std::string_view topic) {
     const auto endpoints = discovery.endpoints();
-    return std::any_of(endpoints.begin(), endpoints.end(),
-                       [&](const auto& e) { return e.writer && e.topic == source.topic->name; });
+    return std::any_of(endpoints.begin(), endpoints.end(), [&](const auto& e) { return e.writer && e.topic == topic; });
   };
   const auto start = WaitClock::now();
   auto heard = start;
   for (;;) {
-    for (auto& source : sources) {
-      source.reader.take([&](const msg::ParameterList& list) {
-        source.newest = list;
-        heard = WaitClock::now();
-      });
-    }
+    if (reader.poll()) heard = WaitClock::now();
     const auto waited = WaitClock::now() - start;
-    const bool all = std::all_of(sources.begin(), sources.end(), [](const auto& s) { return s.newest.has_value(); });
     // A component whose list has no writer after discovery has settled is not part of this run.
-    const bool rest = waited > 700ms && std::none_of(sources.begin(), sources.end(),
-                                                     [&](const auto& s) { return !s.newest && has_writer(s); });
-    if (((all || rest) && WaitClock::now() - heard > kQuiet) || waited > bound) break;
+    const bool all = reader.complete() || (waited > 700ms && reader.silent(has_writer).empty());
+    if ((all && WaitClock::now() - heard > kQuiet) || waited > bound) break;
     std::this_thread::sleep_for(kPoll);
   }
-  ParameterView view;
-  for (const auto& source : sources) {
-    const std::string owner(source.topic->writer);
-    if (!source.newest && has_writer(source)) view.silent.push_back(owner);
-    const auto count = source.newest ? std::min<std::size_t>(source.newest->count, msg::kMaxParameters) : 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& parameter = source.newest->parameters[i];
-      view.parameters[parameter.name] = {owner, parameter};
-    }
-  }
-  return view;
+  return {reader.parameters(), reader.silent(has_writer)};
 }
 
 ParameterSetter::ParameterSetter(RequestClient& client)
@@ -123,6 +138,19 @@ std::optional<double> value_from(const msg::Parameter& parameter, const std::str
   return value;
 }
 
+std::optional<double> value_from_json(const msg::Parameter& parameter, const nlohmann::json& value) {
+  if (value.is_string()) return value_from(parameter, value.get<std::string>());
+  if (!value.is_number() || !std::isfinite(value.get<double>())) return std::nullopt;
+  return value.get<double>();
+}
+
+nlohmann::json value_json(const msg::Parameter& parameter, double value) {
+  if (const auto name = name_of(parameter, value)) return *name;
+  constexpr double kMostWhole = 9e15;  // every whole number below it has a double of its own
+  if (parameter.is_integer && std::abs(value) < kMostWhole) return static_cast<std::int64_t>(value);
+  return value;
+}
+
 std::string value_text(const msg::Parameter& parameter, double value) {
   if (const auto name = name_of(parameter, value)) return *name;
   return *parameter.unit ? fmt::format("{:g} {}", value, parameter.unit) : fmt::format("{:g}", value);
@@ -137,10 +165,7 @@ std::string accepted_text(const msg::Parameter& parameter) {
 nlohmann::ordered_json to_json(const OwnedParameter& owned) {
   using Json = nlohmann::ordered_json;
   const msg::Parameter& p = owned.parameter;
-  const auto number = [&](double value) {
-    if (const auto name = name_of(p, value)) return Json(*name);
-    return p.is_integer ? Json(static_cast<std::int64_t>(value)) : Json(value);
-  };
+  const auto number = [&](double value) { return Json(value_json(p, value)); };
   return {{"name", std::string(p.name)},
           {"owner", owned.owner},
           {"value", number(p.value)},

@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/request_client.hpp"
@@ -24,6 +26,28 @@ struct OwnedParameter {
 struct ParameterView {
   std::map<std::string, OwnedParameter> parameters;  ///< by name: "navigation.travel.frequency_hz"
   std::vector<std::string> silent;  ///< components of the run that have a parameter list but have not published it yet
+};
+
+/// Follows the parameter lists of all components of a run, or of a replay, in a DDS domain.
+class ParameterReader {
+ public:
+  explicit ParameterReader(std::int32_t participant);
+  /// Takes the lists that have arrived. Returns whether one has. Never waits.
+  bool poll();
+  /// By name. Writers keep several lists for late readers; the newest one that has arrived counts.
+  [[nodiscard]] std::map<std::string, OwnedParameter> parameters() const;
+  /// Components that write a list by what `has_writer(topic)` says, but none of which a list has arrived.
+  [[nodiscard]] std::vector<std::string> silent(const std::function<bool(std::string_view topic)>& has_writer) const;
+  /// Whether a list of every component that the table of topics names has arrived.
+  [[nodiscard]] bool complete() const;
+
+ private:
+  struct Source {
+    const TopicInfo* topic;
+    dds::Reader<msg::ParameterList> reader;
+    std::optional<msg::ParameterList> newest;
+  };
+  std::vector<Source> sources_;
 };
 
 /// Reads the parameter lists of all components over a DDS participant. Returns when no new list has arrived for a short
@@ -49,6 +73,10 @@ class ParameterSetter {
 
 /// The value that a text stands for: a finite number, or one of the parameter's names. Empty: neither.
 std::optional<double> value_from(const msg::Parameter& parameter, const std::string& text);
+/// The same for a JSON number or text. Empty for everything else.
+std::optional<double> value_from_json(const msg::Parameter& parameter, const nlohmann::json& value);
+/// A value as its name, if it has one, else as a number that is whole if the parameter is.
+nlohmann::json value_json(const msg::Parameter& parameter, double value);
 /// The accepted values with their unit, for people: "0.05 to 2 Hz", "one of undulation, rolling".
 std::string accepted_text(const msg::Parameter& parameter);
 /// A value with its unit, for people: "0.7 Hz", "undulation".

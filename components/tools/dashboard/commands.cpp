@@ -15,6 +15,7 @@ using namespace std::chrono_literals;
 const std::vector<std::string> kControls = {"pause", "resume", "step", "pace"};
 const std::vector<std::string> kStops = {"stop", "clear_stop"};
 const std::vector<std::string> kParameters = {"param_list", "param_set"};
+constexpr const char* kChange = "(change of parameters)";  // no service: viewers cannot call it
 const std::vector<std::string> kDrives = {"take", "release", "drive", "stand", "task"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -64,6 +65,39 @@ void Commands::add(WebServer::Call call) {
       .add(std::move(call));
 }
 
+void Commands::change(WebServer::Change change) {
+  nlohmann::json wishes = nlohmann::json::array();
+  for (const auto& wish : change.values) wishes.push_back({{"name", wish.name}, {"value", wish.value}});
+  const auto done = [change](const std::string& text) {
+    std::vector<WebServer::Change::Result> results;
+    for (const auto& result : nlohmann::json::parse(text)) results.push_back({result[0], result[1]});
+    change.done(results);
+  };
+  const auto fail = [change](const std::string& reason) {
+    change.done(std::vector(change.values.size(), WebServer::Change::Result{{}, reason}));
+  };
+  parameter_lane_.add({kChange, std::move(wishes), done, fail});
+}
+
+/// Returns the results as JSON: a list of [value, refusal].
+std::string Commands::change_all(const nlohmann::json& wishes) {
+  parameters_.connect_or_throw(5s);
+  nlohmann::json results = nlohmann::json::array();
+  std::string silence;  // why there is no sense in asking for the next one
+  for (const auto& wish : wishes) {
+    std::string refusal = silence;
+    nlohmann::json value;
+    try {
+      if (silence.empty()) value = setter_.set(wish["name"].get<std::string>(), wish["value"].get<double>()).value;
+    } catch (const CommandError& error) {
+      refusal = error.what();
+      if (error.cause() != CommandError::Cause::kRefused) silence = refusal;
+    }
+    results.push_back({value, refusal});
+  }
+  return results.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 std::string Commands::control(const WebServer::Call& call) {
   if (call.service == "pause") return describe(run_.pause());
   if (call.service == "resume") return describe(run_.resume());
@@ -91,6 +125,7 @@ std::string Commands::stop(const WebServer::Call& call) {
 }
 
 std::string Commands::parameter(const WebServer::Call& call) {
+  if (call.service == kChange) return change_all(call.request);
   if (call.service == "param_list") {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const auto& [name, owned] : read_parameters(parameters_.participant()).parameters)

@@ -29,6 +29,8 @@ class Commands : public Controls {
   [[nodiscard]] std::vector<std::string> services() const override;
   [[nodiscard]] std::int32_t participant() const override { return driver_.participant(); }
   void add(WebServer::Call call) override;
+  [[nodiscard]] std::string frozen() const override { return {}; }
+  void change(WebServer::Change change) override;
   void poll() override;
   [[nodiscard]] std::string over() const override { return monitor_.attachment().over(); }
   [[nodiscard]] std::optional<msg::RunState> run() const override { return monitor_.state(); }
@@ -37,6 +39,7 @@ class Commands : public Controls {
   std::string control(const WebServer::Call& call);
   std::string stop(const WebServer::Call& call);
   std::string parameter(const WebServer::Call& call);
+  std::string change_all(const nlohmann::json& wishes);
 
   std::atomic<bool> ending_ = false;
   Driver driver_;

@@ -26,6 +26,10 @@ class Controls {
   [[nodiscard]] virtual std::int32_t participant() const = 0;
   /// Obeys a call, in another thread if it must wait.
   virtual void add(WebServer::Call call) = 0;
+  /// Why parameters cannot be changed; empty: they can be, by change().
+  [[nodiscard]] virtual std::string frozen() const { return "a recording cannot be changed"; }
+  /// Changes parameters to these numbers, in another thread.
+  virtual void change(WebServer::Change) {}
   /// Delivers the answers that have arrived, and looks at the state. Never waits.
   virtual void poll() = 0;
   /// Why there is nothing to show any more; empty while there is.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 
@@ -82,11 +83,14 @@ struct Dashboard::Readers {
 
 Dashboard::Dashboard(std::unique_ptr<Controls> controls, const std::string& name, WebOptions options)
     : controls_(std::move(controls)),
-      server_(std::move(options), name, controls_->services(),
-              [this](WebServer::Call call) { controls_->add(std::move(call)); }),
+      server_(
+          std::move(options), name, controls_->services(),
+          [this](WebServer::Call call) { controls_->add(std::move(call)); },
+          [this](WebServer::Change wish) { change(std::move(wish)); }),
       tap_(controls_->participant(), shown, false),
       readers_(std::make_unique<Readers>(controls_->participant())),
       lines_(controls_->participant()),
+      parameters_(controls_->participant()),
       scene_(server_.add_channel(json_channel("view/scene", "foxglove.SceneUpdate"))),
       transforms_(server_.add_channel(json_channel("view/transforms", "foxglove.FrameTransforms"))),
       camera_(server_.add_channel(image_channel("view/camera"))),
@@ -101,6 +105,7 @@ void Dashboard::serve() {
   tap_.wait(10ms);
   tap_.take([this](const dds::TopicTap::Topic& topic, const dds::RawSample& sample) { pass_on(topic, sample); });
   take_typed();
+  take_parameters();
   controls_->poll();
   newest_.run = controls_->run();
   if (auto replay = controls_->replay(); replay != newest_.replay) {
@@ -183,6 +188,55 @@ void Dashboard::take_typed() {
   };
   image(readers_->camera, camera_);
   image(readers_->processed, processed_);
+}
+
+void Dashboard::take_parameters() {
+  if (!parameters_.poll()) return;
+  std::vector<ParameterValue> values;
+  for (const auto& [name, owned] : parameters_.parameters()) {
+    const msg::Parameter& parameter = owned.parameter;
+    // A change that was accepted and waits for its tick counts, as on the page.
+    const double value = parameter.pending_tick >= 0 ? parameter.pending_value : parameter.value;
+    if (!std::isfinite(value)) continue;  // of a stranger: the components accept no such value
+    const nlohmann::json shown = value_json(parameter, value);
+    values.push_back({name, shown, shown.is_number() && !parameter.is_integer});
+  }
+  server_.set_parameters(values);
+}
+
+/// Passes on what is a value of a known parameter, as `constrictor param set` does. `input` decides about the rest.
+void Dashboard::change(WebServer::Change wish) {
+  using Result = WebServer::Change::Result;
+  const auto known = parameters_.parameters();
+  std::vector<Result> results(wish.values.size());
+  WebServer::Change good;
+  std::vector<std::size_t> places;  // of the good ones
+  for (std::size_t i = 0; i < wish.values.size(); ++i) {
+    const auto& [name, value, real] = wish.values[i];
+    const auto owned = known.find(name);
+    if (owned == known.end()) {
+      results[i].refusal = "there is no such parameter";
+    } else if (const std::string frozen = controls_->frozen(); !frozen.empty()) {
+      results[i].refusal = frozen;
+    } else if (const auto number = value_from_json(owned->second.parameter, value)) {
+      good.values.push_back({name, *number});
+      places.push_back(i);
+    } else {
+      results[i].refusal =
+          fmt::format("found {:.40}, accepted {}", value.dump(), accepted_text(owned->second.parameter));
+    }
+  }
+  if (places.empty()) return wish.done(results);
+  good.done = [known, places, results, done = wish.done, names = good.values](const std::vector<Result>& answers) {
+    auto all = results;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      all[places[i]] = answers[i];
+      if (answers[i].refusal.empty())
+        all[places[i]].value = value_json(known.at(names[i].name).parameter, answers[i].value.get<double>());
+    }
+    done(all);
+  };
+  controls_->change(std::move(good));
 }
 
 void Dashboard::show() {

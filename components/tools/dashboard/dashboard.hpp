@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/log_reader.hpp"
+#include "client/parameters.hpp"
 #include "cyclone/endpoint.hpp"
 #include "cyclone/topic_tap.hpp"
 #include "dashboard/controls.hpp"
@@ -33,6 +34,8 @@ class Dashboard {
   struct Readers;
   void pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample& sample);
   void take_typed();
+  void take_parameters();
+  void change(WebServer::Change wish);
   void show();
 
   std::unique_ptr<Controls> controls_;
@@ -40,6 +43,7 @@ class Dashboard {
   dds::TopicTap tap_;
   std::unique_ptr<Readers> readers_;
   LogReader lines_;
+  ParameterReader parameters_;
   std::map<const dds::TopicTap::Topic*, std::uint32_t> channels_;
   Newest newest_;
   bool changed_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <map>
 
 namespace constrictor::dashboard {
 namespace {
@@ -13,6 +14,7 @@ constexpr std::uint8_t kMessageData = 1;      // server
 constexpr std::uint8_t kServiceResponse = 3;  // server
 constexpr std::uint8_t kServiceCall = 2;      // client
 constexpr std::size_t kMostItems = 1000;      // in one message of a client
+constexpr std::size_t kMostNameBytes = 200;   // of a parameter, or of the id of a request
 
 std::string text_of(const json& message) { return message.dump(-1, ' ', false, json::error_handler_t::replace); }
 
@@ -59,12 +61,48 @@ Parsed parse_unsubscriptions(const json& list) {
   return parsed;
 }
 
+/// The texts of a list; empty: not all of its items are short texts.
+std::optional<std::vector<std::string>> names_of(const json& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) {
+    if (!item.is_string() || item.get_ref<const std::string&>().size() > kMostNameBytes) return {};
+    names.push_back(item.get<std::string>());
+  }
+  return names;
+}
+
+Parsed parse_names(const std::string& op, const json& list, const std::string& id) {
+  auto names = names_of(list);
+  if (!names) return refused(op + ": parameterNames must be texts");
+  if (op == "getParameters") return {{GetParameters{std::move(*names), id}}, {}};
+  if (op == "subscribeParameterUpdates") return {{SubscribeParameters{std::move(*names)}}, {}};
+  return {{UnsubscribeParameters{std::move(*names)}}, {}};
+}
+
+Parsed parse_values(const json& list, const std::string& id) {
+  SetParameters wish{{}, id};
+  for (const auto& item : list) {
+    const auto name = item.is_object() && item.contains("name") ? names_of(json::array({item["name"]})) : std::nullopt;
+    if (!name) return refused("setParameters: each parameter needs the text name");
+    wish.values.push_back({name->front(), item.value("value", json())});
+  }
+  return {{std::move(wish)}, {}};
+}
+
+/// Of each message that has a list: its key.
+const std::map<std::string, const char*> kLists = {{"subscribe", "subscriptions"},
+                                                   {"unsubscribe", "subscriptionIds"},
+                                                   {"getParameters", "parameterNames"},
+                                                   {"setParameters", "parameters"},
+                                                   {"subscribeParameterUpdates", "parameterNames"},
+                                                   {"unsubscribeParameterUpdates", "parameterNames"}};
+
 }  // namespace
 
 std::string server_info(const std::string& name, const std::string& session) {
   return text_of({{"op", "serverInfo"},
                   {"name", name},
-                  {"capabilities", {"services"}},
+                  {"capabilities", {"services", "parameters", "parametersSubscribe"}},
                   {"supportedEncodings", {"json"}},
                   {"metadata", json::object()},
                   {"sessionId", session}});
@@ -112,6 +150,17 @@ std::string service_failure(std::uint32_t service, std::uint32_t call, const std
   return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
+std::string parameter_values(const std::vector<ParameterValue>& values, const std::string& id) {
+  json list = json::array();
+  for (const auto& [name, value, real] : values) {
+    list.push_back({{"name", name}, {"value", value}});
+    if (real && value.is_number()) list.back()["type"] = "float64";  // else JavaScript takes 3.0 for a whole number
+  }
+  json message = {{"op", "parameterValues"}, {"parameters", list}};
+  if (!id.empty()) message["id"] = id;
+  return text_of(message);
+}
+
 std::string message_data(std::uint32_t subscription, std::uint64_t time_ns, std::string_view payload) {
   std::string frame;
   frame.reserve(13 + payload.size());
@@ -138,13 +187,21 @@ Parsed parse_text(std::string_view text) {
   if (!message.is_object() || !message.contains("op") || !message["op"].is_string())
     return refused("found no JSON object with the text `op`");
   const std::string op = message["op"].get<std::string>();
-  const bool subscribes = op == "subscribe";
-  if (!subscribes && op != "unsubscribe")
-    return refused(fmt::format("found op '{}', accepted subscribe, unsubscribe", op.substr(0, 40)));
-  const char* key = subscribes ? "subscriptions" : "subscriptionIds";
+  const auto known = kLists.find(op);
+  if (known == kLists.end()) {
+    std::vector<std::string> accepted;
+    for (const auto& entry : kLists) accepted.push_back(entry.first);
+    return refused(fmt::format("found op '{}', accepted {}", op.substr(0, 40), fmt::join(accepted, ", ")));
+  }
+  const char* key = known->second;
   if (!message.contains(key) || !message[key].is_array() || message[key].size() > kMostItems)
     return refused(fmt::format("{}: accepted a list `{}` of at most {} items", op, key, kMostItems));
-  return subscribes ? parse_subscriptions(message[key]) : parse_unsubscriptions(message[key]);
+  const json& list = message[key];
+  if (op == "subscribe") return parse_subscriptions(list);
+  if (op == "unsubscribe") return parse_unsubscriptions(list);
+  const auto id = message.contains("id") ? names_of(json::array({message["id"]})) : std::vector<std::string>{""};
+  if (!id) return refused(fmt::format("{}: the id must be a text of at most {} bytes", op, kMostNameBytes));
+  return op == "setParameters" ? parse_values(list, id->front()) : parse_names(op, list, id->front());
 }
 
 Parsed parse_frame(std::string_view frame) {

@@ -12,7 +12,8 @@
 
 namespace constrictor::dashboard {
 
-/// The subprotocols that the server accepts. The messages used here are the same in both.
+/// The subprotocols that the server accepts. The messages used here are the same in both, also
+/// those about parameters.
 inline constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
 /// What a client can subscribe to.
@@ -32,12 +33,23 @@ struct Service {
   std::string request_schema = R"({"type":"object","properties":{}})";
 };
 
+/// A parameter as viewers see it.
+struct ParameterValue {
+  std::string name;
+  nlohmann::json value;  ///< a number, or the name of the value; null: not known
+  bool real = false;     ///< the number need not be whole, even if this value is
+  bool operator==(const ParameterValue&) const = default;
+};
+
 [[nodiscard]] std::string server_info(const std::string& name, const std::string& session);
 [[nodiscard]] std::string advertise(const std::vector<Channel>& channels);
 [[nodiscard]] std::string advertise_services(const std::vector<Service>& services);
 /// `level`: 0 information, 1 warning, 2 error.
 [[nodiscard]] std::string status(int level, const std::string& message);
 [[nodiscard]] std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message);
+
+/// `id`: of the request that this answers; empty: none.
+[[nodiscard]] std::string parameter_values(const std::vector<ParameterValue>& values, const std::string& id);
 
 /// Frames; all numbers are little-endian.
 [[nodiscard]] std::string message_data(std::uint32_t subscription, std::uint64_t time_ns, std::string_view payload);
@@ -55,7 +67,23 @@ struct ServiceCall {
   std::uint32_t call = 0;
   nlohmann::json request;  ///< an object
 };
-using Action = std::variant<Subscribe, Unsubscribe, ServiceCall>;
+/// In the following, no names mean all parameters.
+struct GetParameters {
+  std::vector<std::string> names;
+  std::string id;  ///< empty: none
+};
+struct SetParameters {
+  std::vector<ParameterValue> values;  ///< of any JSON type
+  std::string id;                      ///< empty: none
+};
+struct SubscribeParameters {
+  std::vector<std::string> names;
+};
+struct UnsubscribeParameters {
+  std::vector<std::string> names;
+};
+using Action = std::variant<Subscribe, Unsubscribe, ServiceCall, GetParameters, SetParameters, SubscribeParameters,
+                            UnsubscribeParameters>;
 
 /// What a client asks for, or why it is refused. Clients may send anything.
 struct Parsed {

@@ -22,8 +22,13 @@ std::string host_without_port(std::string host) {
 
 }  // namespace
 
-WebServer::Impl::Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call)
-    : options(std::move(given)), name(std::move(given_name)), acceptor(context), on_call(std::move(call)) {
+WebServer::Impl::Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call,
+                      OnChange change)
+    : options(std::move(given)),
+      name(std::move(given_name)),
+      acceptor(context),
+      on_call(std::move(call)),
+      on_change(std::move(change)) {
   for (auto& service : names) services.push_back({static_cast<std::uint32_t>(services.size() + 1), service});
   // Only the files that are there now are served: no request can lead to another place.
   std::error_code error;
@@ -65,8 +70,10 @@ void WebServer::Impl::accept() {
   });
 }
 
-WebServer::WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call)
-    : impl_(std::make_shared<Impl>(std::move(options), std::move(name), std::move(services), std::move(on_call))) {
+WebServer::WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call,
+                     OnChange on_change)
+    : impl_(std::make_shared<Impl>(std::move(options), std::move(name), std::move(services), std::move(on_call),
+                                   std::move(on_change))) {
   impl_->listen();
 }
 
@@ -93,6 +100,12 @@ bool WebServer::wanted(std::uint32_t channel) const {
 void WebServer::send(std::uint32_t channel, std::uint64_t time_ns, std::string_view payload) {
   const auto sessions = impl_->sessions;  // a client that cannot be served is removed meanwhile
   for (const auto& session : sessions) session->send_data(channel, time_ns, payload);
+}
+
+void WebServer::set_parameters(const std::vector<ParameterValue>& values) {
+  for (const auto& value : values) impl_->parameters.insert_or_assign(value.name, value);
+  const auto sessions = impl_->sessions;  // as in send()
+  for (const auto& session : sessions) session->send_news();
 }
 
 void WebServer::poll() {

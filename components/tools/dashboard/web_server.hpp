@@ -32,11 +32,23 @@ class WebServer {
     std::function<void(const std::string& reason)> fail;
   };
   using OnCall = std::function<void(Call)>;
+  /// A wish to change parameters: `done(results)` is to be called once, in the thread of poll(), with a result for each
+  /// value, in the same order.
+  struct Change {
+    struct Result {
+      nlohmann::json value;  ///< the accepted one
+      std::string refusal;   ///< the reason; empty: accepted
+    };
+    std::vector<ParameterValue> values;
+    std::function<void(const std::vector<Result>& results)> done;
+  };
+  using OnChange = std::function<void(Change)>;
 
   struct Impl;  ///< see web_session.hpp
 
   /// Throws std::runtime_error if the port cannot be opened.
-  WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call);
+  WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call,
+            OnChange on_change);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
@@ -46,6 +58,8 @@ class WebServer {
   /// True if a client has subscribed to the channel.
   [[nodiscard]] bool wanted(std::uint32_t channel) const;
   void send(std::uint32_t channel, std::uint64_t time_ns, std::string_view payload);
+  /// The parameters as they are now. Viewers that have subscribed to changes receive those that they do not know.
+  void set_parameters(const std::vector<ParameterValue>& values);
   /// Does what sockets are ready for. Never waits.
   void poll();
 

@@ -178,6 +178,49 @@ void Session::obey(const ServiceCall& wish) {
   fail(fmt::format("there is no service {}", wish.service));
 }
 
+void Session::send_news() {
+  if (const auto news = parameters_.news(server_->parameters); !news.empty()) send_text(parameter_values(news, {}));
+}
+
+void Session::send_values(const std::vector<ParameterValue>& values, const std::string& id) {
+  parameters_.sent(values);
+  send_text(parameter_values(values, id));
+}
+
+void Session::obey(const GetParameters& wish) {
+  std::vector<std::string> missing;
+  const auto values = values_of(wish.names, server_->parameters, missing);
+  if (!missing.empty())
+    send_text(status(1, fmt::format("getParameters: there is no parameter {}", fmt::join(missing, ", "))));
+  send_values(values, wish.id);
+}
+
+void Session::obey(const SetParameters& wish) {
+  if (!own_page_) {
+    const WebServer::Change::Result refused{{}, "pages of other web sites may watch, but not command"};
+    return answer(wish, std::vector(wish.values.size(), refused));
+  }
+  server_->on_change({wish.values, [weak = weak_from_this(), wish](const auto& results) {
+                        if (const auto self = weak.lock()) self->answer(wish, results);
+                      }});
+}
+
+void Session::answer(const SetParameters& wish, const std::vector<WebServer::Change::Result>& results) {
+  std::vector<ParameterValue> values;
+  bool refused = false;
+  for (std::size_t i = 0; i < std::min(results.size(), wish.values.size()); ++i) {
+    const std::string& name = wish.values[i].name;
+    const auto known = server_->parameters.find(name);
+    if (known != server_->parameters.end()) values.push_back(known->second);
+    if (results[i].refusal.empty() && known != server_->parameters.end()) values.back().value = results[i].value;
+    if (results[i].refusal.empty()) continue;
+    refused = true;
+    send_text(status(2, fmt::format("{}: {}", name, results[i].refusal)));
+  }
+  // Viewers show the wish at once. After a refusal they need the true value, whether they have asked for it or not.
+  if (refused || !wish.id.empty()) send_values(values, wish.id);
+}
+
 void Session::push(Outgoing message) {
   if (closed_) return;
   if (message.droppable) {

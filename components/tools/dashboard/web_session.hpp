@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "dashboard/viewer_parameters.hpp"
 #include "dashboard/web_server.hpp"
 
 namespace constrictor::dashboard {
@@ -24,7 +25,7 @@ class Session;
 
 struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   using tcp = boost::asio::ip::tcp;
-  Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call);
+  Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call, OnChange change);
   void listen();
   void accept();
   /// Whether the header Host of a request names this server. Without this check, a page from elsewhere whose name leads
@@ -36,6 +37,8 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   boost::asio::io_context context{1};
   tcp::acceptor acceptor;
   OnCall on_call;
+  OnChange on_change;
+  ParameterMap parameters;
   std::vector<Channel> channels;
   std::vector<Service> services;
   std::map<std::string, std::filesystem::path> files;  ///< of the page, by the path of the request
@@ -56,6 +59,8 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Sends the message to each subscription of the channel. The oldest ones are dropped if the client is too slow.
   void send_data(std::uint32_t channel, std::uint64_t time_ns, std::string_view payload);
   [[nodiscard]] bool wants(std::uint32_t channel) const;
+  /// Sends the parameters to which the client has subscribed and whose present values it does not know.
+  void send_news();
   void close();
 
  private:
@@ -73,6 +78,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void obey(const Subscribe& wish);
   void obey(const Unsubscribe& wish) { subscriptions_.erase(wish.subscription); }
   void obey(const ServiceCall& wish);
+  void obey(const GetParameters& wish);
+  void obey(const SetParameters& wish);
+  void obey(const SubscribeParameters& wish) { parameters_.subscribe(wish.names, server_->parameters); }
+  void obey(const UnsubscribeParameters& wish) { parameters_.unsubscribe(wish.names); }
+  void send_values(const std::vector<ParameterValue>& values, const std::string& id);
+  void answer(const SetParameters& wish, const std::vector<WebServer::Change::Result>& results);
   void push(Outgoing message);
   void write();
 
@@ -81,6 +92,7 @@ class Session : public std::enable_shared_from_this<Session> {
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  ///< channel by subscription
+  ViewerParameters parameters_;
   std::deque<Outgoing> queue_;
   std::size_t queued_bytes_ = 0;
   Outgoing current_{};

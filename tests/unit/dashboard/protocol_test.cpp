@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "dashboard/viewer_parameters.hpp"
+
 namespace constrictor::dashboard {
 namespace {
 
@@ -26,7 +28,7 @@ TEST(Frames, HaveTheBytesOfTheSpecification) {
 TEST(Texts, OfTheServerHaveTheFieldsOfTheSpecification) {
   const auto info = nlohmann::json::parse(server_info("run 1", "s"));
   EXPECT_EQ(info.at("op"), "serverInfo");
-  EXPECT_EQ(info.at("capabilities"), nlohmann::json::array({"services"}));
+  EXPECT_EQ(info.at("capabilities"), nlohmann::json::array({"services", "parameters", "parametersSubscribe"}));
   const auto channels = nlohmann::json::parse(advertise({{3, "t", "cdr", "a/msg/B", "int32 x", "ros2msg"}}));
   EXPECT_EQ(channels.at("op"), "advertise");
   EXPECT_EQ(channels.at("channels").at(0).at("schemaName"), "a/msg/B");
@@ -54,6 +56,63 @@ TEST(Texts, OfClientsAreCheckedFieldByField) {
     EXPECT_NE(parsed.refusal, "") << wrong;
     EXPECT_TRUE(parsed.actions.empty()) << wrong;
   }
+}
+
+// Source: as above, the messages about parameters.
+TEST(Texts, AboutParametersHaveTheFieldsOfTheSpecification) {
+  const auto values = nlohmann::json::parse(
+      parameter_values({{"a", 2}, {"b", 3.0, true}, {"c", "foo"}, {"d", "foo", true}}, "request-123"));
+  EXPECT_EQ(values, nlohmann::json::parse(R"({"op":"parameterValues","parameters":[{"name":"a","value":2},
+      {"name":"b","value":3.0,"type":"float64"},{"name":"c","value":"foo"},{"name":"d","value":"foo"}],
+      "id":"request-123"})"));
+  EXPECT_FALSE(nlohmann::json::parse(parameter_values({}, "")).contains("id"));
+  const Parsed get = parse_text(R"({"op":"getParameters","parameterNames":["a","b"],"id":"7"})");
+  EXPECT_EQ(std::get<GetParameters>(get.actions.at(0)).names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(std::get<GetParameters>(get.actions.at(0)).id, "7");
+  const Parsed set = parse_text(R"({"op":"setParameters","parameters":[{"name":"a","value":[1]},{"name":"b"}]})");
+  EXPECT_EQ(std::get<SetParameters>(set.actions.at(0)).values, (std::vector<ParameterValue>{{"a", {1}}, {"b", {}}}));
+  EXPECT_EQ(std::get<SetParameters>(set.actions.at(0)).id, "");
+  const Parsed on = parse_text(R"({"op":"subscribeParameterUpdates","parameterNames":[]})");
+  EXPECT_TRUE(std::get<SubscribeParameters>(on.actions.at(0)).names.empty());
+  const Parsed off = parse_text(R"({"op":"unsubscribeParameterUpdates","parameterNames":["a"]})");
+  EXPECT_EQ(std::get<UnsubscribeParameters>(off.actions.at(0)).names.at(0), "a");
+  for (const std::string& wrong :
+       {R"({"op":"getParameters"})"s, R"({"op":"getParameters","parameterNames":"a"})"s,
+        R"({"op":"getParameters","parameterNames":[1]})"s, R"({"op":"getParameters","parameterNames":[],"id":3})"s,
+        R"({"op":"setParameters","parameters":[3]})"s, R"({"op":"setParameters","parameters":[{"value":3}]})"s,
+        R"({"op":"setParameters","parameters":[{"name":3,"value":3}]})"s,
+        R"({"op":"subscribeParameterUpdates","parameterNames":{}})"s,
+        R"({"op":"getParameters","parameterNames":[")" + std::string(201, 'a') + R"("]})"}) {
+    EXPECT_NE(parse_text(wrong).refusal, "") << wrong;
+    EXPECT_TRUE(parse_text(wrong).actions.empty()) << wrong;
+  }
+}
+
+TEST(ViewerParameters, ReceiveChangesThatTheyDoNotKnow) {
+  ParameterMap present = {{"a", {"a", 1}}, {"b", {"b", 2}}};
+  ViewerParameters viewer;
+  EXPECT_TRUE(viewer.news(present).empty()) << "nothing is subscribed";
+  viewer.subscribe({"a", "later"}, present);
+  EXPECT_TRUE(viewer.news(present).empty()) << "the viewer knows the values at that time";
+  present["a"].value = 3;
+  present["b"].value = 4;
+  present["later"] = {"later", 5};
+  EXPECT_EQ(viewer.news(present), (std::vector<ParameterValue>{{"a", 3}, {"later", 5}}));
+  EXPECT_TRUE(viewer.news(present).empty());
+  viewer.sent({{"a", 6}});
+  EXPECT_EQ(viewer.news(present), (std::vector<ParameterValue>{{"a", 3}})) << "the change did not come into force";
+  viewer.subscribe({}, present);
+  EXPECT_TRUE(viewer.news(present).empty());
+  viewer.unsubscribe({"b"});
+  present["b"].value = 7;
+  present["new"] = {"new", 8};
+  EXPECT_EQ(viewer.news(present), (std::vector<ParameterValue>{{"new", 8}})) << "all but b";
+  viewer.subscribe({"b"}, present);
+  present["b"].value = 9;
+  EXPECT_EQ(viewer.news(present), (std::vector<ParameterValue>{{"b", 9}}));
+  viewer.unsubscribe({});
+  present["a"].value = 10;
+  EXPECT_TRUE(viewer.news(present).empty());
 }
 
 TEST(Frames, OfClientsThatAreDamagedAreRefused) {
