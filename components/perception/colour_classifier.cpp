@@ -52,9 +52,9 @@ ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 *
 }
 
 bool ColourClassifier::block_is_grey(const std::uint8_t* rgb) const {
-  // Three successive bytes are compared at every byte and not only where a pixel begins, because that needs no
-  // shuffles. Triples that belong to two pixels make the test stricter, never wrong. The last 16 places overlap with
-  // those before, because a triple must not reach beyond the block.
+  // Compares three successive bytes at every byte and not only where a pixel begins, because that needs no shuffle
+  // instructions. Triples with bytes of two pixels can only make a grey block count as coloured, which costs time and
+  // changes no label. The last 16 triples overlap the 16 before, because no triple may reach beyond the block.
   static_assert(kBlock == 16, "the places below cover 16 pixels");
   cv::v_uint8x16 spread = cv::v_setzero_u8();
   for (const int first : {0, 16, 3 * kBlock - 18}) {

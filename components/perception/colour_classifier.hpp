@@ -31,8 +31,8 @@ struct Labels {
   std::array<ColourExtent, msg::kColourCount> extents{};  ///< by colour; not of pixels without a colour
 };
 
-/// Labels pixels by their hue if they are coloured enough. Hue and saturation change neither with the strength of
-/// neutral light nor in a shadow. A minimum chroma excludes the noise of dark pixels.
+/// Labels pixels by their hue if their chroma and saturation are large enough. Hue and saturation change neither with
+/// the strength of neutral light nor in a shadow. A minimum chroma excludes the noise of dark pixels.
 class ColourClassifier {
  public:
   explicit ColourClassifier(const PerceptionConfig& config);

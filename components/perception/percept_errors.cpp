@@ -124,8 +124,8 @@ void PerceptErrors::invent(std::uint64_t interval, double yaw_rad, const GroundC
   blob.range_m = random.uniform(kNearest_m, kFarthest_m);
   const double radius_m = random.uniform(kThinnest_m, kThickest_m);
   blob.width_m = 2.0 * radius_m;
-  // The direction is counted round within the field of view, so that the object is always in view: one that leaves it
-  // at one side enters it at the other.
+  // The direction wraps around at the sides of the field of view, so that the object is always in view: an object that
+  // leaves the view at one side enters it at the other side.
   const double half_view_rad = kInnerShare * std::atan(0.5 * camera.width() / camera.focal_pixels());
   const double turn = (direction_rad - yaw_rad) / (2.0 * half_view_rad);
   blob.bearing_rad = (2.0 * (turn - std::floor(turn)) - 1.0) * half_view_rad;

@@ -1,4 +1,4 @@
-// Errors that are added to percepts as an experiment: what does the mission do if perception is worse than it is? They
+// Errors that are added to percepts as an experiment: how do missions end if perception is worse than it is? They
 // use what perception itself knows, and no ground truth.
 #pragma once
 

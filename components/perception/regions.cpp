@@ -33,7 +33,8 @@ void merge_into(Region& a, const Region& b) {
   a.v_max = std::max(a.v_max, b.v_max);
 }
 
-/// The part of the image that has all pixels of a colour and a border around them that filling holes does not change.
+/// The part of the image that contains all pixels of a colour, and a border wide enough that holes are filled as in the
+/// whole image.
 /// It begins at even indices: OpenCV numbers components in the order of blocks of 2 x 2 pixels, so the numbers are the
 /// same as in the whole image.
 cv::Rect window_of(const ColourExtent& extent, const cv::Size& size) {

@@ -9,7 +9,7 @@
 namespace constrictor::perception {
 namespace {
 
-// Weights in 1/256, the middle first. OpenCV rounds the Gaussian curve so, with the rest in the middle.
+// Weights in 1/256, the middle first, as OpenCV rounds the Gaussian curve: the middle weight makes the sum 256.
 constexpr std::array<std::uint16_t, 4> kAlong{70, 55, 29, 9};
 constexpr std::array<std::int16_t, 2> kAcross{148, 54};
 constexpr int kChannels = 3;

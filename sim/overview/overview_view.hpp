@@ -14,13 +14,13 @@
 
 namespace constrictor {
 
-/// Draws pictures of one scene from one viewpoint, which follows from the scene. The lower left corner, where the scene
-/// is always empty, has a close-up of the robot. A picture is a pure function of scene, options, place of the camera
-/// and world state. Throws std::runtime_error if OpenGL fails.
+/// Draws pictures of one scene from one viewpoint, which follows from the scene and the options. With the option
+/// `inset`, a close-up of the robot covers the lower left corner. A picture is a pure function of the arguments of
+/// constructor and draw(). Throws std::runtime_error if OpenGL fails.
 class OverviewView {
  public:
-  /// `head_camera_m`: [m] p_HC, the place of the camera in the robot's head, where a small camera is drawn. The periods
-  /// of `options` are not used.
+  /// `head_camera_m`: [m] p_HC, the position of the robot's camera in its head; the pictures show a small camera there.
+  /// The period and the latency of `options` are not used.
   OverviewView(const msg::SceneDescription& description, const OverviewConfig& options,
                const Eigen::Vector3d& head_camera_m);
 

@@ -28,8 +28,8 @@ struct RequestClientOptions {
   /// If this client has been dead for this time, `input` takes authority from it and the robot holds its posture. 0:
   /// `input` notices the end of the process only when the lease of its DDS participant lapses.
   std::chrono::milliseconds lease{500};
-  /// True: the program must call poll(), wait_for_answer() or assert_alive() within each lease, so that a program that
-  /// hangs counts as dead. False: DDS asserts that the process is alive.
+  /// True: the program must call poll(), wait_for_answer() or assert_alive() within each lease; if it hangs, `input`
+  /// takes authority from it. False: DDS asserts that the process is alive, even if the program hangs.
   bool lease_by_hand = false;
   /// Authority and goals outlive the process until a source releases authority: for scripts of several short commands.
   bool detached = false;

@@ -9,8 +9,8 @@
 
 namespace constrictor {
 
-/// Why no task of this kind can start with these parameters: what was found and what is accepted, for people. Empty:
-/// the parameters are complete. Whether the robot can do the task now, navigation decides.
+/// Why a task of this kind cannot start with these parameters: a text for people that names what was found and what is
+/// accepted. Empty if the parameters are complete. Navigation decides whether the robot can do the task at present.
 [[nodiscard]] std::string task_parameter_refusal(std::uint8_t task, const msg::TaskParameters& parameters,
                                                  const msg::Path& path);
 

@@ -19,8 +19,8 @@ class FaultyInput {
   FaultyInput& operator=(const FaultyInput&) = delete;
 
   [[nodiscard]] const InputSlot* slot() const { return &slot_; }
-  /// Fills slot() for the step at `tick`. `refuse` is called with the reason for each sample that is no valid message
-  /// any more.
+  /// Fills slot() for the step at `tick`. Calls `refuse` for each sample that a fault has made an invalid message, and
+  /// gives it the reason.
   void present(const Tick& tick, const std::function<void(const std::string&)>& refuse);
 
   /// What a restarted component needs: samples that are late, frozen contents, the newest sample.

@@ -76,7 +76,7 @@ Reader::Reader(const std::filesystem::path& path) : file_(path, File::Mode::kRea
     throw Error(path.string() + ": is not an MCAP file (its first bytes differ); accepted are files of " +
                 "`constrictor record` and `constrictor run --record`");
   if (start.size() < kMagic.size() + kRecordHeader)
-    throw Error(path.string() + ": ends in its header, so that it contains nothing");
+    throw Error(path.string() + ": the file ends within its header and contains no messages");
   Decoder decoder(bytes_of(start).subspan(kMagic.size()), place(kMagic.size()) + "Header record");
   const auto op = static_cast<Op>(decoder.number<std::uint8_t>());
   const auto length = decoder.number<std::uint64_t>();

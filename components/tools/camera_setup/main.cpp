@@ -23,18 +23,20 @@ void add_source(CLI::App& sub, Options& options) {
   sub.add_option("--rate", options.device.frame_rate_hz, "[Hz] frames in a second of a live source")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 240.0));
-  sub.add_option("--width", options.device.width, "[pixel] width that is asked of a device; 0: as it likes")
+  sub.add_option("--width", options.device.width, "[pixel] width of the pictures of a device; 0: the device chooses")
       ->check(CLI::Range(0, 4096));
-  sub.add_option("--height", options.device.height, "[pixel] height that is asked of a device; 0: as it likes")
+  sub.add_option("--height", options.device.height, "[pixel] height of the pictures of a device; 0: the device chooses")
       ->check(CLI::Range(0, 4096));
 }
 
 void add_board(CLI::App& sub, Options& options) {
   sub.add_option("--board", options.board, "inner corners of the chessboard, COLUMNSxROWS")->capture_default_str();
-  sub.add_option("--square", options.square_m, "[m] edge of a square; measure it")
+  sub.add_option("--square", options.square_m,
+                 "[m] edge of one square of the chessboard, measured on the printed board")
       ->required()
       ->check(CLI::Range(0.001, 1.0));
-  sub.add_option("--largest-error", options.largest_error_px, "[pixel] a larger error is refused")
+  sub.add_option("--largest-error", options.largest_error_px,
+                 "[pixel] the result is refused if the root mean square error of the corners is larger")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 100.0));
 }

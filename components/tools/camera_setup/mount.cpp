@@ -54,7 +54,7 @@ MountResult find_mount(const Corners& corners, const Board& board, const BoardOn
   for (auto& point : points) point -= middle;
   cv::Mat rotation, translation;
   if (!cv::solvePnP(points, corners, matrix, distortion, rotation, translation, false, cv::SOLVEPNP_IPPE))
-    throw std::invalid_argument("no pose of the board fits the picture");
+    throw std::invalid_argument("no pose of the board fits the picture: check --board, --square and --calibration");
   cv::solvePnPRefineLM(points, corners, matrix, distortion, rotation, translation);
   Corners seen;
   cv::projectPoints(points, rotation, translation, matrix, distortion, seen);

@@ -58,7 +58,8 @@ struct LaunchPlan {
 };
 
 /// Chooses files and processes. Throws UsageError if the text of an option is invalid, and ConfigurationError if a
-/// file, program or component does not exist. Starts no process of the run.
+/// file, program or component does not exist. May start constrictor_host for its descriptions of components, but starts
+/// no process of the run.
 [[nodiscard]] LaunchPlan make_launch_plan(const RunOptions& options);
 
 /// Lets the components that constrictor_host hosts read all of their files, in one process that joins no run.

@@ -272,7 +272,7 @@ void add_param(CLI::App& app, Action& action) {
   add_run_option(*dump_app, options->view.domain);
   dump_app->add_option("FILE", options->file, "YAML file; - is the standard output")->required();
   dump_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
-  auto* load_app = add("load", "set the parameters of a file, after all of it was checked", load);
+  auto* load_app = add("load", "check a whole file, then set the parameters that it names", load);
   add_token_option(*load_app);
   load_app
       ->add_option(

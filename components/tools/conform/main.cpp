@@ -39,7 +39,7 @@ void add_plant(CLI::App& app, Options& options) {
   sub->add_option("--manifest", options.manifest,
                   "instead: check the plant of this manifest (a file, or a name as in `constrictor run`) in a run of "
                   "its own");
-  sub->add_option("--robot", options.robot, "robot file, or the name of one")->capture_default_str();
+  sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`")->capture_default_str();
   sub->add_option("--robot-id", options.robot_id, "robot_id of the process's samples")->capture_default_str();
   add_options(*sub, options);
   sub->footer(
@@ -65,7 +65,8 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
     sub->add_option("--domain", options.observed,
                     "instead: only watch a run that goes on in this DDS domain; nothing is moved")
         ->check(CLI::Range(0, 229));
-    sub->add_option("--robot", options.robot, "robot file, or the name of one; with --domain")->capture_default_str();
+    sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
+        ->capture_default_str();
   }
   add_options(*sub, options);
   sub->footer(

@@ -96,19 +96,19 @@ bool PerceptionConformance::check_arrival() {
     slowest_ticks = std::max(slowest_ticks, seen.answer_ticks);
     for (const auto& line : seen.lines) {
       if (line.exposure_tick != seen.exposure_tick)
-        stamp =
-            fmt::format("perception/line of tick {} for an image of tick {}", line.exposure_tick, seen.exposure_tick);
+        stamp = fmt::format("perception/line has exposure_tick {} for an image of tick {}", line.exposure_tick,
+                            seen.exposure_tick);
     }
     for (const auto& objects : seen.objects) {
       if (objects.exposure_tick != seen.exposure_tick)
-        stamp = fmt::format("perception/objects of tick {} for an image of tick {}", objects.exposure_tick,
+        stamp = fmt::format("perception/objects has exposure_tick {} for an image of tick {}", objects.exposure_tick,
                             seen.exposure_tick);
     }
     for (const auto& one : seen.pictures) {
       ++pictures;
       if (one.width != model.width || one.height != model.height || one.exposure_tick != seen.exposure_tick)
-        picture = fmt::format("{} x {} of tick {}, for an image of {} x {} of tick {}", one.width, one.height,
-                              one.exposure_tick, model.width, model.height, seen.exposure_tick);
+        picture = fmt::format("perception/image is {} x {} of tick {}, for an image of {} x {} of tick {}", one.width,
+                              one.height, one.exposure_tick, model.width, model.height, seen.exposure_tick);
     }
   }
   report_.judge("every_image", answers + 1 < shown_.size(),

@@ -44,7 +44,7 @@ TEST(TopicTable, EqualsTheTablesInIdlReadme) {
 }
 
 // The comment of a type that several topics carry cannot name one writer, one list of readers and one rate; the table
-// has them. Request is such a type because clients write it as well.
+// has them. Request is such a type: a member topic and a client topic carry it.
 TEST(TopicTable, AgreesWithTheCommentsOfTheIdlOnMemberTopics) {
   int checked = 0;
   for (const auto& topic : topics::kInfos) {

@@ -1,5 +1,5 @@
-// Samples are encoded from JSON by the description of their type: the bytes are those of this project's own encoder,
-// which is compared with Cyclone's in message_cdr_test.cpp; what the IDL does not accept is refused.
+// Encodes samples from JSON by the description of their type. The bytes must equal those of cdr_of(), which
+// message_cdr_test.cpp compares with Cyclone's encoder. Values that the IDL does not accept must be refused.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -20,8 +20,8 @@ struct Setting {
   std::string value;  ///< YAML
 };
 
-/// The values of --vary [FILE:]KEY=VALUE[,VALUE...]; without FILE: the scenario. A value in brackets may contain
-/// commas.
+/// The values of --vary [FILE:]KEY=VALUE[,VALUE...]. If FILE is left out, KEY is a key of the scenario. A value in
+/// brackets may contain commas.
 struct Variation {
   std::string file;
   std::string key;

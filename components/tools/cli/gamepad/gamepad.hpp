@@ -40,8 +40,8 @@ class Gamepad {
   [[nodiscard]] double turn_rad_s() const { return now_.held ? now_.turn_rad_s : 0.0; }
   /// Whether the dead-man button has been released since the last call, however shortly.
   [[nodiscard]] bool take_released() { return std::exchange(released_, false); }
-  /// The actions of the buttons that were pressed since the last call, in their order. Motions count only if the
-  /// dead-man button was held.
+  /// The actions of the buttons that were pressed since the last call, in the order of the presses. While the dead-man
+  /// button is not held, only emergency stop, clear stop and release count.
   [[nodiscard]] std::vector<TeleopAction> take_actions();
 
  private:

@@ -70,7 +70,7 @@ int keys(const Options& options) {
   issue(folder, "observer", rights_of_observer(), identities, permissions, options.days);
   fmt::print(
       "`constrictor run --secure {0}` uses them. Each host needs the files in {0} and the folders of its own\n"
-      "processes; keep authority/ in a safe place: it can make further identities.\n",
+      "processes; keep authority/ in a safe place: anybody who has it can make further identities.\n",
       folder.string());
   return exit_status::kOk;
 }
@@ -105,9 +105,9 @@ void add_keys(CLI::App& app, Action& action) {
   sub->add_option("DIR", options->folder, "folder for the files; if it has authorities already, they are used again")
       ->required();
   sub->add_option("--manifest", options->run.manifest, "launch manifest: a name or a file")->capture_default_str();
-  sub->add_flag("--in-process", options->run.in_process, "one identity for a process that hosts all components");
+  sub->add_flag("--in-process", options->run.in_process, "make one identity for a process that hosts all components");
   sub->add_option("--group", options->run.groups,
-                  "one identity for a process that hosts these components, separated by commas; may be repeated")
+                  "make one identity for a process that hosts these components, separated by commas; may be repeated")
       ->allow_extra_args(false)
       ->excludes("--in-process");
   sub->add_option("--days", options->days, "[days] how long certificates and rights are valid")

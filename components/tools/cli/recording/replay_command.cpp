@@ -56,7 +56,8 @@ int replay_components(const Options& options) {
 
 int replay(const Options& options) {
   if (!options.restored.empty() && std::filesystem::exists(options.restored))
-    throw UsageError(fmt::format("--restore: found {}, which exists, accepted a new file", options.restored));
+    throw UsageError(
+        fmt::format("--restore: found {}, a file that exists; accepted the path of a new file", options.restored));
   if (!options.components.empty() || !options.restored.empty()) return replay_components(options);
   PlayOptions play = options.play;
   play.file = options.file;
