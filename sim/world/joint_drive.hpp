@@ -1,5 +1,5 @@
-// The servo of one joint and its hinge. The hinge's velocity motor with softness (CFM) is the
-// servo's row of the solver.
+// The servo of one joint and its hinge. In ODE's solver, the velocity motor of the hinge with its softness (CFM) acts
+// as the servo.
 #pragma once
 
 #include <ode/ode.h>

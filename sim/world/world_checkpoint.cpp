@@ -31,7 +31,7 @@ void set_values(dBodyID body, const BodyValues& values) {
   const double* from = values.data();
   dBodySetPosition(body, from[0], from[1], from[2]);  // also marks the body's geometry as moved
   // dBodySetQuaternion() and dBodySetRotation() normalise what they are given, which changes its last bits. ODE has no
-  // function that sets the raw values, but the pointers that it returns lead to them.
+  // function that sets the raw values, but its getters return pointers to them.
   std::copy_n(from + 3, 4, const_cast<dReal*>(dBodyGetQuaternion(body)));
   std::copy_n(from + 7, 12, const_cast<dReal*>(dBodyGetRotation(body)));
   dBodySetLinearVel(body, from[19], from[20], from[21]);

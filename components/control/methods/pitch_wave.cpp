@@ -1,6 +1,7 @@
-// "pitch_wave": a vertical wave travels along the body towards the head, as of a caterpillar. The body moves straight
+// "pitch_wave": a vertical wave travels along the body towards the head, as in a caterpillar. The body moves straight
 // ahead through passages as narrow as itself, and on ground that is as slippery along the body as across it. The yaw
-// joints bend the body along the path. Source: as of CompoundWave ("linear progression").
+// joints bend the body along the path. Source: the article that CompoundWave names, which calls this gait "linear
+// progression".
 #include "control/compound_wave.hpp"
 
 namespace constrictor {

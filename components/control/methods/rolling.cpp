@@ -1,6 +1,6 @@
 // "rolling": the body forms an arc and turns about its own axis, so that it rolls sideways like a bent log. With a
 // positive frequency f the robot moves to its left, at 2 pi f times the radius of a module. It cannot be steered: the
-// curvature of the path does not count. Source: as of CompoundWave.
+// curvature of the path does not count. Source: that of CompoundWave.
 #include <numbers>
 
 #include "control/compound_wave.hpp"

@@ -1,6 +1,6 @@
 // "squeeze": the base joints of a U close by `squeeze_rad` in total, while the joint on either side of the base opens,
-// so that the arms stay parallel around a wide object. The torque is limited. Done when the base has closed that far;
-// navigation stops the squeeze earlier when the forces suffice.
+// so that the arms close by less than the base and leave room for a wide object. The torque is limited. Done when the
+// base has closed by `squeeze_rad`; navigation stops the squeeze earlier when the forces suffice.
 #include <algorithm>
 #include <cmath>
 

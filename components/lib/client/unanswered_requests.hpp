@@ -11,7 +11,8 @@
 namespace constrictor {
 
 /// Keeps requests so that their source can repeat them until they are answered: a request that arrives while the
-/// process of `input` restarts is lost. `input` rules once on each request, however often it arrives under its number.
+/// process of `input` restarts is lost. `input` decides once on each request, however often the request arrives under
+/// the same number.
 class UnansweredRequests {
  public:
   using Time = std::chrono::steady_clock::time_point;

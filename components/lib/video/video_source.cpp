@@ -48,7 +48,8 @@ std::string read_address(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   if (!stream || !std::getline(stream, line))
-    throw VideoError(fmt::format("{}: found no address, accepted a file whose first line is one", file.string()));
+    throw VideoError(
+        fmt::format("{}: found no text, accepted a file whose first line is the address of a stream", file.string()));
   while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
   if (!known_scheme(scheme_of(line)))
     throw VideoError(fmt::format("{}: found '{}', accepted an address such as http://127.0.0.1:8080/stream",

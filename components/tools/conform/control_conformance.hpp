@@ -24,7 +24,7 @@ class ControlConformance {
 
  private:
   using Steps = std::vector<ControlStep>;
-  // At rest (control_rest_checks.cpp). False: the other checks make no sense.
+  // At rest (control_rest_checks.cpp). False: no other check can be made.
   bool check_arrival();
   void check_refusals();
   // Postures (control_posture_checks.cpp).
@@ -46,7 +46,7 @@ class ControlConformance {
   void check_wrong_joints();
   void check_epoch();
 
-  /// Goes on, and notes what holds for all commands at all times.
+  /// Goes on for some time, and records the extremes of all commands (the members below).
   Steps go(double seconds);
   /// Bends the body to a posture, one angle for each yaw joint, and waits until it must have been reached.
   Steps bend(const std::vector<double>& shape_rad, double rate_rad_s);
@@ -59,7 +59,7 @@ class ControlConformance {
   [[nodiscard]] static double moved_rad(const Steps& steps, double from_s);
   [[nodiscard]] static const msg::JointCommand* last_command(const Steps& steps);
   [[nodiscard]] static const msg::MotionStatus* last_state(const Steps& steps);
-  /// Of the yaw joints.
+  /// [rad] the setpoints of the yaw joints, from the head.
   [[nodiscard]] std::vector<double> yaw_angles(const msg::JointCommand& command) const;
 
   PartPort& port_;
@@ -76,7 +76,7 @@ class ControlConformance {
   std::size_t fastest_ = 0;                ///< the joint of this setpoint
   double beyond_rad_ = 0.0;                ///< of a joint's limits
   double beyond_nm_ = 0.0;                 ///< of a joint's torque
-  std::size_t unlike_ = 0, compared_ = 0;  ///< velocities that are not the rate of their setpoint, of all
+  std::size_t unlike_ = 0, compared_ = 0;  ///< velocities unlike their setpoint's rate; all compared
 };
 
 }  // namespace constrictor::conform

@@ -24,7 +24,7 @@ class ControlHand {
 
   ControlHand(PartPort& port, const RobotModel& robot);
 
-  /// Goes on for `seconds` with the trajectory, authority and joints of now. Returns all ticks.
+  /// Goes on for `seconds` with the present trajectory, authority and joints. Returns all ticks.
   std::vector<ControlStep> run(double seconds);
 
   /// The trajectory that navigation writes in every tick; empty: it is silent.

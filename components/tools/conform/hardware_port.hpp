@@ -44,7 +44,7 @@ class HardwarePort final : public PlantPort {
   dds::WaitSet wait_set_;
   std::int64_t next_ns_;
   std::uint64_t session_ = 0, number_ = 0;
-  std::vector<double> posture_rad_, limits_nm_;  ///< measured last; of the last proper command
+  std::vector<double> posture_rad_, limits_nm_;  ///< measured last; torque limits of the last command
 };
 
 }  // namespace constrictor::conform

@@ -40,7 +40,7 @@ ImageMotion image_motion(const cv::Mat& before, const cv::Mat& after, const msg:
   best.likeness = -2.0;
   for (int i = -kSteps; i <= kSteps; ++i) {
     const double angle_rad = most_rad * i / kSteps;
-    // What does not move turns the other way, as the camera sees it.
+    // In the view of a turning camera, a scene at rest turns the other way.
     const Eigen::Matrix3d H = K * Eigen::AngleAxisd(-angle_rad, axis_C).toRotationMatrix() * K.inverse();
     cv::Mat transform(3, 3, CV_64F), seen;
     for (int row = 0; row < 3; ++row) {

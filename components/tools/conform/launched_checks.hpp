@@ -1,5 +1,5 @@
-// Checks in a program that the launcher starts as members of a run, for `constrictor conform PART --manifest`: where
-// their files are, and how the results reach the command.
+// For `constrictor conform PART --manifest`, the launcher starts a program of this folder in a run. This header finds
+// the files of the program's checks, and writes their results into files that the command reads.
 #pragma once
 
 #include <cstdint>

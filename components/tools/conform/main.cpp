@@ -36,11 +36,13 @@ void add_plant(CLI::App& app, Options& options) {
   sub->add_option("--domain", options.domain, "DDS domain in which the process writes; no plant_relay may be there")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229));
-  sub->add_option("--manifest", options.manifest,
-                  "instead: check the plant of this manifest (a file, or a name as in `constrictor run`) in a run of "
-                  "its own");
+  sub->add_option(
+      "--manifest", options.manifest,
+      "instead of --domain: check the plant of this manifest (a file, or a name as in `constrictor run`) in a run of "
+      "its own");
   sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`")->capture_default_str();
-  sub->add_option("--robot-id", options.robot_id, "robot_id of the process's samples")->capture_default_str();
+  sub->add_option("--robot-id", options.robot_id, "number of the robot: the robot_id in the samples of the process")
+      ->capture_default_str();
   add_options(*sub, options);
   sub->footer(
       std::string("Holds the joints where they are, then moves them one after the other, slowly and by a small angle, "
@@ -63,7 +65,7 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
                               kind.name));
   if (kind.observable) {
     sub->add_option("--domain", options.observed,
-                    "instead: only watch a run that goes on in this DDS domain; nothing is moved")
+                    "instead of --manifest: only watch the run in this DDS domain; nothing is moved")
         ->check(CLI::Range(0, 229));
     sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
         ->capture_default_str();

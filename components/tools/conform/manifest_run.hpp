@@ -10,8 +10,8 @@
 
 namespace constrictor::conform {
 
-/// The manifest of a run of the plant of `manifest`, with its robot, scenario and companions; conform_control takes the
-/// place of control, and all other members but `input` are left out. Throws ConfigurationError.
+/// The manifest of a run of the plant of `manifest`, with its robot, its scenario and its programs `beside` the run.
+/// conform_control takes the place of control; of the other members only `input` takes part. Throws ConfigurationError.
 [[nodiscard]] std::string plant_manifest(const std::filesystem::path& manifest, const std::filesystem::path& folder);
 
 /// The manifest of a run of this part of `manifest`; conform_part takes the places of the members around it. Throws

@@ -27,8 +27,8 @@ class TickExchange {
   };
   /// The component, at each tick: adds what it sees. Returns the command of this tick; empty: none.
   std::optional<PlantCommand> step(Observed observed);
-  /// The checks: gives the command of the next tick and waits until it is done. Throws PlantGone if the run has ended,
-  /// or makes no ticks.
+  /// The checks: gives the command of the next tick and waits until the component has taken it. Returns what the
+  /// component has seen since the last call. Throws PlantGone if the run has ended, or makes no ticks.
   Observed advance(std::optional<PlantCommand> command);
   /// No more ticks will come.
   void end();

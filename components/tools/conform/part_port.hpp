@@ -15,7 +15,7 @@ namespace constrictor::conform {
 
 using constrictor::text_of;  // of the texts in messages, beside that of results
 
-/// The part, or the run, has gone; what() says what was noticed.
+/// The part or the run has ended; what() contains the reason.
 struct PartGone : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -58,8 +58,8 @@ class PartPort {
 
   /// Begins a new epoch, and goes on until it has begun. Throws PartGone if none begins.
   virtual void begin_epoch() = 0;
-  /// Messages that the part has refused so far (ComponentStatus.refused_count), as of some ticks ago. To be called
-  /// kStatusTicks after the messages in question.
+  /// Number of messages that the part has refused so far (ComponentStatus.refused_count). The number may be some ticks
+  /// old: call this kStatusTicks after the messages whose refusal is counted.
   [[nodiscard]] virtual std::uint64_t refused() = 0;
   static constexpr int kStatusTicks = 120;  ///< a member reports its status every 50 ticks
 

@@ -1,5 +1,5 @@
-// Checks whether a planner keeps the contract of idl/README.md, by playing a whole mission with what can go wrong in
-// it.
+// Checks whether a planner keeps the contract of idl/README.md: plays a whole mission to it, in which requests are
+// refused and lost, authority is taken away, and objects are lost.
 #pragma once
 
 #include <initializer_list>
@@ -41,7 +41,7 @@ class PlannerConformance {
 
  private:
   using Tasks = std::initializer_list<std::uint8_t>;
-  // What can go wrong before an object is found (planner_start_checks.cpp). False: the planner does not go on.
+  // Disturbances before an object is found (planner_start_checks.cpp). False: the planner does not continue.
   bool check_arrival();
   bool check_line();
   void check_authority();

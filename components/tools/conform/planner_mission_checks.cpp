@@ -44,7 +44,8 @@ bool PlannerConformance::check_object() {
                 deceived ? newest() : fmt::format("a {} object is left alone", colour_name(other)),
                 "compare the colour of the blob with that of the next object of the mission");
   const bool found = brings_object_to(0);
-  report_.judge("object", !found, newest(), "request track_object when some images show the object, near enough");
+  report_.judge("object", !found, newest(),
+                "request track_object after several images have shown the object, 1 m away");
   if (!found) return false;
 
   hand_->run(1.0);

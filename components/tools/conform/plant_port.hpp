@@ -48,7 +48,7 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// The plant, or the run, has gone; what() says what was noticed.
+/// The plant or the run has ended; what() contains the reason.
 struct PlantGone : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

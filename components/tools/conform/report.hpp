@@ -20,8 +20,8 @@ struct Check {
 
 class Report {
  public:
-  /// All checks that there are, in their order: those that are never reached are shown as "not checked". `line` is
-  /// called with each result as soon as it is known.
+  /// `checks`: all checks, in the order in which they are shown. A check without a result is shown as "not checked".
+  /// Calls `line` with each result as soon as it is known.
   explicit Report(std::vector<Check> checks, std::function<void(const Check&)> line = {});
 
   void pass(const std::string& name, const std::string& found);
@@ -48,7 +48,7 @@ class Report {
   std::function<void(const Check&)> line_;
 };
 
-/// "PASS  sign      joints 0 to 22 ...", and for a failure what was expected and what to do.
+/// "pass  sign      joints 0 to 22 ...", and for a failure what was expected and what to do.
 [[nodiscard]] std::string text_of(const Check& check);
 [[nodiscard]] std::string summary_of(const Report& report);
 [[nodiscard]] nlohmann::ordered_json to_json(const Report& report);

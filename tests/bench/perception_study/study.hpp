@@ -1,4 +1,4 @@
-// The perception study: which errors are tried, and what the evaluations of each of them came to.
+// The perception study: which errors are tried, and the results of the evaluations of each error.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ struct LevelResult {
   bool reference = false;  ///< without the error; these runs are shared by all factors
   std::size_t runs = 0;
   std::size_t successes = 0;
-  std::size_t errors = 0;                      ///< runs that failed themselves; they count as not successful
+  std::size_t errors = 0;                      ///< runs that ended with an error; they count as not successful
   std::size_t false_successes = 0;             ///< only the robot believed that the mission had succeeded
   double wilson_low = 0.0, wilson_high = 1.0;  ///< 95 % interval of the probability of success
   Quartiles placement_m{};                     ///< of dropped objects from the centre of their zone

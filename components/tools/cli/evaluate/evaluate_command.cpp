@@ -1,4 +1,4 @@
-// `constrictor evaluate`: many missions, and what they came to together.
+// `constrictor evaluate`: runs many missions, and writes their results together.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -147,11 +147,11 @@ void add_evaluation_options(CLI::App& app, Options& options) {
 void add_evaluate(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   options->request.jobs = 0;
-  auto* sub = add_subcommand(app, "evaluate", "run a scenario with many seeds and values, and plot what came of it",
-                             action, options, evaluate);
+  auto* sub = add_subcommand(app, "evaluate", "run a scenario with many seeds and values, and plot the results", action,
+                             options, evaluate);
   add_evaluation_options(*sub, *options);
   sub->footer(help_footer(
-      "Each run is a `constrictor run --in-process` of its own; one that fails stops nothing. The folder then "
+      "Each run is a `constrictor run --in-process` of its own; if one fails, the others go on. The folder then "
       "contains\n"
       "index.html (success by phase with 95 % intervals, placement, errors, times, what went wrong, and the command\n"
       "that repeats each run), runs.csv, summary.json, and report.json of each run.\n"
@@ -161,8 +161,8 @@ void add_evaluate(CLI::App& app, Action& action) {
        "constrictor evaluate short --seeds 1..10 --vary noise.camera_sd=0,0.02,0.05",
        "constrictor evaluate short --seeds 1..100 --shard 1/2 --output part1",
        "constrictor evaluate short --seeds 1..100 --merge part1 part2 --output all"},
-      "0 all runs are done, whatever came of their missions; 64 wrong usage; 70 a run ended with an error; 78 wrong\n"
-      "  configuration; 130 Ctrl-C, 143 SIGTERM",
+      "0 all runs are done, whether or not their missions succeeded; 64 wrong usage; 70 a run ended with an error;\n"
+      "  78 wrong configuration; 130 Ctrl-C, 143 SIGTERM",
       kDataEnvironment));
 }
 

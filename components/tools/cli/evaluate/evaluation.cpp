@@ -37,7 +37,7 @@ fs::path folder_of(const Variant& variant, std::uint64_t seed) {
   return fs::path("runs") / variant.folder / fmt::format("seed_{:04}", seed);
 }
 
-/// Removes what only a person looks at.
+/// Removes the files that only people read; the results stay.
 void remove_bulk(const fs::path& folder) {
   const std::set<std::string> kept{"report.json", kOutcome, "run.log"};
   std::vector<fs::path> bulk;

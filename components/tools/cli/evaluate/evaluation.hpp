@@ -39,8 +39,7 @@ class Evaluation {
   using Print = std::function<void(const std::string& line)>;
 
   /// Makes the folder and the files of the variants, and checks all files. An evaluation that is already in the folder
-  /// is continued if it has the same files and options; its seeds may be others. Throws UsageError or
-  /// ConfigurationError.
+  /// is continued if it has the same files and options; the seeds may differ. Throws UsageError or ConfigurationError.
   explicit Evaluation(EvaluationRequest request);
 
   /// All runs, in the order in which they are done: all variants of a seed, then those of the next seed.
@@ -49,10 +48,10 @@ class Evaluation {
   [[nodiscard]] const std::filesystem::path& folder() const { return request_.folder; }
   [[nodiscard]] const std::string& scenario() const { return scenario_; }
 
-  /// Does the runs of this shard that have no result yet. Runs whose result is an error are done again. A run that
-  /// fails stops nothing. `show` receives a line for each run that ended, `progress` the state of the whole.
-  /// Returns 0, or the number of the signal that interrupted it; then the runs that were not over are stopped and will
-  /// be done again.
+  /// Does the runs of this shard that have no result yet, and repeats runs whose result is an error. After a failed run
+  /// the others go on. Calls `show` with a line for each run that ended, and `progress` with the state of the whole.
+  /// Returns 0, or the number of the signal that interrupted it: the runs that had not ended are then stopped, and the
+  /// next call does them again.
   int carry_out(const Print& show, const Print& progress);
   /// The results that the folder has of runs(), in their order.
   [[nodiscard]] std::vector<MissionResult> results() const;

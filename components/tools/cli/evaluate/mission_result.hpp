@@ -1,4 +1,4 @@
-// What one run of an evaluation came to, as read from its report directory.
+// The result of one run of an evaluation, as read from its report directory.
 #pragma once
 
 #include <cstdint>
@@ -55,8 +55,8 @@ inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", 
 /// status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type stays unknown.
 [[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status);
 
-/// The cause of trouble in an event of a task, without numbers, so that equal causes are counted together; empty if the
-/// event is none: aborted and refused goals, and what was lost.
+/// What went wrong in an event of a task: its goal was aborted or refused, it timed out, or something was lost. The
+/// text contains no numbers of the event, so that equal causes are counted together. Empty for all other events.
 [[nodiscard]] std::string trouble_of(const nlohmann::json& event);
 
 }  // namespace constrictor::cli

@@ -1,4 +1,4 @@
-// What the runs of an evaluation came to together.
+// The results of all runs of an evaluation together.
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ struct Distribution {
 struct VariantSummary {
   std::string name;
   std::size_t runs = 0;
-  std::size_t errors = 0;            ///< runs that failed themselves; they count as not successful
+  std::size_t errors = 0;            ///< runs that ended with an error; they count as not successful
   std::size_t false_successes = 0;   ///< missions that only the robot believed to have succeeded
   std::vector<std::size_t> reached;  ///< runs that reached each of kPhases
   Distribution placement_m;          ///< distance of each dropped object from the centre of its zone
