@@ -98,12 +98,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
     Landmark& moved = state_.landmarks[nearest];
     used[nearest] = true;
     if (!whole || ++moved.strays < config_.confirm) return;
-    // The object has been pushed: its landmark gets a new place and keeps its handle.
-    release_slot(moved);
-    moved.slot = static_cast<std::int32_t>(filter_.landmark_count());
-    filter_.add(z, noise);
-    moved.strays = 0;
-    moved.last_seen_tick = tick;
+    replace(moved, z, noise, tick);  // the object has been pushed, and keeps its handle
     return;
   }
   if (best == state_.landmarks.size()) {
@@ -114,7 +109,11 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
   }
   used[best] = true;
   Landmark& landmark = state_.landmarks[best];
-  filter_.observe(static_cast<std::size_t>(landmark.slot), z, noise);
+  if (trusted(landmark)) {
+    filter_.observe(static_cast<std::size_t>(landmark.slot), z, noise);
+  } else {
+    replace(landmark, z, noise, tick);  // it was missed before, so that it may have been moved a little
+  }
   landmark.hits = std::min(landmark.hits + 1, kMaxHits);
   landmark.strays = 0;
   landmark.last_seen_tick = tick;

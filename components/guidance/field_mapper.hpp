@@ -24,6 +24,11 @@ class FieldMapper {
   /// A percept with a range updates its landmark, or creates one. A percept with the range NaN only refreshes the time
   /// at which its landmark was seen.
   void objects(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, std::int64_t tick);
+  /// To be called after objects(), with the same arguments: landmarks that the image shows become likelier; those that
+  /// it should show and does not become less likely, and are forgotten in the end. `level`: the head is not tilted, so
+  /// that the camera sees what it should. Returns the landmarks that were forgotten, with their last places.
+  std::vector<Landmark> doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, const BodyChain& chain,
+                              bool level, std::int64_t tick, double period_s);
   /// Maps the points of the line and corrects the pose by points that are in the map already.
   void line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick, double period_s);
   /// Keeps contacts that belong neither to the ground nor to the robot itself, and marks the objects that they confirm.
@@ -43,6 +48,10 @@ class FieldMapper {
   void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);
+  /// Whether the landmark is so likely to exist that it may correct the pose.
+  [[nodiscard]] bool trusted(const Landmark& landmark) const;
+  /// Takes a landmark that has moved to the place of the percept, without an effect on the pose.
+  void replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   /// Takes the landmark out of the pose filter and keeps its place and standard deviation in the landmark itself.
   void release_slot(Landmark& landmark);
   /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.

@@ -19,12 +19,14 @@ struct Landmark {
   double radius_m = 0.0;                    ///< running mean; 0: unknown
   std::int32_t hits = 0;                    ///< number of percepts of this landmark; counting stops at 1000
   std::int32_t strays = 0;                  ///< number of successive percepts that showed the landmark at another place
+  double log_odds = 0.0;                    ///< natural logarithm of the odds that it exists
   bool felt = false;
   bool carried = false;
   std::int64_t last_seen_tick = 0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, felt, carried, last_seen_tick);
+    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, log_odds, felt, carried,
+            last_seen_tick);
   }
 };
 
@@ -47,9 +49,10 @@ struct FieldState {
   std::vector<double> line_x_m, line_y_m;  ///< points in M, in the order of their discovery
   std::vector<std::int64_t> line_tick;     ///< tick of each discovery
   std::deque<Felt> felt;                   ///< the oldest first
+  std::int64_t looked_tick = 0;            ///< of the newest percepts
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt);
+    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, looked_tick);
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constrictor/constants.hpp"
 #include "guidance/plausible.hpp"
 
 namespace constrictor {
@@ -16,10 +17,15 @@ double yaw_of(const msg::Quaternion& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }
 
+/// Whether the head is tilted by less than about 8 degrees.
+bool is_level(const msg::Quaternion& q) { return 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.99; }
+
 }  // namespace
 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
-    : TunableComponent(wiring, setup, topics::kGuidanceParameters), model_(load_robot(setup.robot_file)) {}
+    : TunableComponent(wiring, setup, topics::kGuidanceParameters),
+      log_(setup.log),
+      model_(load_robot(setup.robot_file)) {}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   guidance::OdometryInput input;
@@ -126,7 +132,16 @@ void Guidance::step(const Tick& tick) {
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
     if (line) mapper.line(*percepts_.line, past(percepts_.line->exposure_tick), tick.index, tick.period_s());
-    if (objects) mapper.objects(*percepts_.objects, past(percepts_.objects->exposure_tick), tick.index);
+    if (objects) {
+      const PlanarPose exposure = past(percepts_.objects->exposure_tick);
+      mapper.objects(*percepts_.objects, exposure, tick.index);
+      const bool level = is_level(imu_->orientation);
+      for (const auto& lost : mapper.doubt(*percepts_.objects, exposure, chain, level, tick.index, tick.period_s())) {
+        log_.warning("the {} {} {} is not at ({:.2f}, {:.2f}) m any more, where images should show it: left the map",
+                     name_of(constants::kColour, lost.colour), name_of(constants::kBlob, lost.kind), lost.handle,
+                     lost.x_m, lost.y_m);
+      }
+    }
     if (contacts) mapper.touch(*body_.contacts, chain, tick.index, tick.period_s());
   }
 

@@ -49,6 +49,7 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   [[nodiscard]] PlanarPose past(std::int64_t tick) const;
   [[nodiscard]] double speed_m_s(double period_s) const;
 
+  Log log_;
   RobotModel model_;
   BodyView body_{wiring_};
   Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);

@@ -6,6 +6,33 @@
 
 namespace constrictor::guidance {
 
+/// When a landmark that is not seen any more is given up.
+struct ExistenceConfig : ParameterSet {
+  double detection_probability = add(detection_probability, "detection_probability", 0.9, "", {0.01, 0.999},
+                                     kWhileRunning, "Probability that a look shows a landmark that is clearly in view");
+  double false_alarm_probability = add(false_alarm_probability, "false_alarm_probability", 0.1, "", {0.001, 0.99},
+                                       kWhileRunning, "Probability that a look shows a landmark that does not exist");
+  double look_s = add(look_s, "look_s", 0.5, "s", {0.02, 10.0}, kWhileRunning,
+                      "Time between independent looks: the images within it have common errors");
+  double most = add(most, "most", 0.99, "", {0.5, 0.999999}, kAtStart,
+                    "Highest probability that a landmark exists, however often it was seen");
+  double trust = add(trust, "trust", 0.5, "", {0.01, 0.99}, kWhileRunning,
+                     "A landmark whose probability is lower does not correct the pose");
+  double drop = add(drop, "drop", 0.05, "", {0.0, 0.99}, kWhileRunning,
+                    "A landmark whose probability is lower leaves the map; 0: none does");
+  double min_range_m = add(min_range_m, "min_range_m", 0.3, "m", {0.0, 20.0}, kWhileRunning,
+                           "A landmark that is nearer to the camera need not be in view");
+  double max_range_m = add(max_range_m, "max_range_m", 1.6, "m", {0.0, 20.0}, kWhileRunning,
+                           "A landmark that is farther from the camera need not be in view");
+  double margin_rad = add(margin_rad, "margin_rad", 0.12, "rad", {0.0, 1.0}, kWhileRunning,
+                          "Least angle between a landmark and the border of the image, or what may hide it");
+
+  void complete(const Configuration& root) const {
+    if (false_alarm_probability < detection_probability) return;
+    throw root.error("false_alarm_probability", "found at least detection_probability, accepted less");
+  }
+};
+
 struct GuidanceConfig : ParameterSet {
   OdometryConfig odometry{
       add(odometry.slip_scale_m_s, "odometry.slip_scale_m_s", 0.005, "m/s", {1e-4, 1.0}, kWhileRunning,
@@ -49,6 +76,8 @@ struct GuidanceConfig : ParameterSet {
                        "A percept outside of the gate but nearer than this shows a landmark that has moved");
   int confirm = add(confirm, "landmarks.confirm", 3, "", {1, 100}, kWhileRunning,
                     "Number of percepts until a new landmark, or its new place, is believed");
+
+  ExistenceConfig existence = add_section(existence, "existence");
 
   double line_spacing_m = add(line_spacing_m, "line.spacing_m", 0.05, "m", {0.01, 1.0}, kAtStart,
                               "Distance between the line's points in the map");

@@ -41,6 +41,7 @@ void Navigation::step(const Tick& tick) {
   remember_pose(tick.index, X_MH, state_.sightings);
   if (field_.objects && field_.objects.fresh())
     update_object_tracker(config_.object, *field_.objects, state_.sightings);
+  if (field_.map && field_.map.fresh()) forget_dropped(config_.object, *field_.map, state_.sightings);
 
   const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);
   const std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/landmarks.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -85,6 +87,29 @@ void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectP
     };
     take(object[colour], false, state.objects[colour]);
     take(zone[colour], true, state.zones[colour]);
+  }
+}
+
+void forget_dropped(const ObjectTrackerConfig& config, const msg::FieldMap& map, ObjectTrackerState& state) {
+  const auto forget = [&](std::uint8_t colour, std::uint8_t kind, Sighting& s) {
+    if (!s.known) return;
+    const auto* there = nearest_landmark(map, colour, kind, s.x_m, s.y_m);
+    const bool mapped = there && std::hypot(there->x_m - s.x_m, there->y_m - s.y_m) < config.jump_m;
+    if (mapped) {
+      s.handle = there->handle;
+      return;
+    }
+    const auto landmarks = landmarks_of(map);
+    const bool exists = std::any_of(landmarks.begin(), landmarks.end(),
+                                    [&](const msg::MapObject& landmark) { return landmark.handle == s.handle; });
+    if (s.handle == 0 || exists || s.visible) return;
+    s.known = false;
+    s.weight = 0.0;
+    s.handle = 0;
+  };
+  for (std::uint8_t colour = 0; colour < msg::kColourCount; ++colour) {
+    forget(colour, msg::kBlobObject, state.objects[colour]);
+    forget(colour, msg::kBlobZone, state.zones[colour]);
   }
 }
 

@@ -24,10 +24,11 @@ struct Sighting : Visibility {
   double bearing_rad = 0.0;  ///< in the newest image that showed it, in frame G
   double range_m = 0.0;      ///< to its nearest ground point in that image; NaN: unknown
   std::int64_t seen_tick = -1;
+  std::uint16_t handle = 0;  ///< of the map's landmark there; 0: the map has none, or had none yet
   [[nodiscard]] Eigen::Vector2d p_M() const { return {x_m, y_m}; }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(seen, missed, visible, known, x_m, y_m, radius_m, weight, bearing_rad, range_m, seen_tick);
+    archive(seen, missed, visible, known, x_m, y_m, radius_m, weight, bearing_rad, range_m, seen_tick, handle);
   }
 };
 
@@ -64,6 +65,10 @@ void remember_pose(std::int64_t tick, const PlanarPose& X_MH, ObjectTrackerState
 /// for the object, and for the zone, of its colour that is visible already.
 void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
                            ObjectTrackerState& state);
+
+/// Forgets the places of objects and zones that the map has given up: their landmark is gone, and the map has no other
+/// one there.
+void forget_dropped(const ObjectTrackerConfig& config, const msg::FieldMap& map, ObjectTrackerState& state);
 
 /// Pose of the head in M at a tick: the stored pose of the nearest tick.
 PlanarPose remembered_pose(std::int64_t tick, const ObjectTrackerState& state);

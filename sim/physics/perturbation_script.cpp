@@ -20,7 +20,10 @@ void PerturbationScript::apply(World& world, double time_s) {
           world.object_pose(perturbation.object).translation() - start_m_[perturbation.object];
       const bool due = std::isnan(perturbation.at_s) ? moved.head<2>().norm() > perturbation.displaced_m
                                                      : time_s >= perturbation.at_s;
-      if (due) began_s_[i] = time_s;
+      if (due) {
+        began_s_[i] = time_s;
+        if (!perturbation.moved_m.isZero()) world.move_object(perturbation.object, perturbation.moved_m);
+      }
     }
     // If the perturbation has not begun, its time is NaN and the comparison is false. The subtracted small time
     // prevents a rounding error from adding a tick.

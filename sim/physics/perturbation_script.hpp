@@ -1,4 +1,4 @@
-// The scripted forces of a scenario on objects.
+// What a scenario does to its objects: scripted forces, and objects that are carried away.
 #pragma once
 
 #include <cereal/types/vector.hpp>
@@ -13,7 +13,8 @@ class PerturbationScript {
  public:
   explicit PerturbationScript(const Scenario& scenario);
 
-  /// Applies the forces that act at this time. Call it once a tick, before World::advance.
+  /// Applies the forces that act at this time, and moves the objects that are carried away now. Call it once a tick,
+  /// before World::advance.
   void apply(World& world, double time_s);
 
   /// The memory of the script: when each perturbation began.

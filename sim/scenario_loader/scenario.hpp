@@ -43,13 +43,15 @@ struct ScenarioObstacle {
 };
 
 /// A scripted force on an object, for example to pull it out of a grasp. It begins at `at_s`, or once the object is
-/// `displaced_m` away from its start; the unused one of these two fields is NaN. The force lasts `duration_s`.
+/// `displaced_m` away from its start; the unused one of these two fields is NaN. The force lasts `duration_s`. Or
+/// somebody carries the object away, in no time.
 struct ScenarioPerturbation {
   std::size_t object = 0;
   double at_s = 0.0;
   double displaced_m = 0.0;
   double duration_s = 0.0;
   Eigen::Vector3d force_n{0.0, 0.0, 0.0};  ///< in W, at the object's centre
+  Eigen::Vector2d moved_m{0.0, 0.0};       ///< in W: by which the object is carried away; zero: it is not
 };
 
 /// Coulomb friction coefficients. The robot file has those of the robot's skin on the ground; `ground_scale` scales

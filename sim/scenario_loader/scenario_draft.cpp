@@ -143,9 +143,15 @@ void read_perturbations(Configuration& root, Scenario& scenario) {
     }
     perturbation.at_s = timed ? from.number("at_s", {0.0, 1e5}) : kNever;
     perturbation.displaced_m = timed ? kNever : from.number("when_displaced_m", {0.001, 100.0});
-    perturbation.duration_s = from.number("duration_s", {0.02, 1e4});
-    const std::vector<double> force = from.numbers("force_n", {-500.0, 500.0}, 3, 3);
-    perturbation.force_n = {force[0], force[1], force[2]};
+    if (from.has("moved_m")) {
+      if (from.has("force_n")) throw from.error("moved_m", "found also force_n, accepted one of them");
+      const std::vector<double> moved = from.numbers("moved_m", {-100.0, 100.0}, 2, 2);
+      perturbation.moved_m = {moved[0], moved[1]};
+    } else {
+      perturbation.duration_s = from.number("duration_s", {0.02, 1e4});
+      const std::vector<double> force = from.numbers("force_n", {-500.0, 500.0}, 3, 3);
+      perturbation.force_n = {force[0], force[1], force[2]};
+    }
     scenario.perturbations.push_back(perturbation);
     from.finish();
   }

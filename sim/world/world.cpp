@@ -146,6 +146,14 @@ void World::set_servo(std::span<const JointSetpoint> setpoints) {
 
 void World::apply_force(std::size_t object, const Vector3d& force_n) { forces_n_.at(object) += force_n; }
 
+void World::move_object(std::size_t object, const Eigen::Vector2d& by_m) {
+  const dBodyID body = objects_.at(object);
+  const dReal* p = dBodyGetPosition(body);
+  dBodySetPosition(body, p[0] + by_m.x(), p[1] + by_m.y(), p[2]);
+  dBodySetLinearVel(body, 0, 0, 0);
+  dBodySetAngularVel(body, 0, 0, 0);
+}
+
 void World::advance(double duration_s, const std::function<void()>& after_step) {
   const auto count = std::max<std::int64_t>(1, std::llround(duration_s / settings_.step_s));
   const Vector3d velocity_before = module_velocity_m_s(0);

@@ -38,5 +38,25 @@ TEST_F(MissionRun, GraspsAnObjectAgainAfterItWasPulledOutOfTheBody) {
   EXPECT_TRUE(report_["objects"][0]["in_zone"]) << report_["objects"];
 }
 
+// A person takes the object when the robot has just seen it, and puts it down out of view. The map gives the empty
+// place up, so that the robot does not grasp there, and the robot finds the object at its new place.
+TEST_F(MissionRun, FindsAnObjectAgainThatAPersonHasMovedOutOfView) {
+  std::ifstream file(std::filesystem::path(CONSTRICTOR_SOURCE_DIR) / "sim/scenarios/short.yaml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t noise = text.find("\nnoise:");
+  ASSERT_NE(noise, std::string::npos);
+  text.insert(noise, "\nperturbations:\n  - {object: 0, at_s: 2.5, moved_m: [-0.7, 1.2]}\n");
+  ASSERT_NO_FATAL_FAILURE(succeeds(scenario(text), 400.0));
+  EXPECT_TRUE(report_["objects"][0]["in_zone"]) << report_["objects"];
+  EXPECT_TRUE(std::isfinite(event_s("object_lost"))) << report_["events"];
+  int grasps = 0;
+  for (const auto& state : report_["states"]) grasps += state["state"] == "grasp" ? 1 : 0;
+  EXPECT_EQ(grasps, 1) << report_["states"];
+  for (const auto& event : report_["events"]) {
+    if (event["event"] != "object_grasped") continue;
+    EXPECT_GT(event["parameters"]["object_handle"], 1) << "a new landmark";
+  }
+}
+
 }  // namespace
 }  // namespace constrictor::testing

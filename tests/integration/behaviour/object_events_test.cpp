@@ -120,5 +120,35 @@ TEST_F(ObjectEvents, PregraspReportsPregraspLostWhenTheObjectVanishes) {
   EXPECT_EQ(until_end(1.0), msg::kGoalRefused);
 }
 
+// Somebody takes the object and puts it down out of view. The map gives the empty place up, and the search goes on
+// elsewhere and finds the object.
+TEST_F(ObjectEvents, AnObjectThatWasTakenAwayLeavesTheMapAndIsFoundAtItsNewPlace) {
+  const Place empty{1.2, 0.1}, there{0.6, 1.4};
+  begin(scene("[1.2, 0.1]", "perturbations: [{object: 0, at_s: 3, moved_m: [-0.6, 1.3]}]\n"));
+  find();
+  const std::uint16_t handle = mapped_near(empty);
+  ASSERT_NE(handle, 0);
+  ASSERT_LT(run_->time_s(), 3.0);
+  ASSERT_TRUE(until([&] { return run_->time_s() > 3.1; }, 4.0));
+  ASSERT_LT(there.distance_m(object()), 0.05);
+  EXPECT_EQ(mapped_near(empty), handle) << "one image is not enough to give it up";
+  ASSERT_TRUE(until([&] { return mapped_near(empty) == 0; }, 4.0)) << "the place is in full view, and empty";
+  find();
+  EXPECT_EQ(mapped_near(empty), 0);
+  EXPECT_GT(mapped_near(there), handle) << "the map cannot know that it is the same object";
+}
+
+TEST_F(ObjectEvents, AnObjectBehindAnotherOneStaysInTheMap) {
+  const std::string object = ", shape: cylinder, radius_m: 0.085, height_m: 0.15, mass_kg: 0.4}";
+  begin("name: two\nobjects:\n  - {colour: green, frame: world, position_m: [1.4, 0.0]" + object +
+        "\n  - {colour: red, frame: world, position_m: [0.7, 2.0]" + object +
+        "\nstart: {frame: world, position_m: [0, 0]}\nnoise: {sensors: true, camera_sd: 0.01}\n"
+        "perturbations: [{object: 1, at_s: 3, moved_m: [0.0, -2.0]}]\n");
+  find();
+  ASSERT_NE(mapped_near({1.4, 0.0}), 0);
+  ASSERT_TRUE(until([&] { return mapped_near({0.7, 0.0}) != 0; }, 6.0)) << "red now hides green";
+  EXPECT_FALSE(until([&] { return mapped_near({1.4, 0.0}) == 0; }, 10.0));
+}
+
 }  // namespace
 }  // namespace constrictor::testing

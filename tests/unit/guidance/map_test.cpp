@@ -5,51 +5,16 @@
 #include <limits>
 #include <numbers>
 
-#include "guidance/field_mapper.hpp"
-#include "robot/planar.hpp"
-#include "snake.hpp"
+#include "mapping.hpp"
 
 namespace constrictor {
 namespace {
 
 using namespace guidance;
-using testing::snake;
+using testing::Mapping;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// A map; the robot stands at the origin.
-struct Mapping {
-  RobotModel model = snake();
-  GuidanceConfig config;
-  FieldState state;
-  PoseFilterState filter_state;
-  PoseFilter filter{filter_state};
-  FieldMapper mapper{state, filter, model, config};
-  std::array<double, 23> q{};
-  std::int64_t tick = 0;
-
-  static msg::Blob blob(std::uint8_t colour, std::uint8_t kind, double x, double y, double radius) {
-    msg::Blob b{};
-    b.colour = colour;
-    b.kind = kind;
-    b.bearing_rad = std::atan2(y, x);
-    b.range_m = std::hypot(x, y) - radius;
-    b.width_m = 2.0 * radius;
-    return b;
-  }
-  void see(std::initializer_list<msg::Blob> blobs, int times = 1, PlanarPose exposure = {}) {
-    msg::ObjectPercepts percepts{};
-    for (const msg::Blob& b : blobs) percepts.blobs[percepts.blob_count++] = b;
-    for (int i = 0; i < times; ++i) mapper.objects(percepts, exposure, tick += 5);
-  }
-  [[nodiscard]] BodyChain chain() const { return planar_module_poses(model, q); }
-  [[nodiscard]] msg::FieldMap map() const {
-    msg::FieldMap m{};
-    mapper.fill(m);
-    return m;
-  }
-};
 
 TEST(Map, EachLandmarkKeepsItsHandle) {
   Mapping m;

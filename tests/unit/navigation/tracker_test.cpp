@@ -103,5 +103,32 @@ TEST(ObjectTracker, AMovedObjectGetsItsNewPositionAtOnce) {
   EXPECT_NEAR(state.objects[msg::kColourGreen].x_m, 2.0 + 0.085, 1e-2);
 }
 
+TEST(ObjectTracker, ForgetsAPlaceThatTheMapHasGivenUp) {
+  ObjectTrackerConfig config;
+  ObjectTrackerState state;
+  const auto images = [&](const msg::ObjectPercepts& percepts, int count) {
+    for (int i = 0; i < count; ++i) update_object_tracker(config, percepts, state);
+  };
+  images(one_blob(msg::kBlobObject, 0.0, 1.0, 0.16), 10);
+  const std::uint8_t colour = one_blob(msg::kBlobObject, 0.0, 1.0, 0.16).blobs[0].colour;
+  const Sighting& object = state.objects[colour];
+  msg::FieldMap map{};
+  forget_dropped(config, map, state);
+  EXPECT_TRUE(object.known) << "the map does not have it yet";
+  map.object_count = 1;
+  map.objects[0] = {5, colour, msg::kBlobObject, object.x_m + 0.1, object.y_m, 0.08, 0.03, false, false, 0};
+  forget_dropped(config, map, state);
+  map.objects[0].x_m += 3.0;  // carried away by the robot itself: it keeps its handle
+  images({}, 20);
+  forget_dropped(config, map, state);
+  EXPECT_TRUE(object.known);
+  map.object_count = 0;
+  forget_dropped(config, map, state);
+  EXPECT_FALSE(object.known);
+  images(one_blob(msg::kBlobObject, 0.0, 2.0, 0.16), 1);
+  EXPECT_TRUE(object.known);
+  EXPECT_NEAR(object.x_m, 2.08, 0.02) << "the old place has no part in the new one";
+}
+
 }  // namespace
 }  // namespace constrictor

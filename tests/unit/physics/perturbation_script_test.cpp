@@ -35,22 +35,46 @@ class PerturbationScriptTest : public testing::Test {
     return world.object_velocity_m_s(0).x();
   }
 
+  /// [m] way of the object in a time.
+  Eigen::Vector2d way_after(double seconds) {
+    World world(robot_, scenario_);
+    PerturbationScript script(scenario_);
+    for (int tick = 0; tick < static_cast<int>(seconds / 0.02 + 0.5); ++tick) {
+      script.apply(world, 0.02 * tick);
+      world.advance(0.02);
+    }
+    return world.object_pose(0).translation().head<2>() - scenario_.objects[0].position_m;
+  }
+
   RobotModel robot_;
   Scenario scenario_;
 };
 
 TEST_F(PerturbationScriptTest, ActsFromItsTimeForItsDuration) {
-  scenario_.perturbations.push_back({0, 0.5, kNan, 0.4, {1.0, 0.0, 0.0}});
+  scenario_.perturbations.push_back({0, 0.5, kNan, 0.4, {1.0, 0.0, 0.0}, Eigen::Vector2d(0.0, 0.0)});
   EXPECT_NEAR(velocity_after(0.5), 0.0, 1e-6);
   EXPECT_NEAR(velocity_after(0.7), 0.2 * 1.0 / 0.5, 1e-3);
   EXPECT_NEAR(velocity_after(1.5), 0.4 * 1.0 / 0.5, 1e-3);
 }
 
 TEST_F(PerturbationScriptTest, BeginsOnceTheObjectWasMoved) {
-  scenario_.perturbations.push_back({0, 0.1, kNan, 0.2, {1.0, 0.0, 0.0}});  // accelerates it to 0.4 m/s
-  scenario_.perturbations.push_back({0, kNan, 0.3, 0.2, {1.0, 0.0, 0.0}});  // after 0.3 m: to 0.8 m/s
+  scenario_.perturbations.push_back(
+      {0, 0.1, kNan, 0.2, {1.0, 0.0, 0.0}, Eigen::Vector2d(0.0, 0.0)});  // accelerates it to 0.4 m/s
+  scenario_.perturbations.push_back(
+      {0, kNan, 0.3, 0.2, {1.0, 0.0, 0.0}, Eigen::Vector2d(0.0, 0.0)});  // after 0.3 m: to 0.8 m/s
   EXPECT_NEAR(velocity_after(0.7), 0.4, 1e-3);
   EXPECT_NEAR(velocity_after(1.6), 0.8, 1e-3);
+}
+
+TEST_F(PerturbationScriptTest, CarriesTheObjectAwayOnceAndItRestsThere) {
+  scenario_.perturbations.push_back(
+      {0, 0.2, kNan, 0.2, {1.0, 0.0, 0.0}, Eigen::Vector2d(0.0, 0.0)});  // it slides at 0.4 m/s when it is taken
+  scenario_.perturbations.push_back({0, 0.5, kNan, 0.0, {0.0, 0.0, 0.0}, Eigen::Vector2d(0.3, -0.4)});
+  const Eigen::Vector2d before = way_after(0.5);
+  EXPECT_GT(before.x(), 0.05);
+  EXPECT_NEAR(before.y(), 0.0, 1e-6);
+  EXPECT_LT((way_after(0.52) - before - Eigen::Vector2d(0.3, -0.4)).norm(), 1e-3);
+  EXPECT_LT((way_after(2.0) - before - Eigen::Vector2d(0.3, -0.4)).norm(), 1e-3);
 }
 
 }  // namespace

@@ -234,11 +234,13 @@ TEST(ScenarioFile, ReadsObstaclesAndPerturbations) {
            "obstacles:\n- {shape: box, size_m: [4, 0.1, 0.3], position_m: [0, 2], yaw_rad: 0.3}\n"
            "- {radius_m: 0.03, height_m: 0.2, position_m: [0, -1]}\n"
            "perturbations:\n- {object: 0, when_displaced_m: 0.5, duration_s: 2, force_n: [0, 20, 0]}\n"
+           "- {object: 0, at_s: 3, moved_m: [0.5, -1]}\n"
            "noise: {sensors: false}\n");
   ASSERT_EQ(scenario.obstacles.size(), 2U);
   EXPECT_EQ(scenario.obstacles[1].shape, BodyShape::kCylinder);
   EXPECT_EQ(scenario.objects[0].shape, BodyShape::kBox);
-  ASSERT_EQ(scenario.perturbations.size(), 1U);
+  ASSERT_EQ(scenario.perturbations.size(), 2U);
+  EXPECT_EQ(scenario.perturbations[1].moved_m, Eigen::Vector2d(0.5, -1.0));
   EXPECT_TRUE(std::isnan(scenario.perturbations[0].at_s));
   EXPECT_EQ(scenario.perturbations[0].displaced_m, 0.5);
   EXPECT_FALSE(scenario.sensor_noise);

@@ -1,0 +1,43 @@
+// Whether a landmark still exists: evidence from images that show it, and from images that should show it and do not.
+#pragma once
+
+#include <vector>
+
+#include "constrictor/messages.hpp"
+#include "guidance/guidance_config.hpp"
+#include "robot/planar.hpp"
+#include "robot/robot_model.hpp"
+
+namespace constrictor::guidance {
+
+/// Natural logarithm of the odds that a landmark exists, after an image that shows it (`seen`), or that should show it
+/// and does not. `looks`: the share of an independent look that the image counts as, 0 to 1. The result is bounded, so
+/// that a landmark that was seen for a long time can be given up within seconds, too.
+/// Source: Thrun, Burgard and Fox, Probabilistic Robotics, section 9.2 (log odds), with the probabilities of a
+/// detection and of a false alarm as inverse sensor model.
+[[nodiscard]] double updated_log_odds(const ExistenceConfig& config, double log_odds, bool seen, double looks);
+
+/// [1] probability of these log odds.
+[[nodiscard]] double probability_of(double log_odds);
+
+/// Something round on the ground plane, in the frame of the head at the exposure. Radius and sd in [m].
+struct Disc {
+  Eigen::Vector2d p{0.0, 0.0};
+  double radius_m = 0.0;
+  double sd_m = 0.0;  ///< standard deviation of the place
+};
+
+/// What an image could show, at its exposure.
+struct View {
+  const RobotModel& model;
+  const msg::ObjectPercepts& percepts;
+  std::vector<Disc> screens;  ///< what may hide a landmark: other objects of the map, and the modules of the body
+};
+
+/// Whether the image must show a landmark of this colour at this place: it lies in the field of view with a margin that
+/// contains the uncertainty of its place, is near enough, and nothing that is known lies in front of it. False in cases
+/// of doubt: a blob of its colour in its direction may be it.
+[[nodiscard]] bool clearly_in_view(const ExistenceConfig& config, const View& view, const Disc& landmark,
+                                   std::uint8_t colour);
+
+}  // namespace constrictor::guidance

@@ -1,0 +1,64 @@
+// The part of FieldMapper that doubts landmarks which images should show and do not.
+#include <algorithm>
+
+#include "guidance/existence.hpp"
+#include "guidance/field_mapper.hpp"
+
+namespace constrictor::guidance {
+namespace {
+
+constexpr std::size_t kNeck = 2;  // the modules next to the head lie behind the camera
+
+}  // namespace
+
+bool FieldMapper::trusted(const Landmark& landmark) const {
+  return landmark.hits < config_.confirm || probability_of(landmark.log_odds) >= config_.existence.trust;
+}
+
+void FieldMapper::replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise,
+                          std::int64_t tick) {
+  release_slot(landmark);
+  landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
+  filter_.add(z, noise);
+  landmark.strays = 0;
+  landmark.last_seen_tick = tick;
+}
+
+std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure,
+                                         const BodyChain& chain, bool level, std::int64_t tick, double period_s) {
+  const ExistenceConfig& config = config_.existence;
+  const double since_s = static_cast<double>(tick - state_.looked_tick) * period_s;
+  const double looks = std::clamp(since_s / config.look_s, 0.0, 1.0);
+  state_.looked_tick = tick;
+
+  const auto disc_of = [&](const Landmark& landmark) {
+    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
+    return Disc{exposure.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
+  };
+  View view{model_, percepts, {}};
+  for (std::size_t i = kNeck; i < chain.size(); ++i)
+    view.screens.push_back({exposure.to_local(chain[i].p), 0.5 * model_.module_length_m + model_.module_radius_m, 0.0});
+  const std::size_t modules = view.screens.size();
+  std::vector<Landmark> given_up;
+
+  for (std::size_t i = state_.landmarks.size(); i-- > 0;) {
+    Landmark& landmark = state_.landmarks[i];
+    if (landmark.carried) continue;
+    const bool seen = landmark.last_seen_tick == tick;
+    if (seen) landmark.log_odds = updated_log_odds(config, landmark.log_odds, true, looks);
+    if (seen || !level || landmark.strays > 0 || landmark.hits < config_.confirm) continue;
+    view.screens.resize(modules);
+    for (const Landmark& other : state_.landmarks) {
+      if (&other != &landmark && other.kind == msg::kBlobObject) view.screens.push_back(disc_of(other));
+    }
+    if (!clearly_in_view(config, view, disc_of(landmark), landmark.colour)) continue;
+    landmark.log_odds = updated_log_odds(config, landmark.log_odds, false, looks);
+    if (probability_of(landmark.log_odds) >= config.drop) continue;
+    release_slot(landmark);
+    given_up.push_back(landmark);
+    forget(i);
+  }
+  return given_up;
+}
+
+}  // namespace constrictor::guidance
