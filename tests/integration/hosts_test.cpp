@@ -1,5 +1,7 @@
 // Runs on several hosts with the real launcher and agents. A script in place of ssh runs the command on this host, with
 // a run directory of its own; tests/integration/hosts_long_test.cpp has real hosts, networks and sshd.
+#include <regex>
+
 #include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
@@ -19,7 +21,7 @@ class Hosts : public RunCommand {
   /// Writes the script in place of ssh, which first executes `commands`.
   void ssh(const std::string& commands) const {
     write("ssh", "#!/bin/sh\n" + commands + "\nfor last; do :; done\nexport XDG_RUNTIME_DIR=" + there_.string() +
-                     "\nexec sh -c \"$last\"\n");
+                     "\nunset CONSTRICTOR_LAUNCHER\nexec sh -c \"$last\"\n");
     fs::permissions(dir_ / "ssh", fs::perms::owner_all);
   }
   /// Writes hosts.yaml: navigation, control and report run on the host `robot`.
@@ -73,6 +75,9 @@ TEST_F(Hosts, ARunOnTwoHostsHasTheResultOfOneProcessAndLeavesNothing) {
   const auto json = report("two");
   EXPECT_EQ(json["processes"][0]["host"], "here");
   EXPECT_EQ(json["processes"][2]["host"], "robot");
+  // The first line of a process names the program that started it, here the agent of its host.
+  EXPECT_TRUE(std::regex_search(log("two", "control"), std::regex("started by constrictor \\S+ git \\w+")))
+      << log("two", "control");
   EXPECT_GT(json["processes"][2]["cpu_s"], 0.0);
   EXPECT_EQ(json["hosts"]["robot"]["release"], json["hosts"]["here"]["release"]);
   EXPECT_TRUE(json["hosts"]["robot"]["libraries"].contains("ode"));

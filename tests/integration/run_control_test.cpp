@@ -110,6 +110,31 @@ TEST_F(RunControl, AfterAResetCommandsAndReportShowTheNewSeedAndTick) {
   EXPECT_EQ(report("r").value("seed", 0), 7);
 }
 
+// Two members cannot start before the file `go` is there.
+TEST_F(RunControl, AStepOfARunThatHasNotBegunSaysWhatIsMissingAndIsMadeWhenItBegins) {
+  write("late", "#!/bin/sh\nwhile [ ! -e " + (dir_ / "go").string() + " ]; do sleep 0.05; done\nexec " +
+                    program("toy_host") + " \"$@\"\n");
+  std::filesystem::permissions(dir_ / "late", std::filesystem::perms::owner_all);
+  write("late.yaml",
+        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\nprocesses:\n"
+        "  - {components: [physics, report], program: toy_host}\n  - {components: [navigation, control], program: " +
+            (dir_ / "late").string() + "}\n");
+  write("5000_ticks.yaml", "");
+  Process launcher = start({"run", (dir_ / "5000_ticks.yaml").string(), "--manifest", (dir_ / "late.yaml").string(),
+                            "--report", (dir_ / "late_run").string()});
+  ASSERT_TRUE(launcher.wait_for("report in", 20s)) << launcher.errors();
+  Process step = start({"step", "3"});
+  ASSERT_TRUE(step.wait_for("has not begun: it waits for control, navigation; the steps are made when it begins", 20s))
+      << step.errors();
+  write("go", "");
+  EXPECT_EQ(step.wait(30s), exit_status::kOk) << step.errors();
+  output_ = step.output();
+  EXPECT_EQ(next_tick(), 3) << output_;
+  EXPECT_EQ(step.errors().find("interrupted"), std::string::npos) << step.errors();
+  ASSERT_EQ(command({"end"}), exit_status::kOk) << output_;
+  EXPECT_EQ(launcher.wait(30s), 128 + SIGTERM) << launcher.output();
+}
+
 TEST_F(RunControl, AStepBeyondTheEndOfTheRunReportsTheEnd) {
   Process launcher = run(100, "r", {"--pace", "1x"});
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();

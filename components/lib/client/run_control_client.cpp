@@ -18,6 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr auto kRepeatEvery = 500ms;
+constexpr auto kSettle = 1s;  // until the state of a run that goes on has arrived
 
 }  // namespace
 
@@ -115,8 +116,46 @@ msg::RunState RunControlClient::reset(std::uint64_t seed) {
   return send(message);
 }
 
-msg::RunState RunControlClient::step(std::uint32_t ticks) {
-  const std::int64_t from = pause().tick;  // from here on only the steps move the run
+void RunControlClient::throw_if_interrupted(const char* what) const {
+  if (interrupted_ && interrupted_())
+    throw CommandError(fmt::format("run {}: interrupted; {}", domain_, what), CommandError::Cause::kInterrupted);
+}
+
+std::optional<msg::RunState> RunControlClient::first_state(std::chrono::milliseconds bound) {
+  std::optional<msg::RunState> found;
+  for (const auto end = WaitClock::now() + bound; !found && WaitClock::now() < end;
+       std::this_thread::sleep_for(kPoll)) {
+    endpoints_->states.take([&](const msg::RunState& state) {
+      if (key_.run_id == 0 || state.run_id == key_.run_id) found = state;
+    });
+    throw_if_interrupted("the run has not begun");
+  }
+  return found;
+}
+
+/// A run that has not begun takes the pause, too, if its plant is there: it then begins without a tick.
+msg::RunState RunControlClient::pause_before_steps(const std::function<void()>& waiting) {
+  const bool begun = first_state(kSettle).has_value();
+  if (!begun && waiting) waiting();
+  for (const auto end = WaitClock::now() + bound_;;) {
+    try {
+      const msg::RunState state = pause();
+      if (state.run_id != 0) return state;
+    } catch (const CommandError& error) {
+      if (error.cause() != CommandError::Cause::kNoAnswer || begun || !waiting) throw;
+    }
+    while (!first_state(kRepeatEvery)) {
+      if (waiting) waiting();
+      else if (WaitClock::now() > end)
+        throw CommandError(
+            fmt::format("run {}: the run has not begun (see `constrictor status --run {}`)", domain_, domain_),
+            CommandError::Cause::kNoAnswer);
+    }
+  }
+}
+
+msg::RunState RunControlClient::step(std::uint32_t ticks, const std::function<void()>& waiting) {
+  const std::int64_t from = pause_before_steps(waiting).tick;  // from here on only the steps move the run
   msg::RunControl message{};
   message.command = msg::kRunStep;
   message.ticks = ticks;
@@ -139,10 +178,7 @@ msg::RunState RunControlClient::wait_for_tick(std::uint64_t run_id, std::int64_t
                                      domain_, bound_.count(), next, domain_),
                          CommandError::Cause::kNoAnswer);
     }
-    if (interrupted_ && interrupted_()) {
-      throw CommandError(fmt::format("run {}: interrupted; the run makes the remaining steps and then pauses", domain_),
-                         CommandError::Cause::kInterrupted);
-    }
+    throw_if_interrupted("the run makes the remaining steps and then pauses");
   }
 }
 

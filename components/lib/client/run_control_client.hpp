@@ -34,8 +34,9 @@ class RunControlClient {
   msg::RunState pause();
   msg::RunState resume();
   /// Pauses the run, lets it make `ticks` more ticks and waits until they are done. Throws kNoAnswer if the run stops
-  /// making ticks.
-  msg::RunState step(std::uint32_t ticks);
+  /// making ticks, or has not begun. With `waiting` it waits until the run begins, without a bound, and makes the first
+  /// ticks then; meanwhile it calls `waiting` about every half second.
+  msg::RunState step(std::uint32_t ticks, const std::function<void()>& waiting = {});
   /// Limits the run to `pace` times real time, 0.001 to 1000; 0: lock-step, as fast as possible.
   msg::RunState set_pace(double pace);
   /// Ends the epoch and begins a new one with `seed`.
@@ -50,6 +51,9 @@ class RunControlClient {
   RunControlClient(std::unique_ptr<Endpoints> endpoints, std::uint32_t domain, std::chrono::seconds bound,
                    std::function<bool()> interrupted, std::optional<RunKey> key);
   msg::RunState send(std::uint8_t command);
+  msg::RunState pause_before_steps(const std::function<void()>& waiting);
+  std::optional<msg::RunState> first_state(std::chrono::milliseconds bound);
+  void throw_if_interrupted(const char* what) const;
   msg::RunState wait_for_tick(std::uint64_t run_id, std::int64_t tick);
 
   std::unique_ptr<Endpoints> endpoints_;

@@ -75,7 +75,38 @@ std::string problem(Need need, const msg::TaskParameters& parameters, const msg:
   return {};
 }
 
+TaskParameter parameter_of(Need need) {
+  const auto colours = names_of(constants::kColour, msg::kColourGreen);
+  const std::vector<std::string> sides = {name_of(constants::kDirection, msg::kDirectionLeft),
+                                          name_of(constants::kDirection, msg::kDirectionRight)};
+  switch (need) {
+    case Need::kLineColour:
+      return {"line_colour", colours};
+    case Need::kObjectColour:
+      return {"object_colour", colours};
+    case Need::kDropZoneColour:
+      return {"drop_zone_colour", colours};
+    case Need::kDirection:
+      return {"direction", names_of(constants::kDirection, msg::kDirectionNone + 1)};
+    case Need::kLeftOrRight:
+      return {"direction", sides};
+    case Need::kSideIfAny:
+      return {"direction", sides, true};
+    case Need::kPath:
+      return {"path", {}};
+  }
+  return {};
+}
+
 }  // namespace
+
+std::vector<TaskParameter> task_parameters_of(std::uint8_t task) {
+  std::vector<TaskParameter> parameters;
+  for (const Row& row : kNeeds) {
+    if (row.task == task) parameters.push_back(parameter_of(row.need));
+  }
+  return parameters;
+}
 
 std::string task_parameter_refusal(std::uint8_t task, const msg::TaskParameters& parameters, const msg::Path& path) {
   if (task == msg::kTaskNone || task >= msg::kTaskCount)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "constrictor/messages.hpp"
 
@@ -13,5 +14,15 @@ namespace constrictor {
 /// accepted. Empty if the parameters are complete. Navigation decides whether the robot can do the task at present.
 [[nodiscard]] std::string task_parameter_refusal(std::uint8_t task, const msg::TaskParameters& parameters,
                                                  const msg::Path& path);
+
+/// A parameter that a task needs or uses, for programs that ask people for it.
+struct TaskParameter {
+  std::string name;                 ///< of set_task_parameter(), or "path"
+  std::vector<std::string> values;  ///< the accepted names; empty: points
+  bool optional = false;
+};
+
+/// The parameters that task_parameter_refusal() checks for this task.
+[[nodiscard]] std::vector<TaskParameter> task_parameters_of(std::uint8_t task);
 
 }  // namespace constrictor

@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
@@ -14,7 +17,11 @@
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "constrictor/text.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/endpoint.hpp"
 #include "runtime/host.hpp"
 #include "runtime/pacer.hpp"
 
@@ -50,14 +57,39 @@ std::string pace_text(const msg::RunState& state) {
   return text;
 }
 
+/// Says which members a run that has not begun waits for, whenever that changes.
+class BeginWatch {
+ public:
+  BeginWatch(const RunNote& run, std::int32_t participant)
+      : run_(run),
+        hellos_(dds::Reader<msg::Hello>::member(participant, barrier_topics::kHello.name)),
+        missing_(run.roster.begin(), run.roster.end()) {}
+  void report() {
+    hellos_.take([this](const msg::Hello& hello) { missing_.erase(text_of(hello.component)); });
+    const std::string whom =
+        missing_.empty() ? "its members to be ready" : fmt::format("{}", fmt::join(missing_, ", "));
+    if (std::exchange(told_, whom) == whom) return;
+    fmt::print(stderr, "run {} has not begun: it waits for {}; the steps are made when it begins\n", run_.domain, whom);
+  }
+
+ private:
+  const RunNote& run_;
+  dds::Reader<msg::Hello> hellos_;
+  std::set<std::string> missing_;
+  std::string told_;
+};
+
 int control(const Options& options, std::uint8_t command) {
   const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
   const RunNote run = join_run(options.run);
   catch_interrupts();
-  RunControlClient client(run.domain, 10s,
+  const dds::Domain domain(run.domain);
+  BeginWatch begin(run, domain.participant());
+  RunControlClient client(domain.participant(), run.domain, 10s,
                           [&] { return interrupt_signal() != 0 || (run.on_this_host && !domain_claimed(run.domain)); });
   try {
-    const msg::RunState state = command == msg::kRunStep    ? client.step(static_cast<std::uint32_t>(options.steps))
+    const msg::RunState state = command == msg::kRunStep
+                                    ? client.step(static_cast<std::uint32_t>(options.steps), [&] { begin.report(); })
                                 : command == msg::kRunReset ? client.reset(options.seed)
                                 : command == msg::kRunPace  ? client.set_pace(pace)
                                 : command == msg::kRunPause ? client.pause()
@@ -160,10 +192,11 @@ void add_run_control(CLI::App& app, Action& action) {
   add("resume", "continue a paused run", controls(msg::kRunResume),
       help_footer("The run continues at the pace that was set before the pause.", {"constrictor resume"}, time_status));
   add("step", "pause a run and let it make one tick, or several", controls(msg::kRunStep),
-      help_footer(
-          "Waits until the ticks are done, as long as the run makes ticks. Ctrl-C ends the wait, not the steps.",
-          {"constrictor step", "constrictor step 50       # one second"},
-          fmt::format("0 done; {},\n  or no tick for 10 s; 130 interrupted by Ctrl-C", kRunStatuses)))
+      help_footer("Waits until the ticks are done, as long as the run makes ticks. A run that has not begun makes them "
+                  "when it\n"
+                  "begins. Ctrl-C ends the wait, not the steps.",
+                  {"constrictor step", "constrictor step 50       # one second"},
+                  fmt::format("0 done; {},\n  or no tick for 10 s; 130 interrupted by Ctrl-C", kRunStatuses)))
       ->add_option("TICKS", options->steps, "number of ticks, 1 to 1000000")
       ->check(whole_number())
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))

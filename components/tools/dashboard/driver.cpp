@@ -7,6 +7,7 @@
 #include "cli/operator.hpp"
 #include "cli/task_request.hpp"
 #include "client/task_names.hpp"
+#include "component/task_parameters.hpp"
 #include "dashboard/lane.hpp"
 #include "robot/drive_gait.hpp"
 
@@ -97,6 +98,17 @@ std::string Driver::release() {
   expect_granted(client_, client_.ask(msg::kRequestTake), "release");
   expect_granted(client_, client_.ask(msg::kRequestRelease), "release");
   return "authority released";
+}
+
+std::string task_forms() {
+  nlohmann::json forms = nlohmann::json::array();
+  for (std::uint8_t task = msg::kTaskNone + 1; task < msg::kTaskCount; ++task) {
+    nlohmann::json parameters = nlohmann::json::array();
+    for (const auto& [name, values, optional] : task_parameters_of(task))
+      parameters.push_back({{"name", name}, {"values", values}, {"optional", optional}});
+    forms.push_back({{"task", task_word(task)}, {"parameters", parameters}});
+  }
+  return forms.dump();
 }
 
 void Driver::watch() {

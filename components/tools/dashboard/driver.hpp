@@ -52,4 +52,9 @@ class Driver {
   std::chrono::steady_clock::time_point until_{};
 };
 
+/// JSON for the page: every task with its parameters, [{"task": "rotate", "parameters": [{"name": "direction",
+/// "values":
+/// ["left", "right"], "optional": false}]}, ...]. No values: points.
+std::string task_forms();
+
 }  // namespace constrictor::dashboard

@@ -59,6 +59,7 @@ Shown find(std::optional<std::uint32_t> domain) {
 
 int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
   web.page = data_path("components/tools/dashboard/page");
+  web.made["/tasks.json"] = dashboard::task_forms();
   Shown shown = find(domain);
   dashboard::Dashboard board(std::move(shown.controls), "Constrictor " + shown.name, web);
   const std::string place = place_of(web, board.server().port());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,8 +15,10 @@ namespace constrictor::dashboard {
 
 struct WebOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8765;         ///< 0: any free one
-  std::filesystem::path page;        ///< folder of the files of the page
+  std::uint16_t port = 8765;   ///< 0: any free one
+  std::filesystem::path page;  ///< folder of the files of the page
+  /// Further files of the page that are no files on the disk: content by path, as "/tasks.json".
+  std::map<std::string, std::string> made = {};
   std::vector<std::string> origins;  ///< further web sites whose pages may watch, as in the header Origin
 };
 

@@ -73,6 +73,8 @@ void Session::on_request() {
     std::ifstream stream(file->second, std::ios::binary);
     if (stream) return respond(http::status::ok, {std::istreambuf_iterator<char>(stream), {}}, type_of(file->second));
   }
+  if (const auto made = server_->options.made.find(target); made != server_->options.made.end())
+    return respond(http::status::ok, made->second, type_of(target));
   respond(http::status::not_found, "there is no such file; the page is at /\n");
 }
 

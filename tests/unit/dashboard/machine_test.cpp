@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "constrictor/constants.hpp"
 #include "planner/mission_state.hpp"
 
 namespace constrictor::dashboard {
@@ -53,6 +54,16 @@ TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
 }
 
 /// Names and reasons come from the run, and from whoever can send to it.
+// "One place for each fact" (CONTRIBUTING.md): a new task, colour or direction appears without a change of the page.
+TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
+  std::ifstream file(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page/tasks.js");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_NE(text.find("export function buildTasks"), std::string::npos);
+  for (const auto& group : {constants::kTask, constants::kColour, constants::kDirection}) {
+    for (const auto& name : names_of(group, 1)) EXPECT_EQ(text.find(name), std::string::npos) << name;
+  }
+}
+
 TEST(Page, InsertsNothingAsHtml) {
   int files = 0;
   for (const auto& entry :

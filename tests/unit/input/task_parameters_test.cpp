@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "constrictor/constants.hpp"
 #include "input/arbiter.hpp"
 #include "requests.hpp"
 
@@ -35,6 +36,45 @@ TEST_F(TaskParametersTest, EachTaskNeedsItsOwnParameters) {
   EXPECT_NE(refusal(msg::kTaskDrop).find("drop needs a drop zone colour"), std::string::npos);
   parameters.drop_zone_colour = msg::kColourRed;
   EXPECT_TRUE(accepts(msg::kTaskDrop));
+}
+
+// The forms that programs make of task_parameters_of() and the refusals must not differ.
+TEST_F(TaskParametersTest, EachNamedValueIsAcceptedAndNoneCanBeLeftOutThatIsNotOptional) {
+  int values = 0;
+  for (std::uint8_t task = msg::kTaskNone + 1; task < msg::kTaskCount; ++task) {
+    const auto needs = task_parameters_of(task);
+    const auto set = [&](const TaskParameter& need, const std::string& value) {
+      if (need.name == "line_colour") parameters.line_colour = *value_of(constants::kColour, value);
+      if (need.name == "object_colour") parameters.object_colour = *value_of(constants::kColour, value);
+      if (need.name == "drop_zone_colour") parameters.drop_zone_colour = *value_of(constants::kColour, value);
+      if (need.name == "direction") parameters.direction = *value_of(constants::kDirection, value);
+      if (need.name != "path") return;
+      path.point_count = 2;
+      path.x_m[1] = 1.0;
+    };
+    parameters = {};
+    path = {};
+    for (const auto& need : needs) {
+      if (!need.optional) set(need, need.values.empty() ? "" : need.values.front());
+    }
+    EXPECT_TRUE(accepts(task)) << refusal(task);
+    for (const auto& need : needs) {
+      for (const auto& value : need.values) {
+        set(need, value);
+        EXPECT_TRUE(accepts(task)) << value << ": " << refusal(task);
+        ++values;
+      }
+    }
+    for (const auto& left_out : needs) {
+      parameters = {};
+      path = {};
+      for (const auto& need : needs) {
+        if (need.name != left_out.name) set(need, need.values.empty() ? "" : need.values.front());
+      }
+      EXPECT_EQ(accepts(task), left_out.optional) << left_out.name;
+    }
+  }
+  EXPECT_EQ(values, 5 * (msg::kColourCount - 1) + 2 + 2 + (msg::kDirectionCount - 1));
 }
 
 TEST_F(TaskParametersTest, RotateTurnsLeftOrRightOnlyAndExploreAlsoForwardsAndBackwards) {

@@ -115,10 +115,10 @@ for (const name of plain) element(name).addEventListener("click", () => call(nam
 element("step").addEventListener("click", () => call("step", { ticks: 1 }));
 element("pace").addEventListener("change", (event) => call("pace", { pace: Number(event.target.value) }));
 const timeline = new Timeline(connection, call);
-buildTasks(call);
 new Drive(connection, say, () => call("stop", {}));
 new Parameters(connection, call);
 addEventListener("resize", () => (scenes = true));
 
+buildTasks(await (await fetch("tasks.json")).json(), call);
 machine = new Machine(element("machine"), await (await fetch("machine.json")).json());
 requestAnimationFrame(frame);

@@ -1,19 +1,5 @@
 // Starts and ends the tasks of Tables I to XV of the paper.
 
-const colours = ["green", "red", "blue", "yellow"];
-const sides = ["left", "right"];
-const needs = {
-  follow_line: { line_colour: colours },
-  search_object: { object_colour: colours },
-  track_object: { object_colour: colours },
-  pregrasp: { object_colour: colours, direction: ["", ...sides] },
-  grasp: {},
-  drop: { drop_zone_colour: colours },
-  rotate: { direction: sides },
-  explore: { direction: [...sides, "forwards", "backwards"] },
-  follow_path: { path: null }, // a text
-};
-
 const element = (id) => document.getElementById(id);
 
 function choice(parent, label, values) {
@@ -39,9 +25,10 @@ function text(parent, label, example) {
   return input;
 }
 
-/** Builds the form. `call(service, request)` calls a service and shows its answer. */
-export function buildTasks(call) {
-  const kind = choice(element("task_form"), "task", Object.keys(needs));
+/** Builds the form from the tasks of the dashboard: [{task, parameters: [{name, values, optional}]}], no values: points.
+ *  `call(service, request)` calls a service and shows its answer. */
+export function buildTasks(tasks, call) {
+  const kind = choice(element("task_form"), "task", tasks.map((each) => each.task));
   kind.id = "task_kind";
   const details = document.createElement("span");
   element("task_form").append(details);
@@ -49,8 +36,10 @@ export function buildTasks(call) {
   const rebuild = () => {
     details.replaceChildren();
     fields = {};
-    for (const [name, values] of Object.entries(needs[kind.value]))
-      fields[name] = values ? choice(details, name, values) : text(details, "path [m]", "0,0;1,0.5");
+    for (const { name, values, optional } of tasks.find((each) => each.task === kind.value)?.parameters ?? []) {
+      if (values.length === 0) fields[name] = text(details, `${name} [m]`, "0,0;1,0.5");
+      else fields[name] = choice(details, name, optional ? ["", ...values] : values);
+    }
   };
   kind.addEventListener("change", rebuild);
   rebuild();
