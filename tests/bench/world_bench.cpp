@@ -1,6 +1,7 @@
 // One control period (20 ms) of the physics. The real-time factor is 20 ms divided by the time of an iteration.
 #include <benchmark/benchmark.h>
 
+#include "support/project.hpp"
 #include "unit/world/open_loop_gait.hpp"
 
 namespace constrictor {
@@ -14,7 +15,7 @@ void undulate(benchmark::State& state) {
   settings.step_s = 1e-6 * static_cast<double>(state.range(0));
   settings.iterations = static_cast<int>(state.range(1));
   settings.one_ground_contact_a_joint = state.range(2) == 1;
-  World world(load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"), Scenario{}, settings);
+  World world(load_robot(testing::robot_path("mamba")), Scenario{}, settings);
   OpenLoopGait gait;
   int tick = 0;
   const auto centre_x = [&] { return world.module_pose(12).translation().x(); };

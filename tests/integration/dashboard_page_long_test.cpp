@@ -1,5 +1,6 @@
 // The dashboard's page in headless Chromium, on a desktop and on a phone, with a run of the simulated robot.
 #include "integration/run_command_fixture.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -21,7 +22,7 @@ class DashboardPage : public RunCommand {
   }
   [[nodiscard]] Process browse(const std::string& size, std::vector<std::string> steps,
                                const std::string& flags = "") const {
-    std::vector<std::string> arguments{"/usr/bin/env", "node", CONSTRICTOR_SOURCE_DIR "/tests/support/browser.mjs",
+    std::vector<std::string> arguments{"/usr/bin/env", "node", testing::source_path("tests/support/browser.mjs"),
                                        "http://127.0.0.1:" + port_ + "/", size};
     arguments.insert(arguments.end(), steps.begin(), steps.end());
     return Process(std::move(arguments), {{"CONSTRICTOR_BROWSER_FLAGS", flags}});

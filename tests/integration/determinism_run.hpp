@@ -13,6 +13,7 @@
 #include "support/command_lines.hpp"
 #include "support/eventually.hpp"
 #include "support/process.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
@@ -70,7 +71,7 @@ class DeterminismRun : public ::testing::Test {
   /// of its process; each is indented by four blanks.
   void write_manifest(const std::string& name, const std::map<std::string, std::string>& lines,
                       const std::string& original = "case_study") const {
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/deploy/" + original + ".yaml");
+    std::ifstream file(testing::source_path("deploy/" + original + ".yaml"));
     std::string text{std::istreambuf_iterator<char>(file), {}};
     for (const auto& [component, line] : lines) {
       const std::string plain = "components: [" + component + "]\n";

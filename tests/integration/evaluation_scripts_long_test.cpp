@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include "integration/run_command_fixture.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -39,7 +40,7 @@ class EvaluationScripts : public RunCommand {
           std::string("--parts"), std::string("3"), std::string("--"), (dir_ / "60_ticks.yaml").string(),
           std::string("--manifest"), (dir_ / "toys.yaml").string(), std::string("--seeds"), std::string("1..5")})
       options.push_back(word);
-    return start(CONSTRICTOR_SOURCE_DIR "/scripts/" + script, options, environment);
+    return start(testing::source_path("scripts/" + script), options, environment);
   }
   [[nodiscard]] std::set<std::string> runs() const {
     std::set<std::string> found;
@@ -88,13 +89,13 @@ TEST_F(EvaluationScripts, PartsRunOnThisHostAndOverSsh) {
 }
 
 TEST_F(EvaluationScripts, RefuseWhatTheyCannotDo) {
-  Process no_hosts = start(CONSTRICTOR_SOURCE_DIR "/scripts/evaluate_on_hosts.sh", {"--", "short"});
+  Process no_hosts = start(testing::source_path("scripts/evaluate_on_hosts.sh"), {"--", "short"});
   EXPECT_EQ(no_hosts.wait(20s), exit_status::kUsage);
   EXPECT_NE(no_hosts.errors().find("--hosts and --output are needed"), std::string::npos);
-  Process no_arguments = start(CONSTRICTOR_SOURCE_DIR "/scripts/evaluate_slurm.sh", {"--output", "/tmp/none"});
+  Process no_arguments = start(testing::source_path("scripts/evaluate_slurm.sh"), {"--output", "/tmp/none"});
   EXPECT_EQ(no_arguments.wait(20s), exit_status::kUsage);
   EXPECT_NE(no_arguments.errors().find("are missing after --"), std::string::npos);
-  Process shard = start(CONSTRICTOR_SOURCE_DIR "/scripts/evaluate_slurm.sh",
+  Process shard = start(testing::source_path("scripts/evaluate_slurm.sh"),
                         {"--output", (dir_ / "e").string(), "--", "short", "--shard", "1/2"});
   EXPECT_EQ(shard.wait(20s), exit_status::kUsage);
   EXPECT_NE(shard.errors().find("--shard belongs to this script"), std::string::npos);

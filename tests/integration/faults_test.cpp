@@ -8,6 +8,7 @@
 #include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
+#include "support/project.hpp"
 #include "support/swaying_control.hpp"
 
 namespace constrictor::testing {
@@ -203,8 +204,7 @@ TEST_F(Faults, AWrongConfigurationIsRefusedBeforeTheRunStartsWithFileLineKeyFoun
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.wrong);
-    std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/" + c.component + "/" + c.component +
-                       ".yaml");
+    std::ifstream file(testing::source_path(std::string("components/") + c.component + "/" + c.component + ".yaml"));
     std::string text{std::istreambuf_iterator<char>(file), {}};
     const auto at = text.find(c.line);
     ASSERT_NE(at, std::string::npos) << c.line;

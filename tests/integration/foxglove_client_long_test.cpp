@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "integration/dashboard_run.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -17,12 +18,13 @@ class FoxgloveClient : public DashboardRun, public ::testing::WithParamInterface
   static void SetUpTestSuite() {
     fs::create_directories(folder());
     for (const char* name : {"package.json", "foxglove_client.mjs"})
-      fs::copy_file(fs::path(CONSTRICTOR_NODE_FOLDER) / name, folder() / name, fs::copy_options::overwrite_existing);
+      fs::copy_file(source_path("tests/integration/node") / name, folder() / name,
+                    fs::copy_options::overwrite_existing);
     Process npm({"npm", "install", "--no-audit", "--no-fund", "--prefix", folder().string()});
     ASSERT_EQ(npm.wait(200s), 0) << npm.errors();
   }
   [[nodiscard]] std::vector<std::string> run_options() const override { return {"--record"}; }
-  static fs::path folder() { return fs::path(CONSTRICTOR_BUILD) / "foxglove_client"; }
+  static fs::path folder() { return build_path("foxglove_client"); }
   /// The official client, which calls these methods as soon as it is connected.
   [[nodiscard]] Process client(const json& calls) const {
     return Process(

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/namespace_hosts.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -28,7 +29,7 @@ class LongHosts : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = NamespaceHosts::missing(); !missing.empty()) GTEST_SKIP() << missing;
   }
-  void make(int count) { hosts_ = std::make_unique<NamespaceHosts>(count, kPrograms, CONSTRICTOR_SOURCE_DIR); }
+  void make(int count) { hosts_ = std::make_unique<NamespaceHosts>(count, kPrograms, testing::source_path()); }
 
   /// Writes the manifest of the toys: three of the five processes run on host2.
   void write_toys(int patience_s = 60) const {

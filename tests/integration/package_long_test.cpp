@@ -8,6 +8,7 @@
 
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
@@ -61,7 +62,7 @@ class Package : public ::testing::Test {
 };
 
 TEST_F(Package, IsInstalledRunAndRemoved) {
-  run({"/usr/bin/cpack", "--config", CONSTRICTOR_BUILD "/CPackConfig.cmake", "-B",
+  run({"/usr/bin/cpack", "--config", testing::build_path("CPackConfig.cmake"), "-B",
        (dir_.path() / "packages").string()});
   const fs::path runtime = package("constrictor"), dev = package("constrictor-dev"),
                  python = package("python3-constrictor");

@@ -1,5 +1,6 @@
 // scripts/perception_study.sh with toy components: done whole, interrupted and continued, and with wrong options.
 #include "integration/run_command_fixture.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -15,7 +16,7 @@ class PerceptionStudy : public RunCommand {
           "     vary: [\"robot:skin.friction_across=0.1,0.2\", noise.camera_sd=0.05]}\n");
   }
   [[nodiscard]] Process study(std::vector<std::string> options, const std::string& scenario = "60_ticks.yaml") const {
-    std::vector<std::string> words{CONSTRICTOR_SOURCE_DIR "/scripts/perception_study.sh",
+    std::vector<std::string> words{testing::source_path("scripts/perception_study.sh"),
                                    "--programs",
                                    fs::path(program("constrictor")).parent_path().string(),
                                    "--factors",

@@ -4,6 +4,7 @@
 
 #include "integration/run_command_fixture.hpp"
 #include "recording/recording_summary.hpp"
+#include "support/project.hpp"
 #include "unit/recording/node/reader.hpp"
 
 namespace constrictor::testing {
@@ -39,7 +40,7 @@ TEST_F(LongRecording, EveryComponentRepeatsTheCaseStudyAndItsImages) {
 }
 
 TEST_F(LongRecording, RecordersThatAreKilledLeaveReadableFiles) {
-  const OfficialReader official(CONSTRICTOR_NODE_FOLDER, CONSTRICTOR_BUILD);
+  const OfficialReader official(testing::source_path("tests/unit/recording/node"), testing::build_path());
   Process launcher = run(1'000'000, "r", {"--pace", "1x", "--in-process"});
   ASSERT_TRUE(eventually([&] { return members().size() == 1; })) << launcher.output();
   std::mt19937 random(20261122);

@@ -7,12 +7,13 @@
 
 #include "runtime/host.hpp"
 #include "support/process.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-const std::filesystem::path kScenarios = std::filesystem::path(CONSTRICTOR_SOURCE_DIR) / "sim/scenarios";
+const std::filesystem::path kScenarios = testing::source_path("sim/scenarios");
 
 std::vector<std::string> shipped_scenarios() {
   std::vector<std::string> names;

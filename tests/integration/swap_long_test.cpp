@@ -2,6 +2,7 @@
 // the robot follows the line.
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -21,7 +22,7 @@ TEST_F(SwapTest, TheCameraIsReplacedWhileTheRobotFollowsTheLine) {
   const unsigned number = domain_of(launcher);
   ASSERT_GT(number, 0U);
   Process camera({program("camera_emulator"), "--run", std::to_string(number), "--scenario",
-                  std::string(CONSTRICTOR_SOURCE_DIR) + "/sim/scenarios/line.yaml", "--output", dir_.string()});
+                  testing::source_path("sim/scenarios/line.yaml"), "--output", dir_.string()});
   ASSERT_TRUE(camera.wait_for("sees the world", 20s)) << camera.errors();
   write("camera.yaml", "source: " + (dir_ / "camera_emulator.url").string() + "\n");
   ASSERT_TRUE(launcher.wait_for("follow line (follow)", 30s)) << launcher.output();

@@ -104,6 +104,4 @@ unsigned domain_of(Process& run) {
   return static_cast<unsigned>(std::stoul(output.substr(output.find("run ") + 4)));
 }
 
-std::string program(const std::string& name) { return std::string(CONSTRICTOR_BIN) + "/" + name; }
-
 }  // namespace constrictor::testing

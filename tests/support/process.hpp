@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
@@ -44,8 +45,5 @@ class Process {
 
 /// The domain that a `constrictor run` has claimed and printed; 0 if it printed none in time.
 unsigned domain_of(Process& run);
-
-/// Path of a program of this build.
-std::string program(const std::string& name);
 
 }  // namespace constrictor::testing

@@ -12,6 +12,7 @@
 #include "bench/engines/engine.hpp"
 #include "bench/engines/mujoco_engine.hpp"
 #include "bench/engines/tasks.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -221,7 +222,7 @@ int main(int argc, char** argv) {
     return 64;
   }
   try {
-    const auto robot = constrictor::load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml");
+    const auto robot = constrictor::load_robot(constrictor::testing::robot_path("mamba"));
     nlohmann::json result = {{"processor", constrictor::processor()}, {"mujoco_version", mj_versionString()}};
     for (const char* name : {"empty", "loaded"}) {
       if (names.empty() || std::count(names.begin(), names.end(), name) > 0)

@@ -11,6 +11,7 @@
 
 #include "bench/gaits/gait_trial.hpp"
 #include "sim/figure/canvas.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::gaits {
 namespace {
@@ -175,7 +176,7 @@ int measure(const std::filesystem::path& robot_file, const std::filesystem::path
 
 int main(int argc, char** argv) {
   CLI::App app("measure control's gaits in the simulated world and draw them");
-  std::string robot = ROBOT_DIR "/mamba.yaml";
+  std::string robot = constrictor::testing::robot_path("mamba");
   std::string output = "build/gaits";
   app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
   app.add_option("--output", output, "folder for gaits.png and gaits.json");

@@ -8,6 +8,7 @@
 
 #include "bench/sliding_mode/tracking_trial.hpp"
 #include "sim/figure/canvas.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::sliding_mode {
 namespace {
@@ -123,7 +124,7 @@ int measure(const std::filesystem::path& robot_file, const std::filesystem::path
 
 int main(int argc, char** argv) {
   CLI::App app("measure sliding mode control beside position control in the simulated world");
-  std::string robot = ROBOT_DIR "/mamba.yaml";
+  std::string robot = constrictor::testing::robot_path("mamba");
   std::string output = "build/sliding_mode";
   app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
   app.add_option("--output", output, "folder for sliding_mode.png");

@@ -3,6 +3,7 @@
 
 #include "bench/validation/checks.hpp"
 #include "bench/validation/gait_run.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::validation {
 namespace {
@@ -13,9 +14,7 @@ struct Variant {
   OpenLoopGait gait;
 };
 
-RobotModel robot_file(const std::string& name) {
-  return load_robot(std::filesystem::path(ROBOT_DIR) / (name + ".yaml"));
-}
+RobotModel robot_file(const std::string& name) { return load_robot(testing::robot_path(name)); }
 
 RobotModel with_friction(double along, double across) {
   RobotModel robot = mamba();

@@ -7,6 +7,7 @@
 #include "control/control.hpp"
 #include "support/faulty_controls.hpp"
 #include "support/local_part.hpp"
+#include "support/project.hpp"
 #include "unit/conform/part_report.hpp"
 
 namespace constrictor::conform {
@@ -14,7 +15,7 @@ namespace {
 
 Report examine(const std::string& fault, long interrupt_at = 0) {
   Setup setup;
-  setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+  setup.robot_file = testing::robot_path("mamba");
   const RobotModel robot = load_robot(setup.robot_file);
   const ControlProfile profile;
   testing::LocalPart port("control", testing::faulty_control(fault), setup, {}, interrupt_at);

@@ -5,6 +5,7 @@
 #include "conform/perception_conformance.hpp"
 #include "support/faulty_perceptions.hpp"
 #include "support/local_part.hpp"
+#include "support/project.hpp"
 #include "unit/conform/part_report.hpp"
 
 namespace constrictor::conform {
@@ -12,7 +13,7 @@ namespace {
 
 Report examine(const std::string& fault) {
   Setup setup;
-  setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+  setup.robot_file = testing::robot_path("mamba");
   const RobotModel robot = load_robot(setup.robot_file);
   const PerceptionProfile profile;
   testing::LocalPart port("perception", testing::faulty_perception(fault), setup);

@@ -5,6 +5,7 @@
 #include "conform/planner_conformance.hpp"
 #include "support/faulty_planners.hpp"
 #include "support/local_part.hpp"
+#include "support/project.hpp"
 #include "unit/conform/part_report.hpp"
 
 namespace constrictor::conform {
@@ -12,7 +13,7 @@ namespace {
 
 Report examine(const std::string& fault, const std::string& mission = "{sequence: [green, red], line_colour: blue}") {
   Setup setup;
-  setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+  setup.robot_file = testing::robot_path("mamba");
   setup.mission = mission;
   const PlannerProfile profile;
   testing::LocalPart port("planner", testing::faulty_planner(fault), setup);

@@ -6,6 +6,7 @@
 #include "conform/plant_conformance.hpp"
 #include "robot/robot_model.hpp"
 #include "support/faulty_joints.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -77,7 +78,7 @@ class Doubled final : public PlantPort {
 };
 
 Report examine(const std::string& fault, long interrupt_at = 0) {
-  const RobotModel robot = load_robot(std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml");
+  const RobotModel robot = load_robot(testing::robot_path("mamba"));
   PlantProfile profile;
   profile.adapt_to(robot);
   Doubled plant(robot.joints.size(), fault);
@@ -175,7 +176,7 @@ TEST(PlantConformance, IsWrittenAsJson) {
 }
 
 TEST(PlantProfile, RefusesWhatDoesNotFitTheRobot) {
-  const RobotModel robot = load_robot(std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml");
+  const RobotModel robot = load_robot(testing::robot_path("mamba"));
   PlantProfile profile;
   profile.joint_count = 7;
   EXPECT_THROW(profile.adapt_to(robot), ConfigurationError);

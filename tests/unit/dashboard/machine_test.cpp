@@ -11,6 +11,7 @@
 
 #include "constrictor/constants.hpp"
 #include "planner/mission_state.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::dashboard {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 json diagram() {
-  std::ifstream file(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page/machine.json");
+  std::ifstream file(testing::source_path("components/tools/dashboard/page/machine.json"));
   return json::parse(file);
 }
 
@@ -67,7 +68,7 @@ TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
 TEST(Page, InsertsNothingAsHtml) {
   int files = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page")) {
+       std::filesystem::directory_iterator(testing::source_path("components/tools/dashboard/page"))) {
     if (entry.path().extension() != ".js") continue;
     ++files;
     std::ifstream file(entry.path());

@@ -9,6 +9,7 @@
 
 #include "host/known_components.hpp"
 #include "parameter_tables.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(ParameterTables, FollowFromTheRows) {
-  for (const auto& file : derived_files(CONSTRICTOR_SOURCE_DIR)) {
+  for (const auto& file : derived_files(testing::source_path())) {
     EXPECT_EQ(file.error, "");
     EXPECT_EQ(content_of(file.path), file.text)
         << file.path << " is out of date. Run: cmake --build build/release --target parameter_tables";
@@ -64,7 +65,7 @@ class ParameterTable : public ::testing::TestWithParam<std::string> {
 };
 
 TEST_P(ParameterTable, ShippedFileHoldsTheDefaultsAndNamesEveryParameter) {
-  const fs::path shipped = fs::path(CONSTRICTOR_SOURCE_DIR) / factory_.default_config;
+  const fs::path shipped = testing::source_path(factory_.default_config);
   for (const auto& row : rows_of(shipped)) {
     EXPECT_EQ(row.value, row.default_value) << row.key;
     YAML::Node node = YAML::LoadFile(shipped.string());

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "constrictor/topics.hpp"
+#include "support/project.hpp"
 #include "topic_tables.hpp"
 
 namespace constrictor {
@@ -37,7 +38,7 @@ std::string said(const std::string& doc, const std::string& what) {
 }
 
 TEST(TopicTable, EqualsTheTablesInIdlReadme) {
-  std::ifstream file(std::string(CONSTRICTOR_SOURCE_DIR) + "/idl/README.md");
+  std::ifstream file(testing::source_path("idl/README.md"));
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(documentation::with_topic_tables(readme), readme)
       << "to update the tables: cmake --build build/release --target topic_tables";

@@ -8,6 +8,7 @@
 
 #include "configuration/configuration.hpp"
 #include "dynamixel/bus_plan.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::dynamixel {
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kModels = DYNAMIXEL_MODELS;
+const fs::path kModels = testing::source_path("components/lib/dynamixel/models");
 
 TEST(ServoModel, HasTheRegistersOfTheManual) {
   for (const char* name : {"xm540_w150", "xm540_w270", "xm430_w350"}) {

@@ -8,11 +8,12 @@
 #include "sim/physics/sensors.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "sim/world/world.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::camera_emulator {
 namespace {
 
-const std::filesystem::path kProject = PROJECT_DIR;
+const std::filesystem::path kProject = testing::source_path();
 
 class EmulatedCameraTest : public ::testing::Test {
  protected:

@@ -7,13 +7,14 @@
 #include <thread>
 
 #include "sim/scenario_loader/scenario_file.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::emulation {
 namespace {
 
 using testing::TemporaryFolder;
-const std::filesystem::path kProject = PROJECT_DIR;
+const std::filesystem::path kProject = testing::source_path();
 
 World make_world() {
   return {load_robot(kProject / "components/lib/robot/mamba.yaml"),

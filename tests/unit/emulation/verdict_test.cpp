@@ -6,11 +6,12 @@
 
 #include "constrictor/messages.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::emulation {
 namespace {
 
-const std::filesystem::path kProject = PROJECT_DIR;
+const std::filesystem::path kProject = testing::source_path();
 
 nlohmann::json verdict(const Scenario& scenario, const std::vector<std::uint8_t>& sequence) {
   return nlohmann::json::parse(

@@ -5,12 +5,13 @@
 #include <numbers>
 
 #include "bench/gaits/gait_trial.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::gaits {
 namespace {
 
 const RobotModel& mamba() {
-  static const RobotModel robot = load_robot(ROBOT_DIR "/mamba.yaml");
+  static const RobotModel robot = load_robot(testing::robot_path("mamba"));
   return robot;
 }
 

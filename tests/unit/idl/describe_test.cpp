@@ -13,6 +13,7 @@
 #include "constrictor/sha256.hpp"
 #include "idl/generator/idl_parser.hpp"
 #include "random_message.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -83,7 +84,7 @@ TEST(IdlParser, ReportsFileAndLineOfTextThatItCannotRead) {
 }
 
 std::string idl_text(const std::string& name) {
-  std::ifstream file(std::string(CONSTRICTOR_IDL_DIR) + "/" + name + ".idl", std::ios::binary);
+  std::ifstream file(testing::source_path("idl/constrictor/" + name + ".idl"), std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "layout_check.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::test {
 namespace {
@@ -42,19 +43,19 @@ class Tree {
   fs::path root_;
 };
 
-TEST(Layout, FoldersDependOnlyOnWhatTheyMay) { EXPECT_EQ(text_of(source_violations(CONSTRICTOR_ROOT)), ""); }
+TEST(Layout, FoldersDependOnlyOnWhatTheyMay) { EXPECT_EQ(text_of(source_violations(testing::source_path())), ""); }
 
-TEST(Layout, FilesAreShort) { EXPECT_EQ(text_of(long_files(CONSTRICTOR_ROOT)), ""); }
+TEST(Layout, FilesAreShort) { EXPECT_EQ(text_of(long_files(testing::source_path())), ""); }
 
-TEST(Layout, LinesAreShort) { EXPECT_EQ(text_of(long_lines(CONSTRICTOR_ROOT)), ""); }
+TEST(Layout, LinesAreShort) { EXPECT_EQ(text_of(long_lines(testing::source_path())), ""); }
 
-TEST(Layout, LinksLeadSomewhere) { EXPECT_EQ(text_of(broken_links(CONSTRICTOR_ROOT)), ""); }
+TEST(Layout, LinksLeadSomewhere) { EXPECT_EQ(text_of(broken_links(testing::source_path())), ""); }
 
 /// Every library of the build, with its symbols.
 std::vector<Library> libraries_with_symbols() {
-  std::vector<Library> list = declared_libraries(CONSTRICTOR_ROOT);
+  std::vector<Library> list = declared_libraries(testing::source_path());
   for (auto& library : list) {
-    const std::string file = (fs::path(CONSTRICTOR_BUILD) / library.folder / library.name).string();
+    const std::string file = (testing::build_path() / library.folder / library.name).string();
     const std::unique_ptr<FILE, int (*)(FILE*)> nm(::popen(("nm '" + file + "'").c_str(), "r"), ::pclose);
     char buffer[4096];
     while (const std::size_t count = nm ? std::fread(buffer, 1, sizeof(buffer), nm.get()) : 0)
@@ -66,7 +67,7 @@ std::vector<Library> libraries_with_symbols() {
 
 TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
   std::set<std::string> folders;
-  for (const auto& one : declared_libraries(CONSTRICTOR_ROOT)) folders.insert(one.folder);
+  for (const auto& one : declared_libraries(testing::source_path())) folders.insert(one.folder);
   for (const char* folder : {"idl",
                              "components/lib/configuration",
                              "components/lib/dynamixel",
@@ -119,10 +120,10 @@ class Wall : public ::testing::Test {
  protected:
   /// Whether `file` of the project still compiles when it includes `header` as well.
   static bool compiles(const std::string& file, const std::string& header) {
-    std::ifstream stream(fs::path(CONSTRICTOR_BUILD) / "compile_commands.json");
+    std::ifstream stream(testing::build_path() / "compile_commands.json");
     const auto commands = nlohmann::json::parse(stream);
     for (const auto& entry : commands) {
-      if (entry["file"] != std::string(CONSTRICTOR_ROOT) + "/" + file) continue;
+      if (entry["file"] != testing::source_path(file).string()) continue;
       const std::string command = entry["command"];
       const std::string compiler = command.substr(0, command.find(" -o "));
       const Tree tree;

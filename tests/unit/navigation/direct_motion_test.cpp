@@ -8,6 +8,7 @@
 
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
+#include "support/project.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -29,7 +30,7 @@ class DirectMotion : public ::testing::Test {
     step_motion(config_, sense_, grip_, state_, output);
     return output;
   }
-  RobotModel robot_ = load_robot(SOURCE_DIR "/components/lib/robot/mamba.yaml");
+  RobotModel robot_ = load_robot(testing::robot_path("mamba"));
   NavigationConfig config_;
   GripSense sense_{robot_, config_.grip};
   Grip grip_;
@@ -111,7 +112,7 @@ ComponentFactory scripted_input() {
 
 LocalRun make_run() {
   Setup setup;
-  setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+  setup.robot_file = testing::robot_path("mamba");
   return LocalRun(
       {testing::still_robot(), make_navigation_factory(),
        testing::scripted_writer<msg::RobotPose>("guidance", topics::kRobotPose,

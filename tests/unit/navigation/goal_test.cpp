@@ -11,6 +11,7 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/text.hpp"
 #include "navigation/navigation.hpp"
+#include "support/project.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -51,7 +52,7 @@ struct GoalRun {
   std::unique_ptr<LocalRun> run;
   explicit GoalRun(const Commands& commands) {
     Setup setup;
-    setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+    setup.robot_file = testing::robot_path("mamba");
     run = std::make_unique<LocalRun>(std::vector<ComponentFactory>{testing::still_robot(), make_navigation_factory(),
                                                                    pose_until_tick_400(), scripted_input(commands)},
                                      setup);

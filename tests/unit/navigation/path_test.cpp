@@ -9,6 +9,7 @@
 
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
+#include "support/project.hpp"
 #include "support/scripted_members.hpp"
 #include "support/waypoints.hpp"
 
@@ -85,7 +86,7 @@ struct PathRun {
   }
   static Setup setup() {
     Setup setup;
-    setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+    setup.robot_file = testing::robot_path("mamba");
     return setup;
   }
   [[nodiscard]] std::uint8_t last_state() const { return events.empty() ? msg::kGoalIdle : events.back().goal_state; }

@@ -5,6 +5,7 @@
 
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
+#include "support/project.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -54,7 +55,7 @@ class SightRun {
  public:
   explicit SightRun(std::uint8_t task, bool camera = true) {
     Setup setup;
-    setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+    setup.robot_file = testing::robot_path("mamba");
     run_ = std::make_unique<LocalRun>(std::vector<ComponentFactory>{testing::still_robot(), perception(camera),
                                                                     make_navigation_factory(), pose(), command(task)},
                                       setup);

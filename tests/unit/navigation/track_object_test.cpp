@@ -12,6 +12,7 @@
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
 #include "robot/planar.hpp"
+#include "support/project.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -77,7 +78,7 @@ class TrackRun {
  private:
   static Setup setup() {
     Setup setup;
-    setup.robot_file = SOURCE_DIR "/components/lib/robot/mamba.yaml";
+    setup.robot_file = testing::robot_path("mamba");
     return setup;
   }
 

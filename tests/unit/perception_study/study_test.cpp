@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "bench/perception_study/plot.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::study {
@@ -81,7 +82,7 @@ TEST_F(Study, NamesTheLineAndTheMistakeOfAFile) {
 }
 
 TEST_F(Study, TheShippedTableIsInOrder) {
-  for (const auto& factor : read_factors(STUDY_FACTORS)) {
+  for (const auto& factor : read_factors(testing::source_path("tests/bench/perception_study/factors.yaml"))) {
     EXPECT_TRUE(std::is_sorted(factor.levels.begin(), factor.levels.end()) ||
                 std::is_sorted(factor.levels.rbegin(), factor.levels.rend()))
         << factor.name;

@@ -6,12 +6,13 @@
 
 #include "barrier/local_run.hpp"
 #include "sim/physics/physics.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kProject = PROJECT_DIR;
+const std::filesystem::path kProject = testing::source_path();
 
 /// Swings the yaw joints, so that the robot crawls; pushes them by torques; relaxes them for a while; and pauses, so
 /// that commands get stale.

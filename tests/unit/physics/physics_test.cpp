@@ -13,11 +13,12 @@
 #include "barrier/local_run.hpp"
 #include "configuration/configuration.hpp"
 #include "support/commander.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kProject = PROJECT_DIR;
+const std::filesystem::path kProject = testing::source_path();
 
 using testing::CommandAt;
 

@@ -5,12 +5,13 @@
 #include <string>
 
 #include "sim/scenario_loader/scenario_file.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
 
 TEST(SceneDescription, HasTheValuesOfTheScenario) {
-  const std::filesystem::path project = PROJECT_DIR;
+  const std::filesystem::path project = testing::source_path();
   const Scenario scenario = load_scenario(project / "sim/scenarios/case_study.yaml", 11);
   const msg::SceneDescription scene =
       scene_description(scenario, load_robot(project / "components/lib/robot/mamba.yaml"));

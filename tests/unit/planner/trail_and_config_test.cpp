@@ -11,6 +11,7 @@
 #include "planner/line_trail.hpp"
 #include "planner/planner_config.hpp"
 #include "robot/planar.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
@@ -102,8 +103,7 @@ TEST(LineTrail, ReverseTurnsDirectionsRoundAndAnUnknownLineHasNone) {
 }
 
 TEST(PlannerConfig, TheShippedFileHoldsTheDefaults) {
-  const auto config =
-      load_parameters<PlannerConfig>(std::string(CONSTRICTOR_SOURCE_DIR) + "/components/planner/planner.yaml");
+  const auto config = load_parameters<PlannerConfig>(testing::source_path("components/planner/planner.yaml"));
   EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourGreen, msg::kColourRed}));
 }
 

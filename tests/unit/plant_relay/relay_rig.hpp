@@ -18,6 +18,7 @@
 #include "constrictor/text.hpp"
 #include "plant_relay/plant_relay.hpp"
 #include "support/commander.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
@@ -30,7 +31,7 @@ class Relay : public ::testing::Test {
   explicit Relay(const std::string& config = "hardware: {patience_s: 1}\n") {
     std::ofstream(folder_.path() / "relay.yaml") << config;
     constrictor::Setup setup;
-    setup.robot_file = std::filesystem::path(PROJECT_DIR) / "components/lib/robot/mamba.yaml";
+    setup.robot_file = testing::robot_path("mamba");
     const ComponentFactory control = commander(
         [this](std::int64_t tick, msg::JointCommand& command) { return command_ && command_(tick, command); });
     run_ = std::make_unique<LocalRun>(

@@ -37,7 +37,7 @@ Json flat(const Json& value) {
 }
 
 TEST_F(McapFile, IsReadByTheOfficialReader) {
-  const testing::OfficialReader official(CONSTRICTOR_NODE_FOLDER, CONSTRICTOR_BUILD);
+  const testing::OfficialReader official(testing::source_path("tests/unit/recording/node"), testing::build_path());
   const DomainClaim claim;
   const dds::Domain domain(claim.domain());
   std::map<std::string, std::vector<Json>> expected;
@@ -64,6 +64,7 @@ TEST_F(McapFile, IsReadByTheOfficialReader) {
 #define CONSTRICTOR_MEMBER_TOPIC(constant, Type, name, ...) add.template operator()<msg::Type>(name);
 #define CONSTRICTOR_UNCOUNTED_TOPIC(constant, Type, name, ...) add.template operator()<msg::Type>(name);
 #include "constrictor/topic_table.def"
+#include "support/project.hpp"
 #undef CONSTRICTOR_MEMBER_TOPIC
 #undef CONSTRICTOR_UNCOUNTED_TOPIC
     writer.add_metadata({"end", {{"reason", "over"}}});
@@ -94,7 +95,7 @@ TEST_F(McapFile, IsReadByTheOfficialReader) {
 }
 
 TEST_F(McapFile, AnUnfinishedFileIsReadByTheOfficialReader) {
-  const testing::OfficialReader official(CONSTRICTOR_NODE_FOLDER, CONSTRICTOR_BUILD);
+  const testing::OfficialReader official(testing::source_path("tests/unit/recording/node"), testing::build_path());
   {
     Writer writer(file(), "", "test");
     const std::uint16_t channel = writer.add_channel(0, "bytes", "cdr");

@@ -13,6 +13,7 @@
 #include "robot/camera_mount.hpp"
 #include "robot/description.hpp"
 #include "robot/kinematics.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -155,7 +156,7 @@ std::vector<Isometry3d> centres(const Parsed& parsed, const std::vector<double>&
 class Description : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
   Description()
-      : robot_(load_robot(fmt::format("{}/{}.yaml", ROBOT_DIR, std::get<1>(GetParam())))),
+      : robot_(load_robot(testing::robot_path(std::get<1>(GetParam())))),
         parsed_(std::get<0>(GetParam()) == std::string("urdf") ? parse_urdf(robot_) : parse_sdf(robot_)) {}
   RobotModel robot_;
   Parsed parsed_;
@@ -218,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheShippedRobots, Description,
                            return std::string(std::get<0>(instance.param)) + "_" + std::get<1>(instance.param);
                          });
 
-RobotModel mamba() { return load_robot(ROBOT_DIR "/mamba.yaml"); }
+RobotModel mamba() { return load_robot(testing::robot_path("mamba")); }
 
 TEST(UrdfDescription, CylinderAndSpheresAreTogetherTheCapsule) {
   const RobotModel robot = mamba();

@@ -7,6 +7,7 @@
 #include "robot/kinematics.hpp"
 #include "robot/mujoco_model.hpp"
 #include "support/mujoco_model.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kGravity_m_s2 = 9.81;
 class MujocoModelTest : public ::testing::TestWithParam<const char*> {
  protected:
   MujocoModelTest()
-      : robot_(load_robot(std::filesystem::path(ROBOT_DIR) / (std::string(GetParam()) + ".yaml"))),
+      : robot_(load_robot(testing::robot_path(GetParam()))),
         model_(testing::compile_mujoco_model(mujoco_model(robot_))),
         data_(mj_makeData(model_.get())) {}
 

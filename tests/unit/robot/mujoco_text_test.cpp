@@ -6,6 +6,7 @@
 #include <set>
 
 #include "robot/mujoco_model.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -52,9 +53,7 @@ std::vector<Element> named(const std::vector<Element>& elements, const std::stri
   return found;
 }
 
-RobotModel robot(const char* name) {
-  return load_robot(std::filesystem::path(ROBOT_DIR) / (std::string(name) + ".yaml"));
-}
+RobotModel robot(const char* name) { return load_robot(testing::robot_path(name)); }
 
 TEST(MujocoText, HasABodyForEachModuleAndAJointAndAnActuatorForEachJoint) {
   const RobotModel mamba = robot("mamba");

@@ -9,11 +9,12 @@
 
 #include "configuration/configuration.hpp"
 #include "robot/joint_limits.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kRobots = ROBOT_DIR;
+const std::filesystem::path kRobots = testing::source_path("components/lib/robot");
 
 /// A copy of mamba.yaml in which one line is replaced.
 std::string error_of_changed_file(const std::string& from, const std::string& to) {
@@ -24,7 +25,7 @@ std::string error_of_changed_file(const std::string& from, const std::string& to
   const std::size_t at = text.find(from);
   if (at == std::string::npos) return "the file has no " + from;
   text.replace(at, from.size(), to);
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "robot_model_test.yaml";
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "robot_model_test.yaml";
   std::ofstream(file) << text;
   try {
     (void)load_robot(file);

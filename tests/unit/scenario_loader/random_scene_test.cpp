@@ -10,6 +10,7 @@
 #include <string>
 
 #include "sim/scenario_loader/scenario_file.hpp"
+#include "support/project.hpp"
 
 namespace constrictor {
 namespace {
@@ -36,7 +37,7 @@ const std::map<std::string, Promise>& promises() {
 }
 
 Scenario load(const std::string& name, std::uint64_t seed) {
-  return load_scenario(std::string(SCENARIO_DIR) + "/" + name + ".yaml", seed);
+  return load_scenario(testing::source_path("sim/scenarios/" + name + ".yaml"), seed);
 }
 
 double length_m(const std::vector<Vector2d>& line_m) {

@@ -9,10 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "support/project.hpp"
+
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kScenarios = SCENARIO_DIR;
+const std::filesystem::path kScenarios = testing::source_path("sim/scenarios");
 const std::string kMinimal = "name: x\nstart: {position_m: [0, 0]}\n";
 
 Scenario read(const std::string& text, std::uint64_t seed = 1) {

@@ -18,11 +18,12 @@
 #include "servo_bus/servo_bus.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "support/commander.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 
-inline const std::filesystem::path kProject = PROJECT_DIR;
+inline const std::filesystem::path kProject = testing::source_path();
 
 class DrivenRobot : public ::testing::Test {
  protected:

@@ -11,6 +11,7 @@
 #include "dynamixel/packet_parser.hpp"
 #include "sim/servo_emulator/servo_device.hpp"
 #include "sim/servo_emulator/servo_line.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::servo_emulator {
 
@@ -19,8 +20,8 @@ using dynamixel::ByteView;
 using dynamixel::StatusError;
 
 inline const dynamixel::ServoModel& model() {
-  static const dynamixel::ServoModel loaded = dynamixel::load_servo_model(
-      std::filesystem::path(PROJECT_DIR) / "components/lib/dynamixel/models/xm540_w150.yaml");
+  static const dynamixel::ServoModel loaded =
+      dynamixel::load_servo_model(testing::source_path("components/lib/dynamixel/models/xm540_w150.yaml"));
   return loaded;
 }
 

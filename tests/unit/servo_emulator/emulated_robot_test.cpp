@@ -6,13 +6,14 @@
 #include "dynamixel/sensor_board.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "sim/servo_emulator/emulated_robot.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::servo_emulator {
 namespace {
 
 namespace fs = std::filesystem;
 namespace map = dynamixel::sensor_board;
-const fs::path kProject = PROJECT_DIR;
+const fs::path kProject = testing::source_path();
 
 class Robot : public ::testing::Test {
  protected:

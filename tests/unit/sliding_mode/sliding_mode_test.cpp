@@ -6,11 +6,12 @@
 
 #include "bench/sliding_mode/tracking_trial.hpp"
 #include "control/joint_inertia.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::sliding_mode {
 namespace {
 
-RobotModel mamba() { return load_robot(ROBOT_DIR "/mamba.yaml"); }
+RobotModel mamba() { return load_robot(testing::robot_path("mamba")); }
 
 TEST(JointInertia, OfTwoEqualLinksIsThatOfTheirSymmetricMotion) {
   // Each link turns by half of the angle about its centre, which moves across by d sin(q / 2):

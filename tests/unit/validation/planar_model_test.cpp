@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/project.hpp"
+
 namespace constrictor::validation {
 namespace {
 
@@ -24,9 +26,7 @@ PlanarRobot equal_links(Index links, double length_m, double mass_kg) {
   return robot;
 }
 
-PlanarRobot mamba(FrictionPlaces places) {
-  return planar_robot(load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"), places);
-}
+PlanarRobot mamba(FrictionPlaces places) { return planar_robot(load_robot(testing::robot_path("mamba")), places); }
 
 double speed_m_s(const PlanarModel& model, const LateralUndulation& gait, int settle_cycles, int cycles,
                  double largest_step_s = 2e-4) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "support/project.hpp"
 #include "unit/world/open_loop_gait.hpp"
 
 namespace constrictor {
@@ -13,7 +14,7 @@ namespace constrictor {
 inline constexpr double kPeriod_s = 0.02;
 inline constexpr double kG = 9.81;  ///< [m/s²]
 
-inline RobotModel mamba() { return load_robot(std::filesystem::path(ROBOT_DIR) / "mamba.yaml"); }
+inline RobotModel mamba() { return load_robot(testing::robot_path("mamba")); }
 
 /// A robot of `modules` modules whose joints all turn about the same axis.
 inline RobotModel chain(std::size_t modules, JointAxis axis) {
