@@ -47,6 +47,21 @@ TEST_F(Pictures, AFilmHasItsFramesInMotion) {
   EXPECT_EQ(frames_of("film.mp4").size(), 3U) << "0, 0.4 and 0.8 s";
 }
 
+TEST_F(Pictures, AFilmDoesNotDependOnHowManyFramesAreDrawnAtATime) {
+  std::vector<std::vector<cv::Mat>> films;
+  for (const char* jobs : {"1", "3"}) {
+    ASSERT_EQ(command({"film", run("on").string(), "-o", out("film.mp4"), "--fps", "10", "--to", "0.7", "--size",
+                       "320x180", "--jobs", jobs}),
+              exit_status::kOk)
+        << output_;
+    films.push_back(frames_of("film.mp4"));
+  }
+  ASSERT_EQ(films[0].size(), 8U);
+  ASSERT_EQ(films[1].size(), 8U);
+  for (std::size_t i = 0; i < films[0].size(); ++i)
+    EXPECT_EQ(difference(films[0][i], films[1][i]), 0.0) << "frame " << i;
+}
+
 TEST_F(Pictures, AnInterruptedFilmHasWhatWasDone) {
   Process process({program("constrictor"), "film", run("on").string(), "-o", out("cut.mp4"), "--fps", "120", "--speed",
                    "0.02", "--size", "320x180"},

@@ -6,11 +6,11 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/progress_display.hpp"
+#include "pictures/film_drawer.hpp"
 #include "pictures/film_file.hpp"
 #include "pictures/picture_feed.hpp"
 #include "pictures/pictures.hpp"
 #include "pictures/recorded_story.hpp"
-#include "pictures/scene_painter.hpp"
 #include "runtime/host.hpp"
 #include "sim/figure/captions.hpp"
 #include "sim/figure/film_frame.hpp"
@@ -71,10 +71,11 @@ int make_film(const FilmOptions& options) {
     throw NoPicture(
         fmt::format("{}: has neither a simulated world nor images: {}", options.file.string(), story.no_images));
   const int width = options.width, height = options.height;
-  const double scale = figure::film_scale(width, height);
-  ScenePainter painter(story, static_cast<int>(std::lround(scale * figure::kFilmScene.width)),
-                       static_cast<int>(std::lround(scale * figure::kFilmScene.height)));
-  figure::Canvas canvas(width, height, scale);
+  FilmStyle style{width, height, story.torques, figure::torque_limit(story.torques), {}};
+  for (const auto& event : story.events) {
+    if (report::is_key_event(event.event)) style.marks.push_back({event.time_s, event.colour});
+  }
+  FilmDrawer drawer(story, style, std::min(options.jobs, times_s.size()));
   FilmFile film(options.output, options.rate_hz, width, height);
   Progress progress(times_s.size());
   if (story.epochs > 1) progress.print(fmt::format("film: shows epoch {}, the last of {}", story.epoch, story.epochs));
@@ -82,11 +83,6 @@ int make_film(const FilmOptions& options) {
   if (story.images == Images::kComputed)
     progress.print("film: computes the images again, which makes it slower; `constrictor replay --restore` keeps them");
 
-  std::vector<figure::FilmMark> marks;
-  for (const auto& event : story.events) {
-    if (report::is_key_event(event.event)) marks.push_back({event.time_s, event.colour});
-  }
-  const double limit_nm = figure::torque_limit(story.torques);
   figure::FilmFrame frame;
   frame.from_s = times_s.front();
   frame.to_s = times_s.back();
@@ -94,6 +90,10 @@ int make_film(const FilmOptions& options) {
   if (options.speed != 1.0) frame.title += fmt::format(", {:g}x", options.speed);
   std::string ended, wrong;
   int status = exit_status::kOk;
+  const auto write_oldest = [&] {
+    if (!film.add(drawer.take())) throw Full();
+    progress.note(film.frames());
+  };
   try {
     wrong = feed_pictures(story, times_s, [&](const Seen& seen) {
       check_interrupt();
@@ -103,13 +103,10 @@ int make_film(const FilmOptions& options) {
         if (event.time_s <= seen.time_s && report::is_key_event(event.event))
           frame.event = fmt::format("{:.1f} s: {}", event.time_s, figure::event_caption(event.event, event.colour));
       }
-      frame.scene = painter.scene(seen);
-      frame.camera = picture_of(seen.camera);
-      frame.processed = picture_of(seen.processed);
-      figure::draw_film_frame(canvas, width, height, frame, story.torques, limit_nm, marks);
-      if (!film.add(canvas.pixels())) throw Full();
-      progress.note(film.frames());
+      if (drawer.full()) write_oldest();
+      drawer.begin(seen, frame);
     });
+    while (!drawer.empty()) write_oldest();
   } catch (const Interrupted&) {
     ended = "interrupted";
     status = cli::interrupt_status();

@@ -57,6 +57,7 @@ int draw(const json& wish) {
   options.rate_hz = wish.at("fps");
   options.width = wish.at("width");
   options.height = wish.at("height");
+  options.jobs = wish.at("jobs");
   return make_film(options);
 }
 

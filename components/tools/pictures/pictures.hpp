@@ -29,6 +29,7 @@ struct FilmOptions {
   std::optional<double> from_s, to_s;
   double rate_hz = 25.0;
   int width = 1280, height = 720;
+  std::size_t jobs = 1;  ///< frames drawn at a time
 };
 
 /// Both return the exit status and print what they have made. Throw NoPicture, mcap::Error or std::runtime_error.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "cli/commands.hpp"
 #include "cli/recording/recorded_messages.hpp"
@@ -30,6 +31,7 @@ struct FilmOptions {
   std::string file, output = "film.mp4", size = "1280x720";
   double speed = 1.0, rate_hz = 25.0;
   std::optional<double> from_s, to_s;
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
 std::string ending_of(const std::string& file) {
@@ -94,7 +96,7 @@ int film(const FilmOptions& options) {
   nlohmann::json wish = {{"picture", "film"},        {"file", recording_file(options.file)},
                          {"output", options.output}, {"speed", options.speed},
                          {"fps", options.rate_hz},   {"width", width},
-                         {"height", height}};
+                         {"height", height},         {"jobs", options.jobs}};
   if (options.from_s) wish["from"] = *options.from_s;
   if (options.to_s) wish["to"] = *options.to_s;
   return become("pictures", {json_text(wish)});
@@ -153,6 +155,8 @@ void add_pictures(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(number(1, 120, "Hz"));
   sub->add_option("--size", filmed->size, "[pixel] WIDTHxHEIGHT, even numbers")->capture_default_str();
+  sub->add_option("--jobs", filmed->jobs, "frames drawn at a time (default: as many as there are processor cores)")
+      ->check(whole_number(1, 64));
   sub->footer(help_footer(
       "Shows the four panels of the figure in motion, with the state of the planner, the newest event, and a bar with\n"
       "the key events. Prints its progress and the time that is left. Ctrl-C completes the film with what was done.\n"
