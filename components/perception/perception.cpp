@@ -59,6 +59,8 @@ void Perception::step(const Tick& tick) {
     const auto& q = imu_->orientation;
     state_.attitudes.push_back({imu_->header.tick, q.w, q.x, q.y, q.z});
     if (state_.attitudes.size() > kAttitudes) state_.attitudes.pop_front();
+    if (config_.slope_time_s > 0.0) state_.slope.learn(q, tick.period_s() / config_.slope_time_s);
+    else state_.slope = {};
   }
   if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
   if (!image_ || !image_.fresh() || !info_) return;
@@ -78,7 +80,9 @@ void Perception::step(const Tick& tick) {
 
   // The matrix is a view of the message's pixels. The detector does not write to them.
   const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
-  const perception::GroundCamera camera(*info_, attitude_at(image_->exposure_tick), head_height_m_, head_);
+  const msg::Quaternion attitude =
+      state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.level_rad);
+  const perception::GroundCamera camera(*info_, attitude, head_height_m_, head_);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
   perception::LineAndBlobDetector::Change errors;
   if (config_.errors.any()) {

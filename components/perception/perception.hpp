@@ -8,6 +8,7 @@
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
+#include "perception/ground_slope.hpp"
 #include "perception/line_and_blob_detector.hpp"
 
 namespace constrictor {
@@ -29,10 +30,11 @@ struct PerceptionState {
   std::uint64_t fingerprint = 0;   ///< of the last image
   int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
   perception::ObjectSizes sizes;   ///< what the images have shown so far
+  perception::GroundSlope slope;
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, fingerprint, equal_images, sizes, parameters);
+    archive(attitudes, line_colour, images, fingerprint, equal_images, sizes, slope, parameters);
   }
 };
 

@@ -75,7 +75,10 @@ void Sensors::contacts(const World& world, msg::ContactState& felt, msg::Touched
 }
 
 msg::ImuState Sensors::imu(const World& world, double elapsed_s) {
-  const ImuTruth truth = world.imu();
+  ImuTruth truth = world.imu();
+  // An inertial unit measures its orientation relative to gravity, which a slope tilts relative to W.
+  if (truth.up_W != Eigen::Vector3d::UnitZ())
+    truth.q_WHead = Eigen::Quaterniond::FromTwoVectors(truth.up_W, Eigen::Vector3d::UnitZ()) * truth.q_WHead;
   if (!started_) {
     started_ = true;
     start_yaw_rad_ = yaw_of(quaternion(truth.q_WHead));

@@ -85,7 +85,7 @@ struct Scenario {
   Eigen::Vector2d start_m{0.0, 0.0};             ///< centre of the head; the body lies straight behind it
   double start_yaw_rad = 0.0;
   double start_height_m = 0.0;  ///< [m] height of the body above the ground; only tests set it
-  /// In W, whose ground is z = 0: a tilted gravity makes the ground a slope. Only tests set it.
+  /// In W, whose ground is z = 0: a tilted gravity makes the ground a slope.
   Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};
   bool sensor_noise = true;      ///< false: the noise in the robot file is ignored
   double camera_noise_sd = 0.0;  ///< standard deviation of pixel values on a scale from 0 to 1

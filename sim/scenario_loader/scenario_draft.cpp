@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <tuple>
@@ -176,6 +177,16 @@ void read_surroundings(Configuration& root, Scenario& scenario) {
   scenario.light.intensity = light.number("intensity", {0.05, 3.0}, scenario.light.intensity);
   scenario.light.ambient = light.number("ambient", {0.0, 1.0}, scenario.light.ambient);
   light.finish();
+
+  Configuration slope = root.section("slope", false);
+  const double angle_rad = std::atan(slope.number("grade", {0.0, 0.2}, 0.0));
+  const double uphill_rad = slope.number("uphill_rad", {-std::numbers::pi, std::numbers::pi}, 0.0);
+  slope.finish();
+  if (angle_rad > 0.0) {
+    const Eigen::Vector3d down(-std::sin(angle_rad) * std::cos(uphill_rad), -std::sin(angle_rad) * std::sin(uphill_rad),
+                               -std::cos(angle_rad));
+    scenario.gravity_m_s2 = scenario.gravity_m_s2.norm() * down;
+  }
 
   if (root.has("ground_colour")) {
     const std::vector<double> colour = root.numbers("ground_colour", {0.0, 1.0}, 3, 3);

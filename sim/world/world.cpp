@@ -244,6 +244,7 @@ ImuTruth World::imu() const {
   const Eigen::Matrix3d R_HeadW = module_pose(0).linear().transpose();
   imu.angular_velocity_rad_s = R_HeadW * module_angular_velocity_rad_s(0);
   imu.proper_acceleration_m_s2 = R_HeadW * (acceleration_m_s2_ + (Vector3d::Zero() - scenario_.gravity_m_s2));
+  if (scenario_.gravity_m_s2.norm() > 0.0) imu.up_W = -scenario_.gravity_m_s2.normalized();
   return imu;
 }
 

@@ -26,8 +26,9 @@ namespace constrictor {
 struct ImuTruth {
   Eigen::Quaterniond q_WHead = Eigen::Quaterniond::Identity();
   Eigen::Vector3d angular_velocity_rad_s{0.0, 0.0, 0.0};
-  Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};  ///< mean over the last advance(); at rest 9.81 along
-                                                            ///< the world's z axis
+  /// [m/s²] in the head's frame, mean over the last advance(); at rest 9.81 along up_W.
+  Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};
+  Eigen::Vector3d up_W = Eigen::Vector3d::UnitZ();  ///< against gravity; not the z axis of W on a slope
 };
 
 /// Rolling resistance of an object that lies on the ground: its force as a share of its weight. An assumption, between

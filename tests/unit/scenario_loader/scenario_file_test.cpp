@@ -37,6 +37,17 @@ TEST(ScenarioFile, TheSmallestScenarioIsARobotOnAPlane) {
   EXPECT_TRUE(scenario.sensor_noise);
 }
 
+TEST(ScenarioFile, ASlopeTiltsGravityRelativeToTheGround) {
+  EXPECT_EQ(read(kMinimal).gravity_m_s2, Eigen::Vector3d(0.0, 0.0, -9.81));
+  const Eigen::Vector3d gravity = read(kMinimal + "slope: {grade: 0.05, uphill_rad: 0.5}\n").gravity_m_s2;
+  EXPECT_NEAR(gravity.norm(), 9.81, 1e-12);
+  const double horizontal = gravity.head<2>().norm();
+  EXPECT_NEAR(horizontal / -gravity.z(), 0.05, 1e-12) << "rise by distance";
+  EXPECT_NEAR(std::atan2(-gravity.y(), -gravity.x()), 0.5, 1e-12) << "gravity pulls downhill";
+  EXPECT_NE(error_of(kMinimal + "slope: {grade: 0.3}\n").find("grade"), std::string::npos);
+  EXPECT_NE(error_of(kMinimal + "slope: {angle: 0.1}\n").find("angle"), std::string::npos);
+}
+
 TEST(ScenarioFile, EveryShippedFileIsAcceptedForManySeeds) {
   for (const auto& entry : std::filesystem::directory_iterator(kScenarios)) {
     if (entry.path().extension() != ".yaml") continue;
