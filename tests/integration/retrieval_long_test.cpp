@@ -1,5 +1,6 @@
 // A whole retrieval in nine processes over DDS: the robot finds, grasps, carries and drops an object.
 #include "mission_run.hpp"
+#include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -41,7 +42,7 @@ TEST_F(MissionRun, GraspsAnObjectAgainAfterItWasPulledOutOfTheBody) {
 // A person takes the object when the robot has just seen it, and puts it down out of view. The map gives the empty
 // place up, so that the robot does not grasp there, and the robot finds the object at its new place.
 TEST_F(MissionRun, FindsAnObjectAgainThatAPersonHasMovedOutOfView) {
-  std::ifstream file(std::filesystem::path(CONSTRICTOR_SOURCE_DIR) / "sim/scenarios/short.yaml");
+  std::ifstream file(source_path("sim/scenarios/short.yaml"));
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t noise = text.find("\nnoise:");
   ASSERT_NE(noise, std::string::npos);

@@ -57,7 +57,7 @@ TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
 /// Names and reasons come from the run, and from whoever can send to it.
 // "One place for each fact" (CONTRIBUTING.md): a new task, colour or direction appears without a change of the page.
 TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
-  std::ifstream file(CONSTRICTOR_SOURCE_DIR "/components/tools/dashboard/page/tasks.js");
+  std::ifstream file(testing::source_path("components/tools/dashboard/page/tasks.js"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   ASSERT_NE(text.find("export function buildTasks"), std::string::npos);
   for (const auto& group : {constants::kTask, constants::kColour, constants::kDirection}) {
