@@ -41,7 +41,7 @@ class GripSense {
   /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.
   [[nodiscard]] std::array<double, msg::kMaxJoints> open_shape(double side, double angle_rad) const;
   /// [m] radius of the largest object that the open U can hold: the circle that touches the middle of each link between
-  /// the joints of the base, less the radius of a module.
+  /// the base joints of the U, minus the radius of a module.
   [[nodiscard]] double largest_radius_m() const;
   /// [Nm] largest and mean torque by which the base joints close the U.
   [[nodiscard]] double largest_closing_nm(const msg::JointState& joints, double side) const;

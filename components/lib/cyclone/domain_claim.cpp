@@ -23,9 +23,9 @@ std::filesystem::path lock_file(std::uint32_t domain) {
   return run_directory() / ("domain-" + std::to_string(domain) + ".lock");
 }
 
-/// Takes the domain's file lock; negative if another process has it. Children do not inherit it, because a child must
-/// not keep the claim of a launcher that died. The file is never removed: otherwise two processes could lock two files
-/// of one name.
+/// Takes the domain's file lock. Returns the descriptor, or a negative number if another process holds the lock.
+/// Children do not inherit it, because a child must not keep the claim of a launcher that died. The file is never
+/// removed, because two processes could then lock two different files of the same name.
 int try_lock(std::uint32_t domain) {
   const auto file = lock_file(domain);
   const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);

@@ -30,9 +30,9 @@ class WriterBook {
   static constexpr std::chrono::milliseconds kLongestWait{1000};
 
   WriterBook();
-  /// Notes the writers of this reader from now on, and those that it has matched already. This object must outlive the
-  /// reader. The reader's status mask must not be changed afterwards: Cyclone's dds_set_status_mask() holds a lock of
-  /// the reader while it waits for the end of the listener, and the listener needs this lock. Throws Error.
+  /// Records the writers that this reader has matched and will match. This object must outlive the reader. The reader's
+  /// status mask must not be changed afterwards: Cyclone's dds_set_status_mask() holds a lock of the reader while it
+  /// waits until the listener has returned, and the listener needs this lock. Throws Error.
   void watch(dds_entity_t reader);
   /// The participant of the writer with this publication handle; empty if the writer was not noted. A sample can be
   /// taken before Cyclone has reported the match with its writer, which happens in another thread: an unknown writer is

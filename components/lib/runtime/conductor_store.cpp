@@ -16,8 +16,8 @@ namespace constrictor {
 namespace {
 
 constexpr auto kStay = std::chrono::seconds(30);
-// The successor of a process that died after the final tick may have missed that a member has ended. Those that live
-// answer within this time.
+// A successor that starts after the final tick may not know which members have ended. Members that still run announce
+// themselves within this time.
 constexpr auto kSuccessorStays = std::chrono::seconds(3);
 
 }  // namespace

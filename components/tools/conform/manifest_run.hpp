@@ -5,7 +5,6 @@
 #include <functional>
 #include <string>
 
-#include <string>
 #include "conform/part_stand.hpp"
 
 namespace constrictor::conform {
