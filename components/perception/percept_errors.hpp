@@ -19,7 +19,7 @@ struct PerceptErrorConfig : ParameterSet {
   double false_share = add(false_share, "false_share", 0.0, "", {0.0, 1.0}, kWhileRunning,
                            "Share of the time in which an object is detected that does not exist");
   double range_factor = add(range_factor, "range_factor", 1.0, "", {0.5, 2.0}, kWhileRunning,
-                            "Factor on all distances on the ground, as of a camera at a wrong height");
+                            "Factor on all distances on the ground, as if the camera's height were wrong");
   double range_noise = add(range_noise, "range_noise", 0.0, "", {0.0, 0.5}, kWhileRunning,
                            "Standard deviation of the ranges of objects and zones, as a share of the range");
   double line_noise_m = add(line_noise_m, "line_noise_m", 0.0, "m", {0.0, 0.5}, kWhileRunning,

@@ -36,7 +36,7 @@ struct CameraProfile : ParameterSet {
   double settle_s =
       add(settle_s, "motion.settle_s", 1.0, "s", {0.1, 10.0}, kAtStart, "Time in which head and images come to rest");
   double scale_share = add(scale_share, "tolerance.scale", 0.4, "", {0.05, 0.9}, kAtStart,
-                           "The scene moves through the image by more or less than expected by this share");
+                           "The motion in the images differs from the expected one by less than this share");
   double stamp_s = add(stamp_s, "tolerance.stamp_s", 0.12, "s", {0.01, 2.0}, kAtStart,
                        "The motion in the images is earlier or later than exposure_tick says by less than this");
   std::uint8_t colour = add(colour, "line_colour", msg::kColourUnknown, names_of(constants::kColour),

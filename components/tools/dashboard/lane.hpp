@@ -1,4 +1,4 @@
-// A thread that obeys the calls of viewers one after the other, because commands wait for their answers.
+// A thread that executes the calls of viewers one after the other, because commands wait for their answers.
 #pragma once
 
 #include <condition_variable>

@@ -98,8 +98,8 @@ void add_session(py::module_& module) {
   using Free = py::call_guard<py::gil_scoped_release>;
   const auto control = [](auto&& use) {
     return [use](Session& session, auto... argument) {
-      return to_dict(
-          released(&Session::control, session, [&](RunControlClient& client) { return (client.*use)(argument...); }));
+      return to_dict(released(&Session::control, session,
+                              [&](RunControlClient& client) { return std::invoke(use, client, argument...); }));
     };
   };
   py::class_<Session, std::shared_ptr<Session>>(module, "Session")
@@ -161,8 +161,11 @@ void add_session(py::module_& module) {
       .def("set_parameter", &Session::set_parameter, Free(), py::arg("name"), py::arg("value"), py::arg("at_tick"))
       .def("pause", [control](Session& session) { return control(&RunControlClient::pause)(session); })
       .def("resume", [control](Session& session) { return control(&RunControlClient::resume)(session); })
-      .def("step", [control](Session& session,
-                             std::uint32_t ticks) { return control(&RunControlClient::step)(session, ticks); })
+      .def("step",
+           [control](Session& session, std::uint32_t ticks) {
+             return control([](RunControlClient& client, std::uint32_t count) { return client.step(count); })(session,
+                                                                                                              ticks);
+           })
       .def("pace",
            [control](Session& session, double pace) { return control(&RunControlClient::set_pace)(session, pace); })
       .def("reset",
