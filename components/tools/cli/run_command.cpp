@@ -159,9 +159,9 @@ class Launcher {
     for (const auto& [component, signal] : faults_.due(view.sim_time_s(), Clock::now()))
       supervisor_.signal(component, signal);
     for (const auto& line : faults_.news(view.sim_time_s())) log_.warn(line);
-    // A launcher that was stopped (SIGSTOP) for long can miss the plant's last status; mission.json shows the same.
+    // A launcher that was stopped (SIGSTOP) for long can miss the last statuses; mission.json shows the same.
     const bool reported = supervisor_.plant_is_gone() && fs::exists(report_dir_ / "mission.json");
-    if (reported || view.ended(plan_.manifest.plant)) supervisor_.expect_end();
+    if (reported || view.run_is_over()) supervisor_.expect_end();
     if (Clock::now() - memory_sampled_ > kMemoryEvery) {
       memory_sampled_ = Clock::now();
       supervisor_.sample_memory();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "constrictor/constants.hpp"
@@ -49,6 +50,14 @@ struct RunObserver::Readers {
 bool RunView::ended(const std::string& component) const {
   const auto found = components.find(component);
   return found != components.end() && found->second.state == msg::kComponentEnded;
+}
+
+bool RunView::run_is_over() const {
+  return present_.run_id() != 0 && std::any_of(components.begin(), components.end(), [this](const auto& named) {
+           const msg::ComponentStatus& status = named.second;
+           return status.state == msg::kComponentEnded && status.run_id == present_.run_id() &&
+                  status.epoch == present_.epoch();
+         });
 }
 
 bool RunView::over(const msg::Waiting& waiting) const {

@@ -45,6 +45,9 @@ struct RunView {
   [[nodiscard]] bool over(const msg::Waiting& waiting) const;
   /// True if the component published that the run has ended.
   [[nodiscard]] bool ended(const std::string& component) const;
+  /// True if a member of the present epoch published that the run has ended: only the final tick makes it say so. The
+  /// plant's own status can come seconds later, because a report in its process draws its figure first.
+  [[nodiscard]] bool run_is_over() const;
   /// True if all members have finished the newest tick: only the pace or a pause delays the next one.
   [[nodiscard]] bool held() const { return run_state && run_state->ready_for_tick; }
   [[nodiscard]] double sim_time_s() const { return tick < 0 ? 0.0 : static_cast<double>(tick) * period_s; }

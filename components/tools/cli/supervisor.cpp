@@ -178,7 +178,9 @@ Supervisor::State Supervisor::poll() {
   for (auto& process : processes_) {
     const bool ended_alone = !ending_ && !plant_gone_ && process.over && state_ == State::kRunning &&
                              Clock::now() - process.ended > kEndTogether;
-    if (ended_alone) restart(process, "ended before the run did", true);
+    if (!ended_alone) continue;
+    restart(process, "ended before the run did", true);
+    process.started_at_end = true;  // it may have heard of an end of which the launcher has not
   }
   return state_;
 }

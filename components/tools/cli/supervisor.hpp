@@ -99,7 +99,7 @@ class Supervisor {
     std::uintmax_t log_offset = 0;  ///< [byte] where the output of this incarnation begins in its log
     int deaths_without_tick = 0;    ///< number of deaths by its own fault since the newest tick
     bool over = false;              ///< the process has ended, and its exit was handled
-    bool started_at_end = false;    ///< restarted after the final tick
+    bool started_at_end = false;    ///< restarted after the final tick, or after it ended by itself
     [[nodiscard]] bool running() const { return !over && child; }
   };
   void spawn(Supervised& process);

@@ -85,6 +85,20 @@ TEST(RunView, IgnoresKeptMessagesOfTheEpochBeforeInAnyOrder) {
   }
 }
 
+// The plant's own status comes late if a report in its process draws a figure first.
+TEST(RunView, TheRunIsOverOnceAnyMemberHasEndedInThePresentEpoch) {
+  RunView view;
+  EXPECT_FALSE(view.run_is_over());
+  msg::ComponentStatus ended = status("camera", 1, 200);
+  ended.state = msg::kComponentEnded;
+  view.take(status("physics", 1, 200));
+  EXPECT_FALSE(view.run_is_over());
+  view.take(ended);
+  EXPECT_TRUE(view.run_is_over());
+  view.take(state(2, 0, 7));
+  EXPECT_FALSE(view.run_is_over()) << "that was the epoch before";
+}
+
 TEST(RunView, IgnoresAnotherRunInTheSameDomain) {
   RunView view;
   view.take(state(1, 100, 1));

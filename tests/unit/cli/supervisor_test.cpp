@@ -156,6 +156,16 @@ TEST_F(SupervisorTest, EndsAMemberThatWasRestartedAfterTheRunWhenThePlantHasEnde
   ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it must end by itself";
 }
 
+TEST_F(SupervisorTest, EndsAMemberThatHeardOfTheEndOfTheRunSecondsBeforeTheLauncher) {
+  start("sleep 4; exit 0", "test $1 -lt 2 && exit 0; trap 'exit 0' TERM; while :; do sleep 0.05; done");
+  ASSERT_TRUE(poll_until([this] { return record(0).restarts == 1; })) << "it could also have ended by a fault";
+  EXPECT_TRUE(printed("control ended before the run did; restarted as incarnation 2")) << printed_;
+  supervisor_->expect_end();
+  ASSERT_TRUE(poll_until_over());
+  EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
+  ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it would wait for the plant in vain";
+}
+
 TEST_F(SupervisorTest, FailsWhenThePlantDiesAndTheManifestAllowsNoRestart) {
   start("kill -SEGV $$", kWaitForever);
   ASSERT_TRUE(poll_until_over());
