@@ -56,8 +56,9 @@ function(constrictor_position_independent target)
   endif()
 endfunction()
 
-# constrictor_compile_quickly(TARGET...): for programs that wait for people or messages. CLI11 and JSON compile a third
-# faster at this level, which a user notices at the first build; the speed of these programs does not change noticeably.
+# constrictor_compile_quickly(TARGET...): for programs that wait for people or messages, and for tests. CLI11, JSON and
+# GoogleTest compile a third faster at this level, which a user notices at the first build; the speed of these programs
+# does not change noticeably.
 function(constrictor_compile_quickly)
   foreach(target ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -180,6 +181,7 @@ if(CONSTRICTOR_TESTS)
   add_library(constrictor_test_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
   target_link_libraries(constrictor_test_precompiled PRIVATE constrictor_options GTest::gtest)
   target_precompile_headers(constrictor_test_precompiled PRIVATE ${CONSTRICTOR_COMMON_HEADERS} <gtest/gtest.h>)
+  constrictor_compile_quickly(constrictor_test_precompiled)
 endif()
 
 # constrictor_test(NAME [SERIAL] [WHOLE] SOURCES ... LINK ... [LABELS label] [TIMEOUT s] [FIXTURE f]): a GoogleTest
@@ -214,6 +216,7 @@ function(constrictor_test name)
   target_link_libraries(${name} PRIVATE constrictor_options ${ARG_LINK} constrictor_project_paths
                         GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  constrictor_compile_quickly(${name})
   if(CONSTRICTOR_PCH)
     target_precompile_headers(${name} REUSE_FROM constrictor_test_precompiled)
   endif()

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <future>
-#include <optional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -51,7 +51,7 @@ TEST_F(WriterBookTest, KnowsWritersFromBeforeAndAfterTheReaderAndRemembersDeadOn
   dds::WriterBook book;
   const dds::Entity other(dds_create_participant(claim_.domain(), nullptr, nullptr), "dds_create_participant");
   const dds::GuidPrefix prefix = dds::own_prefix(other.get());
-  std::optional<Writer> before(std::in_place, other.get(), barrier_topics::kWaiting);
+  auto before = std::make_unique<Writer>(other.get(), barrier_topics::kWaiting);
   const Reader all = reader(book);
   EXPECT_TRUE(book.lives(prefix));
   before->write({});
