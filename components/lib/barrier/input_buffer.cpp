@@ -44,6 +44,17 @@ bool InputBuffer::complete(const msg::Tick& tick) const {
   return true;
 }
 
+bool InputBuffer::complete_again() const {
+  return last_valid_ == 0 || samples_.lower_bound(last_valid_) != samples_.end();
+}
+
+void InputBuffer::present_again(std::int64_t tick) {
+  slot_.now_tick = tick;
+  slot_.fresh.clear();
+  const auto newest = samples_.lower_bound(last_valid_);
+  if (last_valid_ > 0 && newest != samples_.end()) slot_.latest = newest->second.sample;
+}
+
 void InputBuffer::present(const msg::Tick& tick) {
   const std::uint64_t target = tick.realtime ? this->newest() : tick.visible[slot_.topic->id];
   slot_.now_tick = tick.index;

@@ -42,6 +42,12 @@ class InputBuffer {
   /// Fills slot() for a step at `tick`; at real-time pace with everything that has arrived.
   void present(const msg::Tick& tick);
 
+  /// For a restarted member that has not stepped yet: whether the sample has arrived that its last step saw as the
+  /// newest, or a later one.
+  [[nodiscard]] bool complete_again() const;
+  /// Fills slot() with this sample, as it was after the step at `tick`; no sample is fresh.
+  void present_again(std::int64_t tick);
+
   /// The newest sequence number that a sample may have.
   [[nodiscard]] std::uint64_t farthest() const { return std::max(consumed_, announced_) + kFarthestAhead; }
   /// Newest sequence number that a step has seen; 0 before the first.

@@ -7,7 +7,6 @@
 
 #include "barrier/plant_topics.hpp"
 #include "barrier/topic_ops.hpp"
-#include "component/concluding.hpp"
 #include "component/data_path.hpp"
 #include "constrictor/reflect.hpp"
 
@@ -90,6 +89,7 @@ void Member::build(std::uint64_t seed) {
   timing_ = component_->timing();
   timing_.latency = std::max(timing_.latency, setup_.latency_ticks);
   fresh_component_ = true;
+  resumed_ = false;
   if (timing_.period < 1 || timing_.latency < 1) bug(name(), "period and latency must be at least 1 tick");
 }
 
@@ -126,6 +126,7 @@ void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
   ticks_.clear();
   last_done_ = newest_tick_ = -1;
   ended_ = end_requested_ = false;
+  concludes_at_.reset();
   output_hash_ = {};
   replay_early();
 }
@@ -154,14 +155,6 @@ void Member::on_tick(const msg::Tick& tick) {
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
 }
 
-void Member::conclude(const msg::Tick& final_tick) {
-  ended_ = true;
-  auto* concluding = dynamic_cast<Concluding*>(component_.get());
-  if (!concluding || last_done_ < 0) return;
-  const std::int64_t time_ns = final_tick.time_ns - (final_tick.index - last_done_) * final_tick.period_ns;
-  concluding->conclude(Tick{last_done_, time_ns, final_tick.period_ns, 1, final_tick.run_id, final_tick.epoch});
-}
-
 void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   if (!epoch_) {
     if (early_.size() < kMaxEarly) early_.emplace_back(topic_id, sample);
@@ -185,6 +178,7 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   const auto violation = topic_ops(topic_id).validate(sample.message.get());
   if (violation) refuse(fmt::format("{}.{}", topic, *violation));
   (*found)->keep(sample, !violation);
+  if (concludes_at_) conclude(*concludes_at_);
 }
 
 const msg::Tick* Member::due() const {
@@ -217,7 +211,7 @@ bool Member::begin_step() {
   stamp_ = {tick->run_id, tick->epoch, incarnation_, tick->index, tick->time_ns, 0};
   for (auto& port : outputs_) port->in_this_step = 0;
   const std::int64_t elapsed = last_done_ < 0 ? timing_.period : tick->index - last_done_;
-  fresh_component_ = false;
+  fresh_component_ = resumed_ = false;
   step_ = Step{Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch}};
   return true;
 }
@@ -283,16 +277,6 @@ void Member::finish_step() {
   ticks_.erase(step.tick.index);
   sink_.done(done);
   if (step.final_tick) conclude(*step.final_tick);
-}
-
-MissingInput Member::missing() const {
-  const msg::Tick* tick = due();
-  if (!tick) return {newest_tick_ + 1, nullptr, 0, 0};
-  for (const auto& input : inputs_) {
-    if (input->complete(*tick)) continue;
-    return {tick->index, &input->topic(), input->newest(), tick->visible[input->topic().id]};
-  }
-  return {tick->index, nullptr, 0, 0};
 }
 
 }  // namespace constrictor

@@ -99,6 +99,10 @@ class Member {
   [[nodiscard]] bool has_due_tick() const { return !stepping() && due() != nullptr; }
   /// True after the run's final tick and the last step.
   [[nodiscard]] bool ended() const { return ended_; }
+  /// True after the final tick as long as a restarted member lacks inputs of its last step, which it needs to end.
+  [[nodiscard]] bool concluding() const { return concludes_at_.has_value(); }
+  /// Ends a member that is concluding() with the inputs that have arrived.
+  void conclude_anyway();
   /// Tick of the last finished step; -1 before the first.
   [[nodiscard]] std::int64_t last_done() const { return last_done_; }
   [[nodiscard]] std::int64_t newest_tick() const { return newest_tick_; }
@@ -133,7 +137,9 @@ class Member {
   void refuse_from_component(const std::string& reason);
   void build(std::uint64_t seed);
   void replay_early();
-  void conclude(const msg::Tick& final_tick);
+  /// Ends the member, at once or as soon as the inputs of its last step have arrived again. By value, because it
+  /// resets concludes_at_.
+  void conclude(msg::Tick final_tick);
   [[nodiscard]] const msg::Tick* due() const;
   void skip_to_newest();
   void write(OutputPort& port, const void* message);
@@ -149,6 +155,7 @@ class Member {
   std::unique_ptr<MemberWiring> wiring_;
   std::unique_ptr<Component> component_;
   bool fresh_component_ = true;  ///< it has not stepped since it was built
+  bool resumed_ = false;         ///< it has not stepped since it loaded a checkpoint
   bool is_plant_ = false;
   Timing timing_;
   TopicSet reads_;
@@ -164,6 +171,7 @@ class Member {
   std::int64_t last_done_ = -1;
   std::int64_t newest_tick_ = -1;
   bool ended_ = false;
+  std::optional<msg::Tick> concludes_at_{};  ///< the final tick, while the inputs of the last step are missing
   bool end_requested_ = false;
   std::optional<Step> step_;
   bool measuring_ = false;

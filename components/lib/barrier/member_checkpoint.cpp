@@ -70,6 +70,7 @@ void Member::restore(const std::string& state) {
     throw std::runtime_error("checkpoint of " + name() + ": " + error.what());
   }
   fresh_component_ = false;
+  resumed_ = true;
 }
 
 }  // namespace constrictor

@@ -22,6 +22,7 @@ namespace constrictor {
 namespace {
 
 constexpr double kWaitingReportAfter_s = 2.0;
+constexpr double kWaitForLastInputs_s = 5.0;  // of a member that is restarted at the end of the run
 constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
 
 // Bounds on the time in which a process that ends waits until its last messages have been received.
@@ -92,7 +93,7 @@ class Host::Impl {
         conductor_->poll_recording();
         conductor_->publish_run_state(false);
       }
-      if (members_.all_ended() && !(conductor_ && conductor_->stays())) break;
+      if (members_.all_ended() && !stays()) break;
       links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());
       if (!stepped && !ticked) check_patience();
     }
@@ -104,6 +105,18 @@ class Host::Impl {
   }
 
  private:
+  /// Whether this process is still needed, although its members have ended. The plant's process waits for the members
+  /// of the others. These stay until it has left: a member that is restarted now needs the last samples of all others,
+  /// and DDS drops the samples of a process that leaves.
+  bool stays() {
+    if (conductor_) return conductor_->stays();
+    if (!members_.plant_lives()) return false;
+    if (!staying_) members_.publish_last_statuses();  // the plant's process waits for them
+    staying_ = true;
+    context_.note_progress();
+    return true;
+  }
+
   /// Waits until the last messages have been received. An observer that was killed or stopped delays the end of the run
   /// no longer than it takes to be sure that no member needs a message any more: the plant's process leaves when all
   /// members have reported their end, and this is what the other processes wait for.
@@ -122,7 +135,7 @@ class Host::Impl {
   }
 
   [[nodiscard]] dds_duration_t longest_wait_ns() const {
-    const dds_duration_t idle_ns = members_.all_ready() ? DDS_MSECS(100) : DDS_MSECS(10);
+    const dds_duration_t idle_ns = members_.all_ready() && !staying_ ? DDS_MSECS(100) : DDS_MSECS(10);
     return conductor_ ? std::min<dds_duration_t>(conductor_->wait_ns(), idle_ns) : idle_ns;
   }
 
@@ -131,6 +144,7 @@ class Host::Impl {
     if (members_.stepping() || (conductor_ && conductor_->held())) context_.note_progress();
     context_.note_waiting();
     const double waited_s = context_.waited_s();
+    if (waited_s > kWaitForLastInputs_s) members_.conclude_anyway();
     const auto now = HostContext::Clock::now();
     if (waited_s < kWaitingReportAfter_s || now - last_report_ < kWaitingReportInterval) return;
     last_report_ = now;
@@ -148,6 +162,7 @@ class Host::Impl {
   MemberSide members_;
   std::unique_ptr<ConductorSide> conductor_;  ///< null: the plant is in another process
   HostContext::Clock::time_point last_report_ = HostContext::Clock::now();
+  bool staying_ = false;
 };
 
 Host::Host(HostOptions options, std::vector<ComponentFactory> factories)

@@ -212,11 +212,22 @@ bool MemberSide::all_ended() const {
   return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.member->ended(); });
 }
 
+void MemberSide::conclude_anyway() {
+  for (auto& local : members_) {
+    if (!local.member->concluding()) continue;
+    const MissingInput missing = local.member->missing();
+    context_.log.warning("{} ends without {}, of which no sample has arrived since it was restarted",
+                         local.member->name(), missing.topic ? missing.topic->name : "an input");
+    local.member->conclude_anyway();
+  }
+}
+
 bool MemberSide::plant_lives() const { return plant_ || links_.admission().lives(context_.options.plant); }
 
 bool MemberSide::want_inputs() const {
-  return std::any_of(members_.begin(), members_.end(),
-                     [](const auto& local) { return !local.ready_sent || local.member->has_due_tick(); });
+  return std::any_of(members_.begin(), members_.end(), [](const auto& local) {
+    return !local.ready_sent || local.member->has_due_tick() || local.member->concluding();
+  });
 }
 
 bool MemberSide::all_ready() const {

@@ -43,6 +43,8 @@ class MemberSide : private MemberSink {
   /// Whether a member is stepping in a thread of its own.
   [[nodiscard]] bool stepping() const;
   [[nodiscard]] bool all_ended() const;
+  /// Ends the members that were restarted at the end of the run, and for which inputs of their last step do not arrive.
+  void conclude_anyway();
   /// Whether the plant is in this process, or its process is known and has not left the domain.
   [[nodiscard]] bool plant_lives() const;
   /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
