@@ -35,6 +35,33 @@ std::optional<double> half_way_s(const std::vector<Instant>& motion, double from
   return {};
 }
 
+/// Integral of the measured rate by the way of the measured angle; empty if that way is shorter than `least_rad`. A
+/// sample that comes much sooner or later than usual after the one before is left out, because a driver that stood
+/// still for a moment measures a rate over a time of chance then.
+std::optional<double> velocity_ratio(const std::vector<Instant>& motion, std::size_t joint, double least_rad) {
+  std::vector<const JointSample*> samples;
+  for (const Instant& at : motion) {
+    if (samples.empty() || at.sample.number != samples.back()->number) samples.push_back(&at.sample);
+  }
+  if (samples.size() < 3) return {};
+  const auto duration_s = [&](std::size_t i) {
+    return 1e-9 * static_cast<double>(samples[i]->time_ns - samples[i - 1]->time_ns);
+  };
+  std::vector<double> durations_s;
+  for (std::size_t i = 1; i < samples.size(); ++i) durations_s.push_back(duration_s(i));
+  const auto middle = durations_s.begin() + static_cast<std::ptrdiff_t>(durations_s.size() / 2);
+  std::nth_element(durations_s.begin(), middle, durations_s.end());
+  const auto usual = [&](std::size_t i) { return duration_s(i) > 0.5 * *middle && duration_s(i) < 1.5 * *middle; };
+  double rate_rad = 0.0, way_rad = 0.0;
+  for (std::size_t i = 2; i < samples.size(); ++i) {
+    if (!usual(i - 1) || !usual(i)) continue;
+    rate_rad += 0.5 * (samples[i]->velocity_rad_s[joint] + samples[i - 1]->velocity_rad_s[joint]) * duration_s(i);
+    way_rad += samples[i]->position_rad[joint] - samples[i - 1]->position_rad[joint];
+  }
+  if (std::abs(way_rad) <= least_rad) return {};
+  return rate_rad / way_rad;
+}
+
 /// [Nm] mean over the last samples of a motion, when the joint rests.
 double last_torque_nm(const std::vector<Instant>& motion, std::size_t joint) {
   constexpr std::size_t kLast = 6;
@@ -97,15 +124,7 @@ PlantConformance::Moved PlantConformance::move_joint(std::size_t joint) {
   const auto measured_s = half_way_s(away, before_rad[joint], after_rad[joint], angle,
                                      [](const Instant& at) { return at.sample.arrival_s; });
   if (commanded_s && measured_s) moved.delay_s = *measured_s - *commanded_s;
-  double rate_s = 0.0, angle_rad = 0.0;
-  for (std::size_t i = 1; i < away.size(); ++i) {
-    const auto &last = away[i - 1].sample, &now = away[i].sample;
-    if (now.number == last.number) continue;
-    rate_s += 0.5 * (now.velocity_rad_s[joint] + last.velocity_rad_s[joint]) *
-              (1e-9 * static_cast<double>(now.time_ns - last.time_ns));
-    angle_rad += now.position_rad[joint] - last.position_rad[joint];
-  }
-  if (std::abs(angle_rad) > kMovedShare * std::abs(way_rad)) moved.velocity_ratio = rate_s / angle_rad;
+  moved.velocity_ratio = velocity_ratio(away, joint, kMovedShare * std::abs(way_rad));
   // A bent joint carries a weight, or friction that it has overcome: both point along the way that it has moved.
   const double load_nm = last_torque_nm(away, joint) - last_torque_nm(back, joint);
   moved.torque_nm = std::copysign(load_nm, load_nm * way_rad * moved.ratio);
