@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <optional>
 
 #include "cyclone/acknowledgements.hpp"
 #include "cyclone/own_host.hpp"
@@ -28,8 +27,7 @@ constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
 // Bounds on the time in which a process that ends waits until its last messages have been received.
 constexpr dds_duration_t kWaitForMembers_ns = DDS_SECS(2);   // the plant's process, while a member has not ended
 constexpr dds_duration_t kWaitForLauncher_ns = DDS_SECS(1);  // by the plant's last status it knows that the run is over
-constexpr dds_duration_t kWaitForPlant_ns = DDS_SECS(10);    // every other process, while the plant's is there
-constexpr dds_duration_t kWaitAlone_ns = DDS_MSECS(500);     // and after that, for readers that are not members
+constexpr dds_duration_t kWaitAlone_ns = DDS_MSECS(500);     // every other process, for readers that are not members
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
@@ -118,20 +116,15 @@ class Host::Impl {
   }
 
   /// Waits until the last messages have been received. An observer that was killed or stopped delays the end of the run
-  /// no longer than it takes to be sure that no member needs a message any more: the plant's process leaves when all
-  /// members have reported their end, and this is what the other processes wait for.
+  /// no longer than it takes to be sure that no member needs a message any more. Where the plant is in another process,
+  /// stays() has made sure of that.
   void wait_for_readers() const {
     const bool ended = members_.all_ended();
+    const bool alone = ended && !conductor_;
     dds_duration_t bound_ns = kWaitForLauncher_ns;
-    if (ended && !conductor_) bound_ns = kWaitForPlant_ns;
+    if (alone) bound_ns = kWaitAlone_ns;
     else if (ended && !conductor_->all_ended()) bound_ns = kWaitForMembers_ns;
-    std::optional<dds_time_t> alone_since;
-    const auto give_up = [&] {
-      if (!ended || conductor_) return false;
-      if (!members_.plant_lives() && !alone_since) alone_since = dds_time();
-      return g_stop != 0 || (alone_since && dds_time() - *alone_since > kWaitAlone_ns);
-    };
-    dds::wait_for_acknowledgements(links_.participant(), bound_ns, give_up);
+    dds::wait_for_acknowledgements(links_.participant(), bound_ns, [alone] { return alone && g_stop != 0; });
   }
 
   [[nodiscard]] dds_duration_t longest_wait_ns() const {

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kLastLines = 5;        // number of lines of a dead process's log that are shown to the user
 constexpr int kMostDeathsWithoutTick = 5;    // deaths of one process by its own fault at the same tick
-constexpr auto kEndTogether = 3s;            // a process may end this long before the plant's "the run is over" arrives
+constexpr auto kEndTogether = 3s;            // a process may end this long before "the run is over" arrives
 constexpr auto kTermination = 3s;            // from SIGTERM to SIGKILL
 constexpr auto kTellWhoIsMissingAfter = 5s;  // while processes end
 constexpr auto kPoll = 10ms;

@@ -55,7 +55,7 @@ class Supervisor {
 
   enum class State {
     kRunning,
-    kEnded,   ///< the plant published that the run is over (expect_end()), and its process ended with status 0
+    kEnded,   ///< the run is over (expect_end()), and the plant's process ended with status 0
     kFailed,  ///< see failure()
   };
   /// Looks at the processes without waiting, and restarts those that died, up to the manifest's `restarts`. The run
@@ -69,7 +69,7 @@ class Supervisor {
   void sample_memory();
   /// Sends a signal to the process that hosts this component, if it runs.
   void signal(const std::string& component, int number) const;
-  /// The plant published that the run is over: processes end from now on, and none is restarted.
+  /// A member published that the run is over: processes end from now on.
   void expect_end() { ending_ = true; }
   /// True if the plant's process ended with status 0. Without expect_end() soon afterwards the run has failed.
   [[nodiscard]] bool plant_is_gone() const { return plant_gone_; }
