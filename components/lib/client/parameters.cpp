@@ -138,6 +138,10 @@ std::optional<double> value_from(const msg::Parameter& parameter, const std::str
   return value;
 }
 
+double coming_value(const msg::Parameter& parameter) {
+  return parameter.pending_tick < 0 ? parameter.value : parameter.pending_value;
+}
+
 std::optional<double> value_from_json(const msg::Parameter& parameter, const nlohmann::json& value) {
   if (value.is_string()) return value_from(parameter, value.get<std::string>());
   if (!value.is_number() || !std::isfinite(value.get<double>())) return std::nullopt;

@@ -71,6 +71,8 @@ class ParameterSetter {
   dds::Reader<msg::ParameterChange> changes_;
 };
 
+/// The value that is in force or, if an accepted change waits for its tick, the value that will be.
+[[nodiscard]] double coming_value(const msg::Parameter& parameter);
 /// The value that a text stands for: a finite number, or one of the parameter's names. Empty: neither.
 std::optional<double> value_from(const msg::Parameter& parameter, const std::string& text);
 /// The same for a JSON number or text. Empty for everything else.

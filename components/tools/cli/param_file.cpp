@@ -25,11 +25,6 @@ struct Found {
 
 int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
 
-/// The value that is in force or will be, when a pending change has taken effect.
-double wanted(const msg::Parameter& parameter) {
-  return parameter.pending_tick < 0 ? parameter.value : parameter.pending_value;
-}
-
 /// Reads one file and collects its mistakes.
 class Reader {
  public:
@@ -66,7 +61,7 @@ class Reader {
     const std::optional<double> value = found.scalar ? value_from(p, found.text) : std::nullopt;
     if (!value || !parameter_refusal(p, *value).empty())
       return mistake(found.line, name, fmt::format("found {}, accepted {}", found.text, accepted_text(p)));
-    if (*value != wanted(p)) values_.push_back({name, *value, found.text});
+    if (*value != coming_value(p)) values_.push_back({name, *value, found.text});
   }
   [[nodiscard]] std::string why_not(const std::string& name) const {
     const std::string component = name.substr(0, name.find('.'));
@@ -102,7 +97,7 @@ std::string parameter_file(const ParameterView& view, const std::string& title, 
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
-    text += fmt::format("{}: {}  # {}; {}\n", name, exact(p, wanted(p)), accepted_text(p), p.doc);
+    text += fmt::format("{}: {}  # {}; {}\n", name, exact(p, coming_value(p)), accepted_text(p), p.doc);
   }
   return text;
 }

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "conform/control_conformance.hpp"
+#include "conform/median.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -92,8 +94,7 @@ void ControlConformance::judge_wave(const Steps& steps) {
           fitted(some, yaw_[k + 1], profile_.rate_hz).phase_rad - fitted(some, yaw_[k], profile_.rate_hz).phase_rad;
       lags.push_back(std::remainder(lag, 2.0 * kPi));
     }
-    std::nth_element(lags.begin(), lags.begin() + static_cast<long>(lags.size() / 2), lags.end());
-    return lags[lags.size() / 2];
+    return median(std::move(lags));
   };
   const Fit middle = fitted(steps, yaw_[yaw_.size() / 2], profile_.rate_hz);
   report_.judge("frequency", middle.explained < 0.8,

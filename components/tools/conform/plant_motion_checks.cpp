@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "conform/median.hpp"
 #include "conform/plant_conformance.hpp"
 
 namespace constrictor::conform {
@@ -49,9 +51,8 @@ std::optional<double> velocity_ratio(const std::vector<Instant>& motion, std::si
   };
   std::vector<double> durations_s;
   for (std::size_t i = 1; i < samples.size(); ++i) durations_s.push_back(duration_s(i));
-  const auto middle = durations_s.begin() + static_cast<std::ptrdiff_t>(durations_s.size() / 2);
-  std::nth_element(durations_s.begin(), middle, durations_s.end());
-  const auto usual = [&](std::size_t i) { return duration_s(i) > 0.5 * *middle && duration_s(i) < 1.5 * *middle; };
+  const double usual_s = median(std::move(durations_s));
+  const auto usual = [&](std::size_t i) { return duration_s(i) > 0.5 * usual_s && duration_s(i) < 1.5 * usual_s; };
   double rate_rad = 0.0, way_rad = 0.0;
   for (std::size_t i = 2; i < samples.size(); ++i) {
     if (!usual(i - 1) || !usual(i)) continue;
@@ -200,10 +201,9 @@ void PlantConformance::check_motions() {
     report_.skip("velocity", "no joint moved as commanded");
   } else {
     // One short motion shows a rate only roughly, because samples are few; the median of the joints is better.
-    const auto middle = velocity_ratios.begin() + static_cast<std::ptrdiff_t>(velocity_ratios.size() / 2);
-    std::nth_element(velocity_ratios.begin(), middle, velocity_ratios.end());
-    report_.judge("velocity", !rates.empty() || std::abs(*middle - 1.0) > profile_.velocity_share,
-                  list(rates, velocities, fmt::format("{:.2f} times the rate of the angle, the median", *middle)),
+    const double middle = median(std::move(velocity_ratios));
+    report_.judge("velocity", !rates.empty() || std::abs(middle - 1.0) > profile_.velocity_share,
+                  list(rates, velocities, fmt::format("{:.2f} times the rate of the angle, the median", middle)),
                   "velocity_rad_s must be the rate of position_rad: check its sign and unit");
   }
   judge_torque_sign(loads);

@@ -195,9 +195,8 @@ void Dashboard::take_parameters() {
   std::vector<ParameterValue> values;
   for (const auto& [name, owned] : parameters_.parameters()) {
     const msg::Parameter& parameter = owned.parameter;
-    // A change that was accepted and waits for its tick counts, as on the page.
-    const double value = parameter.pending_tick >= 0 ? parameter.pending_value : parameter.value;
-    if (!std::isfinite(value)) continue;  // of a stranger: the components accept no such value
+    const double value = coming_value(parameter);  // as on the page
+    if (!std::isfinite(value)) continue;           // of a stranger: the components accept no such value
     const nlohmann::json shown = value_json(parameter, value);
     values.push_back({name, shown, shown.is_number() && !parameter.is_integer});
   }
