@@ -53,8 +53,7 @@ class Driver {
 };
 
 /// JSON for the page: every task with its parameters, [{"task": "rotate", "parameters": [{"name": "direction",
-/// "values":
-/// ["left", "right"], "optional": false}]}, ...]. No values: points.
+/// "values": ["left", "right"], "optional": false}]}, ...]. No values: points.
 std::string task_forms();
 
 }  // namespace constrictor::dashboard

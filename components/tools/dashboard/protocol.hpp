@@ -12,8 +12,7 @@
 
 namespace constrictor::dashboard {
 
-/// The subprotocols that the server accepts. The messages used here are the same in both, also
-/// those about parameters.
+/// The subprotocols that the server accepts. The messages used here are the same in both, also those about parameters.
 inline constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
 /// What a client can subscribe to.

@@ -54,7 +54,6 @@ TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
   }
 }
 
-/// Names and reasons come from the run, and from whoever can send to it.
 // "One place for each fact" (CONTRIBUTING.md): a new task, colour or direction appears without a change of the page.
 TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
   std::ifstream file(testing::source_path("components/tools/dashboard/page/tasks.js"));
@@ -65,6 +64,7 @@ TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
   }
 }
 
+// Names and reasons come from the run, and from whoever can send to it.
 TEST(Page, InsertsNothingAsHtml) {
   int files = 0;
   for (const auto& entry :
