@@ -4,17 +4,18 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/render/shader_cache.hpp"
+
 namespace constrictor {
 namespace {
 
 /// llvmpipe compiles shaders for the CPU of the machine; these variables make it compile the same code everywhere. They
-/// are set before main, while there is only one thread. Values in the environment take precedence, except for the
-/// cache: Mesa 22.3 reuses cached machine code that was compiled for another vector width, which corrupts memory.
+/// are set before main, while there is only one thread. Values in the environment take precedence.
 const bool environment_is_set = [] {
-  ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   ::setenv("LP_NATIVE_VECTOR_WIDTH", "256", 0);
   ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);  // without FMA, which changes the last bits
   ::setenv("LP_NUM_THREADS", "0", 0);  // draw in the thread of the caller: the same bytes with the least CPU time
+  set_up_shader_cache();
   return true;
 }();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "sim/render/splitmix64.hpp"
 
@@ -16,41 +17,74 @@ double lattice(int x, int y, int octave) {
   return static_cast<double>(splitmix64(key) >> 11) * 0x1p-52 - 1.0;
 }
 
-/// Value noise with `cells` lattice cells along the edge of the tile. It is periodic.
-double value_noise(int x, int y, int cells, int octave) {
-  const int cell = kGroundTextureSize / cells;
-  const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
-  const int x0 = x / cell;
-  const int y0 = y / cell;
-  const int x1 = (x0 + 1) % cells;
-  const int y1 = (y0 + 1) % cells;
-  const double fx = smooth(static_cast<double>(x % cell) / cell);
-  const double fy = smooth(static_cast<double>(y % cell) / cell);
-  const double near = lattice(x0, y0, octave) * (1 - fx) + lattice(x1, y0, octave) * fx;
-  const double far = lattice(x0, y1, octave) * (1 - fx) + lattice(x1, y1, octave) * fx;
-  return near * (1 - fy) + far * fy;
-}
+double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
+
+/// Value noise with `cells` lattice cells along the edge of the tile. It is periodic. The noise is computed by rows,
+/// because the values of a row of the lattice serve for all rows of texels up to the next one.
+class ValueNoise {
+ public:
+  ValueNoise(int cells, int octave)
+      : cells_(cells),
+        cell_(kGroundTextureSize / cells),
+        octave_(octave),
+        above_(blended_row(0)),
+        below_(blended_row(1)) {}
+
+  /// Adds the noise of row y, times the weight, to a row of kGroundTextureSize values. The rows must come in order.
+  void add_row(int y, double weight, std::vector<double>& values) {
+    if (y > 0 && y % cell_ == 0) {
+      above_.swap(below_);
+      below_ = blended_row((y / cell_ + 1) % cells_);
+    }
+    const double part = smooth(static_cast<double>(y % cell_) / cell_);
+    for (std::size_t x = 0; x < values.size(); ++x) values[x] += weight * (above_[x] * (1 - part) + below_[x] * part);
+  }
+
+ private:
+  /// The noise along a row of the lattice, for each texel.
+  std::vector<double> blended_row(int lattice_y) const {
+    std::vector<double> corners;
+    for (int x = 0; x < cells_; ++x) corners.push_back(lattice(x, lattice_y % cells_, octave_));
+    corners.push_back(corners.front());
+    std::vector<double> row;
+    row.reserve(kGroundTextureSize);
+    for (int x = 0; x < kGroundTextureSize; ++x) {
+      const auto left = static_cast<std::size_t>(x / cell_);
+      const double part = smooth(static_cast<double>(x % cell_) / cell_);
+      row.push_back(corners[left] * (1 - part) + corners[left + 1] * part);
+    }
+    return row;
+  }
+
+  int cells_;
+  int cell_;  // [texels] edge of a cell
+  int octave_;
+  std::vector<double> above_;
+  std::vector<double> below_;
+};
 
 }  // namespace
 
 std::vector<std::uint8_t> make_ground_texture() {
   struct Octave {
-    int cells;
+    ValueNoise noise;
     double weight;
   };
-  constexpr std::array<Octave, 5> kOctaves{{{8, 5.0}, {16, 4.0}, {64, 4.0}, {256, 4.0}, {1024, 6.0}}};
+  std::vector<Octave> octaves;
+  constexpr std::array<std::pair<int, double>, 5> kOctaves{{{8, 5.0}, {16, 4.0}, {64, 4.0}, {256, 4.0}, {1024, 6.0}}};
+  for (const auto& [cells, weight] : kOctaves)
+    octaves.push_back({ValueNoise(cells, static_cast<int>(octaves.size())), weight});
   constexpr int kTexelsPerMetre = static_cast<int>(kGroundTextureSize / kGroundTextureExtent_m);
   constexpr double kJoint = 15.0;  // by which a joint is darker
-  std::vector<std::uint8_t> texture(static_cast<std::size_t>(kGroundTextureSize) * kGroundTextureSize);
+  std::vector<std::uint8_t> texture;
+  texture.reserve(static_cast<std::size_t>(kGroundTextureSize) * kGroundTextureSize);
   for (int y = 0; y < kGroundTextureSize; ++y) {
+    std::vector<double> values(kGroundTextureSize, 200.0);
+    for (Octave& octave : octaves) octave.noise.add_row(y, octave.weight, values);
     for (int x = 0; x < kGroundTextureSize; ++x) {
-      double value = 200.0;
-      for (std::size_t i = 0; i < kOctaves.size(); ++i) {
-        value += kOctaves[i].weight * value_noise(x, y, kOctaves[i].cells, static_cast<int>(i));
-      }
-      if (x % kTexelsPerMetre < 2 || y % kTexelsPerMetre < 2) value -= kJoint;
-      texture[static_cast<std::size_t>(y) * kGroundTextureSize + static_cast<std::size_t>(x)] =
-          static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0));
+      const bool joint = x % kTexelsPerMetre < 2 || y % kTexelsPerMetre < 2;
+      const double value = values[static_cast<std::size_t>(x)] - (joint ? kJoint : 0.0);
+      texture.push_back(static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0)));
     }
   }
   return texture;

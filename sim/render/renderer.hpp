@@ -28,8 +28,8 @@ struct ShadowRegion {
   double radius_m = 3.0;
 };
 
-/// Draws one scene. The first frame takes some tenths of a second, because it compiles the shaders. A frame is a pure
-/// function of scene, options, poses, camera and region. Throws std::runtime_error if OpenGL fails.
+/// Draws one scene. The first frame takes some tenths of a second if the shaders are not in the cache. A frame is a
+/// pure function of scene, options, poses, camera and region. Throws std::runtime_error if OpenGL fails.
 class Renderer {
  public:
   Renderer(const Scene& scene, const RenderOptions& options);

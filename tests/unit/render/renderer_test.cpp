@@ -9,10 +9,15 @@
 #include <numbers>
 #include <thread>
 
+#include "unit/render/busy_scene.hpp"
+
 namespace constrictor {
 namespace {
 
 using Eigen::Vector3d;
+using testing::busy_poses;
+using testing::busy_scene;
+using testing::scene_camera;
 
 constexpr Rgb kRed{0.8F, 0.02F, 0.02F};
 
@@ -65,35 +70,6 @@ bool is_red(const Pixel& p) { return p.r > p.g + 50 && p.r > p.b + 50; }
 Picture take(Renderer& renderer, const ScenePoses& poses, const PinholeCamera& camera,
              const ShadowRegion& region = {}) {
   return {renderer.draw(poses, camera, region), camera.width, camera.height};
-}
-
-Scene busy_scene() {
-  Scene scene;
-  for (int i = 0; i <= 40; ++i) scene.line_m.emplace_back(0.1 * i, 0.4 * std::sin(0.2 * i));
-  scene.line_colour = colour_reflectance(3);
-  scene.zones = {{{0.5, 0.8}, 0.3, colour_reflectance(1)}};
-  scene.objects = {{SolidShape::kCylinder, {0.08, 0.08, 0.15}, colour_reflectance(2)},
-                   {SolidShape::kBox, {0.1, 0.2, 0.15}, colour_reflectance(1)}};
-  scene.obstacles = {{SolidShape::kBox, {0.1, 1.0, 0.3}, colour_reflectance(0)}};
-  scene.X_WObstacle = {at({4.0, 1.0, 0.15})};
-  scene.light.direction = Vector3d(0.4, -0.5, 0.7).normalized();
-  return scene;
-}
-
-ScenePoses busy_poses() {
-  ScenePoses poses;
-  for (int i = 0; i < 24; ++i) {
-    poses.X_WModule.push_back(at({2.0 - 0.089 * i, 0.1 * std::sin(0.5 * i), 0.035}) *
-                              Eigen::AngleAxisd(0.3 * std::cos(0.5 * i), Vector3d::UnitZ()));
-  }
-  poses.X_WObject = {at({2.8, 0.3, 0.075}), at({3.0, -0.4, 0.075})};
-  return poses;
-}
-
-PinholeCamera scene_camera(int width = 160, int height = 120) {
-  PinholeCamera camera = make_pinhole(width, height, 1.2);
-  camera.X_WC = look_at({0.5, -2.0, 1.5}, {2.0, 0.0, 0.0});
-  return camera;
 }
 
 TEST(Renderer, ProjectsPointsByThePinholeEquations) {
