@@ -29,7 +29,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPoll = 20ms;
-constexpr auto kQuiet = 200ms;  // the lines that writers keep for late readers arrive with smaller gaps
+constexpr auto kQuiet = 200ms;  // lines that were written before arrive with smaller gaps
 constexpr auto kBound = 3s;     // for lines that were written before
 
 struct Options {
@@ -100,16 +100,20 @@ class LiveLog {
  private:
   [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
 
+  /// Until the run is over and no line has arrived for kQuiet: the last lines of the processes may arrive after the
+  /// news of the end, in particular if this process was stopped meanwhile.
   void follow() {
-    for (bool last_look = false; interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
-      take();
+    std::optional<Clock::time_point> known;  // since when the end is known
+    for (auto changed = Clock::now(); interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
+      const auto now = Clock::now();
+      if (take() > 0) changed = now;
       printer_.print_last(waiting_, 0);
       waiting_.clear();
-      if (last_look) {
+      if (known && ((now - *known > kQuiet && now - changed > kQuiet) || now - *known > kBound)) {
         std::fprintf(stderr, "log: %s\n", over().c_str());
         return;
       }
-      last_look = !over().empty();  // the last lines of the processes may arrive after the news of the end
+      if (!known && !over().empty()) known = now;
     }
   }
   std::size_t take() {
