@@ -1,6 +1,6 @@
-// The first 12 s of a mission with the real components. The state hash does not depend on the grouping of components
-// into processes, on stops, kills or the pace, nor on the observer `overview`. It does depend on the seed, and on one
-// ulp in one command.
+// The first 12 s of a mission with the real components, or fewer. The state hash does not depend on the grouping of
+// components into processes, on stops, kills or the pace, nor on the observer `overview`. It does depend on the seed,
+// and on one ulp in one command.
 #include <random>
 
 #include "integration/determinism_run.hpp"
@@ -60,6 +60,7 @@ TEST_F(Determinism, LatenciesOfAManifestBelongToTheRunAndNotToItsProcesses) {
 }
 
 TEST_F(Determinism, AnotherSeedGivesAnotherHashAndDiffNamesTheFirstDifference) {
+  limit_sim_time(1.0);
   EXPECT_NE(run("one", {"--in-process", "--seed", "1"}), run("two", {"--in-process", "--seed", "2"}));
   Process diff({program("constrictor"), "diff", (dir_ / "one").string(), (dir_ / "two").string()});
   EXPECT_EQ(diff.wait(20s), 1);
@@ -67,6 +68,7 @@ TEST_F(Determinism, AnotherSeedGivesAnotherHashAndDiffNamesTheFirstDifference) {
 }
 
 TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
+  limit_sim_time(5.0);
   write_manifest("nudged.yaml", {{"control", "    program: nudged_control\n"}});
   const std::string expected = run("plain");
   const std::string nudged =
@@ -121,10 +123,11 @@ TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnDoesNotChangeTheHash) {
 }
 
 TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsANewRunWithThatSeed) {
+  limit_sim_time(6.0);
   const std::map<std::string, std::string> registry = {
       {"XDG_RUNTIME_DIR", dir_.string()}};  // a registry in which this run is the only one
   const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
-  Process launcher = start("reset", {"--pace", "2x", "--seed", "3"}, registry);
+  Process launcher = start("reset", {"--pace", "1x", "--seed", "3"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
   for (const std::vector<std::string>& words : {std::vector<std::string>{"reset", "5"},
                                                 {"pause"},
@@ -148,9 +151,10 @@ TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsANewRunWithThatSeed) {
 
 // The camera is rendering in a thread of its own at almost any moment of a run in one process.
 TEST_F(Determinism, AResetOfARunInOneProcessGivesANewRunWithThatSeed) {
+  limit_sim_time(6.0);
   const std::map<std::string, std::string> registry = {{"XDG_RUNTIME_DIR", dir_.string()}};
   const std::string expected = run("fresh", {"--in-process", "--seed", "5"});
-  Process launcher = start("reset", {"--in-process", "--pace", "2x", "--seed", "3"}, registry);
+  Process launcher = start("reset", {"--in-process", "--pace", "1x", "--seed", "3"}, registry);
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();
   for (const auto& [word, value] : {std::pair{"reset", "4"}, {"reset", "5"}, {"pace", "lockstep"}}) {
     Process command({program("constrictor"), word, value}, registry);
