@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t kRun = 7;
+constexpr std::uint64_t kRunId = 7;
 
 /// Answers each command when it has arrived `arrivals` times.
 class FakeConductor {
@@ -35,7 +35,7 @@ class FakeConductor {
               dds::set_text(answer.source, command.source);
               answer.sequence_number = command.sequence_number;
               dds::set_text(answer.refusal, refusal);
-              answer.state.run_id = kRun;
+              answer.state.run_id = kRunId;
               answer.state.tick = 40;
               answer.state.seed = command.seed;
               answer.state.pace = command.pace;
@@ -100,7 +100,7 @@ TEST_F(RunControlClientTest, AStepDoesNotCountTheTicksOfAnotherRun) {
   const FakeConductor conductor(domain.participant(), 1, "");
   const dds::Writer<msg::RunState> states(domain.participant(), barrier_topics::kRunState);
   msg::RunState state{};
-  state.run_id = kRun + 1;
+  state.run_id = kRunId + 1;
   state.tick = 1000;
   states.write(state);
   RunControlClient control = client(20s);
@@ -109,7 +109,7 @@ TEST_F(RunControlClientTest, AStepDoesNotCountTheTicksOfAnotherRun) {
     while (conductor.obeyed() < 2) std::this_thread::sleep_for(1ms);  // pause and step
     std::this_thread::sleep_for(50ms);
     EXPECT_FALSE(stepped) << "the tick of another run ended the wait";
-    state.run_id = kRun;
+    state.run_id = kRunId;
     state.tick = 45;
     states.write(state);
   });

@@ -13,7 +13,7 @@
 namespace constrictor::conform {
 namespace {
 
-Report examine(const std::string& fault, bool may_move = true) {
+Report examine_camera(const std::string& fault, bool may_move = true) {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.scenario_file = data_path("sim/scenarios/line.yaml");
@@ -30,20 +30,20 @@ Report examine(const std::string& fault, bool may_move = true) {
 }
 
 TEST(CameraConformance, TheSimulatedCameraPassesEveryCheck) {
-  const Report report = examine("");
+  const Report report = examine_camera("");
   EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   EXPECT_EQ(report.count(Verdict::kPassed), camera_checks().size()) << testing::text_of(report);
 }
 
 TEST(CameraConformance, AnObserverMovesNothing) {
-  const Report report = examine("", false);
+  const Report report = examine_camera("", false);
   EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   EXPECT_EQ(report.check("mirrored").verdict, Verdict::kSkipped);
 }
 
 class FindsTheFaultOfACamera : public ::testing::TestWithParam<testing::NamedFault> {};
 
-TEST_P(FindsTheFaultOfACamera, AndNamesIt) { testing::expect_named(examine(GetParam().fault), GetParam()); }
+TEST_P(FindsTheFaultOfACamera, AndNamesIt) { testing::expect_named(examine_camera(GetParam().fault), GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, FindsTheFaultOfACamera, ::testing::ValuesIn(testing::camera_faults()),
                          [](const auto& test) { return std::string(test.param.fault); });

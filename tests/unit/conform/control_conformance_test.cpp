@@ -13,7 +13,7 @@
 namespace constrictor::conform {
 namespace {
 
-Report examine(const std::string& fault, long interrupt_at = 0) {
+Report examine_control(const std::string& fault, long interrupt_at = 0) {
   Setup setup;
   setup.robot_file = testing::robot_path("mamba");
   const RobotModel robot = load_robot(setup.robot_file);
@@ -27,13 +27,13 @@ Report examine(const std::string& fault, long interrupt_at = 0) {
 }
 
 TEST(ControlConformance, OurControlPassesEveryCheck) {
-  const Report report = examine("");
+  const Report report = examine_control("");
   EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   EXPECT_EQ(report.count(Verdict::kPassed), control_checks().size()) << testing::text_of(report);
 }
 
 TEST(ControlConformance, AnInterruptLeavesTheRestNotChecked) {
-  const Report report = examine("", 500);
+  const Report report = examine_control("", 500);
   EXPECT_GT(report.count(Verdict::kPassed), 5u);
   EXPECT_GT(report.count(Verdict::kNotChecked), 5u);
   EXPECT_FALSE(report.conforms());
@@ -41,7 +41,7 @@ TEST(ControlConformance, AnInterruptLeavesTheRestNotChecked) {
 
 class FindsTheFaultOfAControl : public ::testing::TestWithParam<testing::NamedFault> {};
 
-TEST_P(FindsTheFaultOfAControl, AndNamesIt) { testing::expect_named(examine(GetParam().fault), GetParam()); }
+TEST_P(FindsTheFaultOfAControl, AndNamesIt) { testing::expect_named(examine_control(GetParam().fault), GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(Controls, FindsTheFaultOfAControl, ::testing::ValuesIn(testing::control_faults()),
                          [](const auto& test) { return std::string(test.param.fault); });

@@ -11,7 +11,7 @@
 namespace constrictor::conform {
 namespace {
 
-Report examine(const std::string& fault) {
+Report examine_perception(const std::string& fault) {
   Setup setup;
   setup.robot_file = testing::robot_path("mamba");
   const RobotModel robot = load_robot(setup.robot_file);
@@ -23,14 +23,16 @@ Report examine(const std::string& fault) {
 }
 
 TEST(PerceptionConformance, OurPerceptionPassesEveryCheck) {
-  const Report report = examine("");
+  const Report report = examine_perception("");
   EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   EXPECT_EQ(report.count(Verdict::kPassed), perception_checks().size()) << testing::text_of(report);
 }
 
 class FindsTheFaultOfAPerception : public ::testing::TestWithParam<testing::NamedFault> {};
 
-TEST_P(FindsTheFaultOfAPerception, AndNamesIt) { testing::expect_named(examine(GetParam().fault), GetParam()); }
+TEST_P(FindsTheFaultOfAPerception, AndNamesIt) {
+  testing::expect_named(examine_perception(GetParam().fault), GetParam());
+}
 
 INSTANTIATE_TEST_SUITE_P(Perceptions, FindsTheFaultOfAPerception, ::testing::ValuesIn(testing::perception_faults()),
                          [](const auto& test) { return std::string(test.param.fault); });

@@ -11,7 +11,8 @@
 namespace constrictor::conform {
 namespace {
 
-Report examine(const std::string& fault, const std::string& mission = "{sequence: [green, red], line_colour: blue}") {
+Report examine_planner(const std::string& fault,
+                       const std::string& mission = "{sequence: [green, red], line_colour: blue}") {
   Setup setup;
   setup.robot_file = testing::robot_path("mamba");
   setup.mission = mission;
@@ -23,7 +24,7 @@ Report examine(const std::string& fault, const std::string& mission = "{sequence
 }
 
 TEST(PlannerConformance, OurPlannerPassesEveryCheck) {
-  const Report report = examine("");
+  const Report report = examine_planner("");
   EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   EXPECT_EQ(report.count(Verdict::kPassed), planner_checks().size()) << testing::text_of(report);
 }
@@ -31,7 +32,7 @@ TEST(PlannerConformance, OurPlannerPassesEveryCheck) {
 TEST(PlannerConformance, OtherMissionsPass) {
   for (const char* mission :
        {"{sequence: [red], line_colour: blue}", "{sequence: [yellow, green, red], line_colour: blue}"}) {
-    const Report report = examine("", mission);
+    const Report report = examine_planner("", mission);
     EXPECT_TRUE(report.conforms()) << testing::text_of(report);
   }
 }
@@ -42,7 +43,7 @@ TEST(PlannerConformance, RefusesAMissionOfUnknownColours) {
 
 class FindsTheFaultOfAPlanner : public ::testing::TestWithParam<testing::NamedFault> {};
 
-TEST_P(FindsTheFaultOfAPlanner, AndNamesIt) { testing::expect_named(examine(GetParam().fault), GetParam()); }
+TEST_P(FindsTheFaultOfAPlanner, AndNamesIt) { testing::expect_named(examine_planner(GetParam().fault), GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(Planners, FindsTheFaultOfAPlanner, ::testing::ValuesIn(testing::planner_faults()),
                          [](const auto& test) { return std::string(test.param.fault); });

@@ -81,7 +81,7 @@ class Doubled final : public PlantPort {
   long advances_ = 0;
 };
 
-Report examine(const std::string& fault, long interrupt_at = 0, bool busy = false) {
+Report examine_plant(const std::string& fault, long interrupt_at = 0, bool busy = false) {
   const RobotModel robot = load_robot(testing::robot_path("mamba"));
   PlantProfile profile;
   profile.adapt_to(robot);
@@ -102,13 +102,13 @@ std::string text_of(const Report& report) {
 }
 
 TEST(PlantConformance, ARightPlantPassesEveryCheck) {
-  const Report report = examine("");
+  const Report report = examine_plant("");
   EXPECT_TRUE(report.conforms()) << text_of(report);
   EXPECT_EQ(report.count(Verdict::kPassed), plant_checks().size()) << text_of(report);
 }
 
 TEST(PlantConformance, ARightPlantOnABusyMachinePasses) {
-  const Report report = examine("", 0, /*busy=*/true);
+  const Report report = examine_plant("", 0, /*busy=*/true);
   EXPECT_TRUE(report.conforms()) << text_of(report);
 }
 
@@ -121,7 +121,7 @@ struct Fault {
 class FindsTheFault : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(FindsTheFault, AndNamesIt) {
-  const Report report = examine(GetParam().fault);
+  const Report report = examine_plant(GetParam().fault);
   EXPECT_FALSE(report.conforms());
   const auto first = std::find_if(report.checks().begin(), report.checks().end(),
                                   [](const Check& check) { return check.verdict == Verdict::kFailed; });
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.fault); });
 
 TEST(PlantConformance, AnInterruptLeavesTheRestNotChecked) {
-  const Report report = examine("", 300);
+  const Report report = examine_plant("", 300);
   EXPECT_GT(report.count(Verdict::kPassed), 5u);
   EXPECT_GT(report.count(Verdict::kNotChecked), 5u);
   EXPECT_FALSE(report.conforms());
@@ -175,7 +175,7 @@ TEST(PlantConformance, AnInterruptLeavesTheRestNotChecked) {
 }
 
 TEST(PlantConformance, IsWrittenAsJson) {
-  const nlohmann::ordered_json json = to_json(examine("sign"));
+  const nlohmann::ordered_json json = to_json(examine_plant("sign"));
   EXPECT_FALSE(json["conforms"].get<bool>());
   EXPECT_EQ(json["checks"].size(), plant_checks().size());
   for (const auto& check : json["checks"]) {

@@ -11,7 +11,7 @@
 namespace constrictor {
 namespace {
 
-class JointLimiterTest : public testing::Test {
+class JointLimiterTest : public ::testing::Test {
  protected:
   RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   JointLimiter limiter{robot, 1.0};
@@ -29,7 +29,7 @@ TEST_F(JointLimiterTest, FirstSetpointStartsAtTheMeasuredPosture) {
 
 TEST_F(JointLimiterTest, RandomSetpointsNeverExceedTheLimitsOfTheRobot) {
   constexpr unsigned kSeed = 20261121;
-  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> wild(-20.0, 20.0);
   LimiterState state;

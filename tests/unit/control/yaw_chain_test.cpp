@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBase_rad = std::numbers::pi / 3.0;
 
-class YawChainTest : public testing::Test {
+class YawChainTest : public ::testing::Test {
  protected:
   RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   YawChain chain{robot};

@@ -13,13 +13,11 @@
 namespace constrictor::camera_emulator {
 namespace {
 
-const std::filesystem::path kProject = testing::source_path();
-
 class EmulatedCameraTest : public ::testing::Test {
  protected:
   EmulatedCameraTest()
-      : robot_(load_robot(kProject / "components/lib/robot/mamba.yaml")),
-        scenario_(load_scenario(kProject / "sim/scenarios/case_study.yaml", 1)),
+      : robot_(load_robot(testing::robot_path("mamba"))),
+        scenario_(load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 1)),
         camera_(make()) {
     const World world(robot_, scenario_);
     world_ = world_state(world);

@@ -14,11 +14,9 @@ namespace constrictor::emulation {
 namespace {
 
 using testing::TemporaryFolder;
-const std::filesystem::path kProject = testing::source_path();
-
 World make_world() {
-  return {load_robot(kProject / "components/lib/robot/mamba.yaml"),
-          load_scenario(kProject / "sim/scenarios/case_study.yaml", 1)};
+  return {load_robot(testing::robot_path("mamba")),
+          load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 1)};
 }
 
 TEST(SharedWorld, ShowsTheNewestStateToAReader) {

@@ -11,21 +11,19 @@
 namespace constrictor::emulation {
 namespace {
 
-const std::filesystem::path kProject = testing::source_path();
-
 nlohmann::json verdict(const Scenario& scenario, const std::vector<std::uint8_t>& sequence) {
   return nlohmann::json::parse(
-      verdict_json({load_robot(kProject / "components/lib/robot/mamba.yaml"), scenario}, sequence, 500'000'000));
+      verdict_json({load_robot(testing::robot_path("mamba")), scenario}, sequence, 500'000'000));
 }
 
 TEST(Verdict, ReadsTheMissionOfAScenario) {
-  EXPECT_EQ(mission_sequence(kProject / "sim/scenarios/case_study.yaml"),
+  EXPECT_EQ(mission_sequence(testing::source_path("sim/scenarios/case_study.yaml")),
             (std::vector<std::uint8_t>{msg::kColourGreen, msg::kColourRed}));
-  EXPECT_TRUE(mission_sequence(kProject / "sim/scenarios/line.yaml").empty());
+  EXPECT_TRUE(mission_sequence(testing::source_path("sim/scenarios/line.yaml")).empty());
 }
 
 TEST(Verdict, EachObjectOfTheMissionMustLieInAZoneOfItsColour) {
-  Scenario scenario = load_scenario(kProject / "sim/scenarios/case_study.yaml", 1);
+  Scenario scenario = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 1);
   const std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
   const auto at_start = verdict(scenario, sequence);
   EXPECT_FALSE(at_start["success"].get<bool>());
@@ -52,7 +50,7 @@ TEST(Verdict, EachObjectOfTheMissionMustLieInAZoneOfItsColour) {
 }
 
 TEST(Verdict, WithoutObjectsTheHeadMustBeAtTheEndOfTheLine) {
-  Scenario scenario = load_scenario(kProject / "sim/scenarios/line.yaml", 1);
+  Scenario scenario = load_scenario(testing::source_path("sim/scenarios/line.yaml"), 1);
   EXPECT_FALSE(verdict(scenario, {})["success"].get<bool>());
   scenario.start_m = scenario.line_m.back();
   EXPECT_TRUE(verdict(scenario, {})["success"].get<bool>());

@@ -15,8 +15,6 @@ namespace {
 using namespace guidance;
 using testing::Mapping;
 
-constexpr double kPi = std::numbers::pi;
-
 msg::Blob red(double x, double y) { return Mapping::blob(msg::kColourRed, msg::kBlobObject, x, y, 0.08); }
 msg::Blob green(double x, double y) { return Mapping::blob(msg::kColourGreen, msg::kBlobObject, x, y, 0.08); }
 
@@ -102,7 +100,7 @@ TEST_P(HiddenLandmark, IsStillBelieved) {
   m.look(first, 20);
   if (hidden.body) {
     for (const std::size_t i : {2u, 4u, 6u, 8u})
-      m.q[i] = kPi / 4.0;  // the tail lies to the left of the head, and ahead
+      m.q[i] = std::numbers::pi / 4.0;  // the tail lies to the left of the head, and ahead
   }
   m.level = !hidden.tilted;
   m.look(hidden.also, 200);
@@ -164,7 +162,7 @@ TEST(Existence, ADoubtfulLandmarkDoesNotCorrectThePose) {
 
 TEST(Existence, ACarriedObjectIsNotDoubted) {
   Mapping m;
-  for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = kPi / 3.0;
+  for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = std::numbers::pi / 3.0;
   const Eigen::Vector2d object = m.chain()[13].p + 0.115 * left(m.chain()[13].yaw_rad);
   m.look({green(object.x(), object.y())}, 5);
   msg::TaskStatus task{};

@@ -13,7 +13,6 @@ namespace {
 using namespace guidance;
 using testing::Mapping;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Map, EachLandmarkKeepsItsHandle) {
@@ -95,7 +94,7 @@ TEST(Map, TouchConfirmsTheObjectAndIgnoresGroundAndSelf) {
 
   // In a hairpin bend the tail half lies beside the front half. They touch each other.
   Mapping self;
-  for (std::size_t i = 8; i <= 14; i += 2) self.q[i] = kPi / 4.0;
+  for (std::size_t i = 8; i <= 14; i += 2) self.q[i] = std::numbers::pi / 4.0;
   const BodyChain chain = self.chain();
   std::size_t across = 0;
   double nearest = 1e9;
@@ -168,7 +167,7 @@ TEST(Map, PushedObjectDoesNotMoveThePose) {
 
 TEST(Map, CarriedObjectMovesWithTheBody) {
   Mapping m;
-  for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = kPi / 3.0;
+  for (const std::size_t i : {10u, 12u, 14u}) m.q[i] = std::numbers::pi / 3.0;
   // The object lies in the bend. Its place comes from an independent construction: the centre of the arc.
   const BodyChain chain = m.chain();
   const Eigen::Vector2d base = chain[13].p;

@@ -28,8 +28,6 @@ OdometryConfig with_friction(double along, double across) {
   return config;
 }
 
-constexpr double kPi = std::numbers::pi;
-
 /// A body whose links are so short that it is nearly a curve.
 RobotModel fine_snake() {
   RobotModel model;
@@ -164,7 +162,7 @@ TEST(Odometry, FollowsASlidingBodyStraightCurvedAndBackwards) {
   };
   for (const Case& c : {Case{0.5, 1.07, 0.0}, Case{0.5, 1.07, 0.5}, Case{0.35, 1.07, -0.8}, Case{0.6, 0.8, 0.0}}) {
     const SlidingBody body(
-        [&](double s) { return c.amplitude * std::sin(2.0 * kPi * s / c.wavelength) + c.curvature * s; });
+        [&](double s) { return c.amplitude * std::sin(2.0 * std::numbers::pi * s / c.wavelength) + c.curvature * s; });
     for (const double speed : {0.6, -0.4}) {
       const Travel t = travel(body, speed > 0 ? 3.0 : 9.0, 5.0, speed);
       EXPECT_LT(t.position_error_m, 0.03 * t.length_m)
@@ -270,7 +268,7 @@ TEST(PoseFilter, LandmarksSeenAgainCorrectTheDrift) {
   for (int side = 0; side < 4; ++side) {
     for (int k = 0; k < 100; ++k) {
       const Eigen::Vector2d step(0.02, 0.0);
-      const double turn = k < 50 ? kPi / 100.0 : 0.0;
+      const double turn = k < 50 ? std::numbers::pi / 100.0 : 0.0;
       const Eigen::Vector2d p = to_parent(truth, turned(step, 0.5 * turn));
       truth = {p, wrap_angle(truth.yaw_rad + turn)};
       filter.predict(1.05 * step, 1.02 * turn, Eigen::Vector3d(1e-5, 1e-6, 1e-5).asDiagonal());

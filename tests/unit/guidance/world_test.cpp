@@ -28,7 +28,7 @@ struct Case {
 
 double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
 
-class DeadReckoning : public testing::TestWithParam<Case> {};
+class DeadReckoning : public ::testing::TestWithParam<Case> {};
 
 TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
   const Case& c = GetParam();
@@ -90,15 +90,14 @@ TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
   EXPECT_LT(error_m, 0.06 * path_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gaits, DeadReckoning,
-                         testing::Values(Case{"straight", {}},
-                                         Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.04, 0.4},
-                                         Case{"backwards", {0.5, -0.7, 1.07, 0.0}},
-                                         Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 0.06, 0.6},
-                                         Case{"creeping", {0.35, 0.4, 1.07, 0.0}}, Case{"half the ratio", {}, 0.1, 0.5},
-                                         Case{"twice the ratio", {}, 0.025, 0.5},
-                                         Case{"twice the friction", {}, 0.1, 1.0}),
-                         [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });
+INSTANTIATE_TEST_SUITE_P(
+    Gaits, DeadReckoning,
+    ::testing::Values(Case{"straight", {}}, Case{"left on slippery ground", {0.5, 0.7, 1.07, 0.8}, 0.04, 0.4},
+                      Case{"backwards", {0.5, -0.7, 1.07, 0.0}},
+                      Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 0.06, 0.6},
+                      Case{"creeping", {0.35, 0.4, 1.07, 0.0}}, Case{"half the ratio", {}, 0.1, 0.5},
+                      Case{"twice the ratio", {}, 0.025, 0.5}, Case{"twice the friction", {}, 0.1, 1.0}),
+    [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });
 
 }  // namespace
 }  // namespace constrictor

@@ -8,6 +8,9 @@
 
 namespace constrictor::test {
 
+inline constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;  ///< for each part that is tested
+inline constexpr std::uint64_t kSeed = 20261121;
+
 /// Fills every field of a message. One message in four may contain values outside the ranges of the IDL; the others
 /// stay within them, so that they pass validation and reach the component.
 class HostileFiller : public FieldFiller<HostileFiller> {

@@ -20,8 +20,6 @@
 namespace constrictor::test {
 namespace {
 
-constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;  // for each component
-
 /// Number of messages for each input and tick. One step of the simulated world or one image takes milliseconds; these
 /// components receive a million messages in fewer ticks, so that their test does not take several minutes.
 int burst_of(const std::string& component) {
@@ -148,11 +146,10 @@ Sample hostile(std::size_t id, const msg::Header& header, HostileFiller& filler)
   return sample;
 }
 
-class Hostile : public testing::TestWithParam<const char*> {};
+class Hostile : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Hostile, MessagesNeitherStopStepsNorCauseOutputsOutsideTheirLimits) {
-  constexpr std::uint64_t kSeed = 20261121;
-  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   constrictor::Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
@@ -209,7 +206,7 @@ TEST_P(Hostile, MessagesNeitherStopStepsNorCauseOutputsOutsideTheirLimits) {
     if (tick > 50) {
       ASSERT_EQ(stepped, due) << "tick " << tick;
     }
-    if (testing::Test::HasFailure()) break;
+    if (::testing::Test::HasFailure()) break;
     if (sent < budget / 3) early_mib = resident_mib();
     if (sent < budget / 3 * 2) outputs_before = checker.outputs;
   }
@@ -228,8 +225,8 @@ TEST_P(Hostile, MessagesNeitherStopStepsNorCauseOutputsOutsideTheirLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryComponent, Hostile,
-                         testing::Values("control", "navigation", "guidance", "planner", "input", "perception",
-                                         "physics", "camera", "overview", "report"),
+                         ::testing::Values("control", "navigation", "guidance", "planner", "input", "perception",
+                                           "physics", "camera", "overview", "report"),
                          [](const auto& made) { return std::string(made.param); });
 
 // servo_bus needs servos, and plant_relay a process outside the barrier: tests/unit/servo_bus and

@@ -21,9 +21,6 @@
 namespace constrictor::test {
 namespace {
 
-constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;
-constexpr std::uint64_t kSeed = 20261122;
-
 bool finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -212,8 +209,8 @@ TEST(HostileRosBridge, MessagesToRosAreFiniteAndConsistent) {
   CheckedTranslator checked(load_robot(data_path("components/lib/robot/mamba.yaml")));
   RosFiller filler(kSeed);
   double early_mib = 0.0;
-  for (std::uint64_t i = 0; i < kMessages && !testing::Test::HasFatalFailure(); ++i) {
-    SCOPED_TRACE(testing::Message() << "seed " << kSeed << " message " << i);
+  for (std::uint64_t i = 0; i < kMessages && !::testing::Test::HasFatalFailure(); ++i) {
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed << " message " << i);
     kTranslate[i % std::size(kTranslate)](checked, filler);
     if (i == kMessages / 3) early_mib = resident_mib();
   }

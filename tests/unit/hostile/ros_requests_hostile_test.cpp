@@ -20,9 +20,6 @@
 namespace constrictor::test {
 namespace {
 
-constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;
-constexpr std::uint64_t kSeed = 20261122;
-
 /// A line of random words, signs and bytes, of which many are a task.
 std::string hostile_line(HostileFiller& filler) {
   static const char* const kWords[] = {
@@ -105,7 +102,7 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
   bool stopped = false;   // an emergency stop came, and since then the velocity was neither zero nor absent
   std::uint64_t motions = 0, releases = 0, blocked = 0;
   for (std::uint64_t i = 0; i < kMessages; ++i) {
-    SCOPED_TRACE(testing::Message() << "seed " << kSeed << " message " << i);
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed << " message " << i);
     now_s += filler.roll(50) == 0 ? 1.0 : 0.02;
     if (now_s - heard_s > kHoldAfter_s) stopped = false;
     if (filler.roll(3) != 0) {

@@ -14,8 +14,6 @@ namespace {
 using test::for_each_type;
 using test::RandomFiller;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// Flips one bit of each field of `b` in turn and checks that the difference from `a` is found there.
 template <class Message>
 struct Flipper {
@@ -81,7 +79,7 @@ TEST(FirstDifference, IsFoundInEachFieldOfEachType) {
 TEST(FirstDifference, ComparesNumbersBitByBit) {
   msg::Pose3 a{};
   msg::Pose3 b{};
-  a.position_m.y = b.position_m.y = kNan;
+  a.position_m.y = b.position_m.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(first_difference(a, b));
   b.orientation.z = -0.0;
   const auto difference = first_difference(a, b);

@@ -8,15 +8,15 @@
 namespace constrictor {
 namespace {
 
-describe::Model parsed(const std::string& text) {
+describe::Model model_of(const std::string& text) {
   describe::Model model;
   describe::parse_idl("made_up.idl", text, model);
   return model;
 }
 
-std::string error_of(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   try {
-    static_cast<void>(describe::constant_groups(parsed(text)));
+    static_cast<void>(describe::constant_groups(model_of(text)));
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -25,10 +25,10 @@ std::string error_of(const std::string& text) {
 
 TEST(ConstantGroups, AreTheConstantsThatACommentNames) {
   const auto groups = describe::constant_groups(
-      parsed("const octet kSizeSmall = 0;\nconst octet kSizeVeryLarge = 1;\nconst long kMaxSizes = 9;\n"
-             "const octet kSidewaysNo = 0;\n"
-             "@final struct S {\n  octet size;  // kSize...; of the box\n  octet way;  // [-] one of kSideways...\n"
-             "  long length;  // see kOther...\n};"));
+      model_of("const octet kSizeSmall = 0;\nconst octet kSizeVeryLarge = 1;\nconst long kMaxSizes = 9;\n"
+               "const octet kSidewaysNo = 0;\n"
+               "@final struct S {\n  octet size;  // kSize...; of the box\n  octet way;  // [-] one of kSideways...\n"
+               "  long length;  // see kOther...\n};"));
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(groups[0].prefix, "kSize");
   EXPECT_EQ(groups[0].names, (std::vector<std::string>{"small", "very_large"}));
@@ -37,14 +37,14 @@ TEST(ConstantGroups, AreTheConstantsThatACommentNames) {
 
 TEST(ConstantGroups, RejectConstantsOutsideAGroupAndValuesWithGaps) {
   EXPECT_EQ(
-      error_of("const octet kSizeSmall = 0;\n"),
+      refusal_of("const octet kSizeSmall = 0;\n"),
       "made_up.idl:1: kSizeSmall belongs to no group; accepted: a name whose beginning stands in the comment of a "
       "field, followed by \"...\"");
   EXPECT_EQ(
-      error_of("const octet kSizeSmall = 0;\nconst octet kSizeLarge = 2;\n"
-               "@final struct S {\n  octet size;  // kSize...\n};"),
+      refusal_of("const octet kSizeSmall = 0;\nconst octet kSizeLarge = 2;\n"
+                 "@final struct S {\n  octet size;  // kSize...\n};"),
       "made_up.idl:2: kSizeLarge: found value 2, accepted 1; constants of a group stand together and count from 0");
-  EXPECT_EQ(error_of("@final struct S {\n  octet size;  // kSize...\n};"),
+  EXPECT_EQ(refusal_of("@final struct S {\n  octet size;  // kSize...\n};"),
             "made_up.idl: the comment of S.size names kSize..., but no constant begins with kSize");
 }
 

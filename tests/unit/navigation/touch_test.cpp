@@ -11,7 +11,7 @@
 namespace constrictor {
 namespace {
 
-class TouchTest : public testing::Test {
+class TouchTest : public ::testing::Test {
  protected:
   RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   GripConfig config;

@@ -18,7 +18,7 @@
 namespace constrictor {
 namespace {
 
-constexpr double kSpeed_m_s = 0.4;
+constexpr double kDrivenSpeed_m_s = 0.4;
 constexpr double kModule_m = 0.089;
 constexpr int kModules = 24;
 constexpr double kObjectRadius_m = 0.085;
@@ -101,7 +101,7 @@ class TrackRun {
       return [this, desired = wiring.latest(topics::kDesiredTrajectory),
               out = wiring.output(topics::kRobotPose)](const Tick& tick) {
         if (desired && std::string(desired->method) == "drive") {
-          const double step_m = std::copysign(kSpeed_m_s, desired->frequency_hz) * tick.dt_s();
+          const double step_m = std::copysign(kDrivenSpeed_m_s, desired->frequency_hz) * tick.dt_s();
           body_->drive(step_m, kCurvatureShare * desired->curvature_1_m, tick.dt_s());
         }
         const PlanarPose head = body_->head();

@@ -4,29 +4,19 @@
 #include <cmath>
 #include <string>
 
-#include "perception/line_and_blob_detector.hpp"
-#include "ray_caster.hpp"
+#include "lit_scene.hpp"
 
 namespace constrictor {
 namespace {
 
-using perception::GroundCamera;
-using perception::LineAndBlobDetector;
-using perception::PerceptionConfig;
 using perception::Percepts;
 using test::Arc;
+using test::Conditions;
+using test::find;
 using test::Head;
+using test::kDegree;
 using test::Round;
 using test::Scene;
-
-constexpr double kDegree = 3.14159265358979 / 180.0;
-
-/// How a scene is lit and how the head is held: the conditions under which each claim must hold.
-struct Conditions {
-  double intensity, ambient, noise_sd;
-  bool gamma;
-  Head head;
-};
 
 const Conditions kConditions[] = {
     {1.0, 0.35, 0.0, false, {}},
@@ -35,32 +25,6 @@ const Conditions kConditions[] = {
     {1.0, 0.35, 0.05, true, {-0.05, 0.04, 1.0, 0.035}},
     {0.6, 0.5, 0.05, true, {0.0, -0.05, 3.0, 0.035}},
 };
-
-Percepts look(Scene scene, const Conditions& c, std::uint64_t seed = 1) {
-  static LineAndBlobDetector detector{PerceptionConfig{}};
-  scene.light_intensity = c.intensity;
-  scene.ambient = c.ambient;
-  scene.noise_sd = c.noise_sd;
-  scene.gamma = c.gamma;
-  scene.seed = seed;
-  const msg::CameraInfo info = test::camera_info();
-  const GroundCamera camera(info, test::orientation(c.head), c.head.height_m);
-  return detector.detect(test::draw(scene, info, c.head), camera, msg::kColourBlue);
-}
-
-std::string describe(const Conditions& c) {
-  return "intensity " + std::to_string(c.intensity) + ", noise " + std::to_string(c.noise_sd) + ", gamma " +
-         std::to_string(c.gamma) + ", roll " + std::to_string(c.head.roll_rad) + ", pitch " +
-         std::to_string(c.head.pitch_rad);
-}
-
-const msg::Blob* find(const Percepts& percepts, std::uint8_t colour, std::uint8_t kind) {
-  for (int i = 0; i < percepts.objects.blob_count; ++i) {
-    const msg::Blob& blob = percepts.objects.blobs[i];
-    if (blob.colour == colour && blob.kind == kind) return &blob;
-  }
-  return nullptr;
-}
 
 TEST(Line, OffsetHeadingAndCurvatureMatchTheArc) {
   const Arc arcs[] = {

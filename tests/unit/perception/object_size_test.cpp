@@ -4,45 +4,25 @@
 #include <cmath>
 #include <string>
 
-#include "perception/line_and_blob_detector.hpp"
-#include "ray_caster.hpp"
+#include "lit_scene.hpp"
 
 namespace constrictor {
 namespace {
 
-using perception::GroundCamera;
-using perception::LineAndBlobDetector;
 using perception::ObjectSizes;
-using perception::PerceptionConfig;
 using perception::Percepts;
-using test::Head;
+using test::Conditions;
+using test::kDegree;
 using test::Round;
 using test::Scene;
 
-constexpr double kDegree = 3.14159265358979 / 180.0;
-
-/// How a scene is lit and how the head is held. The camera is 0.085 m above the ground.
-struct Conditions {
-  double intensity, ambient, noise_sd;
-  Head head;
+/// The camera is 0.085 m above the ground.
+const Conditions kAttitudes[] = {
+    {1.0, 0.35, 0.0, false, {}},
+    {0.5, 0.35, 0.03, false, {0.0, 0.02, 0.4, 0.035}},
+    {1.5, 0.3, 0.05, false, {0.03, -0.02, -2.0, 0.035}},
+    {0.7, 0.4, 0.03, false, {-0.04, 0.04, 1.0, 0.035}},
 };
-
-const Conditions kConditions[] = {
-    {1.0, 0.35, 0.0, {}},
-    {0.5, 0.35, 0.03, {0.0, 0.02, 0.4, 0.035}},
-    {1.5, 0.3, 0.05, {0.03, -0.02, -2.0, 0.035}},
-    {0.7, 0.4, 0.03, {-0.04, 0.04, 1.0, 0.035}},
-};
-
-Percepts look(Scene scene, const Conditions& c, const ObjectSizes& sizes = {}) {
-  static LineAndBlobDetector detector{PerceptionConfig{}};
-  scene.light_intensity = c.intensity;
-  scene.ambient = c.ambient;
-  scene.noise_sd = c.noise_sd;
-  const msg::CameraInfo info = test::camera_info();
-  const GroundCamera camera(info, test::orientation(c.head), c.head.height_m);
-  return detector.detect(test::draw(scene, info, c.head), camera, msg::kColourBlue, sizes);
-}
 
 const msg::Blob* find(const Percepts& percepts, std::uint8_t kind) {
   for (int i = 0; i < percepts.objects.blob_count; ++i) {
@@ -57,7 +37,7 @@ std::string describe(const Conditions& c, double radius_m, double height_m, doub
 }
 
 TEST(ObjectSize, ObjectsOfAnyHeightAreFoundAndMeasured) {
-  for (const Conditions& c : kConditions) {
+  for (const Conditions& c : kAttitudes) {
     for (const double height : {0.05, 0.07, 0.085, 0.1, 0.15, 0.4}) {
       for (const double radius : {0.04, 0.085, 0.16}) {
         for (const double range : {0.3, 0.6, 1.2}) {
@@ -84,7 +64,7 @@ TEST(ObjectSize, ObjectsOfAnyHeightAreFoundAndMeasured) {
 }
 
 TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
-  for (const Conditions& c : kConditions) {
+  for (const Conditions& c : kAttitudes) {
     for (const double radius : {0.1, 0.15, 0.25, 0.4}) {
       for (const double range : {0.3, 0.8, 1.5}) {
         SCOPED_TRACE(describe(c, radius, 0.0, range));
@@ -100,7 +80,7 @@ TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
 }
 
 TEST(ObjectSize, WhatTheBorderCutsIsNeverMistaken) {
-  for (const Conditions& c : kConditions) {
+  for (const Conditions& c : kAttitudes) {
     for (const double bearing : {-0.85, -0.75, -0.65, 0.65, 0.75, 0.85}) {
       const Eigen::Vector2d sight(std::cos(bearing), std::sin(bearing));
       for (const double range : {0.3, 0.6}) {
@@ -123,14 +103,14 @@ ObjectSizes known(double radius_m, double height_m) {
 }
 
 TEST(ObjectSize, TheKnownSizeGivesTheRangeOnAZoneOfTheObjectsColour) {
-  for (const Conditions& c : kConditions) {
+  for (const Conditions& c : kAttitudes) {
     for (const double height : {0.1, 0.15, 0.3}) {
       for (const double distance : {0.6, 0.9}) {
         SCOPED_TRACE(describe(c, 0.085, height, distance));
         Scene scene;
         scene.rounds = {Round{msg::kColourGreen, {distance, 0.0}, 0.3},
                         Round{msg::kColourGreen, {distance, 0.0}, 0.085, height}};
-        const Percepts percepts = look(scene, c, known(0.085, height));
+        const Percepts percepts = look(scene, c, 1, known(0.085, height));
         const msg::Blob* object = find(percepts, msg::kBlobObject);
         ASSERT_NE(object, nullptr);
         ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
@@ -142,15 +122,15 @@ TEST(ObjectSize, TheKnownSizeGivesTheRangeOnAZoneOfTheObjectsColour) {
 }
 
 TEST(ObjectSize, ALowObjectOfKnownSizeIsFoundOnAZoneOfItsColour) {
-  for (const Conditions& c : kConditions) {
+  for (const Conditions& c : kAttitudes) {
     for (const double distance : {0.6, 0.9}) {
       SCOPED_TRACE(describe(c, 0.085, 0.06, distance));
       Scene scene;
       scene.rounds = {Round{msg::kColourGreen, {distance, 0.05}, 0.3}};
-      EXPECT_EQ(find(look(scene, c, known(0.085, 0.06)), msg::kBlobObject), nullptr);
+      EXPECT_EQ(find(look(scene, c, 1, known(0.085, 0.06)), msg::kBlobObject), nullptr);
       scene.rounds.push_back(Round{msg::kColourGreen, {distance, 0.05}, 0.085, 0.06});
       EXPECT_EQ(find(look(scene, c), msg::kBlobObject), nullptr);  // of unknown size
-      const Percepts percepts = look(scene, c, known(0.085, 0.06));
+      const Percepts percepts = look(scene, c, 1, known(0.085, 0.06));
       const msg::Blob* object = find(percepts, msg::kBlobObject);
       ASSERT_NE(object, nullptr);
       ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);

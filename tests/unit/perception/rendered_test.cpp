@@ -4,18 +4,18 @@
 #include <cmath>
 #include <string>
 
-#include "perception/line_and_blob_detector.hpp"
+#include "lit_scene.hpp"
 #include "rendered_scene.hpp"
 
 namespace constrictor {
 namespace {
 
 using test::Arc;
+using test::find;
 using test::Head;
+using test::kDegree;
 using test::RenderedScene;
 using test::Round;
-
-constexpr double kDegree = 3.14159265358979 / 180.0;
 
 struct Light {
   Eigen::Vector3d direction;
@@ -42,14 +42,6 @@ perception::Percepts look(test::Scene scene, const Light& light) {
   return detector.detect(
       image, perception::GroundCamera(info, test::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
       msg::kColourBlue);
-}
-
-const msg::Blob* find(const perception::Percepts& percepts, std::uint8_t colour, std::uint8_t kind) {
-  for (int i = 0; i < percepts.objects.blob_count; ++i) {
-    const msg::Blob& blob = percepts.objects.blobs[i];
-    if (blob.colour == colour && blob.kind == kind) return &blob;
-  }
-  return nullptr;
 }
 
 std::string describe(const Light& light) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A world with an object on a floor without friction, far from the robot: its momentum is force times time.
-class PerturbationScriptTest : public testing::Test {
+class PerturbationScriptTest : public ::testing::Test {
  protected:
   PerturbationScriptTest() {
     robot_.module_count = 2;

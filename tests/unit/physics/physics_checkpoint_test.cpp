@@ -4,42 +4,27 @@
 #include <cmath>
 #include <fstream>
 
-#include "barrier/local_run.hpp"
-#include "sim/physics/physics.hpp"
-#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
+#include "unit/physics/physics_run.hpp"
 
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kProject = testing::source_path();
+using testing::hash_of;
 
 /// Swings the yaw joints, so that the robot crawls; pushes them by torques; relaxes them for a while; and pauses, so
 /// that commands get stale.
-class Driver final : public Component {
- public:
-  explicit Driver(Wiring& wiring) : output_(wiring.output(topics::kJointCommand)) {}
-  void step(const Tick& tick) override {
-    if (tick.index % 400 > 380) return;
-    msg::JointCommand command{};
-    command.joint_count = 23;
-    command.mode = tick.index % 300 > 290 ? msg::kServoRelaxed : msg::kServoFollow;
-    if (tick.index % 300 > 250 && tick.index % 300 <= 290) command.mode = msg::kServoTorque;
-    for (std::size_t i = 0; i < 23; ++i) {
-      command.torque_limit_nm[i] = 6.0;
-      command.torque_nm[i] = command.mode == msg::kServoTorque ? 0.8 * std::sin(0.7 * static_cast<double>(i)) : 0.0;
-      if (i % 2 == 0)
-        command.position_rad[i] =
-            0.5 * std::sin(0.088 * static_cast<double>(tick.index) - 0.52 * static_cast<double>(i));
-    }
-    output_.write(command);
+bool drive(std::int64_t tick, msg::JointCommand& command) {
+  if (tick % 400 > 380) return false;
+  command.mode = tick % 300 > 290 ? msg::kServoRelaxed : msg::kServoFollow;
+  if (tick % 300 > 250 && tick % 300 <= 290) command.mode = msg::kServoTorque;
+  for (std::size_t i = 0; i < command.joint_count; ++i) {
+    command.torque_nm[i] = command.mode == msg::kServoTorque ? 0.8 * std::sin(0.7 * static_cast<double>(i)) : 0.0;
+    if (i % 2 == 0)
+      command.position_rad[i] = 0.5 * std::sin(0.088 * static_cast<double>(tick) - 0.52 * static_cast<double>(i));
   }
-  [[nodiscard]] std::string save() const override { return {}; }
-  void load(const std::string&) override {}
-
- private:
-  Output<msg::JointCommand> output_;
-};
+  return true;
+}
 
 /// A cylinder in the body's way, a box and a peg behind it, and a push on the box.
 std::filesystem::path crowded_scene() {
@@ -56,23 +41,9 @@ perturbations:
   return file;
 }
 
-Setup setup_of(const std::filesystem::path& scenario, const char* robot) {
-  Setup setup;
-  setup.robot_file = kProject / "components/lib/robot" / robot;
-  setup.scenario_file = scenario;
-  setup.seed = 3;
-  return setup;
-}
+Setup crowded_setup(const std::string& robot) { return testing::setup_of(crowded_scene(), 3, robot); }
 
-std::unique_ptr<LocalRun> make_run(const Setup& setup) {
-  ComponentFactory control{"control", [](Wiring& wiring, const Setup&) { return std::make_unique<Driver>(wiring); }};
-  return std::make_unique<LocalRun>(std::vector<ComponentFactory>{make_physics_factory(), control}, setup);
-}
-
-std::string hash_of(LocalRun& run) {
-  const auto& hash = run.latest(topics::kWorldState)->state_hash;
-  return {reinterpret_cast<const char*>(hash), sizeof(hash)};
-}
+std::unique_ptr<LocalRun> make_run(const Setup& setup) { return testing::make_run(drive, setup); }
 
 /// Runs for 50 ticks in each part; kills the plant at some of them. Everything that the plant has published must be
 /// equal. A long test does the same over a whole mission (determinism_long_test).
@@ -90,21 +61,19 @@ void expect_equal_after_restarts(const Setup& setup, int parts) {
   }
 }
 
-TEST(PhysicsCheckpoint, ContinuesBitForBitInACrowdedScene) {
-  expect_equal_after_restarts(setup_of(crowded_scene(), "mamba.yaml"), 20);
-}
+TEST(PhysicsCheckpoint, ContinuesBitForBitInACrowdedScene) { expect_equal_after_restarts(crowded_setup("mamba"), 20); }
 
 TEST(PhysicsCheckpoint, ContinuesBitForBitWithSeriesElasticJoints) {
-  expect_equal_after_restarts(setup_of(crowded_scene(), "serpens.yaml"), 5);
+  expect_equal_after_restarts(crowded_setup("serpens"), 5);
 }
 
 TEST(PhysicsCheckpoint, ContinuesBitForBitWithBacklashAndEncoderSteps) {
-  expect_equal_after_restarts(setup_of(crowded_scene(), "mamba_mx106.yaml"), 5);
+  expect_equal_after_restarts(crowded_setup("mamba_mx106"), 5);
 }
 
 TEST(PhysicsCheckpoint, TheCrowdedSceneMovesItsObjects) {
   // Otherwise the tests above would not cover contacts with objects, nor the perturbation.
-  auto run = make_run(setup_of(crowded_scene(), "mamba.yaml"));
+  auto run = make_run(crowded_setup("mamba"));
   run->advance(1);
   const msg::WorldState before = *run->latest(topics::kWorldState);
   run->advance(400);
@@ -117,15 +86,15 @@ TEST(PhysicsCheckpoint, TheCrowdedSceneMovesItsObjects) {
 }
 
 TEST(PhysicsCheckpoint, IsSmall) {
-  auto run = make_run(setup_of(crowded_scene(), "mamba.yaml"));
+  auto run = make_run(crowded_setup("mamba"));
   run->advance(300);
   EXPECT_LT(run->component("physics").save().size(), 32'768u);
   std::printf("checkpoint of the plant: %zu bytes\n", run->component("physics").save().size());
 }
 
 TEST(PhysicsCheckpoint, RefusesTheStateOfAnotherScene) {
-  auto crowded = make_run(setup_of(crowded_scene(), "mamba.yaml"));
-  auto empty = make_run(setup_of(kProject / "sim/scenarios/line.yaml", "mamba.yaml"));
+  auto crowded = make_run(crowded_setup("mamba"));
+  auto empty = make_run(testing::setup_of(testing::source_path("sim/scenarios/line.yaml"), 3));
   crowded->advance(5);
   try {
     empty->component("physics").load(crowded->component("physics").save());

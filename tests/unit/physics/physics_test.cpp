@@ -12,27 +12,18 @@
 
 #include "barrier/local_run.hpp"
 #include "configuration/configuration.hpp"
-#include "support/commander.hpp"
-#include "support/project.hpp"
+#include "unit/physics/physics_run.hpp"
 
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kProject = testing::source_path();
-
 using testing::CommandAt;
 
-Setup setup_of(const std::string& scenario, std::uint64_t seed = 1) {
-  Setup setup;
-  setup.robot_file = kProject / "components/lib/robot/mamba.yaml";
-  setup.scenario_file = kProject / "sim/scenarios" / scenario;
-  setup.seed = seed;
-  return setup;
-}
+using testing::hash_of;
 
-std::unique_ptr<LocalRun> make_run(CommandAt command_at, const Setup& setup = setup_of("line.yaml")) {
-  return std::make_unique<LocalRun>(
-      std::vector<ComponentFactory>{make_physics_factory(), testing::commander(std::move(command_at))}, setup);
+std::unique_ptr<LocalRun> make_run(CommandAt command_at, const char* scenario = "line.yaml", std::uint64_t seed = 1) {
+  return testing::make_run(std::move(command_at),
+                           testing::setup_of(testing::source_path("sim/scenarios") / scenario, seed));
 }
 
 CommandAt silence() {
@@ -50,11 +41,6 @@ CommandAt swing() {
 }
 
 GateMode mode_of(LocalRun& run) { return dynamic_cast<Physics&>(run.component("physics")).gate().mode; }
-
-std::string hash_of(LocalRun& run) {
-  const auto& hash = run.latest(topics::kWorldState)->state_hash;
-  return {reinterpret_cast<const char*>(hash), sizeof(hash)};
-}
 
 TEST(Physics, DescribesTheSceneOnce) {
   auto run = make_run(silence());
@@ -161,8 +147,8 @@ TEST(Physics, OneUlpInOneCommandChangesTheHash) {
 }
 
 TEST(Physics, DifferentSeedsGiveDifferentRuns) {
-  auto first = make_run(swing(), setup_of("line.yaml", 1));
-  auto second = make_run(swing(), setup_of("line.yaml", 2));
+  auto first = make_run(swing(), "line.yaml", 1);
+  auto second = make_run(swing(), "line.yaml", 2);
   first->advance(10);
   second->advance(10);
   EXPECT_NE(hash_of(*first), hash_of(*second));
@@ -185,9 +171,7 @@ TEST(Physics, NoiseHasTheStandardDeviationOfTheRobotFile) {
 TEST(Physics, AScenarioCanSwitchNoiseOff) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "quiet.yaml";
   std::ofstream(file) << "name: quiet\nstart: {position_m: [1, 2], yaw_rad: 0.7}\nnoise: {sensors: false}\n";
-  auto setup = setup_of("line.yaml");
-  setup.scenario_file = file;
-  auto run = make_run(silence(), setup);
+  auto run = testing::make_run(silence(), testing::setup_of(file));
   run->advance(100);
   const World& world = dynamic_cast<Physics&>(run->component("physics")).world();
   const msg::WorldState& truth = *run->latest(topics::kWorldState);

@@ -230,7 +230,7 @@ TEST_F(SafetyGateTest, IgnoresMeasurementsThatAreNotFinite) {
 
 TEST_F(SafetyGateTest, RandomInputsNeverExceedLimitsNorMakeSetpointsJump) {
   constexpr unsigned kSeed = 20261121;
-  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> wild(-4.0, 4.0);
   std::vector<double> before = measured_;

@@ -177,7 +177,7 @@ TEST_F(SafetyGateTorque, ACheckpointInTheMiddleContinuesEqually) {
 
 TEST_F(SafetyGateTorque, RandomCommandsNeverPushBeyondAnyLimit) {
   constexpr unsigned kSeed = 20261123;
-  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> wild(-1.0, 1.0);
   int pushed = 0;

@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, RandomScenes, ::testing::Values("random_easy",
 
 const std::string kFile = "name: x\nmission: {sequence: [green, red], line_colour: blue}\n";
 
-std::string error_of(const std::string& more, const std::string& file = kFile) {
+std::string refusal_of(const std::string& more, const std::string& file = kFile) {
   try {
     (void)read_scenario(Configuration::parse(file + more, "x.yaml"), 1);
   } catch (const ConfigurationError& error) {
@@ -151,28 +151,28 @@ std::string error_of(const std::string& more, const std::string& file = kFile) {
   return {};
 }
 
-TEST(RandomScene, TheRangesHaveDefaults) { EXPECT_EQ(error_of("random: {}\n"), ""); }
+TEST(RandomScene, TheRangesHaveDefaults) { EXPECT_EQ(refusal_of("random: {}\n"), ""); }
 
 TEST(RandomScene, RefusesWhatCannotBe) {
-  EXPECT_EQ(error_of("random: {line_length_m: [4, 3]}\n"),
+  EXPECT_EQ(refusal_of("random: {line_length_m: [4, 3]}\n"),
             "x.yaml:3: random.line_length_m: found [4, 3], accepted the smaller number first");
-  EXPECT_NE(error_of("random: {pegs: 17}\n").find("random.pegs: found 17"), std::string::npos);
-  EXPECT_NE(error_of("random: {trees: 3}\n").find("found an unknown key"), std::string::npos);
-  EXPECT_EQ(error_of("random: {}\nobjects: []\n"),
+  EXPECT_NE(refusal_of("random: {pegs: 17}\n").find("random.pegs: found 17"), std::string::npos);
+  EXPECT_NE(refusal_of("random: {trees: 3}\n").find("found an unknown key"), std::string::npos);
+  EXPECT_EQ(refusal_of("random: {}\nobjects: []\n"),
             "x.yaml:4: objects: found a section that the random scene replaces, accepted either this section or "
             "`random`");
-  EXPECT_NE(error_of("random: {}\n", "name: x\nmission: {sequence: [green, red, yellow], line_colour: blue}\n")
+  EXPECT_NE(refusal_of("random: {}\n", "name: x\nmission: {sequence: [green, red, yellow], line_colour: blue}\n")
                 .find("mission.sequence: found 3 colours, 3 of them different"),
             std::string::npos);
-  EXPECT_NE(error_of("random: {}\n", "name: x\nmission: {sequence: [blue], line_colour: blue}\n")
+  EXPECT_NE(refusal_of("random: {}\n", "name: x\nmission: {sequence: [blue], line_colour: blue}\n")
                 .find("mission.line_colour: found the colour of an object"),
             std::string::npos);
-  EXPECT_NE(error_of("random: {}\n", "name: x\n").find("mission"), std::string::npos);
+  EXPECT_NE(refusal_of("random: {}\n", "name: x\n").find("mission"), std::string::npos);
 }
 
 TEST(RandomScene, SaysWhenThereIsNoRoom) {
   // A bend of half a turn brings every line back to itself.
-  EXPECT_NE(error_of("random: {line_length_m: [9, 9], bend_radius_m: [0.5, 0.5], bend_rad: [3, 3]}\n")
+  EXPECT_NE(refusal_of("random: {line_length_m: [9, 9], bend_radius_m: [0.5, 0.5], bend_rad: [3, 3]}\n")
                 .find("random: found no scene for seed 1 in which the mission is possible"),
             std::string::npos);
 }

@@ -10,7 +10,6 @@
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kScenarios = testing::source_path("sim/scenarios");
 const std::string kMinimal = "name: x\nstart: {position_m: [0, 0]}\n";
 
 Scenario read(const std::string& text, std::uint64_t seed = 1) {
@@ -45,7 +44,7 @@ TEST(ScenarioFile, ASlopeTiltsGravityRelativeToTheGround) {
 }
 
 TEST(ScenarioFile, EveryShippedFileIsAcceptedForManySeeds) {
-  for (const auto& entry : std::filesystem::directory_iterator(kScenarios)) {
+  for (const auto& entry : std::filesystem::directory_iterator(testing::source_path("sim/scenarios"))) {
     if (entry.path().extension() != ".yaml") continue;
     EXPECT_TRUE(Configuration::load(entry.path()).has("mission")) << entry.path();
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
@@ -55,7 +54,7 @@ TEST(ScenarioFile, EveryShippedFileIsAcceptedForManySeeds) {
 }
 
 TEST(ScenarioFile, TheCaseStudyHasTheObjectsAndZonesOfThePaper) {
-  const Scenario scenario = load_scenario(kScenarios / "case_study.yaml", 3);
+  const Scenario scenario = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 3);
   ASSERT_EQ(scenario.objects.size(), 2U);
   ASSERT_EQ(scenario.zones.size(), 2U);
   EXPECT_EQ(scenario.objects[0].colour, 1);
@@ -71,7 +70,7 @@ TEST(ScenarioFile, TheCaseStudyHasTheObjectsAndZonesOfThePaper) {
 
 TEST(ScenarioFile, LinesOfTheCaseStudyHaveTheirLengthAndRadius) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Scenario scenario = load_scenario(kScenarios / "case_study.yaml", seed);
+    const Scenario scenario = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), seed);
     double length = 0.0;
     for (std::size_t i = 1; i < scenario.line_m.size(); ++i) {
       length += (scenario.line_m[i] - scenario.line_m[i - 1]).norm();

@@ -13,11 +13,9 @@
 namespace constrictor {
 namespace {
 
-const std::filesystem::path kScenarios = testing::source_path("sim/scenarios");
-
 TEST(ScenarioVariation, EqualSeedsGiveEqualScenes) {
-  const Scenario a = load_scenario(kScenarios / "case_study.yaml", 7);
-  const Scenario b = load_scenario(kScenarios / "case_study.yaml", 7);
+  const Scenario a = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 7);
+  const Scenario b = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), 7);
   EXPECT_EQ(a.line_m, b.line_m);
   EXPECT_EQ(a.objects[0].position_m, b.objects[0].position_m);
   EXPECT_EQ(a.objects[1].mass_kg, b.objects[1].mass_kg);
@@ -78,7 +76,7 @@ TEST(ScenarioVariation, HeightAndRadiusVaryIndependently) {
   double product = 0.0;
   constexpr int kSeeds = 200;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Scenario scene = load_scenario(kScenarios / "wide.yaml", seed);
+    const Scenario scene = load_scenario(testing::source_path("sim/scenarios/wide.yaml"), seed);
     for (const ScenarioObject& object : scene.objects) {
       aspects.around("radius", object.size_m.x(), 0.084, 0.0345);
       aspects.around("height", object.size_m.z(), 0.18, 0.1201);
@@ -98,7 +96,7 @@ TEST(ScenarioVariation, TheSeedVariesEveryAspectWithinItsRange) {
   Aspects aspects;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(seed);
-    const Scenario scene = load_scenario(kScenarios / "case_study.yaml", seed);
+    const Scenario scene = load_scenario(testing::source_path("sim/scenarios/case_study.yaml"), seed);
     double length_m = 0.0;
     for (std::size_t i = 1; i < scene.line_m.size(); ++i) length_m += (scene.line_m[i] - scene.line_m[i - 1]).norm();
     aspects.around("line length", length_m, 4.5, 0.45);
