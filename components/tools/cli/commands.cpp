@@ -29,7 +29,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPoll = 20ms;
+constexpr auto kEndPoll = 20ms;
 constexpr auto kEndBound = 90s;  // longer than RunEnding's bounds together
 
 /// Ends a run whose launcher is not on this host, or that has none: the conductor itself is asked.
@@ -66,7 +66,7 @@ int end_command(std::optional<std::uint32_t> domain) {
                  run.domain, run.pid, kEndBound.count());
       return exit_status::kWaitedTooLong;
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kEndPoll);
   }
   const auto report = run.report_dir / "report.json";
   std::ifstream file(report);

@@ -15,7 +15,7 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kGrace = 3s;
+constexpr auto kCompanionGrace = 3s;
 
 }  // namespace
 
@@ -59,7 +59,7 @@ Companions::~Companions() {
   for (Companion& companion : companions_) {
     if (!companion.process->poll()) companion.process->signal(SIGTERM);
   }
-  for (const auto end = std::chrono::steady_clock::now() + kGrace;
+  for (const auto end = std::chrono::steady_clock::now() + kCompanionGrace;
        any_left() && std::chrono::steady_clock::now() < end;)
     std::this_thread::sleep_for(10ms);
 }

@@ -16,7 +16,7 @@
 namespace constrictor::cli {
 namespace {
 
-struct Options {
+struct ListOptions {
   std::string kind;
   bool names = false;
 };
@@ -45,7 +45,7 @@ int list_files(const NamedFiles& files, bool only_names) {
   return exit_status::kOk;
 }
 
-int list(const Options& options) {
+int list_names(const ListOptions& options) {
   for (const auto& files : {kScenarios, kRobots, kManifests}) {
     if (options.kind == files.list_argument) return list_files(files, options.names);
   }
@@ -57,10 +57,10 @@ int list(const Options& options) {
 }  // namespace
 
 void add_list(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ListOptions>();
   auto* sub =
       add_subcommand(app, "list", "list the scenarios, robots, manifests or components that can be chosen by name",
-                     action, options, list);
+                     action, options, list_names);
   sub->add_option("KIND", options->kind, "scenarios, robots, manifests or components")
       ->required()
       ->check(CLI::IsMember({"scenarios", "robots", "manifests", "components"}));

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kGrace = 3s;
+constexpr auto kViewGrace = 3s;
 
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -54,7 +54,7 @@ LiveView::LiveView(std::uint32_t domain, std::uint16_t port, const std::filesyst
 LiveView::~LiveView() {
   if (dashboard_->poll()) return;
   dashboard_->signal(SIGTERM);
-  const auto end = std::chrono::steady_clock::now() + kGrace;
+  const auto end = std::chrono::steady_clock::now() + kViewGrace;
   while (!dashboard_->poll() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(10ms);
 }
 

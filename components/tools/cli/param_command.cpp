@@ -33,7 +33,7 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ParamOptions {
   ViewOptions view;
   bool names = false;
   bool changed = false;
@@ -65,7 +65,7 @@ void report_silent(const ParameterView& view) {
   }
 }
 
-int list(const Options& options) {
+int list_parameters(const ParamOptions& options) {
   const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
@@ -104,7 +104,7 @@ int list(const Options& options) {
   return begins ? exit_status::kOk : exit_status::kFailed;
 }
 
-int get(const Options& options) {
+int get_parameter(const ParamOptions& options) {
   const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
@@ -125,7 +125,7 @@ int get(const Options& options) {
 }
 
 /// Sets the parameters one after the other, until one is refused.
-int set_all(const Options& options, const std::vector<ParameterValue>& values) {
+int set_all(const ParamOptions& options, const std::vector<ParameterValue>& values) {
   const std::size_t count = values.size();
   RequestClient client(find_domain(options.view.domain),
                        operator_options(unique_source("param"), 0ms, /*detached=*/true));
@@ -160,7 +160,7 @@ int set_all(const Options& options, const std::vector<ParameterValue>& values) {
   return status;
 }
 
-int set(const Options& options) {
+int set_parameter(const ParamOptions& options) {
   if (options.changes.size() % 2 != 0) {
     std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
     return exit_status::kUsage;
@@ -191,7 +191,7 @@ int set(const Options& options) {
   return set_all(options, values);
 }
 
-int dump(const Options& options) {
+int dump(const ParamOptions& options) {
   const RunNote run = join_run(options.view.domain);
   const dds::Domain domain(run.domain);
   const ParameterView view = read_parameters(domain.participant());
@@ -208,7 +208,7 @@ int dump(const Options& options) {
   return exit_status::kOk;
 }
 
-int load(const Options& options) {
+int load(const ParamOptions& options) {
   std::ifstream stream(options.file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad())
@@ -229,7 +229,7 @@ int load(const Options& options) {
 }  // namespace
 
 void add_param(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ParamOptions>();
   auto* param = add_group(app, "param", "list and change the parameters of a run while it runs");
   param->footer(help_footer(
       "A parameter's name is that of its component and the keys in its configuration file: "
@@ -255,18 +255,19 @@ void add_param(CLI::App& app, Action& action) {
       "0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no answer;\n"
       "  78 the file of `load` is wrong: nothing was set; 130 interrupted by Ctrl-C",
       "CONSTRICTOR_DOMAIN  the run, like --run"));
-  const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
+  const auto add = [&](const char* name, const char* what, int (*run)(const ParamOptions&)) {
     auto* sub = add_subcommand(*param, name, what, action, options, run);
     add_view_options(*sub, options->view);
     return sub;
   };
-  auto* list_app = add(
-      "list", "list the parameters with value, default, unit, accepted values and meaning; * marks changed ones", list);
+  auto* list_app =
+      add("list", "list the parameters with value, default, unit, accepted values and meaning; * marks changed ones",
+          list_parameters);
   list_app->add_option("PREFIX", options->name,
                        "only names that begin with this text: a component, or component.section");
   list_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
   list_app->add_flag("--names", options->names, "only the names, one in each line")->excludes("--json");
-  add("get", "print one parameter", get)->add_option("NAME", options->name, "the parameter")->required();
+  add("get", "print one parameter", get_parameter)->add_option("NAME", options->name, "the parameter")->required();
   auto* dump_app =
       add_subcommand(*param, "dump", "write the values in force into a file for `param load`", action, options, dump);
   add_run_option(*dump_app, options->view.domain);
@@ -280,7 +281,7 @@ void add_param(CLI::App& app, Action& action) {
           "YAML file of `param dump`, or with keys as in the components' configuration files below the name of "
           "the component; any number of parameters")
       ->required();
-  auto* set_app = add("set", "change parameters", set);
+  auto* set_app = add("set", "change parameters", set_parameter);
   add_token_option(*set_app);
   set_app
       ->add_option("CHANGES", options->changes,

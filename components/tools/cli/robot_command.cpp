@@ -21,13 +21,13 @@
 namespace constrictor::cli {
 namespace {
 
-struct Options {
+struct RobotOptions {
   bool mjcf = false, urdf = false, sdf = false;
   std::string robot = "mamba";
   std::filesystem::path output;  ///< empty: standard output
 };
 
-int export_robot(const Options& options) {
+int export_robot(const RobotOptions& options) {
   const RobotModel robot = load_robot(find_file(options.robot, kRobots));
   const std::string text = options.mjcf ? mujoco_model(robot) : options.urdf ? urdf_model(robot) : sdf_model(robot);
   const bool to_file = !options.output.empty();
@@ -45,7 +45,7 @@ int export_robot(const Options& options) {
 }  // namespace
 
 void add_robot(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RobotOptions>();
   auto* robot = add_group(app, "robot", "write the robot as a description for other programs");
   auto* sub = add_subcommand(*robot, "export", "write the robot as a description for other programs", action, options,
                              export_robot);

@@ -30,7 +30,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Options {
+struct RunControlOptions {
   std::optional<std::uint32_t> run;
   std::uint64_t steps = 1;
   std::uint64_t seed = 1;
@@ -79,7 +79,7 @@ class BeginWatch {
   std::string told_;
 };
 
-int control(const Options& options, std::uint8_t command) {
+int control(const RunControlOptions& options, std::uint8_t command) {
   const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
   const RunNote run = join_run(options.run);
   catch_interrupts();
@@ -135,14 +135,14 @@ int release(RequestClient& client) {
   return report_not_granted(client, answer, "release");
 }
 
-int operate(const Options& options, const char* command, int (*use)(RequestClient&)) {
+int operate(const RunControlOptions& options, const char* command, int (*use)(RequestClient&)) {
   RequestClient client(join_run(options.run).domain, operator_options(unique_source("operator")));
   if (const int status = connect(client, command); status != exit_status::kOk) return status;
   return use(client);
 }
 
 /// The emergency stop goes to `input` and to the plant itself. So it needs neither an answer of `input` nor a token.
-int stop(const Options& options) {
+int stop(const RunControlOptions& options) {
   catch_interrupts();
   const std::uint32_t domain = options.run ? *options.run : find_run({}).domain;
   RequestClient client(domain, operator_options(unique_source("operator")));
@@ -169,7 +169,7 @@ int stop(const Options& options) {
 }  // namespace
 
 void add_run_control(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunControlOptions>();
   const std::string time_status = fmt::format("0 done; {}, or no answer;\n  130 interrupted by Ctrl-C", kRunStatuses);
   const std::string safety_status = fmt::format(
       "0 done; 1 refused, with the reason; {};\n  75 no answer within 5 s; 130 interrupted by Ctrl-C", kRunStatuses);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kPoll = 50ms;
+constexpr auto kServePoll = 50ms;
 constexpr auto kStopBound = 3s;  // after SIGTERM, processes that still run are killed
 
 struct ServeOptions {
@@ -91,7 +91,7 @@ class Server {
       for (auto& process : processes_) {
         if (const auto status = process.poll()) return stop(*status);
       }
-      if (signals_.wait(kPoll) != 0) return stop(exit_status::kOk);
+      if (signals_.wait(kServePoll) != 0) return stop(exit_status::kOk);
     }
   }
 
@@ -117,7 +117,7 @@ class Server {
     bool killed = false;
     while (any_runs()) {
       for (auto& process : processes_) process.poll();
-      const bool again = signals_.wait(kPoll) != 0;
+      const bool again = signals_.wait(kServePoll) != 0;
       if (killed || (!again && std::chrono::steady_clock::now() < kill_at)) continue;
       for (auto& process : processes_) process.stop(SIGKILL);
       killed = true;

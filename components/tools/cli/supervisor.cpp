@@ -20,7 +20,7 @@ constexpr int kMostDeathsWithoutTick = 5;    // deaths of one process by its own
 constexpr auto kEndTogether = 3s;            // a process may end this long before "the run is over" arrives
 constexpr auto kTermination = 3s;            // from SIGTERM to SIGKILL
 constexpr auto kTellWhoIsMissingAfter = 5s;  // while processes end
-constexpr auto kPoll = 10ms;
+constexpr auto kChildPoll = 10ms;
 constexpr int kNoSuchProgram = 127;
 
 /// True if a process that ended with this status would end in the same way after a restart.
@@ -220,7 +220,7 @@ void Supervisor::finish(std::chrono::seconds grace, const std::function<bool()>&
         if (!process.over) print_("waiting for " + process.record.name + " to end");
       }
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kChildPoll);
   }
   for (const auto& process : processes_) {
     if (!process.over) {
@@ -250,7 +250,7 @@ void Supervisor::stop(bool at_once) {
     signal_all(SIGTERM);
     signal_all(SIGCONT);  // a process stopped by SIGSTOP could not handle SIGTERM
     const auto start = Clock::now();
-    while (!all_gone(false) && Clock::now() - start < kTermination) std::this_thread::sleep_for(kPoll);
+    while (!all_gone(false) && Clock::now() - start < kTermination) std::this_thread::sleep_for(kChildPoll);
   }
   signal_all(SIGKILL);
   while (!all_gone(false)) std::this_thread::sleep_for(1ms);

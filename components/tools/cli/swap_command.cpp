@@ -28,14 +28,15 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kStatusBound = 5s;
 constexpr auto kSwapBound = 30s;
 
-struct Options {
+struct SwapOptions {
   std::optional<std::uint32_t> domain;
   std::string component, program, config;
 };
 
 /// The newest status of the component, as its process publishes it; waits for one with an incarnation from `least`.
-std::optional<msg::ComponentStatus> status_of(const dds::Reader<msg::ComponentStatus>& reader, const Options& options,
-                                              std::uint32_t least, std::chrono::seconds bound) {
+std::optional<msg::ComponentStatus> status_of(const dds::Reader<msg::ComponentStatus>& reader,
+                                              const SwapOptions& options, std::uint32_t least,
+                                              std::chrono::seconds bound) {
   std::optional<msg::ComponentStatus> found;
   for (const auto end = Clock::now() + bound; !found && Clock::now() < end; std::this_thread::sleep_for(20ms)) {
     reader.take([&](const msg::ComponentStatus& status) {
@@ -47,7 +48,7 @@ std::optional<msg::ComponentStatus> status_of(const dds::Reader<msg::ComponentSt
   return found;
 }
 
-const ProcessPlan& process_of(const Options& options, const LaunchPlan& plan) {
+const ProcessPlan& process_of(const SwapOptions& options, const LaunchPlan& plan) {
   for (const auto& process : plan.manifest.processes) {
     if (std::find(process.components.begin(), process.components.end(), options.component) == process.components.end())
       continue;
@@ -62,7 +63,7 @@ const ProcessPlan& process_of(const Options& options, const LaunchPlan& plan) {
       fmt::format("swap: found component '{}', accepted one of {}", options.component, fmt::join(plan.roster, ", ")));
 }
 
-int swap(const Options& options) {
+int swap(const SwapOptions& options) {
   const RunNote run = find_run(options.domain);
   const RunRecord record = read_run_record(run.report_dir);
   const LaunchPlan plan = make_launch_plan(record.options);
@@ -98,7 +99,7 @@ int swap(const Options& options) {
 }  // namespace
 
 void add_swap(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SwapOptions>();
   auto* sub = add_subcommand(app, "swap", "let another program take the place of a component while the run goes on",
                              action, options, swap);
   sub->add_option("COMPONENT", options->component, "member of the run with a process of its own")->required();

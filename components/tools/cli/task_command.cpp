@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 /// All scripts of a run share one source, so that one script can cancel what another one started.
 constexpr const char* kSource = "task";
 
-struct Options {
+struct TaskOptions {
   std::optional<std::uint32_t> run;
   std::string name;
   std::map<std::string, std::string> parameters;
@@ -42,7 +42,7 @@ struct Options {
 
 void print_json(const Json& json) { fmt::print("{}\n", json_text(json)); }
 
-int with_client(const Options& options, int (*use)(RequestClient&, const Options&)) {
+int with_client(const TaskOptions& options, int (*use)(RequestClient&, const TaskOptions&)) {
   RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
   if (const int status = connect(client, "task"); status != exit_status::kOk) return status;
   return use(client, options);
@@ -50,7 +50,7 @@ int with_client(const Options& options, int (*use)(RequestClient&, const Options
 
 /// The task and its parameters as a request. Throws UsageError if they are wrong or incomplete: such a request must not
 /// be sent, because it would end the running mission.
-msg::Request request_of(const Options& options) {
+msg::Request request_of(const TaskOptions& options) {
   const auto task = task_by_name(options.name);
   if (!task) throw UsageError(fmt::format("TASK: found '{}', accepted {}", options.name, task_words()));
   msg::Request request = task_request(*task);
@@ -84,7 +84,7 @@ int give_back(RequestClient& client) {
 }
 
 /// Waits for the answers of `input`, which forwards the goal, and of navigation, which may refuse it.
-int start(RequestClient& client, const Options& options) {
+int start(RequestClient& client, const TaskOptions& options) {
   const msg::Request request = request_of(options);
   const bool held = client.holds_authority();
   try {
@@ -113,7 +113,7 @@ int start(RequestClient& client, const Options& options) {
 }
 
 /// Makes the robot stand. This ends the running task.
-int cancel(RequestClient& client, const Options& options) {
+int cancel(RequestClient& client, const TaskOptions& options) {
   const auto answer = client.wait_for_answer(client.move(msg::kMotionStand), 5s);
   const bool granted = answer == RequestClient::Answer::kGranted;
   if (options.wait.json) print_json({{"cancelled", granted}, {"reason", granted ? "" : client.refusal()}});
@@ -121,7 +121,7 @@ int cancel(RequestClient& client, const Options& options) {
   return report_not_granted(client, answer, "task");
 }
 
-int list(const Options& options) {
+int list_tasks(const TaskOptions& options) {
   if (options.wait.json) {
     Json tasks = Json::array();
     Json events = Json::array();
@@ -153,7 +153,7 @@ std::chrono::milliseconds parse_duration(const std::string& option, const std::s
 }
 
 void add_task(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TaskOptions>();
   auto* task = add_group(app, "task", "start, cancel and wait for tasks from a script");
   task->footer(help_footer(
       "The tasks are those of the paper (Tables I to XV), and follow_path. A script has the level of an operator: it "
@@ -237,7 +237,7 @@ void add_task(CLI::App& app, Action& action) {
       fmt::format("0 the event came, or the goal succeeded; 1 the goal ended without it or did not succeed, or the run "
                   "ended;\n  {}; 75 too late; 130 interrupted by Ctrl-C",
                   kRunStatuses)));
-  add("list", "list the tasks and events", [options] { return list(*options); })
+  add("list", "list the tasks and events", [options] { return list_tasks(*options); })
       ->footer(
           "EXAMPLES\n  constrictor task list\n\nEXIT STATUS\n  0 done; 64 wrong usage\n\n"
           "ENVIRONMENT\n  none: it joins no run");

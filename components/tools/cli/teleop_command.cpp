@@ -28,12 +28,12 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kTurn = 50ms;  // period of the loop; much shorter than the lease
+constexpr auto kScreenTurn = 50ms;  // period of the loop; much shorter than the lease
 constexpr auto kRedraw = 100ms;
 constexpr auto kEscape = 400ms;  // if no byte follows an escape character for this time, it was the escape key
 constexpr const char* kInputMissing = "not sent: `input` is missing; the launcher restarts it";
 
-struct Options {
+struct TeleopOptions {
   std::optional<std::uint32_t> run;
   std::string drive;
   std::string duration;
@@ -62,7 +62,7 @@ class Teleop {
     auto heard = Clock::now();
     std::string typed;
     while (interrupt_signal() == 0) {
-      if (!terminal_.read(typed, kTurn)) break;
+      if (!terminal_.read(typed, kScreenTurn)) break;
       monitor_.poll();
       observer_.poll();
       if (!over().empty()) return exit_status::kFailed;  // before poll(), which would repeat unanswered requests
@@ -173,7 +173,7 @@ class Teleop {
   std::string farewell_;
 };
 
-int teleop(const Options& options) {
+int teleop(const TeleopOptions& options) {
   if (!options.drive.empty()) return teleop_drive(options.drive, options.duration, options.run);
   if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
   if (!options.gamepad.device.empty()) return gamepad_drive(options.gamepad, options.run);
@@ -204,7 +204,7 @@ int teleop(const Options& options) {
 }  // namespace
 
 void add_teleop(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TeleopOptions>();
   auto* sub = add_subcommand(app, "teleop", "drive the robot by hand in a terminal; with --drive from a script", action,
                              options, teleop);
   add_run_option(*sub, options->run);

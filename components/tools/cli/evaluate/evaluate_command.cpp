@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct EvaluateOptions {
   EvaluationRequest request;
   std::string seeds;  ///< empty: 1..10, or those of the merged evaluations
   std::string shard = "1/1";
@@ -72,7 +72,7 @@ void write_summary(const Evaluation& evaluation, const EvaluationRequest& reques
   fmt::print("\n{}", to_table(summaries));
 }
 
-int evaluate(const Options& given) {
+int evaluate(const EvaluateOptions& given) {
   EvaluationRequest request = given.request;
   if (!given.merge.empty() && request.folder.empty()) throw UsageError("--merge: --output FOLDER is missing");
   if (!given.seeds.empty()) request.seeds = parse_seeds(given.seeds);
@@ -110,7 +110,7 @@ int evaluate(const Options& given) {
   return errors > 0 ? exit_status::kSoftware : exit_status::kOk;
 }
 
-void add_evaluation_options(CLI::App& app, Options& options) {
+void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
   RunOptions& run = options.request.run;
   app.add_option("SCENARIO", run.scenario,
                  "a name (see `constrictor list scenarios`) or a file (default: the manifest's)");
@@ -145,7 +145,7 @@ void add_evaluation_options(CLI::App& app, Options& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateOptions>();
   options->request.jobs = 0;
   auto* sub = add_subcommand(app, "evaluate", "run a scenario with many seeds and values, and plot the results", action,
                              options, evaluate);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kFile = "evaluation.json";
+constexpr const char* kRecordFile = "evaluation.json";
 
 std::string hash_of(const fs::path& file) {
   if (file.empty()) return "none";
@@ -51,11 +51,11 @@ std::map<std::string, std::string> identities_of(const RunOptions& options) {
 void write_record(const fs::path& folder, const EvaluationRecord& record) {
   const json content = {
       {"scenario", record.scenario}, {"vary", record.vary}, {"seeds", record.seeds}, {"identities", record.identities}};
-  write_whole(folder / kFile, content.dump(1) + "\n");
+  write_whole(folder / kRecordFile, content.dump(1) + "\n");
 }
 
 std::optional<EvaluationRecord> read_record(const fs::path& folder) {
-  std::ifstream stream(folder / kFile);
+  std::ifstream stream(folder / kRecordFile);
   if (!stream) return {};
   try {
     const json content = json::parse(stream);
@@ -67,7 +67,7 @@ std::optional<EvaluationRecord> read_record(const fs::path& folder) {
     return record;
   } catch (const json::exception& error) {
     throw ConfigurationError(
-        fmt::format("{}: damaged ({}); choose another --output", (folder / kFile).string(), error.what()));
+        fmt::format("{}: damaged ({}); choose another --output", (folder / kRecordFile).string(), error.what()));
   }
 }
 

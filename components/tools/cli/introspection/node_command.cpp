@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct NodeOptions {
   ViewOptions view;
   std::string node;
 };
@@ -80,7 +80,7 @@ std::string first_of(const Json& node, const char* key) {
   return node["components"].empty() ? "-" : node["components"][0].value(key, std::string("-"));
 }
 
-int list(const Options& options) {
+int list_nodes(const NodeOptions& options) {
   const DomainView view(options.view);
   const auto found = nodes(view);
   if (options.view.json) {
@@ -98,7 +98,7 @@ int list(const Options& options) {
   return exit_status::kOk;
 }
 
-int info(const Options& options) {
+int show_node(const NodeOptions& options) {
   const DomainView view(options.view);
   Json chosen = Json::array();
   for (const auto& node : nodes(view)) {
@@ -139,17 +139,17 @@ int info(const Options& options) {
 }  // namespace
 
 void add_node(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NodeOptions>();
   auto* node = add_group(app, "node", "list or describe the processes of a DDS domain");
   node->footer(help_footer(
       "A node is a DDS participant: one per process and domain, also of programs that are no part of this project.",
       {"constrictor node list", "constrictor node info navigation --json"},
       "0 done; 64 wrong usage; 70 no such node or run", kDomainEnvironment));
   auto* list_app =
-      add_subcommand(*node, "list", "list every process: host, pid, version, IDL hash", action, options, list);
+      add_subcommand(*node, "list", "list every process: host, pid, version, IDL hash", action, options, list_nodes);
   add_view_options(*list_app, options->view);
   auto* info_app =
-      add_subcommand(*node, "info", "describe one process: its components and its topics", action, options, info);
+      add_subcommand(*node, "info", "describe one process: its components and its topics", action, options, show_node);
   info_app->add_option("NODE", options->node, "a component, the name of a node, or a process id")->required();
   add_view_options(*info_app, options->view);
 }

@@ -26,11 +26,11 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kPoll = 20ms;
+constexpr auto kStatusPoll = 20ms;
 constexpr auto kRateWindow = 3500ms;
 constexpr std::size_t kColumns = 80;
 
-struct Options {
+struct StatusOptions {
   ViewOptions view;
   bool watch = false;
 };
@@ -118,7 +118,7 @@ std::string run_line(const RunView& view) {
   return line;
 }
 
-std::string number(double value, const char* format) {
+std::string printed(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
@@ -137,8 +137,8 @@ std::string table(const RunNote& run, const RunView& view, const RateMeter& rate
     }
     const auto& status = found->second;
     text += fmt::format(kRow, name, name_of(constants::kComponent, status.state), status.tick,
-                        number(rates.rate_hz(name), "{:.1f}"), number(status.step_time_p50_us, "{:.0f}"),
-                        number(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name),
+                        printed(rates.rate_hz(name), "{:.1f}"), printed(status.step_time_p50_us, "{:.0f}"),
+                        printed(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name),
                         status.incarnation, status.pid);
     if (hosts.size() > 1) text += fmt::format("{:<12}on {}\n", "", status.host);
     if (std::isfinite(status.jitter_p99_us))
@@ -215,7 +215,7 @@ bool is_gone(const RunNote& run) {
                       [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
 }
 
-int status(const Options& options) {
+int status(const StatusOptions& options) {
   const auto runs = live_runs();
   if (!options.view.json) {
     for (const auto& run : runs) {
@@ -254,7 +254,7 @@ int status(const Options& options) {
       std::fflush(stdout);
       if (observer.view().ended(run.plant) || is_gone(run)) return exit_status::kOk;
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kStatusPoll);
   }
   if (options.watch) return exit_status::kOk;
   if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates), 2));
@@ -265,7 +265,7 @@ int status(const Options& options) {
 }  // namespace
 
 void add_status(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StatusOptions>();
   auto* sub = add_subcommand(app, "status", "show the runs on this host, and the state of the components of one run",
                              action, options, status);
   add_view_options(*sub, options->view);

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct TopicOptions {
   ViewOptions view;
   WatchOptions watch;
   PubOptions pub;
@@ -48,7 +48,7 @@ std::optional<Description> described(const std::string& topic) {
   return std::nullopt;
 }
 
-int list(const Options& options) {
+int list_topics(const TopicOptions& options) {
   const DomainView view(options.view);
   view.settle_or_throw();
   struct Row {
@@ -83,7 +83,7 @@ int list(const Options& options) {
   return exit_status::kOk;
 }
 
-int info(const Options& options) {
+int show_topic(const TopicOptions& options) {
   const DomainView view(options.view);
   view.settle();
   const auto endpoints = view.discovery().endpoints();
@@ -147,7 +147,7 @@ bool is_type(const std::string& full, const std::string& type) {
   return full == type || (full.size() > type.size() + 2 && full.ends_with("::" + type));
 }
 
-int find(const Options& options) {
+int find_topics(const TopicOptions& options) {
   const DomainView view(options.view);
   view.settle_or_throw();
   std::map<std::string, std::string> found;
@@ -170,23 +170,23 @@ int find(const Options& options) {
   return exit_status::kFailed;
 }
 
-void add_timeout(CLI::App& app, Options& options) {
+void add_timeout(CLI::App& app, TopicOptions& options) {
   app.add_option("--timeout", options.watch.timeout_s, "[s] give up when no sample has arrived for this long")
       ->capture_default_str()
       ->check(number(1e-3, 1e6, "s"));
 }
 
-void add_topic_argument(CLI::App& app, Options& options) {
+void add_topic_argument(CLI::App& app, TopicOptions& options) {
   app.add_option("TOPIC", options.topic, "name of the topic")->required();
 }
 
-int echo(const Options& options) {
+int echo_topic(const TopicOptions& options) {
   WatchOptions watch = options.watch;
   watch.topics = {options.topic};
   return echo_command(options.view, watch);
 }
 
-void add_echo_options(CLI::App& app, Options& options) {
+void add_echo_options(CLI::App& app, TopicOptions& options) {
   add_topic_argument(app, options);
   add_view_options(app, options.view);
   add_timeout(app, options);
@@ -211,7 +211,7 @@ void add_echo_options(CLI::App& app, Options& options) {
 }  // namespace
 
 void add_topic(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TopicOptions>();
   auto* topic =
       add_group(app, "topic", "list, find, describe, print, measure or publish on the topics of a DDS domain");
   topic->footer(help_footer(
@@ -223,20 +223,21 @@ void add_topic(CLI::App& app, Action& action) {
        "constrictor topic hz joint_state camera/image --for 5", "constrictor topic bw camera/image --for 5"},
       "0 done; 1 no sample arrived in time, or no topic found; 64 wrong usage; 70 no such topic or run",
       kDomainEnvironment));
-  const auto add = [&](const char* name, const char* what, std::function<int(const Options&)> run) {
+  const auto add = [&](const char* name, const char* what, std::function<int(const TopicOptions&)> run) {
     return add_subcommand(*topic, name, what, action, options, std::move(run));
   };
-  auto* list_app = add("list", "list every topic with its type and the numbers of its writers and readers", list);
+  auto* list_app =
+      add("list", "list every topic with its type and the numbers of its writers and readers", list_topics);
   add_view_options(*list_app, options->view);
-  auto* find_app = add("find", "list the topics of a type", find);
+  auto* find_app = add("find", "list the topics of a type", find_topics);
   find_app->add_option("TYPE", options->type, "the type, or the last part of its name: JointState")->required();
   add_view_options(*find_app, options->view);
   auto* info_app =
       add("info", "describe a topic: type, fields, writers, readers, and which reader cannot receive from which writer",
-          info);
+          show_topic);
   add_topic_argument(*info_app, *options);
   add_view_options(*info_app, options->view);
-  auto* echo_app = add("echo", "print the samples of a topic", echo);
+  auto* echo_app = add("echo", "print the samples of a topic", echo_topic);
   add_echo_options(*echo_app, *options);
   echo_app->footer(help_footer(
       "FILTER compares fields (== != < <= > >=) with numbers, texts, names of constants, or other fields, and joins\n"
@@ -258,7 +259,7 @@ void add_topic(CLI::App& app, Action& action) {
         Row{"bw", "measure how many bytes arrive, in wall time and in the robot's time", bw_command, true},
         Row{"delay", "measure how old samples are when they arrive, by the clocks of their writers", delay_command,
             false}}) {
-    auto* meter_app = add(row.name, row.what, [run = row.run](const Options& chosen) {
+    auto* meter_app = add(row.name, row.what, [run = row.run](const TopicOptions& chosen) {
       WatchOptions watch = chosen.watch;
       if (watch.topics.empty()) watch.topics = {chosen.topic};
       return run(chosen.view, watch);
@@ -271,7 +272,7 @@ void add_topic(CLI::App& app, Action& action) {
         ->check(number(1e-3, 1e6, "s"));
   }
   auto* pub_app = add("pub", "publish a message on a topic, once or at a rate",
-                      [](const Options& chosen) { return pub_command(chosen.view, chosen.pub); });
+                      [](const TopicOptions& chosen) { return pub_command(chosen.view, chosen.pub); });
   add_pub_options(*pub_app, options->view, options->pub);
 }
 

@@ -17,7 +17,6 @@ namespace constrictor::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kNothingArrived = 1;  // exit status
 
 /// Mean, smallest, largest and standard deviation of a series (Welford's method).
 struct Statistics {

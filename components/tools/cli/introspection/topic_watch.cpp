@@ -17,7 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kNothingArrived = 1;   // exit status
 constexpr auto kDiscovery = 1500ms;  // by then a writer that exists has been found
 
 std::chrono::milliseconds milliseconds(double seconds) {

@@ -12,6 +12,8 @@
 
 namespace constrictor::cli {
 
+inline constexpr int kNothingArrived = 1;  ///< exit status of a subcommand of `topic`
+
 struct WatchOptions {
   std::vector<std::string> topics;
   std::uint64_t count = 0;  ///< echo: number of samples; 0: until interrupted

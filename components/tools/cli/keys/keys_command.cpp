@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct KeysOptions {
   RunOptions run;
   std::string folder;
   int days = 365;
@@ -47,7 +47,7 @@ void issue(const fs::path& folder, const std::string& name, const Rights& rights
   fmt::print("  {:<24} writes {} topics, reads {}\n", name, rights.publish.size(), rights.subscribe.size());
 }
 
-int keys(const Options& options) {
+int keys(const KeysOptions& options) {
   const LaunchPlan plan = make_launch_plan(options.run);
   const fs::path folder = fs::absolute(options.folder);
   fs::create_directories(folder / "authority");
@@ -99,7 +99,7 @@ void use_keys(const fs::path& folder, const LaunchPlan& plan) {
 }
 
 void add_keys(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<KeysOptions>();
   auto* sub =
       add_subcommand(app, "keys", "make identities and rights for a run with DDS Security", action, options, keys);
   sub->add_option("DIR", options->folder, "folder for the files; if it has authorities already, they are used again")

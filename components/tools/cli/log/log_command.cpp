@@ -28,11 +28,11 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPoll = 20ms;
+constexpr auto kLogPoll = 20ms;
 constexpr auto kQuiet = 200ms;  // lines that were written before arrive with smaller gaps
 constexpr auto kBound = 3s;     // for lines that were written before
 
-struct Options {
+struct LogOptions {
   ViewOptions view;
   LogFilter filter;
   std::string folder;
@@ -43,7 +43,7 @@ struct Options {
 
 class Printer {
  public:
-  explicit Printer(const Options& options) : json_(options.view.json) {}
+  explicit Printer(const LogOptions& options) : json_(options.view.json) {}
   void print(const LogEntry& entry) const {
     if (json_) fmt::print("{}\n", json_text(to_json(entry)));
     else fmt::print("{}\n", text_of(entry, own_host_));
@@ -59,7 +59,7 @@ class Printer {
   std::string own_host_ = own_host();
 };
 
-int of_files(const Options& options) {
+int of_files(const LogOptions& options) {
   if (options.follow)
     throw UsageError(
         fmt::format("--follow: found together with the folder '{}', accepted for a run that goes on; "
@@ -72,7 +72,7 @@ int of_files(const Options& options) {
 /// The lines of a run that goes on, from the topic `log`.
 class LiveLog {
  public:
-  explicit LiveLog(const Options& options)
+  explicit LiveLog(const LogOptions& options)
       : options_(options),
         run_(join_run(options.view.domain)),
         domain_(run_.domain),
@@ -83,7 +83,7 @@ class LiveLog {
   int show() {
     catch_interrupts({SIGINT, SIGTERM, SIGHUP});
     const auto begin = Clock::now();
-    for (auto changed = begin; interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
+    for (auto changed = begin; interrupt_signal() == 0; std::this_thread::sleep_for(kLogPoll)) {
       if (take() > 0) changed = Clock::now();
       const bool complete = reader_.heard_all() && Clock::now() - changed > kQuiet;
       if (complete || Clock::now() - begin > kBound || !over().empty()) break;
@@ -104,7 +104,7 @@ class LiveLog {
   /// news of the end, in particular if this process was stopped meanwhile.
   void follow() {
     std::optional<Clock::time_point> known;  // since when the end is known
-    for (auto changed = Clock::now(); interrupt_signal() == 0; std::this_thread::sleep_for(kPoll)) {
+    for (auto changed = Clock::now(); interrupt_signal() == 0; std::this_thread::sleep_for(kLogPoll)) {
       const auto now = Clock::now();
       if (take() > 0) changed = now;
       printer_.print_last(waiting_, 0);
@@ -138,7 +138,7 @@ class LiveLog {
     }
   }
 
-  const Options& options_;
+  const LogOptions& options_;
   RunNote run_;
   dds::Domain domain_;
   RunMonitor monitor_;
@@ -148,8 +148,8 @@ class LiveLog {
   std::map<std::string, std::uint64_t> lost_;  ///< number of lines, by process
 };
 
-int log(const Options& given) {
-  Options options = given;
+int log(const LogOptions& given) {
+  LogOptions options = given;
   options.filter.least_level = *value_of(constants::kLog, options.level);
   if (!options.folder.empty()) return of_files(options);
   return LiveLog(options).show();
@@ -158,7 +158,7 @@ int log(const Options& given) {
 }  // namespace
 
 void add_log(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LogOptions>();
   auto* sub = add_subcommand(app, "log", "print the log lines of all processes of a run, in the order of their time",
                              action, options, log);
   sub->add_option("FOLDER", options->folder,

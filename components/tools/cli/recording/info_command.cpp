@@ -79,7 +79,7 @@ void print_topics(const RecordingSummary& summary) {
   }
 }
 
-int info(const InfoOptions& options) {
+int show_info(const InfoOptions& options) {
   const RecordingSummary summary = summarise_recording(options.file);
   const bool whole = summary.missing() == 0 && summary.incomplete.empty() && summary.dropped.empty();
   if (options.json) {
@@ -134,7 +134,7 @@ int recover(const std::string& file) {
 void add_recording_files(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   auto* info_app = add_subcommand(app, "info", "describe a recording: topics, rates, events, mission, what is missing",
-                                  action, options, info);
+                                  action, options, show_info);
   info_app->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);
   info_app->add_flag("--json", options->json, "print JSON instead of text, for scripts");
   info_app->footer(help_footer(

@@ -23,9 +23,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-constexpr int kMissing = 1;  // exit status
+constexpr int kIncomplete = 1;  // exit status
 
-struct Options {
+struct RecordOptions {
   ViewOptions view;
   std::string file;
   std::vector<std::string> topics;
@@ -37,7 +37,7 @@ struct Options {
 /// Which topics are recorded.
 class Choice {
  public:
-  explicit Choice(const Options& options) : images_(options.images == "on"), patterns_(options.topics) {}
+  explicit Choice(const RecordOptions& options) : images_(options.images == "on"), patterns_(options.topics) {}
   bool operator()(const std::string& topic) const {
     if (!patterns_.empty()) return patterns_.match(topic);
     // Samples of these two contain the checkpoints of members, which only the run itself can use.
@@ -55,7 +55,7 @@ class Choice {
 /// The recording of one domain.
 class DomainRecorder {
  public:
-  DomainRecorder(const Options& options, const DomainView& view)
+  DomainRecorder(const RecordOptions& options, const DomainView& view)
       : tap_(view.participant(), Choice(options)),
         sink_(std::make_unique<mcap::Writer>(options.file, "", fmt::format("constrictor {}", kVersion)), false) {}
   void poll(std::chrono::milliseconds bound) {
@@ -110,7 +110,7 @@ class DomainRecorder {
   RecordingSink sink_;
 };
 
-int record(const Options& options) {
+int record(const RecordOptions& options) {
   interrupted();  // from now on, Ctrl-C ends the recording in order
   if (!options.force && std::filesystem::exists(options.file))
     throw UsageError(fmt::format("FILE: found {}, which exists, accepted a new file (or --force)", options.file));
@@ -147,13 +147,13 @@ int record(const Options& options) {
   const RecordingSummary summary = summarise_recording(options.file);
   fmt::print("{}: {}\n", options.file, describe_recording(summary));
   if (!error.empty()) throw CommandError("record: " + error);
-  return summary.missing() == 0 ? exit_status::kOk : kMissing;
+  return summary.missing() == 0 ? exit_status::kOk : kIncomplete;
 }
 
 }  // namespace
 
 void add_record(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   auto* sub = add_subcommand(app, "record", "record topics of a run, or of any DDS domain, in an MCAP file", action,
                              options, record);
   sub->add_option("FILE", options->file, "the recording")->required();

@@ -17,7 +17,7 @@
 namespace constrictor::cli {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string file;
   std::vector<std::string> components;
   std::string output;
@@ -42,7 +42,7 @@ std::vector<std::string> recorded_roster(const std::filesystem::path& file) {
 }
 
 /// This process becomes constrictor_host, which contains the components.
-int replay_components(const Options& options) {
+int replay_components(const ReplayOptions& options) {
   std::vector<std::string> arguments = {"--replay", options.file};
   if (!options.restored.empty()) arguments.insert(arguments.end(), {"--restore", options.restored});
   else if (!options.output.empty()) arguments.insert(arguments.end(), {"--output", options.output});
@@ -54,7 +54,7 @@ int replay_components(const Options& options) {
   return become("constrictor_host", std::move(arguments));
 }
 
-int replay(const Options& options) {
+int replay(const ReplayOptions& options) {
   if (!options.restored.empty() && std::filesystem::exists(options.restored))
     throw UsageError(
         fmt::format("--restore: found {}, a file that exists; accepted the path of a new file", options.restored));
@@ -68,7 +68,7 @@ int replay(const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayOptions>();
   auto* sub = add_subcommand(app, "replay", "replay a recording onto DDS, or repeat a component on its recorded inputs",
                              action, options, replay);
   sub->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);

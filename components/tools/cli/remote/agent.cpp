@@ -27,9 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using Json = nlohmann::json;
 
-constexpr auto kPoll = 50ms;
+constexpr auto kAgentPoll = 50ms;
 constexpr auto kStateEvery = 1s;
 constexpr auto kGoneAfter = 10s;    // a closed connection without a new one: the launcher has died
 constexpr auto kTermination = 3s;   // from SIGTERM to SIGKILL
@@ -95,7 +94,7 @@ int Agent::run() {
     std::array<pollfd, 4> waits{pollfd{listener_.get(), POLLIN, 0}, pollfd{signals_.get(), POLLIN, 0},
                                 pollfd{echo_.get(), POLLIN, 0},
                                 pollfd{channel_ ? channel_->descriptor() : -1, POLLIN, 0}};
-    ::poll(waits.data(), waits.size(), static_cast<int>(kPoll.count()));
+    ::poll(waits.data(), waits.size(), static_cast<int>(kAgentPoll.count()));
     for (signalfd_siginfo info{}; ::read(signals_.get(), &info, sizeof(info)) == sizeof(info);) {
       if (info.ssi_signo != SIGCHLD) over_ = true;
     }
@@ -145,7 +144,7 @@ bool Agent::abandoned() const {
          (disconnected_at_ && now - *disconnected_at_ > std::min<std::chrono::duration<double>>(kGoneAfter, patience_));
 }
 
-void Agent::take(const Json& message) {
+void Agent::take(const nlohmann::json& message) {
   last_word_ = Clock::now();
   const auto op = field<std::string>(message, "op");
   if (op == "hello") take_hello(message);
@@ -159,7 +158,7 @@ void Agent::take(const Json& message) {
   else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, echo, end, ping");
 }
 
-void Agent::take_hello(const Json& message) {
+void Agent::take_hello(const nlohmann::json& message) {
   if (field<int>(message, "protocol") != kAgentProtocol)
     throw ProtocolError(fmt::format("protocol: found {}, accepted {}; both hosts need the same release",
                                     message["protocol"].dump(), kAgentProtocol));
@@ -172,7 +171,7 @@ void Agent::take_hello(const Json& message) {
   plan.interface = field<std::string>(message, "interface");
   plan.address = field<std::string>(message, "address");
   if (description_.is_null()) description_ = describe_this_host();
-  Json answer = description_;
+  nlohmann::json answer = description_;
   answer["op"] = "hello";
   answer["folder"] = folder_.string();
   answer["pid"] = ::getpid();
@@ -187,14 +186,14 @@ void Agent::take_hello(const Json& message) {
   send_state();
 }
 
-void Agent::prepare(const Json& message) {
+void Agent::prepare(const nlohmann::json& message) {
   dds_xml_ = field<std::string>(message, "dds");
   const auto domain = field<std::uint32_t>(message, "domain");
   if (field<bool>(message, "claim") && !claim_) {
     claim_ = std::make_unique<DomainClaim>(domain);
     dds_ = PublishedDdsConfiguration(domain, dds_xml_);
   }
-  for (const auto& file : field<std::vector<Json>>(message, "files")) {
+  for (const auto& file : field<std::vector<nlohmann::json>>(message, "files")) {
     const auto number = field<unsigned>(file, "number");
     const auto name = field<std::string>(file, "name");
     if (!is_plain_name(name)) throw ProtocolError("files: found the name \"" + name + "\", accepted a file name");
@@ -209,7 +208,7 @@ void Agent::prepare(const Json& message) {
   channel_->send({{"op", "prepared"}});
 }
 
-void Agent::start(const Json& message) {
+void Agent::start(const nlohmann::json& message) {
   const auto name = field<std::string>(message, "name");
   const auto incarnation = field<std::uint32_t>(message, "incarnation");
   const auto program = field<std::string>(message, "program");
@@ -232,7 +231,7 @@ void Agent::start(const Json& message) {
   last_state_ = {};
 }
 
-void Agent::signal(const Json& message) {
+void Agent::signal(const nlohmann::json& message) {
   const auto process = processes_.find(field<std::string>(message, "name"));
   const auto number = field<int>(message, "number");
   if (number <= 0 || number > 64) throw ProtocolError("number: accepted a signal, 1 to 64");

@@ -16,7 +16,6 @@ namespace constrictor::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 constexpr std::size_t kUnsentBound = 1 << 18;  // [byte] logs and files wait while more than this is unsent
 constexpr std::size_t kChunk = 48 << 10;       // [byte] of a log or a file in one message
@@ -78,7 +77,7 @@ void Agent::send_logs() {
   }
 }
 
-void Agent::open_echo(const Json& message) {
+void Agent::open_echo(const nlohmann::json& message) {
   echo_ = Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -102,14 +101,14 @@ void Agent::answer_echo() const {
 
 void Agent::send_state() {
   last_state_ = Clock::now();
-  Json list = Json::array();
+  nlohmann::json list = nlohmann::json::array();
   for (auto& [name, process] : processes_) {
     if (!process.child) continue;
     if (const double now = process.child->pss_mib(); now > 0) process.pss_mib = now;
-    Json entry = {{"name", name},
-                  {"incarnation", process.incarnation},
-                  {"pid", process.child->pid()},
-                  {"pss_mib", process.pss_mib}};
+    nlohmann::json entry = {{"name", name},
+                            {"incarnation", process.incarnation},
+                            {"pid", process.child->pid()},
+                            {"pss_mib", process.pss_mib}};
     // The end is reported after the log, so that the launcher can show the last lines.
     const bool log_complete = process.log_sent >= log_size(name, process);
     if (const auto& exit = process.child->poll(); exit && log_complete) {

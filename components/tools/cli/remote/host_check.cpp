@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kReachBound_s = 20;
 constexpr auto kEchoBound = 3s;
-constexpr auto kEndBound = 5s;
+constexpr auto kLinkEndBound = 5s;
 
 /// Calls exchange() until `done` returns true. False after `bound`.
 bool wait_until(HostLink& link, const std::function<bool()>& done, std::chrono::milliseconds bound) {
@@ -104,7 +104,7 @@ HostReport check_host(const std::string& name, const HostPlan& plan, const Launc
     check_network(link, manifest, domain, report);
     link.end();
     static_cast<void>(wait_until(
-        link, [&] { return link.ended(); }, kEndBound));
+        link, [&] { return link.ended(); }, kLinkEndBound));
   } catch (const HostError& error) {
     report.findings.push_back({"host refused", error.what(),
                                "make `ssh " + plan.ssh +

@@ -13,7 +13,6 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using Json = nlohmann::json;
 
 constexpr auto kPing = 1s;
 constexpr auto kSilent = 5s;         // without a word, the connection counts as broken
@@ -110,7 +109,7 @@ void HostLink::connect() {
 }
 
 void HostLink::say_hello(SshConnection& connection) {
-  Json logs = Json::object();
+  nlohmann::json logs = nlohmann::json::object();
   for (const auto& [process, state] : processes_) logs[process] = state.received;
   connection.channel().send({{"op", "hello"},
                              {"protocol", kAgentProtocol},
@@ -140,11 +139,11 @@ void HostLink::read_new_connection() {
                      patience_.count()));
 }
 
-void HostLink::send(const Json& message) {
+void HostLink::send(const nlohmann::json& message) {
   if (up_ && connection_) connection_->channel().send(message);
 }
 
-void HostLink::take(const Json& message) {
+void HostLink::take(const nlohmann::json& message) {
   last_word_ = Clock::now();
   const auto op = field<std::string>(message, "op");
   if (op == "hello") take_hello(message);
@@ -165,7 +164,7 @@ void HostLink::take(const Json& message) {
   else throw ProtocolError("found op \"" + op + "\", which this release does not know");
 }
 
-void HostLink::take_hello(const Json& message) {
+void HostLink::take_hello(const nlohmann::json& message) {
   if (begun_ && away_printed_)
     print_(fmt::format("host {} is reached again after {:.0f} s", name_,
                        std::chrono::duration<double>(Clock::now() - away_since_).count()));
@@ -200,12 +199,12 @@ void HostLink::agent_is_gone() {
   next_attempt_ = Clock::now();
 }
 
-void HostLink::prepare(const Json& request) {
+void HostLink::prepare(const nlohmann::json& request) {
   preparation_ = request;
   send(request);
 }
 
-void HostLink::start(const std::string& process, std::uint32_t incarnation, Json request,
+void HostLink::start(const std::string& process, std::uint32_t incarnation, nlohmann::json request,
                      const std::filesystem::path& log) {
   const std::uintmax_t received = processes_[process].received;
   processes_[process] = {incarnation, std::move(request), false, lost_, 0, 0, 0, std::nullopt, log, received};
@@ -219,8 +218,8 @@ void HostLink::signal(const std::string& process, int number) {
   send({{"op", "signal"}, {"name", process}, {"incarnation", state.incarnation}, {"number", number}});
 }
 
-void HostLink::take_state(const Json& message) {
-  for (const auto& entry : field<std::vector<Json>>(message, "processes")) {
+void HostLink::take_state(const nlohmann::json& message) {
+  for (const auto& entry : field<std::vector<nlohmann::json>>(message, "processes")) {
     const auto found = processes_.find(field<std::string>(entry, "name"));
     if (found == processes_.end() || found->second.incarnation != field<std::uint32_t>(entry, "incarnation")) continue;
     Process& process = found->second;
@@ -232,7 +231,7 @@ void HostLink::take_state(const Json& message) {
   }
 }
 
-void HostLink::take_log(const Json& message) {
+void HostLink::take_log(const nlohmann::json& message) {
   const auto found = processes_.find(field<std::string>(message, "name"));
   const auto next = field<std::uintmax_t>(message, "next");
   if (found == processes_.end() || next <= found->second.received) return;
@@ -246,7 +245,7 @@ void HostLink::collect(const std::filesystem::path& folder) {
   send({{"op", "collect"}});
 }
 
-void HostLink::take_file(const Json& message) {
+void HostLink::take_file(const nlohmann::json& message) {
   const auto name = field<std::string>(message, "name");
   const auto hex = field<std::string>(message, "hex");
   if (!is_plain_path(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");

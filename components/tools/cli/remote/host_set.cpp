@@ -20,10 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using Json = nlohmann::json;
 
 constexpr auto kCollectBound = 60s;
-constexpr auto kEndBound = 6s;
+constexpr auto kHostsEndBound = 6s;
 
 std::string random_token() {
   std::random_device entropy;
@@ -67,7 +66,7 @@ void HostSet::end_agents() {
   const auto over = [](const auto& link) { return link->ended() || !link->up(); };
   try {
     for (const auto& link : links_) link->end();
-    exchange_until([&] { return std::all_of(links_.begin(), links_.end(), over); }, kEndBound);
+    exchange_until([&] { return std::all_of(links_.begin(), links_.end(), over); }, kHostsEndBound);
   } catch (const std::exception&) {  // the agents end by themselves
   }
 }
@@ -167,7 +166,7 @@ void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs
     wait_();
   }
   for (const auto& link : links_) {
-    const Json& description = link->description();
+    const nlohmann::json& description = link->description();
     print_(fmt::format("host {}: {} {}, {} cores", link->name(), description.value("host", ""),
                        description.value("ip", ""), description.value("cores", 0)));
   }
@@ -225,13 +224,13 @@ void HostSet::finish() {
                       link->name(), manifest_.patience_s));
     link->end();
   }
-  exchange_until([&] { return all([](const HostLink& link) { return link.ended(); }); }, kEndBound);
+  exchange_until([&] { return all([](const HostLink& link) { return link.ended(); }); }, kHostsEndBound);
 }
 
 nlohmann::ordered_json HostSet::report() const {
   if (links_.empty()) return nullptr;
   nlohmann::ordered_json hosts;
-  const auto add = [&](const std::string& name, const Json& description, const std::string& ssh) {
+  const auto add = [&](const std::string& name, const nlohmann::json& description, const std::string& ssh) {
     auto& entry = hosts[name];
     for (const char* key : {"host", "ip", "cores", "release", "idl_hash", "numeric_profile", "libraries"}) {
       if (description.contains(key)) entry[key] = description[key];

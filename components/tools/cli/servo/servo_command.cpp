@@ -23,7 +23,7 @@ namespace {
 
 using dynamixel::kBaudRates;
 
-struct Options {
+struct ServoOptions {
   std::string port;
   std::uint32_t baud = 4'000'000;
   bool every_baud = false;
@@ -53,7 +53,7 @@ void print_devices(ServoAccess& access, const std::vector<FoundServo>& found) {
   }
 }
 
-int scan(const Options& options) {
+int scan(const ServoOptions& options) {
   std::size_t count = 0;
   for (const std::uint32_t baud : kBaudRates) {
     if (!options.every_baud && baud != options.baud) continue;
@@ -72,7 +72,7 @@ int scan(const Options& options) {
 }
 
 /// The servos that --id or --all names. Throws UsageError if both or neither is given.
-std::vector<FoundServo> chosen(ServoAccess& access, const Options& options) {
+std::vector<FoundServo> chosen(ServoAccess& access, const ServoOptions& options) {
   if (options.id.has_value() == options.all) throw UsageError("servo: found both or neither, accepted --id N or --all");
   if (options.id) return {access.find(static_cast<std::uint8_t>(*options.id))};
   std::vector<FoundServo> servos = access.scan();
@@ -81,7 +81,7 @@ std::vector<FoundServo> chosen(ServoAccess& access, const Options& options) {
   return servos;
 }
 
-int torque(const Options& options) {
+int torque(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   for (const FoundServo& servo : chosen(access, options)) {
     const auto errors = static_cast<std::uint8_t>(access.read(servo, "hardware_error_status"));
@@ -105,7 +105,7 @@ int torque(const Options& options) {
 }
 
 /// The servo of `id` and `baud`. Throws if it does not answer or its EEPROM is locked.
-FoundServo unlocked_servo(ServoAccess& access, const Options& options) {
+FoundServo unlocked_servo(ServoAccess& access, const ServoOptions& options) {
   const FoundServo servo = access.find(static_cast<std::uint8_t>(*options.id));
   if (access.read(servo, "torque_enable") == 0) return servo;
   throw std::runtime_error(
@@ -114,7 +114,7 @@ FoundServo unlocked_servo(ServoAccess& access, const Options& options) {
                   servo.id, options.port, options.baud, servo.id));
 }
 
-int change_id(const Options& options) {
+int change_id(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   const auto to = static_cast<std::uint8_t>(options.to);
   if (to != *options.id && access.answers(to))
@@ -131,7 +131,7 @@ int change_id(const Options& options) {
   return exit_status::kOk;
 }
 
-int change_baud(const Options& options) {
+int change_baud(const ServoOptions& options) {
   const auto rate = std::find(std::begin(kBaudRates), std::end(kBaudRates), options.to_baud);
   {
     ServoAccess access(options.port, options.baud);
@@ -146,7 +146,7 @@ int change_baud(const Options& options) {
   return exit_status::kOk;
 }
 
-int limits(const Options& options) {
+int limits(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   for (const FoundServo& servo : chosen(access, options)) {
     const auto set = [&](const char* name, double value, double unit) {
@@ -171,7 +171,7 @@ int limits(const Options& options) {
   return exit_status::kOk;
 }
 
-int zero(const Options& options) {
+int zero(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   fmt::print("# For the bus file, if each joint is at its angle 0 now:\njoints:\n");
   for (const FoundServo& servo : chosen(access, options)) {
@@ -183,7 +183,7 @@ int zero(const Options& options) {
   return exit_status::kOk;
 }
 
-int monitor(const Options& options) {
+int monitor(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   const std::vector<FoundServo> servos = chosen(access, options);
   catch_interrupts();
@@ -212,7 +212,7 @@ CLI::IsMember known_baud() {
 }
 
 CLI::App* add(CLI::App& group, const std::string& name, const std::string& what, Action& action, bool one_or_all,
-              const std::shared_ptr<Options>& options, int (*run)(const Options&)) {
+              const std::shared_ptr<ServoOptions>& options, int (*run)(const ServoOptions&)) {
   CLI::App* sub = add_subcommand(group, name, what, action, options, run);
   sub->add_option("--port", options->port, "serial port, for example /dev/ttyUSB0")->required();
   sub->add_option("--baud", options->baud, "[bit/s] baud rate of the servos")
@@ -227,7 +227,7 @@ CLI::App* add(CLI::App& group, const std::string& name, const std::string& what,
 }  // namespace
 
 void add_servo(CLI::App& app, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ServoOptions>();
   CLI::App* group = add_group(app, "servo", "commission the servos at a serial port");
   add(*group, "scan", "list the devices that answer", action, false, options, scan)
       ->add_flag("--every-baud", options->every_baud, "try every baud rate (6 s)");
