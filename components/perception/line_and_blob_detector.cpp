@@ -70,7 +70,10 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
 }
 
 Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                     const ObjectSizes& sizes, const Change& change) {
+                                     const ObjectSizes& seen_sizes, const Change& change) {
+  const ObjectSizes sizes = config_.object_radius_m > 0.0
+                                ? seen_sizes.with_prior(config_.object_radius_m, config_.object_height_m)
+                                : seen_sizes;
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
   find_regions(labels_, camera, config_, line_colour, region_buffers_, regions_);

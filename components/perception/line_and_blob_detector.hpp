@@ -34,10 +34,10 @@ class LineAndBlobDetector {
   /// Changes percepts before they are drawn into the picture.
   using Change = std::function<void(msg::LinePercept&, msg::ObjectPercepts&)>;
 
-  /// `rgb`: CV_8UC3 of the camera's size. `sizes`: what earlier images have shown. The caller fills in exposure_tick
-  /// and the headers of the percepts.
+  /// `rgb`: CV_8UC3 of the camera's size. `seen_sizes`: what earlier images have shown. The caller fills in
+  /// exposure_tick and the headers of the percepts.
   [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                const ObjectSizes& sizes = {}, const Change& change = {});
+                                const ObjectSizes& seen_sizes = {}, const Change& change = {});
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 

@@ -42,6 +42,14 @@ struct ObjectSizes {
       size.height_m += (now.height_m - size.height_m) / size.images;
     }
   }
+  /// The same, with `radius_m` and `height_m` for the colours of which too few images have shown an object.
+  [[nodiscard]] ObjectSizes with_prior(double radius_m, double height_m) const {
+    ObjectSizes sizes = *this;
+    for (ObjectSize& size : sizes.of) {
+      if (!size.known()) size = {radius_m, height_m, ObjectSize::kEnoughImages};
+    }
+    return sizes;
+  }
   template <class Archive>
   void serialize(Archive& archive) {
     archive(of);

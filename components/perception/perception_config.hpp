@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "component/mission.hpp"
 #include "configuration/parameter_set.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/messages.hpp"
@@ -33,6 +34,8 @@ struct PerceptionConfig : ParameterSet {
                               "Longest hidden stretch of the line that is bridged");
   double object_height_m = add(object_height_m, "object.height_m", 0.15, "m", {0.02, 2.0}, kWhileRunning,
                                "Height of an object whose height no image has shown yet");
+  double object_radius_m = add(object_radius_m, "object.radius_m", 0.0, "m", {0.0, 2.0}, kWhileRunning,
+                               "Radius of an object whose size no image has shown yet; 0: unknown");
   double object_max_radius_m = add(object_max_radius_m, "object.max_radius_m", 0.2, "m", {0.02, 2.0}, kWhileRunning,
                                    "No object is larger: what is wider and below the horizon is a zone");
   int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, kWhileRunning,
@@ -53,6 +56,14 @@ struct PerceptionConfig : ParameterSet {
       HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
       add_hues(msg::kColourBlue, 195.0, 262.0), add_hues(msg::kColourYellow, 42.0, 72.0)};
   PerceptErrorConfig errors = add_section(errors, "error");
+
+  /// Takes over what the mission states to be known beforehand.
+  void know(const PriorKnowledge& known) {
+    object_height_m = known.object_height_m.value_or(object_height_m);
+    object_radius_m = known.object_radius_m.value_or(object_radius_m);
+    object_max_radius_m = known.object_max_radius_m.value_or(object_max_radius_m);
+    line_width_m = known.line_width_m.value_or(line_width_m);
+  }
 
  private:
   /// By number; "unknown" has no name here, because no file may ask for it.

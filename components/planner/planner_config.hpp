@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "component/mission.hpp"
 #include "configuration/parameter_set.hpp"
 #include "constrictor/constants.hpp"
 
@@ -90,19 +92,15 @@ struct PlannerConfig : ParameterSet {
   }
 };
 
-/// The configuration from the planner's file, with `sequence` and `line_colour` of the mission, which is YAML on one
-/// line (Setup::mission). An empty mission leaves the values of the file. Throws ConfigurationError.
+/// The configuration from the planner's file, with what the mission states (Setup::mission). An empty mission leaves
+/// the values of the file. Throws ConfigurationError.
 [[nodiscard]] inline PlannerConfig load_planner_config(const std::filesystem::path& file, const std::string& mission) {
   auto config = load_parameters<PlannerConfig>(file);
-  if (mission.empty()) return config;
-  Configuration root = Configuration::parse(mission, "--mission");
-  const std::vector<std::string> colours = names_of(constants::kColour, msg::kColourGreen);
-  config.sequence.clear();
-  for (const std::string& colour : root.texts("sequence", colours))
-    config.sequence.push_back(*value_of(constants::kColour, colour));
-  config.line_colour = *value_of(constants::kColour, root.text("line_colour", colours));
-  config.complete(root);
-  root.finish();
+  if (const std::optional<Mission> stated = parse_mission(mission)) {
+    config.sequence = stated->sequence;
+    config.line_colour = stated->line_colour;
+    if (stated->known.zone_radius_m) config.zone_radius_m = *stated->known.zone_radius_m;
+  }
   return config;
 }
 

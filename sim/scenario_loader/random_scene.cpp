@@ -88,14 +88,14 @@ bool line_meets_itself(const std::vector<Vector2d>& line_m) {
 }
 
 /// The line, the objects of the mission, the zones and the start. They may stand in each other's way.
-Scenario draw_scene(const RandomScene& ranges, const RandomMission& mission, Scenario scene, Random& random) {
+Scenario draw_scene(const RandomScene& ranges, const Mission& mission, Scenario scene, Random& random) {
   const LinePath path = make_line_path({{kStart_m, 0.0}, 0.0}, draw_line(ranges, random), kMostLinePoints);
   scene.line_m = path.points_m;
   scene.line_colour = mission.line_colour;
   scene.start_m = {0.0, 0.0};
   scene.start_yaw_rad = 0.0;
   double ahead_m = kFirstObject_m;
-  for (const std::uint8_t colour : mission.colours) {
+  for (const std::uint8_t colour : mission.sequence) {
     ScenarioObject object = draw_object(ranges, colour, random);
     const double side = random.coin() ? 1.0 : -1.0;
     const double along_m = ahead_m + random.uniform(-kJitter_m, kJitter_m);
@@ -105,7 +105,7 @@ Scenario draw_scene(const RandomScene& ranges, const RandomMission& mission, Sce
     ahead_m += kObjectSpacing_m;
   }
   double side = random.coin() ? 1.0 : -1.0;
-  for (const std::uint8_t colour : mission.colours) {
+  for (const std::uint8_t colour : mission.sequence) {
     if (std::any_of(scene.zones.begin(), scene.zones.end(), [&](const auto& zone) { return zone.colour == colour; }))
       continue;
     const double radius_m = draw(ranges.zone_radius_m, random);
@@ -176,15 +176,15 @@ std::optional<Vector2d> draw_place(const Scenario& scene, std::size_t mission_ob
 }
 
 /// A colour that neither the mission nor the line has.
-std::uint8_t strange_colour(const RandomMission& mission) {
+std::uint8_t strange_colour(const Mission& mission) {
   std::uint8_t colour = msg::kColourGreen;
-  while (colour == mission.line_colour || std::count(mission.colours.begin(), mission.colours.end(), colour) > 0)
+  while (colour == mission.line_colour || std::count(mission.sequence.begin(), mission.sequence.end(), colour) > 0)
     ++colour;
   return colour;
 }
 
 /// Adds strangers and pegs. Returns false if there is no room for them.
-bool add_others(const RandomScene& ranges, const RandomMission& mission, Scenario& scene, Random& random) {
+bool add_others(const RandomScene& ranges, const Mission& mission, Scenario& scene, Random& random) {
   const std::size_t mission_objects = scene.objects.size();
   std::vector<Vector2d> taken;
   for (int i = 0; i < ranges.strangers; ++i) {
@@ -234,7 +234,7 @@ RandomScene read_random_scene(Configuration from) {
   return scene;
 }
 
-std::optional<Scenario> make_random_scene(const RandomScene& ranges, const RandomMission& mission, const Scenario& base,
+std::optional<Scenario> make_random_scene(const RandomScene& ranges, const Mission& mission, const Scenario& base,
                                           std::uint64_t seed) {
   constexpr int kMostDraws = 200;
   for (int attempt = 0; attempt < kMostDraws; ++attempt) {

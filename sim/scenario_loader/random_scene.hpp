@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "component/mission.hpp"
 #include "configuration/configuration.hpp"
 #include "sim/scenario_loader/scenario.hpp"
 
@@ -28,18 +29,13 @@ struct RandomScene {
 /// Reads the section. Throws ConfigurationError.
 [[nodiscard]] RandomScene read_random_scene(Configuration from);
 
-/// What a random scene is made for.
-struct RandomMission {
-  std::vector<std::uint8_t> colours;  ///< of the objects in the order of retrieval, of at most kMostRandomZones colours
-  std::uint8_t line_colour = 0;
-};
 inline constexpr std::size_t kMostRandomZones = 2;  ///< one on each side of the start
 
 /// A scene without overlapping bodies in which the mission is possible; empty if 200 draws have found none. `base`:
 /// what does not depend on the draw. The objects stand beyond the end of the line, one behind the other; the zones lie
 /// on both sides of the start, which is that of the case study; pegs and strangers keep off the robot's way. Equal
 /// arguments give equal scenes.
-[[nodiscard]] std::optional<Scenario> make_random_scene(const RandomScene& ranges, const RandomMission& mission,
+[[nodiscard]] std::optional<Scenario> make_random_scene(const RandomScene& ranges, const Mission& mission,
                                                         const Scenario& base, std::uint64_t seed);
 
 }  // namespace constrictor

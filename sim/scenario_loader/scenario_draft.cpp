@@ -108,27 +108,27 @@ void read_bodies(Configuration& root, ScenarioDraft& draft) {
 
 /// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the
 /// launcher passes this section of the file to the planner.
-void check_mission(Configuration mission, const Scenario& scenario) {
-  const std::vector<std::string> sequence = mission.texts("sequence", colours());
-  for (const std::string& colour : sequence) {
-    const std::uint8_t number = colour_number(colour);
-    const auto has_colour = [number](const auto& body) { return body.colour == number; };
+void check_mission(const Configuration& section, const Scenario& scenario) {
+  const Mission mission = read_mission(section);
+  const std::vector<std::uint8_t>& sequence = mission.sequence;
+  for (const std::uint8_t colour : sequence) {
+    const auto has_colour = [colour](const auto& body) { return body.colour == colour; };
     const auto wanted = std::count(sequence.begin(), sequence.end(), colour);
     const auto found = std::count_if(scenario.objects.begin(), scenario.objects.end(), has_colour);
+    const char* name = name_of(constants::kColour, colour);
     if (found < wanted) {
-      throw mission.error("sequence", fmt::format("found {} {} times, accepted at most the number of {} objects, {}",
-                                                  colour, wanted, colour, found));
+      throw section.error("sequence", fmt::format("found {} {} times, accepted at most the number of {} objects, {}",
+                                                  name, wanted, name, found));
     }
     if (std::none_of(scenario.zones.begin(), scenario.zones.end(), has_colour)) {
-      throw mission.error("sequence", fmt::format("found {}, accepted colours for which there is a zone", colour));
+      throw section.error("sequence", fmt::format("found {}, accepted colours for which there is a zone", name));
     }
   }
-  const std::string line_colour = mission.text("line_colour", colours());
-  if (colour_number(line_colour) != scenario.line_colour) {
-    throw mission.error("line_colour", fmt::format("found {}, accepted the colour of the line, {}", line_colour,
+  if (mission.line_colour != scenario.line_colour) {
+    throw section.error("line_colour", fmt::format("found {}, accepted the colour of the line, {}",
+                                                   name_of(constants::kColour, mission.line_colour),
                                                    name_of(constants::kColour, scenario.line_colour)));
   }
-  mission.finish();
 }
 
 void read_perturbations(Configuration& root, Scenario& scenario) {
@@ -221,24 +221,18 @@ Variation read_variation(Configuration from) {
 }
 
 /// The mission of a random scene, for which the scene is made.
-RandomMission read_random_mission(Configuration mission) {
-  RandomMission wanted;
-  for (const std::string& colour : mission.texts("sequence", colours()))
-    wanted.colours.push_back(colour_number(colour));
-  wanted.line_colour = colour_number(mission.text("line_colour", colours()));
-  std::vector<std::uint8_t> distinct = wanted.colours;
+Mission read_random_mission(const Configuration& section) {
+  const Mission mission = read_mission(section);
+  std::vector<std::uint8_t> distinct = mission.sequence;
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  if (wanted.colours.empty() || wanted.colours.size() > kMostRandomObjects || distinct.size() > kMostRandomZones) {
-    throw mission.error("sequence",
+  if (distinct.empty() || mission.sequence.size() > kMostRandomObjects || distinct.size() > kMostRandomZones) {
+    throw section.error("sequence",
                         fmt::format("found {} colours, {} of them different, accepted 1 to {} colours, at "
                                     "most {} of them different",
-                                    wanted.colours.size(), distinct.size(), kMostRandomObjects, kMostRandomZones));
+                                    mission.sequence.size(), distinct.size(), kMostRandomObjects, kMostRandomZones));
   }
-  if (std::count(distinct.begin(), distinct.end(), wanted.line_colour) > 0)
-    throw mission.error("line_colour", "found the colour of an object, accepted another colour");
-  mission.finish();
-  return wanted;
+  return mission;
 }
 
 void read_random(Configuration& root, ScenarioDraft& draft) {

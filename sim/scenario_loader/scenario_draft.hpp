@@ -43,7 +43,7 @@ struct ScenarioDraft {
   Placement start;
   Variation variation;
   std::optional<RandomScene> random;  ///< the seed draws the whole scene; the placements and the variation are empty
-  RandomMission mission;              ///< of a random scene
+  Mission mission;                    ///< of a random scene
 };
 
 /// Reads and checks the keys of a scenario file. Throws ConfigurationError.

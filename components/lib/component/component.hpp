@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "component/mission.hpp"
 #include "component/ports.hpp"
 #include "component/stateful.hpp"
 #include "configuration/parameter_set.hpp"
@@ -47,7 +48,7 @@ struct Setup {
   std::filesystem::path
       config_file;  ///< the component's own YAML; if empty, the runtime sets the default of the factory
   std::filesystem::path output_dir;  ///< for components that write files (report); may be empty
-  std::string mission;               ///< for the planner, as YAML on one line; empty: the scenario states no mission
+  std::string mission;               ///< YAML on one line, see mission.hpp; empty: the scenario states no mission
   double max_sim_time_s = 0.0;       ///< [s] simulated time at which the plant ends the run; 0: never
   std::uint64_t seed = 1;            ///< of the epoch
   std::uint16_t robot_id = 1;        ///< key of every message of this robot
@@ -80,6 +81,16 @@ class Component {
 template <class State>
 using StatefulComponent = Stateful<Component, State>;
 
+/// A component's configuration from its own file. If `Config` has a member `know(const PriorKnowledge&)`, it then takes
+/// over what the mission states to be known beforehand. Throws ConfigurationError.
+template <class Config>
+[[nodiscard]] Config load_configuration(const Setup& setup) {
+  auto config = load_parameters<Config>(setup.config_file);
+  if constexpr (requires(const PriorKnowledge& known) { config.know(known); })
+    config.know(prior_knowledge(setup.mission));
+  return config;
+}
+
 /// A stateful component with a configuration file. Configuration and wiring are there before the members of the derived
 /// class, which can therefore be initialised where they are declared:
 ///
@@ -88,9 +99,9 @@ template <class State, class Config>
 class ConfiguredComponent : public StatefulComponent<State> {
  protected:
   ConfiguredComponent(Wiring& wiring, Config config) : wiring_(wiring), config_(std::move(config)) {}
-  /// Reads the configuration from the component's own file. Throws ConfigurationError.
+  /// Reads the configuration as load_configuration() does. Throws ConfigurationError.
   ConfiguredComponent(Wiring& wiring, const Setup& setup)
-      : ConfiguredComponent(wiring, load_parameters<Config>(setup.config_file)) {}
+      : ConfiguredComponent(wiring, load_configuration<Config>(setup)) {}
 
   Wiring& wiring_;
   Config config_;

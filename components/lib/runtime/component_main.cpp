@@ -123,8 +123,9 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   app.add_option("--robot", options.setup.robot_file, "robot file (YAML)");
   app.add_option("--scenario", options.setup.scenario_file,
                  "scenario file (YAML); only components of the simulation read it");
-  app.add_option("--mission", options.setup.mission,
-                 "mission (YAML), for example '{sequence: [green, red], line_colour: blue}'; only planners read it");
+  app.add_option(
+      "--mission", options.setup.mission,
+      "mission (YAML), for example '{sequence: [green, red], line_colour: blue, known: {zone_radius_m: 0.4}}'");
   app.add_option("--seed", options.setup.seed, "seed of the run");
   app.add_option("--output", options.setup.output_dir, "folder for the files that this process writes");
   app.add_option("--config", config_files,

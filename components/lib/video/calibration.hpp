@@ -18,9 +18,9 @@ struct CameraCalibration {
   int width = 0;                                  ///< [pixel] of the images for which the model holds
   int height = 0;                                 ///< [pixel]
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  ///< [pixel]
-  std::vector<double> distortion;                 ///< k1 k2 p1 p2, then k3, then k4 k5 k6: 0, 4, 5 or 8 numbers
+  std::vector<double> distortion{};               ///< k1 k2 p1 p2, then k3, then k4 k5 k6: 0, 4, 5 or 8 numbers
   Eigen::Isometry3d X_HC = Eigen::Isometry3d::Identity();  ///< camera in the head
-  std::optional<double> reprojection_error_px;             ///< root mean square, as the calibration found it
+  std::optional<double> reprojection_error_px{};           ///< root mean square, as the calibration found it
 
   /// The same camera with images of another size. Throws std::invalid_argument if the proportions differ.
   [[nodiscard]] CameraCalibration scaled_to(int new_width, int new_height) const;

@@ -18,13 +18,13 @@ void run(PartPort& port, const PartSetting& setting, Report& report) {
 
 void run_planner(PartPort& port, const PartSetting& setting, Report& report) {
   const auto profile = load_parameters<PlannerProfile>(setting.profile);
-  PlannerConformance(port, PlannerMission::parse(setting.mission), profile, report).run();
+  PlannerConformance(port, mission_of(setting.mission), profile, report).run();
 }
 
 void run_camera(PartPort& port, const PartSetting& setting, Report& report) {
   auto profile = load_parameters<CameraProfile>(setting.profile);
   if (profile.colour == msg::kColourUnknown && !setting.mission.empty())
-    profile.colour = PlannerMission::parse(setting.mission).line_colour;
+    profile.colour = mission_of(setting.mission).line_colour;
   CameraConformance(port, setting.robot, profile, setting.may_move, report).run();
 }
 

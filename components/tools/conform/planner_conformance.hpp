@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "component/mission.hpp"
 #include "conform/planner_hand.hpp"
 #include "conform/planner_profile.hpp"
 #include "conform/report.hpp"
@@ -20,18 +21,14 @@ namespace constrictor::conform {
 [[nodiscard]] inline const char* colour_name(std::uint8_t colour) { return name_of(constants::kColour, colour); }
 [[nodiscard]] inline const char* task_name(std::uint8_t task) { return name_of(constants::kTask, task); }
 
-/// The mission that the planner was given.
-struct PlannerMission {
-  std::vector<std::uint8_t> sequence = {msg::kColourGreen, msg::kColourRed};
-  std::uint8_t line_colour = msg::kColourBlue;
-  /// That of a scenario, as YAML on one line; empty: the default. Throws ConfigurationError.
-  [[nodiscard]] static PlannerMission parse(const std::string& yaml);
-};
+/// The mission that the planner was given: that of a scenario, as YAML on one line; if the text is empty, first green,
+/// then red, along a blue line. Throws ConfigurationError.
+[[nodiscard]] Mission mission_of(const std::string& yaml);
 
 class PlannerConformance {
  public:
   /// All arguments must outlive this object.
-  PlannerConformance(PartPort& port, PlannerMission mission, const PlannerProfile& profile, Report& report)
+  PlannerConformance(PartPort& port, Mission mission, const PlannerProfile& profile, Report& report)
       : port_(port), mission_(std::move(mission)), profile_(profile), report_(report) {
     hand_.emplace(port);
   }
@@ -64,7 +61,7 @@ class PlannerConformance {
   bool brings_object_to(std::size_t index);
 
   PartPort& port_;
-  PlannerMission mission_;
+  Mission mission_;
   const PlannerProfile& profile_;
   Report& report_;
   std::optional<PlannerHand> hand_;  ///< anew in each epoch

@@ -40,18 +40,8 @@ std::vector<Check> planner_checks() {
   };
 }
 
-PlannerMission PlannerMission::parse(const std::string& yaml) {
-  PlannerMission mission;
-  if (yaml.empty()) return mission;
-  Configuration root = Configuration::parse(yaml, "mission");
-  const std::vector<std::string> colours = names_of(constants::kColour, 1);
-  const auto colour_of = [](const std::string& name) { return value_of(constants::kColour, name).value(); };
-  if (root.has("sequence")) {
-    mission.sequence.clear();
-    for (const auto& name : root.texts("sequence", colours)) mission.sequence.push_back(colour_of(name));
-  }
-  if (root.has("line_colour")) mission.line_colour = colour_of(root.text("line_colour", colours));
-  return mission;
+Mission mission_of(const std::string& yaml) {
+  return parse_mission(yaml).value_or(Mission{{msg::kColourGreen, msg::kColourRed}, msg::kColourBlue, {}});
 }
 
 void PlannerConformance::run() {

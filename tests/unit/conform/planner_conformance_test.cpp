@@ -19,7 +19,7 @@ Report examine_planner(const std::string& fault,
   const PlannerProfile profile;
   testing::LocalPart port("planner", testing::faulty_planner(fault), setup);
   Report report(planner_checks());
-  PlannerConformance(port, PlannerMission::parse(mission), profile, report).run();
+  PlannerConformance(port, mission_of(mission), profile, report).run();
   return report;
 }
 
@@ -38,7 +38,7 @@ TEST(PlannerConformance, OtherMissionsPass) {
 }
 
 TEST(PlannerConformance, RefusesAMissionOfUnknownColours) {
-  EXPECT_THROW(static_cast<void>(PlannerMission::parse("{sequence: [pink]}")), ConfigurationError);
+  EXPECT_THROW(static_cast<void>(mission_of("{sequence: [pink], line_colour: blue}")), ConfigurationError);
 }
 
 class FindsTheFaultOfAPlanner : public ::testing::TestWithParam<testing::NamedFault> {};

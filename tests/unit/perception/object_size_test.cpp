@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "lit_scene.hpp"
@@ -137,6 +138,36 @@ TEST(ObjectSize, ALowObjectOfKnownSizeIsFoundOnAZoneOfItsColour) {
       EXPECT_NEAR(object->range_m, scene.rounds[1].centre.norm() - 0.085, 0.05);
     }
   }
+}
+
+TEST(ObjectSize, TheStatedSizeCountsUntilImagesHaveShownAnother) {
+  perception::PerceptionConfig config;
+  PriorKnowledge stated;
+  stated.object_radius_m = 0.085;
+  stated.object_height_m = 0.06;
+  config.know(stated);
+  perception::LineAndBlobDetector detector(config);
+  const msg::CameraInfo info = test::camera_info();
+  const test::Head head;
+  const perception::GroundCamera camera(info, test::orientation(head), head.height_m);
+  const auto object_in = [&](const Scene& scene, const ObjectSizes& seen) {
+    const Percepts percepts = detector.detect(test::draw(scene, info, head), camera, msg::kColourBlue, seen);
+    const msg::Blob* object = find(percepts, msg::kBlobObject);
+    return object ? std::optional(*object) : std::nullopt;
+  };
+
+  Scene low;  // on a zone of its colour, where no image shows the size
+  low.rounds = {Round{msg::kColourGreen, {0.7, 0.05}, 0.3}, Round{msg::kColourGreen, {0.7, 0.05}, 0.085, 0.06}};
+  const auto found = object_in(low, {});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->range_m, low.rounds[1].centre.norm() - 0.085, 0.05);
+
+  Scene tall;
+  tall.rounds = {Round{msg::kColourGreen, {0.7, 0.0}, 0.3}, Round{msg::kColourGreen, {0.7, 0.0}, 0.06, 0.3}};
+  const auto misjudged = object_in(tall, {}), judged = object_in(tall, known(0.06, 0.3));
+  ASSERT_TRUE(misjudged && judged);
+  EXPECT_NEAR(judged->range_m, 0.7 - 0.06, 0.05);
+  EXPECT_NEAR(misjudged->range_m, 0.085 * (0.7 / 0.06 - 1.0), 0.1) << "by its width, as if it were larger";
 }
 
 }  // namespace

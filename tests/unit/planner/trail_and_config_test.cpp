@@ -112,9 +112,11 @@ TEST(PlannerConfig, TheMissionOfTheScenarioTakesPrecedence) {
   EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourYellow}));
   EXPECT_EQ(config.line_colour, msg::kColourRed);
   EXPECT_EQ(load_planner_config({}, "").sequence.size(), 2U);
+  EXPECT_EQ(load_planner_config({}, "{sequence: [red], line_colour: blue, known: {zone_radius_m: 0.25}}").zone_radius_m,
+            0.25);
   EXPECT_TRUE(load_planner_config({}, "{sequence: [], line_colour: blue}").sequence.empty());
   for (const auto& [mission, message] : {std::pair{"{sequence: [pink], line_colour: blue}", "--mission:1: sequence"},
-                                         {"{sequence: [blue], line_colour: blue}", "accepted other colours"},
+                                         {"{sequence: [blue], line_colour: blue}", "found the colour of an object"},
                                          {"{sequence: [green], line_color: blue}", "line_colo"}}) {
     try {
       static_cast<void>(load_planner_config({}, mission));

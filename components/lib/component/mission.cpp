@@ -1,0 +1,47 @@
+#include "component/mission.hpp"
+
+#include <algorithm>
+
+namespace constrictor {
+namespace {
+
+PriorKnowledge read_knowledge(Configuration root) {
+  PriorKnowledge known;
+  const auto read = [&root](const char* key, Range accepted, std::optional<double>& value) {
+    if (root.has(key)) value = root.number(key, accepted);
+  };
+  read("object_height_m", {0.02, 2.0}, known.object_height_m);
+  read("object_radius_m", {0.01, 2.0}, known.object_radius_m);
+  read("object_max_radius_m", {0.02, 2.0}, known.object_max_radius_m);
+  read("zone_radius_m", {0.05, 5.0}, known.zone_radius_m);
+  read("line_width_m", {0.01, 0.3}, known.line_width_m);
+  root.finish();
+  return known;
+}
+
+}  // namespace
+
+Mission read_mission(Configuration root) {
+  const std::vector<std::string> colours = names_of(constants::kColour, msg::kColourGreen);
+  Mission mission;
+  for (const std::string& colour : root.texts("sequence", colours))
+    mission.sequence.push_back(*value_of(constants::kColour, colour));
+  mission.line_colour = *value_of(constants::kColour, root.text("line_colour", colours));
+  if (std::count(mission.sequence.begin(), mission.sequence.end(), mission.line_colour) > 0)
+    throw root.error("line_colour", "found the colour of an object, accepted another colour");
+  if (root.has("known")) mission.known = read_knowledge(root.section("known"));
+  root.finish();
+  return mission;
+}
+
+std::optional<Mission> parse_mission(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return read_mission(Configuration::parse(text, "--mission"));
+}
+
+PriorKnowledge prior_knowledge(const std::string& text) {
+  const std::optional<Mission> mission = parse_mission(text);
+  return mission ? mission->known : PriorKnowledge{};
+}
+
+}  // namespace constrictor
