@@ -35,6 +35,7 @@ void update_line_tracker(const LineTrackerConfig& config, const msg::LinePercept
   if (shown) {
     state.offset_m = offset_m;
     if (std::isfinite(percept.heading_rad)) state.heading_rad = percept.heading_rad;
+    if (std::isfinite(percept.curvature_1_m)) state.curvature_1_m = percept.curvature_1_m;
     state.seen_tick = percept.exposure_tick;
     if (percept.end_visible && std::isfinite(percept.end_distance_m)) {
       state.end_distance_m = percept.end_distance_m;

@@ -11,12 +11,13 @@ namespace constrictor {
 struct LineTrackerState : Visibility {
   double offset_m = 0.0;  ///< lateral offset at the lookahead in the newest image with the line, positive left
   double heading_rad = 0.0;
+  double curvature_1_m = 0.0;
   double end_distance_m = 1e9;  ///< to the end of the line as last seen; 1e9: not seen
   std::int64_t seen_tick = -1;  ///< exposure of the newest image with the line
   int end_seen = 0;             ///< consecutive images that showed the end of the line
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(seen, missed, visible, offset_m, heading_rad, end_distance_m, seen_tick, end_seen);
+    archive(seen, missed, visible, offset_m, heading_rad, curvature_1_m, end_distance_m, seen_tick, end_seen);
   }
 };
 

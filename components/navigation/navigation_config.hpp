@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <string>
 
+#include "component/mission.hpp"
 #include "configuration/parameter_set.hpp"
 #include "navigation/line_tracker.hpp"
 #include "navigation/object_tracker.hpp"
 #include "navigation/pid.hpp"
+#include "navigation/sliding_steering.hpp"
 
 namespace constrictor {
 
@@ -84,8 +86,14 @@ struct GripConfig : ParameterSet {
                              "Weakest force that counts as a touch");
 };
 
+inline constexpr std::uint8_t kSteerByPid = 0;          ///< FollowLineConfig::law
+inline constexpr std::uint8_t kSteerBySlidingMode = 1;  ///< FollowLineConfig::law
+
 struct FollowLineConfig : NavigationSection {
+  std::uint8_t law = add(law, "law", kSteerByPid, {"pid", "sliding_mode"}, kWhileRunning,
+                         "Law from what the camera shows of the line to the curvature of the path");
   PidGains steering = add(steering, "steering", {4.5, 0.4, 1.0, 1.2, 0.2}, kWhileRunning, "line's offset [m]");
+  SlidingSteeringConfig sliding = add_section(sliding, "sliding_mode");
   double carry_limit_1_m = add(carry_limit_1_m, "carry_limit_1_m", 1.0, "1/m", bounds::kCurvature, kWhileRunning,
                                "Bound of the curvature while the robot carries an object");
   double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, kWhileRunning,
@@ -282,6 +290,9 @@ struct NavigationConfig : NavigationSection {
   PregraspConfig pregrasp = add_section(pregrasp, "pregrasp");
   GraspConfig grasp = add_section(grasp, "grasp");
   DropConfig drop = add_section(drop, "drop");
+
+  /// Takes over what the mission states to be known beforehand.
+  void know(const PriorKnowledge& known) { object.zone_radius_m = known.zone_radius_m.value_or(object.zone_radius_m); }
 };
 
 }  // namespace constrictor

@@ -4,7 +4,7 @@
 
 namespace constrictor {
 
-void Steering::observe(double time_s, double error, double period_s, SteeringState& state) const {
+void Steering::observe(double time_s, double error, double period_s, SteeringState& state) {
   if (std::isfinite(error)) state.samples.emplace_back(time_s, error);
   while (!state.samples.empty() && state.samples.front().first < time_s - period_s) state.samples.pop_front();
 }

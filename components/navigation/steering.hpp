@@ -24,7 +24,7 @@ class Steering {
  public:
   explicit Steering(const PidGains& gains) : gains_(gains) {}
   /// Adds an observation of the error and discards those older than `period_s`. A non-finite error is ignored.
-  void observe(double time_s, double error, double period_s, SteeringState& state) const;
+  static void observe(double time_s, double error, double period_s, SteeringState& state);
   /// Mean of the observations; 0 without observations.
   [[nodiscard]] static double mean_error(const SteeringState& state);
   /// [1/m] curvature for the present mean error; advances the PID by `dt_s`.

@@ -1,9 +1,10 @@
-// Follow line (Tables I, II): a PID on the line's lateral offset ahead steers the undulation, with or without an object
-// in the U.
+// Follow line (Tables I, II): a PID on the line's lateral offset ahead, or sliding mode control of the heading, steers
+// the undulation, with or without an object in the U.
 #include <algorithm>
 #include <cmath>
 
 #include "navigation/motions.hpp"
+#include "navigation/sliding_steering.hpp"
 #include "navigation/steering.hpp"
 
 namespace constrictor {
@@ -12,13 +13,14 @@ namespace {
 struct FollowLineState {
   LineTrackerState line;
   SteeringState steering;
+  SlidingSteeringState sliding;
   bool found = false;        ///< the event "line found" was sent
   double travelled_m = 0.0;  ///< largest distance from the start, for the progress
   PlanarPose start;          ///< the head at the start
   double curvature_1_m = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(line, steering, found, travelled_m, start, curvature_1_m);
+    archive(line, steering, sliding, found, travelled_m, start, curvature_1_m);
   }
 };
 
@@ -32,19 +34,16 @@ class FollowLine : public StatefulTask<FollowLineState> {
     const Gait& gait = present_gait(config, grip);
     PidGains gains = config.follow_line.steering;
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
-    const Steering steering(gains);
     if (input.line) {
       update_line_tracker(config.line, *input.line, colour, state_.line);
-      if (state_.line.missed == 0) {
-        steering.observe(input.tick.time_s(), state_.line.offset_m, gait_period_s(gait), state_.steering);
-      }
+      if (state_.line.missed == 0) observe(input, gait_period_s(gait));
     }
     if (state_.line.visible && !state_.found) {
       state_.found = true;
       output.emit(msg::kEventLineFound, colour);
     }
     // While the line is out of view for a moment, the last curvature continues.
-    if (state_.line.missed == 0) state_.curvature_1_m = steering.curvature(input.tick.dt_s(), state_.steering);
+    if (state_.line.missed == 0) state_.curvature_1_m = curvature(config.follow_line, gains, input.tick.dt_s());
     undulate(gait, state_.curvature_1_m, 1.0, grip, output);
     output.phase = state_.line.visible ? "follow" : state_.found ? "coast" : "look";
     const double away_m = (input.X_MH.p - state_.start.p).norm();
@@ -59,6 +58,22 @@ class FollowLine : public StatefulTask<FollowLineState> {
       output.emit(msg::kEventLineLost, colour);
       output.abort("line lost");
     }
+  }
+
+ private:
+  /// Both laws observe the line, so that either may take over at any time.
+  void observe(const TaskInput& input, double period_s) {
+    const double time_s = input.tick.time_s();
+    Steering::observe(time_s, state_.line.offset_m, period_s, state_.steering);
+    const LineTrackerState& line = state_.line;
+    SlidingSteering::observe(time_s,
+                             {input.config.line.lookahead_m, line.offset_m, line.heading_rad, line.curvature_1_m},
+                             period_s, state_.sliding);
+  }
+  double curvature(const FollowLineConfig& config, const PidGains& gains, double dt_s) {
+    if (config.law == kSteerBySlidingMode)
+      return SlidingSteering(config.sliding, gains.limit).curvature(state_.sliding);
+    return Steering(gains).curvature(dt_s, state_.steering);
   }
 };
 
