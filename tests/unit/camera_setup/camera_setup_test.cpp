@@ -23,13 +23,7 @@ using namespace std::chrono_literals;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 video::CameraCalibration true_camera() {
-  video::CameraCalibration c;
-  c.width = 640;
-  c.height = 480;
-  c.fx = 420.0;
-  c.fy = 424.0;
-  c.cx = 327.0;
-  c.cy = 233.0;
+  video::CameraCalibration c{.width = 640, .height = 480, .fx = 420.0, .fy = 424.0, .cx = 327.0, .cy = 233.0};
   c.distortion = {-0.25, 0.08, 0.001, -0.0005, -0.01};
   return c;
 }

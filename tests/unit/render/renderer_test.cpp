@@ -80,13 +80,7 @@ TEST(Renderer, ProjectsPointsByThePinholeEquations) {
   RenderOptions options;
   options.shadow_map_size = 0;
   Renderer renderer(scene, options);
-  PinholeCamera camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = 170.0;
-  camera.fy = 190.0;
-  camera.cx = 150.5;
-  camera.cy = 128.0;
+  PinholeCamera camera{.width = 320, .height = 240, .fx = 170.0, .fy = 190.0, .cx = 150.5, .cy = 128.0};
   camera.X_WC = at({0.3, -0.2, 0.4}) * Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(0.1, Vector3d::UnitY()) * Eigen::AngleAxisd(-1.8, Vector3d::UnitX());
   for (const Vector3d& p_C : {Vector3d(0, 0, 1), Vector3d(0.5, -0.2, 1), Vector3d(-0.6, 0.1, 1.1),

@@ -41,10 +41,17 @@ TEST_F(ShaderCache, GivesTheSameFrame) {
   ASSERT_EQ(expected.size(), 160U * 120U * 3U);
   EXPECT_TRUE(cache_.contents().empty());
   EXPECT_EQ(frame({}), expected) << "while the cache is filled";
-  const auto filled = cache_.contents();
+  auto filled = cache_.contents();
   EXPECT_GT(filled.size(), 4U);
-  EXPECT_EQ(frame({}), expected) << "with shaders from the cache";
-  EXPECT_EQ(cache_.contents(), filled) << "nothing was compiled that the cache contains";
+  // Mesa writes in a thread of its own, which may be behind when its process ends. Then the next one adds what is
+  // missing.
+  bool complete = false;
+  for (int run = 0; run < 10 && !complete; ++run) {
+    EXPECT_EQ(frame({}), expected) << "with shaders from the cache";
+    complete = cache_.contents() == filled;
+    filled = cache_.contents();
+  }
+  EXPECT_TRUE(complete) << "shaders that are in the cache are compiled again";
 }
 
 TEST_F(ShaderCache, KeepsTheCodeOfOtherSettingsApart) {

@@ -20,13 +20,7 @@ CameraModel robots_camera() {
 }
 
 CameraCalibration example() {
-  CameraCalibration c;
-  c.width = 640;
-  c.height = 480;
-  c.fx = 512.25;
-  c.fy = 511.5;
-  c.cx = 322.125;
-  c.cy = 238.375;
+  CameraCalibration c{.width = 640, .height = 480, .fx = 512.25, .fy = 511.5, .cx = 322.125, .cy = 238.375};
   c.distortion = {-0.31, 0.12, 0.0004, -0.0002, -0.02};
   c.X_HC = calibration_of(robots_camera()).X_HC;
   c.reprojection_error_px = 0.21;

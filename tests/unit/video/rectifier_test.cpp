@@ -10,13 +10,7 @@ namespace constrictor::video {
 namespace {
 
 CameraCalibration fish_eyed(std::vector<double> distortion) {
-  CameraCalibration c;
-  c.width = 320;
-  c.height = 240;
-  c.fx = 180.0;
-  c.fy = 175.0;
-  c.cx = 163.0;
-  c.cy = 117.0;
+  CameraCalibration c{.width = 320, .height = 240, .fx = 180.0, .fy = 175.0, .cx = 163.0, .cy = 117.0};
   c.distortion = std::move(distortion);
   return c;
 }
