@@ -1,5 +1,5 @@
 // Sliding mode control of the heading along a line, with a boundary layer. It is an alternative to the PID of
-// steering.hpp; the comparison is in tests/bench/sliding_mode.
+// steering.hpp; README.md compares both.
 #pragma once
 
 #include "configuration/parameter_set.hpp"

@@ -85,6 +85,9 @@ struct PlannerConfig : ParameterSet {
   int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, kAtStart,
                            "The mission fails after more recoveries than this");
 
+  /// Takes over what the mission states to be known beforehand.
+  void know(const PriorKnowledge& known) { zone_radius_m = known.zone_radius_m.value_or(zone_radius_m); }
+
   /// Checks what spans several rows. Throws ConfigurationError.
   void complete(const Configuration& root) const {
     if (std::find(sequence.begin(), sequence.end(), line_colour) == sequence.end()) return;
@@ -99,7 +102,7 @@ struct PlannerConfig : ParameterSet {
   if (const std::optional<Mission> stated = parse_mission(mission)) {
     config.sequence = stated->sequence;
     config.line_colour = stated->line_colour;
-    if (stated->known.zone_radius_m) config.zone_radius_m = *stated->known.zone_radius_m;
+    config.know(stated->known);
   }
   return config;
 }

@@ -107,7 +107,7 @@ void read_bodies(Configuration& root, ScenarioDraft& draft) {
 }
 
 /// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the
-/// launcher passes this section of the file to the planner.
+/// launcher passes this section of the file to the components.
 void check_mission(const Configuration& section, const Scenario& scenario) {
   const Mission mission = read_mission(section);
   const std::vector<std::uint8_t>& sequence = mission.sequence;

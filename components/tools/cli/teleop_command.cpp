@@ -28,7 +28,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kScreenTurn = 50ms;  // period of the loop; much shorter than the lease
 constexpr auto kRedraw = 100ms;
 constexpr auto kEscape = 400ms;  // if no byte follows an escape character for this time, it was the escape key
 constexpr const char* kInputMissing = "not sent: `input` is missing; the launcher restarts it";
@@ -62,7 +61,7 @@ class Teleop {
     auto heard = Clock::now();
     std::string typed;
     while (interrupt_signal() == 0) {
-      if (!terminal_.read(typed, kScreenTurn)) break;
+      if (!terminal_.read(typed, kTeleopTurn)) break;
       monitor_.poll();
       observer_.poll();
       if (!over().empty()) return exit_status::kFailed;  // before poll(), which would repeat unanswered requests

@@ -20,7 +20,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-constexpr auto kDriveTurn = 50ms;  // period of the loop; much shorter than the lease
 
 DriveGait parse_drive(const std::string& text) {
   double speed_m_s = 0.0;
@@ -62,7 +61,7 @@ int teleop_drive(const std::string& speed_and_turn, const std::string& duration,
   fmt::print("driving as {}\n", client.source());
   std::fflush(stdout);
   for (const auto start = Clock::now(); Clock::now() - start < bound && interrupt_signal() == 0;) {
-    std::this_thread::sleep_for(kDriveTurn);
+    std::this_thread::sleep_for(kTeleopTurn);
     monitor.poll();
     if (!monitor.attachment().over().empty()) {
       std::fprintf(stderr, "teleop: %s\n", monitor.attachment().over().c_str());

@@ -8,6 +8,9 @@
 
 namespace constrictor::cli {
 
+/// Period of the loops of `teleop`; much shorter than the lease of its authority.
+inline constexpr std::chrono::milliseconds kTeleopTurn{50};
+
 /// If this process is dead or hangs for this time, `input` takes its authority away and the robot holds its posture.
 /// The time is long enough for a busy host, and short enough for the safety of a person beside the robot.
 inline constexpr std::chrono::milliseconds kTeleopLease{500};

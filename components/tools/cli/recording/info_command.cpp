@@ -18,7 +18,6 @@ namespace constrictor::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kMissing = 1;  // exit status
 
 struct InfoOptions {
   std::string file;

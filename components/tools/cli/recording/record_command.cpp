@@ -23,7 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-constexpr int kIncomplete = 1;  // exit status
 
 struct RecordOptions {
   ViewOptions view;
@@ -147,7 +146,7 @@ int record(const RecordOptions& options) {
   const RecordingSummary summary = summarise_recording(options.file);
   fmt::print("{}: {}\n", options.file, describe_recording(summary));
   if (!error.empty()) throw CommandError("record: " + error);
-  return summary.missing() == 0 ? exit_status::kOk : kIncomplete;
+  return summary.missing() == 0 ? exit_status::kOk : kMissing;
 }
 
 }  // namespace

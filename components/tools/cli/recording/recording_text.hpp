@@ -9,6 +9,8 @@
 
 namespace constrictor::cli {
 
+inline constexpr int kMissing = 1;  ///< exit status: the recording is not complete
+
 /// "84,123 messages of 40 topics, 12.3 MB, 120.0 s; nothing is missing".
 [[nodiscard]] std::string describe_recording(const RecordingSummary& summary);
 
