@@ -178,7 +178,7 @@ void JointServos::look_for_one_lost() {
       const bool answers = bus.ping(joint.servo.id).good();
       bus.set_slack(config_.answer_slack_s);
       if (!answers) return;
-      const std::string why = bring_up(bus, joint);
+      const std::string why = bring_up(bus, joint).why;
       if (why.empty()) news_.push_back(fmt::format("{} is back", name_of(index)));
       else if (why != joint.reported_failure) news_.push_back(fmt::format("{}: {}", name_of(index), why));
       joint.reported_failure = why;

@@ -38,9 +38,10 @@ class JointServos {
   JointServos(const dynamixel::BusPlan& plan, const RobotModel& robot, const ServoBusConfig& config, BusPorts& ports);
 
   /// Configures all servos and reads the posture. Moves nothing: a servo without torque gets its present position as
-  /// its goal before its torque can be switched on; a servo whose watchdog has tripped stays as it is. Returns the
-  /// servos that cannot be started, one line each with the reason; empty: all are ready.
-  [[nodiscard]] std::vector<std::string> start();
+  /// its goal before its torque can be switched on; a servo whose watchdog has tripped stays as it is. Servos that are
+  /// silent are asked again for `patience_s`: their power may have been switched on a moment ago. Returns the servos
+  /// that cannot be started, one line each with the reason; empty: all are ready.
+  [[nodiscard]] std::vector<std::string> start(double patience_s);
   /// Reads all servos, and tries to bring back one that is lost.
   void measure();
   /// Sends the setpoints, one for each joint. A torque limit of 0 switches the torque of a joint off. A joint in torque
@@ -95,8 +96,12 @@ class JointServos {
   void judge(std::size_t index);
   void lose(std::size_t index, const std::string& why);
   void look_for_one_lost();
-  /// Empty: the servo is ready; else the reason why it is not.
-  [[nodiscard]] std::string bring_up(serial::BusMaster& bus, Joint& joint);
+  /// Why a servo cannot be started.
+  struct StartProblem {
+    std::string why;         ///< empty: it is ready
+    bool is_silent = false;  ///< it has not answered a question: a later attempt may succeed
+  };
+  [[nodiscard]] StartProblem bring_up(serial::BusMaster& bus, Joint& joint);
   void configure(serial::BusMaster& bus, const Joint& joint, bool tripped);
   void make_blocks();
 

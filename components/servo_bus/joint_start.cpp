@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "servo_bus/joint_servos.hpp"
@@ -28,18 +31,21 @@ Answer write(BusMaster& bus, std::uint8_t id, const Register& reg, std::int64_t 
 /// A servo cannot be started; the text says why.
 class StartFailure : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  StartFailure(const char* attempt, const Register& reg, const Answer& answer)
+      : std::runtime_error(fmt::format("cannot {} {}: {}", attempt, reg.name, answer.text())),
+        is_silent(!answer.arrived) {}
+  const bool is_silent;
 };
 
 /// The value of a register. Throws StartFailure.
 std::int64_t read(BusMaster& bus, std::uint8_t id, const Register& reg) {
   const Answer answer = bus.read(id, reg.address, reg.bytes, kTries);
-  if (!answer.good()) throw StartFailure(fmt::format("cannot read {}: {}", reg.name, answer.text()));
+  if (!answer.good()) throw StartFailure("read", reg, answer);
   return dynamixel::get_number(answer.data, reg.bytes, reg.is_signed);
 }
 
 void require(const Answer& answer, const Register& reg) {
-  if (!answer.good()) throw StartFailure(fmt::format("cannot write {}: {}", reg.name, answer.text()));
+  if (!answer.good()) throw StartFailure("write", reg, answer);
 }
 
 }  // namespace
@@ -66,16 +72,16 @@ void JointServos::configure(BusMaster& bus, const Joint& joint, bool tripped) {
   require(write(bus, id, model.at("profile_velocity"), config_.profile_ms()), model.at("profile_velocity"));
 }
 
-std::string JointServos::bring_up(BusMaster& bus, Joint& joint) {
+JointServos::StartProblem JointServos::bring_up(BusMaster& bus, Joint& joint) {
   const dynamixel::ServoModel& model = plan_.model;
   const std::uint8_t id = joint.servo.id;
   try {
     const Answer found = bus.ping(id, kTries);
-    if (!found.good() || found.data.size() < 2) return "does not answer (power, cable, id, baud rate?)";
+    if (!found.good() || found.data.size() < 2) return {"does not answer (power, cable, id, baud rate?)", true};
     const auto number = dynamixel::get_number(found.data, 2, false);
     if (number != model.number)
-      return fmt::format("is of model {}, accepted {} ({}): another device has this id", number, model.number,
-                         model.name);
+      return {fmt::format("is of model {}, accepted {} ({}): another device has this id", number, model.number,
+                          model.name)};
     write(bus, id, model.at("status_return_level"), 2);  // without it there may be no answer to this very write
     const bool tripped = read(bus, id, model.at("bus_watchdog")) == dynamixel::kWatchdogTripped;
     configure(bus, joint, tripped);
@@ -86,41 +92,51 @@ std::string JointServos::bring_up(BusMaster& bus, Joint& joint) {
     const double angle_rad = joint.servo.angle_rad(model, position);
     if (angle_rad < joint.limits.min_rad - config_.start_tolerance_rad ||
         angle_rad > joint.limits.max_rad + config_.start_tolerance_rad)
-      return fmt::format(
-          "measures {:.2f} rad, accepted {} to {} rad: move the joint by hand, or correct zero_steps and "
-          "direction in the bus file",
-          angle_rad, joint.limits.min_rad, joint.limits.max_rad);
+      return {
+          fmt::format("measures {:.2f} rad, accepted {} to {} rad: move the joint by hand, or correct zero_steps and "
+                      "direction in the bus file",
+                      angle_rad, joint.limits.min_rad, joint.limits.max_rad)};
     if (!tripped) {
       require(write(bus, id, model.at("goal_position"), position), model.at("goal_position"));
       require(write(bus, id, model.at("bus_watchdog"), config_.watchdog_units()), model.at("bus_watchdog"));
     }
     const Answer block = bus.read(id, state_block_, state_bytes_, kTries);
     take(joint, block);
-    if (!block.good() || joint.reading.voltage_v <= 0.0) return "does not keep its indirect addresses";
+    if (!block.good() || joint.reading.voltage_v <= 0.0)
+      return {"does not keep its indirect addresses", !block.arrived};
   } catch (const StartFailure& failure) {
-    return failure.what();
+    return {failure.what(), failure.is_silent};
   }
   joint.state = ServoState::kReady;
   joint.misses = 0;
   return {};
 }
 
-std::vector<std::string> JointServos::start() {
-  std::vector<std::string> failed;
+std::vector<std::string> JointServos::start(double patience_s) {
   for (std::size_t port = 0; port < ports_.size(); ++port)
     ports_.with(port, news_, [](BusMaster& bus) { bus.set_slack(kStartSlack_s); });
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    Joint& joint = joints_[i];
-    std::string why = "its port is closed";
-    ports_.with(joint.servo.port, news_, [&](BusMaster& bus) { why = bring_up(bus, joint); });
-    if (!why.empty()) failed.push_back(fmt::format("{}: {}", name_of(i), why));
-  }
+  const std::int64_t until_ns = ports_.now_ns() + std::llround(patience_s * 1e9);
+  std::vector<std::size_t> waiting(joints_.size());
+  std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+  std::map<std::size_t, std::string> failed;
+  do {
+    for (const std::size_t i : std::exchange(waiting, {})) {
+      Joint& joint = joints_[i];
+      StartProblem problem{"its port is closed"};
+      ports_.with(joint.servo.port, news_, [&](BusMaster& bus) { problem = bring_up(bus, joint); });
+      failed.erase(i);
+      if (!problem.why.empty()) failed[i] = std::move(problem.why);
+      if (problem.is_silent) waiting.push_back(i);
+    }
+  } while (!waiting.empty() && ports_.now_ns() < until_ns);
   for (std::size_t port = 0; port < ports_.size(); ++port)
     ports_.with(port, news_, [&](BusMaster& bus) {
       bus.set_return_delay(0.0);
       bus.set_slack(config_.answer_slack_s);
     });
-  return failed;
+  std::vector<std::string> lines;
+  for (const auto& [joint, why] : failed) lines.push_back(fmt::format("{}: {}", name_of(joint), why));
+  return lines;
 }
 
 void JointServos::unlock() {
@@ -131,7 +147,7 @@ void JointServos::unlock() {
     ports_.with(joint.servo.port, news_, [&](BusMaster& bus) {
       // First 0, which clears it. A servo that was found locked at the start was not configured then.
       const bool cleared = write(bus, joint.servo.id, model.at("bus_watchdog"), 0).good();
-      if (const std::string why = cleared ? bring_up(bus, joint) : "its watchdog cannot be cleared"; !why.empty())
+      if (const std::string why = cleared ? bring_up(bus, joint).why : "its watchdog cannot be cleared"; !why.empty())
         lose(i, why);
     });
   }

@@ -60,8 +60,9 @@ void ServoBus::start() {
   } catch (const serial::PortError& error) {
     throw ConfigurationError(error.what());
   }
-  const std::vector<std::string> failed = servos_.start();
-  // A successor must not give up the run: what is missing now is lost, and may come back.
+  // A successor must not give up the run, and must be quicker than the watchdogs of the servos that do answer: what is
+  // missing now is lost, and may come back.
+  const std::vector<std::string> failed = servos_.start(continued_ ? 0.0 : config_.servo_patience_s);
   if (!failed.empty() && !continued_)
     throw ConfigurationError(
         fmt::format("{} of {} servos cannot be started (`constrictor servo scan` shows who "

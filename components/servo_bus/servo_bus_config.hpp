@@ -18,6 +18,8 @@ struct ServoBusConfig : PlantParameters {
   double answer_slack_s =
       add(answer_slack_s, "port.answer_slack_s", 0.012, "s", {0.0002, 0.1}, kAtStart,
           "Time for adapter and operating system that an answer may take in addition to that of its bytes");
+  double servo_patience_s = add(servo_patience_s, "servo.patience_s", 2.0, "s", {0.0, 60.0}, kAtStart,
+                                "Time for which servos that are silent at the start are asked again");
   double watchdog_s = add(watchdog_s, "servo.watchdog_s", 0.1, "s", {0.04, 2.54}, kAtStart,
                           "Silence on the bus after which the servos stop and lock their goals; whole steps of 0.02 s");
   int lost_after_ticks = add(lost_after_ticks, "servo.lost_after_ticks", 3, "ticks", {1, 1000}, kAtStart,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "serial/port.hpp"
@@ -15,11 +16,13 @@ struct Bench {
   void pass_until(std::int64_t when_ns) {
     now_ns = std::max(now_ns, when_ns);
     robot->advance_to(now_ns);
+    if (on_time) on_time();
   }
   std::unique_ptr<servo_emulator::EmulatedRobot> robot;
   std::int64_t now_ns = 1;
-  bool unplugged = false;        ///< the adapters are gone
-  std::uint64_t bytes_sent = 0;  ///< by the driver
+  std::function<void()> on_time;  ///< called after time has passed; may be empty
+  bool unplugged = false;         ///< the adapters are gone
+  std::uint64_t bytes_sent = 0;   ///< by the driver
 };
 
 class EmulatedPort final : public serial::Port {

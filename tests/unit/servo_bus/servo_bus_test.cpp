@@ -190,6 +190,19 @@ TEST_F(DrivenRobot, OneRoundTakesTheTimeOfItsBytes) {
   EXPECT_NEAR(round_s, bytes * 10 / 4e6, 0.0002);
 }
 
+TEST_F(DrivenRobot, AsksServosAgainThatAreSilentAtTheStart) {
+  command_ = bend(0.1);
+  EXPECT_EQ(bench_.robot->command("silent 4"), "");
+  EXPECT_EQ(bench_.robot->command("silent 9"), "");
+  bench_.on_time = [this] {  // their power is switched on after 1 s
+    if (bench_.now_ns > 1'000'000'000) static_cast<void>(bench_.robot->command("mend 0"));
+  };
+  start();
+  ticks(20);
+  EXPECT_EQ(torques_on(), 23);
+  EXPECT_LT(bench_.now_ns, 2'000'000'000) << "no longer than needed";
+}
+
 TEST_F(DrivenRobot, RefusesARobotWhoseServosDoNotFit) {
   const auto error = [this] {
     try {
@@ -203,6 +216,7 @@ TEST_F(DrivenRobot, RefusesARobotWhoseServosDoNotFit) {
   EXPECT_EQ(bench_.robot->command("silent 4"), "");
   EXPECT_NE(error().find("1 of 23 servos cannot be started"), std::string::npos);
   EXPECT_NE(error().find("servo 5 of joint 4 at bus0: does not answer"), std::string::npos) << error();
+  EXPECT_GT(bench_.now_ns, 4'000'000'000) << "twice the patience of servo.patience_s";
   EXPECT_EQ(bench_.robot->command("mend 0"), "");
   bench_.robot->servo(7).set("homing_offset", 1500);
   bench_.pass_until(bench_.now_ns + 100'000'000);
