@@ -1,17 +1,18 @@
 // Opens a page in headless Chromium and carries out the steps of a test, by the Chrome DevTools Protocol over pipes.
 // Usage: node browser.mjs URL WIDTHxHEIGHT STEP...
-//   wait=EXPRESSION      until this JavaScript is true in the page, at most 30 s
+//   wait=EXPRESSION      until this JavaScript is true in the page, at most 60 s
 //   click=SELECTOR       with the mouse
 //   print=EXPRESSION     a line with its value as JSON
 //   shot=FILE            a picture (.png, .jpg) of the whole page
 //   view=FILE            a picture of what the screen shows
 //   colours=N SELECTOR   until this element shows more than N distinct colours, WebGL included
+//   shows=R,G,B SELECTOR until this element shows at least 20 pixels of about this colour
 //   press=SELECTOR       holds the mouse button down in the element, at 3/4 of its width and 1/4 of its height
 //   let                  lets the mouse button go
 //   down=KEY, up=KEY     holds a key ("ArrowUp") down, lets it go
 //   frames=SECONDS       a line of JSON with the time [ms] for which the page's main thread works in each frame
 //   line                 waits for a line on standard input
-// Ends with status 1 if a wait is in vain or the page throws. CONSTRICTOR_BROWSER_FLAGS: more arguments of Chromium.
+// Ends with status 1 if a wait is in vain or the page throws, with the picture of the next step view. CONSTRICTOR_BROWSER_FLAGS: more arguments of Chromium.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -21,6 +22,7 @@ import { createInterface } from "node:readline";
 const [url, size, ...steps] = process.argv.slice(2);
 const [width, height] = size.split("x").map(Number);
 const folder = mkdtempSync(join(tmpdir(), "constrictor-browser-"));
+const kPatience = 60000; // ms; a busy machine draws a page slowly
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 
@@ -93,10 +95,12 @@ class Page {
     this.held = [x + 0.75 * width, y + 0.25 * height];
     await this.mouse("mousePressed", ...this.held);
   }
-  /** From a picture of the screen, because the pixels of WebGL cannot be read when they have been shown. */
+  /** The colours of an element, as [R, G, B, pixels]. From a picture of the screen, because the pixels of WebGL cannot
+   * be read when they have been shown. */
   async colours(selector) {
+    if (!(await this.value(`!!document.querySelector(${JSON.stringify(selector)})`))) return [];
     const clip = { ...(await this.place(selector)), scale: 1 };
-    if (clip.width === 0 || clip.height === 0) return 0; // hidden
+    if (clip.width === 0 || clip.height === 0) return []; // hidden
     const scrolled = await this.value("[scrollX, scrollY]");
     clip.x += scrolled[0];
     clip.y += scrolled[1];
@@ -106,7 +110,10 @@ class Page {
       const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
       const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
       context.drawImage(image, 0, 0);
-      return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size; })()`);
+      const counts = new Map();
+      for (const pixel of new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer))
+        counts.set(pixel, (counts.get(pixel) ?? 0) + 1);
+      return [...counts].map(([pixel, count]) => [pixel & 255, pixel >> 8 & 255, pixel >> 16 & 255, count]); })()`);
   }
   /** The events of the browser in this time. Tracing belongs to the browser, not to the page. */
   async trace(seconds) {
@@ -161,7 +168,7 @@ async function open() {
   await page.call("Page.enable");
   await page.call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 600 });
   await page.call("Page.navigate", { url });
-  await until(`loading ${url}`, 20000, () =>
+  await until(`loading ${url}`, 60000, () =>
     page.value("document.readyState === 'complete' && location.protocol.startsWith('http')"));
   return page;
 }
@@ -169,7 +176,7 @@ async function open() {
 async function carryOut(page, step) {
   const equals = step.indexOf("=");
   const [name, value] = equals < 0 ? [step, ""] : [step.slice(0, equals), step.slice(equals + 1)];
-  if (name === "wait") await until(value, 30000, () => page.value(`!!(${value})`));
+  if (name === "wait") await until(value, kPatience, () => page.value(`!!(${value})`));
   else if (name === "click") await page.click(value);
   else if (name === "print") console.log(JSON.stringify(await page.value(value)));
   else if (name === "press") await page.press(value);
@@ -178,7 +185,13 @@ async function carryOut(page, step) {
     await page.call("Input.dispatchKeyEvent", { type: name === "up" ? "keyUp" : "rawKeyDown", key: value, code: value });
   else if (name === "colours") {
     const [, count, selector] = value.match(/^(\d+) (.*)$/);
-    await until(step, 30000, async () => (await page.colours(selector)) > Number(count));
+    await until(step, kPatience, async () => (await page.colours(selector)).length > Number(count));
+  } else if (name === "shows") {
+    const [, numbers, selector] = value.match(/^(\S*) (.*)$/);
+    const wanted = numbers.split(",").map(Number);
+    const fits = (colour) => wanted.every((part, i) => Math.abs(part - colour[i]) <= 12);
+    await until(step, kPatience, async () =>
+      (await page.colours(selector)).filter(fits).reduce((sum, colour) => sum + colour[3], 0) >= 20);
   } else if (name === "frames") console.log(JSON.stringify(framesOf(await page.trace(Number(value)))));
   else if (name === "line") await lines.next();
   else if (name === "shot" || name === "view") {
@@ -190,13 +203,19 @@ async function carryOut(page, step) {
 }
 
 let status = 0;
+let page;
 try {
-  const page = await open();
-  for (const step of steps) await carryOut(page, step);
+  page = await open();
+  while (steps.length > 0) {
+    await carryOut(page, steps[0]);
+    steps.shift();
+  }
   if (page.errors.length > 0) throw new Error(`the page threw: ${page.errors.slice(0, 3).join("; ")}`);
 } catch (error) {
   console.error(String(error.message ?? error));
   status = 1;
+  const view = steps.find((step) => step.startsWith("view="));
+  if (page && view) await carryOut(page, view).catch(() => {});
 }
 const ended = new Promise((done) => chromium.once("exit", done));
 chromium.kill("SIGKILL");

@@ -35,15 +35,17 @@ void add_record(CLI::App& app, Action& action);       ///< record
 void add_replay(CLI::App& app, Action& action);       ///< replay
 void add_recording_files(CLI::App& app, Action& action);  ///< info, recover
 void add_pictures(CLI::App& app, Action& action);         ///< figure, film
-void add_agent(CLI::App& app, Action& action);            ///< agent
-void add_completion(CLI::App& app, Action& action);       ///< completion
+void add_foxglove(CLI::App& app, Action& action);
+void add_agent(CLI::App& app, Action& action);       ///< agent
+void add_completion(CLI::App& app, Action& action);  ///< completion
 /// man-pages; `date` of the release, for the pages, or empty.
 void add_man_pages(CLI::App& app, Action& action, const std::string& date);
 
 inline constexpr std::array kSubcommands{
     add_run,  add_evaluate, add_serve,           add_list,  add_robot,  add_commands, add_run_control, add_teleop,
     add_task, add_param,    add_topic,           add_node,  add_status, add_doctor,   add_agent,       add_completion,
-    add_keys, add_record,   add_recording_files, add_servo, add_swap,   add_replay,   add_pictures,    add_log};
+    add_keys, add_record,   add_recording_files, add_servo, add_swap,   add_replay,   add_pictures,    add_foxglove,
+    add_log};
 
 /// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
 template <class Options, class Run>

@@ -10,11 +10,15 @@
 #include "constrictor/reflect.hpp"
 #include "constrictor/text.hpp"
 #include "constrictor/topics.hpp"
+#include "views/camera_views.hpp"
+#include "views/view_topics.hpp"
+#include "views/views.hpp"
 
 namespace constrictor::dashboard {
 namespace {
 
 using namespace std::chrono_literals;
+using views::View;
 
 constexpr auto kShowEvery = 50ms;  // of wall time, however fast the run is
 
@@ -33,12 +37,10 @@ bool shown(const std::string& topic) {
   return std::find(std::begin(hidden), std::end(hidden), topic) == std::end(hidden);
 }
 
-Channel json_channel(const std::string& topic, const std::string& schema_name) {
-  return {0, topic, "json", schema_name, R"({"type":"object","properties":{}})", "jsonschema"};
-}
-
-Channel image_channel(const std::string& topic) {
-  return {0, topic, "cdr", "sensor_msgs/msg/Image", ros_image_schema(), "ros2msg"};
+Channel channel_of(views::View view) {
+  const auto& [topic, encoding, schema_name, schema_encoding, schema] =
+      views::kViewTopics[static_cast<std::size_t>(view)];
+  return {0, topic, encoding, schema_name, schema, schema_encoding};
 }
 
 template <class T>
@@ -55,6 +57,10 @@ struct Dashboard::Readers {
         world(newest_of(p, topics::kWorldState)),
         joints(newest_of(p, topics::kJointState)),
         contacts(newest_of(p, topics::kContactState)),
+        // Written once in an epoch, as the scene.
+        lens(dds::Reader<msg::CameraInfo>::member(p, std::string(topics::kCameraInfo.name))),
+        line(newest_of(p, topics::kLinePercept)),
+        blobs(newest_of(p, topics::kObjectPercepts)),
         pose(newest_of(p, topics::kRobotPose)),
         map(newest_of(p, topics::kFieldMap)),
         mission(dds::Reader<msg::MissionStatus>::member(p, std::string(topics::kMissionStatus.name))),
@@ -70,6 +76,9 @@ struct Dashboard::Readers {
   dds::Reader<msg::WorldState> world;
   dds::Reader<msg::JointState> joints;
   dds::Reader<msg::ContactState> contacts;
+  dds::Reader<msg::CameraInfo> lens;
+  dds::Reader<msg::LinePercept> line;
+  dds::Reader<msg::ObjectPercepts> blobs;
   dds::Reader<msg::RobotPose> pose;
   dds::Reader<msg::FieldMap> map;
   dds::Reader<msg::MissionStatus> mission;
@@ -91,12 +100,15 @@ Dashboard::Dashboard(std::unique_ptr<Controls> controls, const std::string& name
       readers_(std::make_unique<Readers>(controls_->participant())),
       lines_(controls_->participant()),
       parameters_(controls_->participant()),
-      scene_(server_.add_channel(json_channel("view/scene", "foxglove.SceneUpdate"))),
-      transforms_(server_.add_channel(json_channel("view/transforms", "foxglove.FrameTransforms"))),
-      camera_(server_.add_channel(image_channel("view/camera"))),
-      processed_(server_.add_channel(image_channel("view/processed"))),
-      log_(server_.add_channel(json_channel("view/log", "foxglove.Log"))),
-      state_(server_.add_channel(json_channel("view/state", "constrictor.PageState"))) {}
+      scene_(server_.add_channel(channel_of(View::kScene))),
+      transforms_(server_.add_channel(channel_of(View::kTransforms))),
+      camera_(server_.add_channel(channel_of(View::kCamera))),
+      processed_(server_.add_channel(channel_of(View::kProcessed))),
+      annotations_(server_.add_channel(channel_of(View::kAnnotations))),
+      lens_(server_.add_channel(channel_of(View::kCalibration))),
+      log_(server_.add_channel(channel_of(View::kLog))),
+      state_(server_.add_channel({0, "view/state", "json", "constrictor.PageState", views::kAnyObject, "jsonschema"})) {
+}
 
 Dashboard::~Dashboard() = default;
 
@@ -127,67 +139,54 @@ void Dashboard::pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample&
 }
 
 void Dashboard::take_typed() {
-  const auto keep = [&](const auto& reader, auto& to) {
-    reader.take([&](const auto& message) {
-      if (validate(message)) return;
-      to = message;
-      changed_ = true;
-    });
+  const auto take = [&](const auto& reader, auto& to) {
+    reader.take([&](const auto& message) { changed_ |= views::keep(to, message); });
   };
-  keep(readers_->scene, newest_.scene);
-  readers_->world.take([&](const msg::WorldState& world) {
-    if (validate(world)) return;
-    const auto& before = newest_.world;
-    // After a reset nothing of the epoch before is shown any more.
-    if (before && (before->header.run_id != world.header.run_id || before->header.epoch != world.header.epoch)) {
-      newest_.start.reset();
-      newest_.pose.reset();
-      newest_.map.reset();
-      newest_.events.clear();
-    }
-    // A replay may go back. What happened later than this has not happened yet.
-    auto& events = newest_.events;
-    while (before && world.header.tick < before->header.tick && !events.empty() &&
-           events.back().header.tick > world.header.tick)
-      events.pop_back();
-    newest_.world = world;
-    changed_ = true;
-  });
-  keep(readers_->joints, newest_.joints);
-  keep(readers_->contacts, newest_.contacts);
-  keep(readers_->pose, newest_.pose);
-  keep(readers_->map, newest_.map);
-  keep(readers_->mission, newest_.mission);
-  keep(readers_->task, newest_.task);
-  keep(readers_->authority, newest_.authority);
-  keep(readers_->stop, newest_.stop);
+  take(readers_->scene, newest_.scene);
+  readers_->world.take([&](const msg::WorldState& world) { changed_ |= views::keep_world(newest_, world); });
+  take(readers_->joints, newest_.joints);
+  take(readers_->contacts, newest_.contacts);
+  take(readers_->lens, newest_.camera);
+  take(readers_->pose, newest_.pose);
+  take(readers_->map, newest_.map);
+  take(readers_->mission, newest_.mission);
+  take(readers_->task, newest_.task);
+  take(readers_->authority, newest_.authority);
+  take(readers_->stop, newest_.stop);
   readers_->statuses.take([&](const msg::ComponentStatus& status) {
     const std::string component = text_of(status.component);
     const bool room = newest_.processes.size() < msg::kMaxMembers || newest_.processes.contains(component);
     if (!validate(status) && room) newest_.processes[component] = status;
   });
   readers_->events.take([&](const msg::TaskEvent& event) {
-    if (validate(event)) return;
-    auto& events = newest_.events;
-    while (!events.empty() && events.back().header.sequence_number >= event.header.sequence_number)
-      events.pop_back();  // a replay has gone back, or a new epoch has begun
-    events.push_back(event);
-    if (newest_.events.size() > Newest::kMostEvents) newest_.events.pop_front();
     const std::uint64_t time_ns = now_ns();
-    server_.send(log_, time_ns, log_of(event, time_ns).dump());
+    if (views::keep_event(newest_, event)) server_.send(log_, time_ns, views::log_of(event, time_ns).dump());
   });
-  lines_.take([&](const msg::LogLine& line, std::uint64_t) { server_.send(log_, now_ns(), log_of(line).dump()); });
-  align(newest_);
+  lines_.take(
+      [&](const msg::LogLine& line, std::uint64_t) { server_.send(log_, now_ns(), views::log_of(line).dump()); });
+  views::align(newest_);
+  take_images();
+}
+
+void Dashboard::take_images() {
   const auto image = [&](const dds::Reader<msg::CameraImage>& reader, std::uint32_t channel) {
     const bool wanted = server_.wanted(channel);
     reader.take([&](const msg::CameraImage& message) {
       if (!wanted) return;
       const std::uint64_t time_ns = now_ns();
-      if (const auto cdr = ros_image(message, "head", time_ns)) server_.send(channel, time_ns, *cdr);
+      if (const auto cdr = views::ros_image(message, views::kCameraFrame, time_ns))
+        server_.send(channel, time_ns, *cdr);
     });
   };
   image(readers_->camera, camera_);
   image(readers_->processed, processed_);
+  readers_->line.take([&](const msg::LinePercept& line) { views::keep(newest_.line, line); });
+  // Perception writes the line before the objects of the same image.
+  readers_->blobs.take([&](const msg::ObjectPercepts& blobs) {
+    if (!views::keep(newest_.blobs, blobs) || !server_.wanted(annotations_)) return;
+    const std::uint64_t time_ns = now_ns();
+    server_.send(annotations_, time_ns, views::image_annotations(newest_, time_ns).dump());
+  });
 }
 
 void Dashboard::take_parameters() {
@@ -249,9 +248,10 @@ void Dashboard::show() {
     if (server_.wanted(channel))
       server_.send(channel, time_ns, make().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   };
-  send(scene_, [&] { return scene_update(newest_, time_ns); });
-  send(transforms_, [&] { return frame_transforms(newest_, time_ns); });
-  send(state_, [&] { return page_state(newest_); });
+  send(scene_, [&] { return views::scene_update(newest_, time_ns); });
+  send(transforms_, [&] { return views::frame_transforms(newest_, time_ns); });
+  if (newest_.camera) send(lens_, [&] { return views::camera_calibration(*newest_.camera, time_ns); });
+  send(state_, [&] { return views::page_state(newest_); });
 }
 
 }  // namespace constrictor::dashboard

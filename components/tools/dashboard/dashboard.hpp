@@ -12,8 +12,8 @@
 #include "cyclone/endpoint.hpp"
 #include "cyclone/topic_tap.hpp"
 #include "dashboard/controls.hpp"
-#include "dashboard/views.hpp"
 #include "dashboard/web_server.hpp"
+#include "views/newest.hpp"
 
 namespace constrictor::dashboard {
 
@@ -34,6 +34,7 @@ class Dashboard {
   struct Readers;
   void pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample& sample);
   void take_typed();
+  void take_images();
   void take_parameters();
   void change(WebServer::Change wish);
   void show();
@@ -45,10 +46,10 @@ class Dashboard {
   LogReader lines_;
   ParameterReader parameters_;
   std::map<const dds::TopicTap::Topic*, std::uint32_t> channels_;
-  Newest newest_;
+  views::Newest newest_;
   bool changed_ = false;
   std::chrono::steady_clock::time_point shown_{};
-  std::uint32_t scene_, transforms_, camera_, processed_, log_, state_;  // channels of the views
+  std::uint32_t scene_, transforms_, camera_, processed_, annotations_, lens_, log_, state_;  // channels of the views
 };
 
 }  // namespace constrictor::dashboard

@@ -86,8 +86,11 @@ MarkerArray Drawing::markers() {
 
 MarkerArray Drawing::map(const msg::FieldMap& map) {
   begin(map.header.time_ns, "odom");
-  if (map.line_point_count >= 2) {
-    auto& points = points_of(add("line", 0, kLineStrip, map.line_colour, 1));
+  if (map.line_point_count > 0) {
+    // The points are in the order of discovery, so that neighbours in the list may lie far apart.
+    Marker& line = add("line", 0, kSphereList, map.line_colour, 1);
+    auto& points = points_of(line);
+    line.scale = {kLineWidth_m, kLineWidth_m, kLineWidth_m};
     for (std::size_t i = 0; i < map.line_point_count; ++i)
       points.push_back({map.line_x_m[i], map.line_y_m[i], kFlat_m});
   }

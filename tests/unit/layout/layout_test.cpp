@@ -86,6 +86,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/tools/ros_bridge",
                              "components/tools/host",
                              "components/tools/pictures",
+                             "components/tools/views",
                              "components/control",
                              "components/guidance",
                              "components/input",

@@ -60,7 +60,8 @@ TEST(RosDrawing, TheMapShowsLineLandmarksAndTouchesWhereTheyAre) {
   EXPECT_STREQ(line.header.frame_id, "odom");
   EXPECT_EQ(line.header.stamp.sec, 7);
   EXPECT_EQ(line.header.stamp.nanosec, 100'000'000u);
-  EXPECT_EQ(line.type, kLineStrip);
+  EXPECT_EQ(line.type, kSphereList);
+  EXPECT_GT(line.scale.x, 0);
   ASSERT_EQ(line.points._length, 3u);
   EXPECT_EQ(line.points._buffer[2].x, 2);
   EXPECT_EQ(line.points._buffer[2].y, 1);

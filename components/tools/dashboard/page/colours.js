@@ -6,9 +6,18 @@ const still = [150, 150, 150];
 const negative = [0, 114, 178];
 const positive = [213, 94, 0];
 
+const canvas = typeof document === "undefined" ? new OffscreenCanvas(1, 1) : document.createElement("canvas");
+const probe = canvas.getContext("2d"); // a worker has no CSS.supports
+
+function isColour(name) {
+  probe.fillStyle = "#010203";
+  probe.fillStyle = name;
+  return probe.fillStyle !== "#010203";
+}
+
 /** The colour of a line, an object or a zone, by its name in the messages. A name that is new has the meaning that it
  *  has in style sheets. */
-export const colourOf = (name) => named[name] ?? (CSS.supports("color", name) ? name : "#888888");
+export const colourOf = (name) => named[name] ?? (isColour(name) ? name : "#888888");
 
 /** [red, green, blue], each 0 to 255: grey without torque, blue for negative and orange for positive torque [Nm]. */
 export function torqueColour(torque) {

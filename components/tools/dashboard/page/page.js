@@ -119,6 +119,18 @@ new Drive(connection, say, () => call("stop", {}));
 new Parameters(connection, call);
 addEventListener("resize", () => (scenes = true));
 
-buildTasks(await (await fetch("tasks.json")).json(), call);
-machine = new Machine(element("machine"), await (await fetch("machine.json")).json());
+/// A file of the dashboard, which may end and come back in the middle of it.
+async function load(name) {
+  for (;;) {
+    try {
+      return await (await fetch(name)).json();
+    } catch {
+      await new Promise((done) => setTimeout(done, 1000)); // the connection says that it is lost
+    }
+  }
+}
+
+const [tasks, states] = await Promise.all([load("tasks.json"), load("machine.json")]);
+buildTasks(tasks, call);
+machine = new Machine(element("machine"), states);
 requestAnimationFrame(frame);

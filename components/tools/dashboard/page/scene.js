@@ -22,17 +22,22 @@ export class Scene {
   async load() {
     try {
       const { Scene3d } = await import("./scene_3d.js");
-      this.solid = new Scene3d(element("scene_3d"), this.changed);
-      element("scene_3d").addEventListener("webglcontextlost", (event) => {
-        event.preventDefault();
-        this.fall("the browser has lost its graphics");
-      });
-      element("scene_3d").addEventListener("webglcontextrestored", () => this.rise());
-      this.rise();
+      this.solid = new Scene3d(element("scene_3d"), this.changed, (report) => this.hear(report));
     } catch (error) {
-      this.solid = null;
-      this.fall(`this browser cannot draw in 3D (${error.message ?? error})`);
+      this.giveUp(error.message ?? error);
     }
+  }
+
+  /** What the thread that draws in 3D says. */
+  hear({ failed, lost }) {
+    if (failed) this.giveUp(failed);
+    else if (lost) this.fall("the browser has lost its graphics");
+    else this.rise();
+  }
+
+  giveUp(reason) {
+    this.solid = null;
+    this.fall(`this browser cannot draw in 3D (${reason})`);
   }
 
   rise() {

@@ -45,6 +45,13 @@ function ribbon(points, width, height, material) {
   return new THREE.Mesh(geometry, material);
 }
 
+/** Points [[x, y], ...] as small discs on the ground. */
+function dots(points, radius, height, material) {
+  const mesh = new THREE.InstancedMesh(new THREE.CircleGeometry(radius, 12), material, points.length);
+  points.forEach(([x, y], i) => mesh.setMatrixAt(i, matrix.makeTranslation(x, y, height)));
+  return mesh;
+}
+
 function disc(x, y, radius, height, material) {
   const mesh = new THREE.Mesh(new THREE.CircleGeometry(radius, 48), material);
   mesh.position.set(x, y, height);
@@ -201,7 +208,8 @@ export class Estimate {
     this.tick = map.tick;
     discard(this.map);
     this.map = new THREE.Group();
-    if (map.line.length > 1) this.map.add(ribbon(map.line, 0.015, 0.006, flat("#303030")));
+    // Its points are in the order of discovery, so that neighbours in the list may lie far apart.
+    if (map.line.length > 0) this.map.add(dots(map.line, 0.013, 0.006, flat("#303030")));
     for (const object of map.objects) {
       if (object.x_m === null) continue;
       const radius = object.radius_m ?? 0.05;

@@ -53,12 +53,12 @@ function drawEstimate(context, state) {
   context.save();
   context.translate(x0, y0);
   context.rotate(yaw0);
+  context.fillStyle = "#303030";
   context.setLineDash([0.05, 0.05]);
-  context.strokeStyle = "#555";
   context.lineWidth = 0.02;
   if (state.map) {
-    polyline(context, state.map.line);
-    context.stroke();
+    // Points in the order of discovery: neighbours in the list may lie far apart.
+    for (const [x, y] of state.map.line) context.fillRect(x - 0.013, y - 0.013, 0.026, 0.026);
     for (const object of state.map.objects) {
       if (object.x_m === null) continue;
       context.strokeStyle = colourOf(object.colour);

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "constrictor/constants.hpp"
-#include "dashboard/views.hpp"
 #include "robot/planar_message.hpp"
+#include "views/views.hpp"
 
-namespace constrictor::dashboard {
+namespace constrictor::views {
 namespace {
 
 using nlohmann::json;
@@ -168,4 +168,4 @@ json page_state(const Newest& newest) {
   return state;
 }
 
-}  // namespace constrictor::dashboard
+}  // namespace constrictor::views

@@ -1,17 +1,15 @@
 // What viewers see, against poses and bytes computed here.
-#include "dashboard/views.hpp"
+#include "views/views.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <numbers>
-#include <string_view>
 #include <vector>
 
 #include "constrictor/text.hpp"
 
-namespace constrictor::dashboard {
+namespace constrictor::views {
 namespace {
 
 /// A robot of two modules whose head is at (1, 2) and looks to the left, 0.5 m in front of its tail.
@@ -104,36 +102,23 @@ TEST(Views, TheEstimateBeginsAtTheTruthAndThenShowsItsError) {
   EXPECT_FALSE(newest.start) << "poses of different times are not compared";
 }
 
-TEST(Views, AnImageHasTheBytesOfSensorMsgsImage) {
-  std::vector<std::uint8_t> pixels(2 * 3 * 3);
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i);
-  msg::CameraImage image{};
-  image.width = 3;
-  image.height = 2;
-  image.data._buffer = pixels.data();
-  image.data._length = static_cast<std::uint32_t>(pixels.size());
-  const auto cdr = ros_image(image, "head", 7'000'000'009);
-  ASSERT_TRUE(cdr);
-  // Offsets behind the encapsulation: stamp 0, frame 8 ("head" and 0 at 12), height 20, width 24, encoding 28 ("rgb8"
-  // and 0 at 32), is_bigendian 37, step 40, number of bytes 44, bytes 48.
-  const auto u32 = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, cdr->data() + 4 + at, 4);
-    return value;
-  };
-  ASSERT_EQ(cdr->size(), 4u + 48 + 18);
-  EXPECT_EQ(u32(0), 7u);
-  EXPECT_EQ(u32(4), 9u);
-  EXPECT_EQ(u32(8), 5u);
-  EXPECT_STREQ(cdr->data() + 4 + 12, "head");
-  EXPECT_EQ(u32(20), 2u);
-  EXPECT_EQ(u32(24), 3u);
-  EXPECT_STREQ(cdr->data() + 4 + 32, "rgb8");
-  EXPECT_EQ(u32(40), 9u);
-  EXPECT_EQ(u32(44), 18u);
-  EXPECT_EQ(cdr->back(), 17);
-  image.data._length = 17;
-  EXPECT_FALSE(ros_image(image, "head", 0)) << "its bytes do not fit its size";
+TEST(Views, ANewEpochShowsNothingOfTheOneBefore) {
+  Newest newest;
+  msg::WorldState world = *example().world;
+  ASSERT_TRUE(keep_world(newest, world));
+  newest.map.emplace();
+  newest.line.emplace();
+  newest.events.emplace_back();
+  ++world.header.tick;
+  ASSERT_TRUE(keep_world(newest, world));
+  EXPECT_EQ(newest.heads.size(), 2u);
+  EXPECT_TRUE(newest.map && newest.line && !newest.events.empty());
+  ++world.header.epoch;
+  ASSERT_TRUE(keep_world(newest, world));
+  EXPECT_EQ(newest.heads.size(), 1u);
+  EXPECT_FALSE(newest.map || newest.line || !newest.events.empty());
+  world.module_poses[0].position_m.x = std::nan("");
+  EXPECT_FALSE(keep_world(newest, world));
 }
 
 TEST(Views, WhatIsNotKnownIsLeftOut) {
@@ -163,4 +148,4 @@ TEST(Views, ThePageGetsNoNanAndOnlyWhatTheWorldHas) {
 }
 
 }  // namespace
-}  // namespace constrictor::dashboard
+}  // namespace constrictor::views

@@ -1,4 +1,4 @@
-#include "dashboard/views.hpp"
+#include "views/views.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "constrictor/constants.hpp"
-#include "constrictor/image.hpp"
 #include "constrictor/text.hpp"
 #include "robot/planar_message.hpp"
+#include "views/foxglove_json.hpp"
 
-namespace constrictor::dashboard {
+namespace constrictor::views {
 namespace {
 
 using nlohmann::json;
@@ -20,38 +20,6 @@ using nlohmann::json;
 constexpr double kFullTorque_nm = 5.0;   // shown in the strongest colour
 constexpr double kArrow_m_per_n = 0.02;  // length of the arrow of a contact force
 constexpr double kFlat_m = 0.004;        // height of what lies on the ground
-
-json stamp(std::uint64_t time_ns) { return {{"sec", time_ns / 1'000'000'000}, {"nsec", time_ns % 1'000'000'000}}; }
-
-json point(double x, double y, double z) { return {{"x", x}, {"y", y}, {"z", z}}; }
-
-json pose_of(double x, double y, double z, double yaw_rad = 0) {
-  return {{"position", point(x, y, z)},
-          {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", std::sin(yaw_rad / 2)}, {"w", std::cos(yaw_rad / 2)}}}};
-}
-
-json pose_of(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {{"position", point(pose.position_m.x, pose.position_m.y, pose.position_m.z)},
-          {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
-}
-
-json colour(double r, double g, double b, double a = 1) { return {{"r", r}, {"g", g}, {"b", b}, {"a", a}}; }
-
-json colour_of(std::uint8_t named, double alpha = 1) {
-  switch (named) {
-    case msg::kColourGreen:
-      return colour(0.1, 0.6, 0.2, alpha);
-    case msg::kColourRed:
-      return colour(0.8, 0.15, 0.1, alpha);
-    case msg::kColourBlue:
-      return colour(0.1, 0.3, 0.8, alpha);
-    case msg::kColourYellow:
-      return colour(0.9, 0.75, 0.1, alpha);
-    default:
-      return colour(0.5, 0.5, 0.5, alpha);
-  }
-}
 
 /// From grey (no torque) to blue (negative) or orange (positive).
 json torque_colour(double torque_nm) {
@@ -190,15 +158,6 @@ std::vector<ContactArrow> contact_arrows(const Newest& newest) {
   return arrows;
 }
 
-void align(Newest& newest) {
-  if (newest.start || !newest.world || !newest.pose || newest.world->module_count == 0) return;
-  const std::int64_t apart = newest.world->header.tick - newest.pose->header.tick;
-  if (apart < 0 || apart > 5) return;
-  const PlanarPose head = planar(newest.world->module_poses[0]);
-  const double yaw_rad = head.yaw_rad - newest.pose->yaw_rad;
-  newest.start = PlanarPose{head.p - turned({newest.pose->x_m, newest.pose->y_m}, yaw_rad), yaw_rad};
-}
-
 json scene_update(const Newest& newest, std::uint64_t time_ns) {
   json entities = json::array();
   if (newest.scene) entities.push_back(scenery(*newest.scene, time_ns));
@@ -212,14 +171,15 @@ json scene_update(const Newest& newest, std::uint64_t time_ns) {
 
 json frame_transforms(const Newest& newest, std::uint64_t time_ns) {
   json list = json::array();
-  const auto add = [&](const char* child, const json& pose) {
+  const auto add = [&](const char* child, const json& pose, const char* parent = "world") {
     list.push_back({{"timestamp", stamp(time_ns)},
-                    {"parent_frame_id", "world"},
+                    {"parent_frame_id", parent},
                     {"child_frame_id", child},
                     {"translation", pose["position"]},
                     {"rotation", pose["orientation"]}});
   };
   if (newest.world && newest.world->module_count > 0) add("head", pose_of(newest.world->module_poses[0]));
+  if (newest.camera) add("camera", pose_of(newest.camera->X_HC), "head");
   if (newest.start) {
     add("start", pose_of(newest.start->p.x(), newest.start->p.y(), 0, newest.start->yaw_rad));
     if (newest.pose) {
@@ -259,37 +219,4 @@ json log_of(const msg::LogLine& line) {
       {"line", 0}};
 }
 
-std::optional<std::string> ros_image(const msg::CameraImage& image, const std::string& frame, std::uint64_t time_ns) {
-  if (!image_violation(image).empty()) return {};
-  std::string cdr{"\0\1\0\0", 4};  // little-endian CDR
-  const auto u32 = [&](std::uint32_t value) {
-    while ((cdr.size() - 4) % 4 != 0) cdr += '\0';
-    for (int i = 0; i < 4; ++i) cdr += static_cast<char>(value >> (8 * i) & 0xffu);
-  };
-  const auto text = [&](const std::string& words) {
-    u32(static_cast<std::uint32_t>(words.size() + 1));
-    cdr += words + '\0';
-  };
-  u32(static_cast<std::uint32_t>(time_ns / 1'000'000'000));
-  u32(static_cast<std::uint32_t>(time_ns % 1'000'000'000));
-  text(frame);
-  u32(image.height);
-  u32(image.width);
-  text("rgb8");
-  cdr += '\0';  // is_bigendian
-  u32(3u * image.width);
-  u32(image.data._length);
-  cdr.append(reinterpret_cast<const char*>(image.data._buffer), image.data._length);
-  return cdr;
-}
-
-const char* ros_image_schema() {
-  return "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
-         "uint8[] data\n"
-         "================================================================================\n"
-         "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
-         "================================================================================\n"
-         "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-}
-
-}  // namespace constrictor::dashboard
+}  // namespace constrictor::views
