@@ -132,7 +132,7 @@ class ParameterSet {
 
 /// A component's configuration from its YAML file; an empty path means the defaults. If `Config` has a member
 /// `complete(Configuration& root)`, it is called with the root of the file: it checks what spans several rows and reads
-/// keys that are no rows (lists of maps). Throws ConfigurationError.
+/// keys that cannot be rows, such as lists of maps. Throws ConfigurationError.
 template <class Config>
 [[nodiscard]] Config load_parameters(const std::filesystem::path& file) {
   Config config;

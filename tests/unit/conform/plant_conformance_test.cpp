@@ -7,6 +7,7 @@
 #include "conform/plant_conformance.hpp"
 #include "robot/robot_model.hpp"
 #include "support/faulty_joints.hpp"
+#include "support/joint_faults.hpp"
 #include "support/project.hpp"
 
 namespace constrictor::conform {
@@ -112,13 +113,7 @@ TEST(PlantConformance, ARightPlantOnABusyMachinePasses) {
   EXPECT_TRUE(report.conforms()) << text_of(report);
 }
 
-struct Fault {
-  const char* fault;
-  const char* check;  ///< the first one that fails
-  const char* found;  ///< a part of what it says
-};
-
-class FindsTheFault : public ::testing::TestWithParam<Fault> {};
+class FindsTheFault : public ::testing::TestWithParam<testing::NamedFault> {};
 
 TEST_P(FindsTheFault, AndNamesIt) {
   const Report report = examine_plant(GetParam().fault);
@@ -132,39 +127,8 @@ TEST_P(FindsTheFault, AndNamesIt) {
   EXPECT_EQ(report.count(Verdict::kNotChecked), 0u) << text_of(report);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Drivers, FindsTheFault,
-    ::testing::Values(
-        Fault{"silent", "arrives", "none within 10 s"}, Fault{"wrong_count", "joint_count", "22 joints"},
-        Fault{"nan", "finite", "joint 9"}, Fault{"zero_off", "range", "joint 2 at 2.0"},
-        Fault{"session_0", "numbers", "session 0"}, Fault{"same_number", "numbers", "number 7 after 7"},
-        Fault{"same_stamp", "stamps", "5 ns after 5 ns"}, Fault{"stamp_in_ms", "stamps", "by the stamps"},
-        Fault{"slow", "rate", "10.0 samples a second"}, Fault{"reports_fault", "fault", "bus power is low"},
-        Fault{"confirms_nothing", "confirms", "session 0"}, Fault{"drifts", "rests", "rad at most"},
-        Fault{"gravity_down", "imu", "-9.81"}, Fault{"few_modules", "contacts", "3 modules"},
-        Fault{"frozen", "moves", "did not move"}, Fault{"dead", "moves", "joint 4 did not move"},
-        Fault{"swapped", "order", "joint 5 moved when joint 3 was commanded"},
-        Fault{"sign", "sign", "joint 3 moved the other way"}, Fault{"degrees_in", "unit", "57 times"},
-        Fault{"degrees_out", "unit", "57 times"}, Fault{"gain", "gain", "joint 6"}, Fault{"late", "delay", "later"},
-        Fault{"velocity_in_degrees", "velocity", "times the rate of its angle"},
-        Fault{"torque_sign", "torque_sign", "joints 0, 1, 2"},
-        Fault{"torque_direction", "torque_sign", "joints 1, 3, 5, 7, 9, 11, 13, 15 and 3 more points against"},
-        Fault{"ignores_limit", "limit", "a joint moved by"}, Fault{"obeys_short", "too_few", "a joint moved by"},
-        Fault{"obeys_long", "too_many", "a joint moved by"}, Fault{"obeys_nan", "not_finite", "a joint moved by"},
-        Fault{"obeys_mode", "unknown_mode", "a joint moved by"}, Fault{"obeys_old", "old_command", "a joint moved by"},
-        Fault{"obeys_stranger", "stranger", "a joint moved by"},
-        Fault{"ignores_torque", "torque_limit", "limit of 0.30"}, Fault{"keeps_torque", "relaxed", "0.80 Nm"},
-        Fault{"no_torque_mode", "torque_turns", "joint 0 did not turn with 2.00 Nm"},
-        Fault{"push_sign", "torque_turns", "joint 6 turned against its torque"},
-        Fault{"push_swapped", "torque_order", "joint 5 turned when joint 3 was pushed"},
-        Fault{"torque_unbound", "torque_bound", "with a limit of 0.50 Nm"},
-        Fault{"pushes_on", "torque_silence", "after the last command"},
-        Fault{"ignores_silence", "silence", "after the last command"},
-        Fault{"hides_holding", "silence", "holding is false"},
-        Fault{"ends_with_commands", "silence", "end with the commands"},
-        Fault{"loses_session", "new_session", "0.00 times"}, Fault{"ignores_stop", "stop", "during a stop"},
-        Fault{"loses_epoch", "epoch", "no new epoch"}),
-    [](const auto& test) { return std::string(test.param.fault); });
+INSTANTIATE_TEST_SUITE_P(Drivers, FindsTheFault, ::testing::ValuesIn(testing::kJointFaults),
+                         [](const auto& test) { return std::string(test.param.fault); });
 
 TEST(PlantConformance, AnInterruptLeavesTheRestNotChecked) {
   const Report report = examine_plant("", 300);
