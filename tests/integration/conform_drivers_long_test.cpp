@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 class Drivers : public CliFixture {
  protected:
   nlohmann::json examined(const std::string& fault) {
-    write("quick.yaml", "joints: [0, 2, 3, 4, 5, 6, 7, 9]\nmotion: {settle_s: 0.2}\n");
+    write("quick.yaml", "joints: [0, 2, 3, 4, 5, 6, 7, 9]\n");
     const DomainClaim claim;
     const std::string domain = std::to_string(claim.domain());
     Process driver({program("faulty_driver"), domain, "23", fault});

@@ -137,5 +137,14 @@ TEST_F(DashboardPage, ShowsALostConnectionAndRecovers) {
   EXPECT_EQ(page.wait(120s), 0) << page.errors();
 }
 
+TEST_F(DashboardPage, SaysThatTheRunHasEnded) {
+  Process page = browse("1300x1000", {kConnected, "print='connected'",
+                                      "wait=document.querySelector('#connection').textContent === "
+                                      "'the run has ended; waiting for the next one'"});
+  ASSERT_TRUE(page.wait_for("\"connected\"", 60s)) << page.errors();
+  launcher_->signal(SIGINT);
+  EXPECT_EQ(page.wait(120s), 0) << page.errors();
+}
+
 }  // namespace
 }  // namespace constrictor::testing

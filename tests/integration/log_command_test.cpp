@@ -72,6 +72,7 @@ TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
   EXPECT_EQ(lines({"--component", "control"}).size(), of(all, "navigation,control").size());
   EXPECT_EQ(lines({"--grep", "starts: Constrictor", "--last", "1"}).size(), 1u);
   EXPECT_TRUE(lines({"--level", "error"}).empty()) << output_;
+  EXPECT_EQ(lines({"--level", "warn"}).size(), lines({"--level", "warning"}).size());
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
 
@@ -83,6 +84,8 @@ TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
     });
     EXPECT_TRUE(found) << line;
   }
+  EXPECT_EQ(command({"log", (dir_ / "report").string(), "--component", "launche"}), 64) << output_;
+  EXPECT_NE(output_.find("did you mean 'launcher'"), std::string::npos) << output_;
   EXPECT_TRUE(std::any_of(kept.begin(), kept.end(), [](const json& line) {
     return line["process"] == "launcher" && line["message"].get<std::string>().starts_with("mission ");
   }));

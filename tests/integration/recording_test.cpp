@@ -159,6 +159,53 @@ TEST_F(Recording, OfAnotherProcessCanBeReadAfterItWasKilled) {
   expect_nobody_left();
 }
 
+TEST_F(Recording, OfAnotherProcessEndsWithTheRun) {
+  Process launcher = run(500, "r", {"--pace", "5x", "--in-process"});
+  ASSERT_TRUE(eventually([&] { return members().size() == 1; })) << launcher.output();
+  Process recorder = command({"record", (dir_ / "all.mcap").string()});
+  Process other = command({"record", (dir_ / "none.mcap").string(), "--topic", "joint_stat"});
+  EXPECT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
+  EXPECT_TRUE(recorder.wait(20s)) << recorder.output();
+  EXPECT_NE(recorder.output().find("the run has ended"), std::string::npos) << recorder.output();
+  EXPECT_EQ(other.wait(20s), 1) << other.output();
+  EXPECT_NE(other.errors().find("no message of a topic like joint_stat arrived"), std::string::npos) << other.errors();
+}
+
+TEST_F(Recording, IsNotReplacedBySurpriseAndNotCutByItsRecovery) {
+  ASSERT_EQ(run(400, "r", {"--record", "--in-process"}).wait(30s), exit_status::kOk);
+  const auto size = fs::file_size(recording("r"));
+  EXPECT_EQ(run(50, "r", {"--in-process"}).wait(30s), exit_status::kUsage);
+  EXPECT_EQ(fs::file_size(recording("r")), size);
+  EXPECT_EQ(status_of({"replay", (dir_ / "r").string(), "--from", "999"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("--from: found 999 s, accepted 0 to"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"replay", (dir_ / "r").string(), "--topic", "joint_stat"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("--topic: found joint_stat"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"figure", (dir_ / "r").string(), "--format", "png", "-o", recording("r")}), exit_status::kUsage);
+  EXPECT_NE(output_.find("a recording, accepted another file"), std::string::npos) << output_;
+
+  const RecordingSummary whole = summarise_recording(recording("r"));
+  {
+    mcap::Reader reader(recording("r"));
+    reader.read();
+    const auto& chunks = reader.contents().chunks;
+    const auto& chunk = chunks.at(chunks.size() / 2);
+    std::fstream file(recording("r"), std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(static_cast<std::streamoff>(chunk.offset + chunk.length / 2));
+    file << std::string(64, 'x');
+  }
+  EXPECT_EQ(status_of({"info", (dir_ / "r").string()}), exit_status::kSoftware) << output_;
+  EXPECT_EQ(status_of({"recover", (dir_ / "r").string()}), exit_status::kOk) << output_;
+  EXPECT_EQ(fs::file_size(recording("r").string() + ".damaged"), size);
+  const RecordingSummary recovered = summarise_recording(recording("r"));
+  EXPECT_EQ(recovered.incomplete, "");
+  EXPECT_GT(recovered.messages, whole.messages / 2);
+  EXPECT_EQ(status_of({"info", (dir_ / "r").string()}), 1) << "messages are missing\n" << output_;
+  EXPECT_NE(output_.find("it was recovered: "), std::string::npos) << output_;
+
+  EXPECT_EQ(run(50, "r", {"--in-process", "--force"}).wait(30s), exit_status::kOk);
+  EXPECT_FALSE(fs::exists(recording("r")));
+}
+
 TEST_F(Recording, HasTopicsOfOtherProgramsAndSaysWhichHaveNoSchema) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"final", "its type contains a union"}, {"untyped", "its writer does not describe its type"}, {"appendable", ""}};

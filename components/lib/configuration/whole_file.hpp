@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -18,7 +20,13 @@ inline void write_whole(const std::filesystem::path& file, std::string_view cont
   {
     std::ofstream stream(beside, std::ios::binary);
     stream << content;
-    if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write {}", beside.string()));
+    if (!stream.flush()) {
+      const int error = errno;
+      stream.close();
+      std::error_code ignored;
+      std::filesystem::remove(beside, ignored);
+      throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(error)));
+    }
   }
   std::filesystem::rename(beside, file);
 }

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -89,6 +90,16 @@ void File::reserve(std::uint64_t offset, std::uint64_t size) const {
     if (errno == EOPNOTSUPP || errno == ENOSYS) return;
     fail("cannot be written", errno);
   }
+}
+
+void File::leave_free(std::uint64_t size, std::uint64_t more) const {
+  struct statvfs disk {};
+  if (::fstatvfs(descriptor_, &disk) != 0) return;
+  const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  if (free >= size + more) return;
+  throw DiskFull(
+      fmt::format("{}: the disk is nearly full: found {:.0f} MB, accepted at least {:.0f} MB after this file",
+                  path_.string(), 1e-6 * static_cast<double>(free), 1e-6 * static_cast<double>(size)));
 }
 
 }  // namespace constrictor::mcap

@@ -39,6 +39,8 @@ class File {
   /// Reserves space on the disk beyond the end of the file, whose size stays. Throws DiskFull if there is none. Does
   /// nothing on file systems without this function.
   void reserve(std::uint64_t offset, std::uint64_t size) const;
+  /// Throws DiskFull if others would find less than `size` bytes on the disk after `more` bytes of this file.
+  void leave_free(std::uint64_t size, std::uint64_t more) const;
 
  private:
   [[noreturn]] void fail(const char* what, int error) const;

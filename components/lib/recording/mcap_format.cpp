@@ -1,7 +1,9 @@
 #include "recording/mcap_format.hpp"
 
 #include <fmt/format.h>
+
 #include <zlib.h>
+#include <fstream>
 
 #include <algorithm>
 #include <type_traits>
@@ -209,6 +211,12 @@ Statistics decode_statistics(Bytes bytes) {
 std::uint32_t crc32(Bytes bytes, std::uint32_t before) {
   if (bytes.empty()) return before;  // zlib takes a null pointer for a request of the initial value
   return static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
+}
+
+bool is_mcap(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(kMagic.size(), '\0');
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic;
 }
 
 }  // namespace constrictor::mcap

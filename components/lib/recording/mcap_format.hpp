@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
@@ -218,5 +219,8 @@ void append_record(std::string& bytes, Op op, std::string_view content);
 [[nodiscard]] inline std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
+
+/// Whether the file exists and begins as MCAP files do.
+[[nodiscard]] bool is_mcap(const std::filesystem::path& path);
 
 }  // namespace constrictor::mcap

@@ -72,6 +72,7 @@ void for_each_record(Bytes records, const std::function<void(Op, Bytes, std::uin
 
 Reader::Reader(const std::filesystem::path& path) : file_(path, File::Mode::kRead) {
   const std::string start = file_.read(0, kMagic.size() + kRecordHeader);
+  if (start.empty()) throw Error(path.string() + ": is empty; accepted are files of `constrictor record`");
   if (!start.starts_with(kMagic))
     throw Error(path.string() + ": is not an MCAP file (its first bytes differ); accepted are files of " +
                 "`constrictor record` and `constrictor run --record`");
@@ -98,28 +99,66 @@ const Schema* Reader::schema_of(const Channel& channel) const {
   return found == contents_.schemas.end() ? nullptr : &found->second;
 }
 
-void Reader::read(const Visitor& visitor) {
+void Reader::read(const Visitor& visitor) { read_all(visitor, nullptr); }
+
+void Reader::read_undamaged(const Visitor& visitor, const LeftOut& left_out) {
+  learn_definitions();
+  read_all(visitor, &left_out);
+}
+
+void Reader::learn_definitions() {
+  const std::uint64_t end = kRecordHeader + kFooterLength + kMagic.size();
+  const std::uint64_t size = file_.size();
+  if (size < first_record_ + end) return;
+  const std::string tail = file_.read(size - end, end);
+  if (!std::string_view(tail).ends_with(kMagic)) return;
+  try {
+    const auto start = Decoder(bytes_of(tail).subspan(kRecordHeader), "Footer record").number<std::uint64_t>();
+    if (start < first_record_ || start > size - end) return;
+    const std::string summary = file_.read(start, size - end - start);
+    for_each_record(bytes_of(summary), [this](Op op, Bytes content, std::uint64_t) {
+      if (op == Op::kSchema) add_schema(content);
+      else if (op == Op::kChannel) add_channel(content);
+    });
+  } catch (const Error&) {  // what is missing counts as damage where it is needed
+  }
+}
+
+void Reader::read_all(const Visitor& visitor, const LeftOut* left_out) {
   const std::uint64_t size = file_.size();
   std::uint64_t at = first_record_;
   incomplete_ = "it has no end: its writer was killed, or is still writing it";
+  bool after_damage = false;
+  const auto rest = [&] {
+    if (left_out && at < size) (*left_out)(at, size - at, "the file ends within a record, or the length is wrong");
+  };
   while (at < size) {
     const std::string header = file_.read(at, kRecordHeader);
-    if (header.size() < kRecordHeader) return;
+    if (header.size() < kRecordHeader) return rest();
     Decoder decoder(bytes_of(header), "");
     const auto op = static_cast<Op>(decoder.number<std::uint8_t>());
     const auto length = decoder.number<std::uint64_t>();
-    if (length > size - at - kRecordHeader) return;
+    if (length > size - at - kRecordHeader) return rest();
     content_ = file_.read(at + kRecordHeader, length);
-    if (content_.size() < length) return;
+    if (content_.size() < length) return rest();
+    if (op != Op::kMessageIndex) after_damage = false;
     try {
       if (op == Op::kDataEnd) {
         data_end_ = at;
         Decoder(bytes_of(content_), "DataEnd record").number<std::uint32_t>();
+        if (left_out) return;  // a summary does not fit to what is left
         return read_summary(at + kRecordHeader + length);
       }
       read_record(op, bytes_of(content_), at, kRecordHeader + length, visitor);
+    } catch (const DiskFull&) {
+      throw;  // of what the visitor writes
     } catch (const Error& error) {
-      throw Error(place(at) + error.what() + "; `constrictor recover` keeps what is before");
+      if (!left_out) throw Error(place(at) + error.what() + "; `constrictor recover` keeps what can be read");
+      last_index_.clear();
+      // Indexes are made anew. Those of a damaged chunk fit to nothing.
+      if (op != Op::kMessageIndex) (*left_out)(at, kRecordHeader + length, error.what());
+      else if (!after_damage) (*left_out)(at, 0, error.what());
+      after_damage = true;
     }
     at += kRecordHeader + length;
     data_end_ = at;

@@ -27,6 +27,11 @@ class Reader {
   /// Reads everything. Throws Error, which names the byte, if the file is damaged. A file that ends too early is no
   /// error: see complete().
   void read(const Visitor& visitor = {});
+  /// The same, but damaged records are left out, and `left_out` is called with the offset [byte], the length [byte] and
+  /// the reason of each; the length is 0 for an index, which says nothing that the file does not have. What cannot be
+  /// told apart into records counts as one.
+  using LeftOut = std::function<void(std::uint64_t offset, std::uint64_t length, const std::string& why)>;
+  void read_undamaged(const Visitor& visitor, const LeftOut& left_out);
 
   /// Schemas, channels and indexes: after read(), of everything that was read.
   [[nodiscard]] const Contents& contents() const { return contents_; }
@@ -41,6 +46,9 @@ class Reader {
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
  private:
+  void read_all(const Visitor& visitor, const LeftOut* left_out);
+  /// Takes schemas and channels from the summary, because the chunk that defines them may be damaged.
+  void learn_definitions();
   void read_record(Op op, Bytes content, std::uint64_t offset, std::uint64_t length, const Visitor& visitor);
   void read_chunk(Bytes content, std::uint64_t offset, std::uint64_t length, const Visitor& visitor);
   void read_inner(Op op, Bytes content, const Visitor& visitor);

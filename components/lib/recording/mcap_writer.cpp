@@ -70,6 +70,7 @@ Writer::~Writer() = default;
 void Writer::append(std::string_view bytes) {
   if (bytes.empty()) return;
   try {
+    if (left_free_ > 0) file_.leave_free(left_free_, bytes.size() + summary_size_ + kReserve);
     file_.reserve(end_, bytes.size() + summary_size_ + kReserve);  // the end of the file must find space, too
     file_.write(end_, bytes);
   } catch (const DiskFull&) {

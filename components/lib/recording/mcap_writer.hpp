@@ -28,6 +28,8 @@ class Writer {
   Writer(const std::filesystem::path& path, const std::string& profile, const std::string& library);
   /// Continues the file that `reader` has read: cuts what is not complete, and the summary. Throws Error.
   explicit Writer(const Reader& reader);
+  /// From now on the disk counts as full while fewer bytes than these are left on it for other files.
+  void leave_free(std::uint64_t bytes) { left_free_ = bytes; }
   /// Ends without a summary if finish() was not called. The file can then still be read and recovered.
   ~Writer();
   Writer(const Writer&) = delete;
@@ -72,6 +74,7 @@ class Writer {
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> compressor_;
   Contents contents_;  ///< of the chunks in the file, and all schemas and channels
   std::uint64_t end_ = 0;
+  std::uint64_t left_free_ = 0;        ///< [byte] on the disk
   std::uint64_t summary_size_ = 1024;  ///< [byte] about what finish() will write
   bool finished_ = false;
   std::string chunk_;

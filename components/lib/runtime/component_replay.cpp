@@ -168,7 +168,17 @@ std::vector<ReplayResult> replay_components(const fs::path& recording, const std
 }
 
 std::vector<ReplayResult> restore_images(const fs::path& recording, const fs::path& restored, const FindFactory& find) {
-  return ComponentReplay(recording, {}, find, {}).restore(recording, restored);
+  // The copy has its name when it is complete.
+  const fs::path part = restored.string() + ".part";
+  try {
+    auto results = ComponentReplay(recording, {}, find, {}).restore(recording, part);
+    fs::rename(part, restored);
+    return results;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    throw;
+  }
 }
 
 int replay_main(const std::vector<std::string>& arguments, const FindFactory& find) {

@@ -23,6 +23,7 @@ namespace wire = barrier_topics;
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kBetweenEpochs_ns = 1'000'000'000;
+constexpr std::uint64_t kLeftFree = 64 << 20;  // [byte] on the disk, for the other files of the run
 constexpr const char* kImage = "CameraImage";
 
 const char* name_of(RecordedImages images) {
@@ -120,6 +121,7 @@ std::unique_ptr<mcap::Writer> RunRecorder::begin() const {
   attach("robot.yaml", options.setup.robot_file);
   for (const auto& [name, file] : options.recording.attachments) attach(name, file);
   writer->attach({0, "versions.yaml", "application/yaml", versions()});
+  writer->leave_free(kLeftFree);  // from now on a full disk ends the recording, not the run
   return writer;
 }
 
@@ -160,6 +162,7 @@ std::unique_ptr<mcap::Writer> RunRecorder::resume(const RecordingPosition& from)
   };
   reader.read({note, nullptr, nullptr});
   auto writer = std::make_unique<mcap::Writer>(reader);
+  writer->leave_free(kLeftFree);
   writer->restore(open);
   mcap::for_each_record(mcap::bytes_of(writer->open_chunk()), [&](mcap::Op op, mcap::Bytes content, std::uint64_t) {
     if (op != mcap::Op::kMessage) return;

@@ -21,6 +21,7 @@ struct RunOptions {
   bool in_process = false;                ///< every component in one process
   std::vector<std::string> groups;        ///< each a comma-separated list of components that share a process
   std::filesystem::path report_dir;       ///< empty: a new folder in runs/
+  bool force = false;                     ///< a recording in the folder may be replaced
   double max_sim_time_s = 0;              ///< [s] simulated time at which the run ends; 0: no limit
   bool no_checkpoints = false;            ///< the plant keeps none: it is not restarted, and the run not resumed
   bool record = false;                    ///< record all topics in run.mcap

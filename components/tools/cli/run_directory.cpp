@@ -7,6 +7,7 @@
 #include "cli/run_command.hpp"
 #include "cli/run_record.hpp"
 #include "cli/swap.hpp"
+#include "cli/usage.hpp"
 #include "runtime/recording_options.hpp"
 
 namespace constrictor::cli {
@@ -29,6 +30,12 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
         fmt::format("{:%Y%m%d-%H%M%S}_{}_seed{}", fmt::localtime(now), scenario.stem().string(), options.seed);
     dir = make_new_directory(fs::path("runs") / name);
   } else {
+    // Everything else in a report can be made again by the same command.
+    if (fs::exists(dir / kRecordingFile) && !options.force)
+      throw UsageError(
+          fmt::format("--report: found {}, which has the recording {} of an earlier run, accepted another "
+                      "folder, or --force to replace that run",
+                      dir.string(), kRecordingFile));
     fs::create_directories(dir);
   }
   for (const char* old : {"mission.json", "report.json", "figure.png", "hashes.bin", "run.json", "truth.json",

@@ -21,6 +21,7 @@ using namespace std::chrono_literals;
 using views::View;
 
 constexpr auto kShowEvery = 50ms;  // of wall time, however fast the run is
+constexpr auto kFarewell = 300ms;  // until the last words have reached the viewers
 
 std::uint64_t now_ns() {
   return static_cast<std::uint64_t>(
@@ -235,6 +236,11 @@ void Dashboard::change(WebServer::Change wish) {
     done(all);
   };
   controls_->change(std::move(good));
+}
+
+void Dashboard::say_farewell() {
+  server_.tell_end(over());
+  for (const auto end = std::chrono::steady_clock::now() + kFarewell; std::chrono::steady_clock::now() < end;) serve();
 }
 
 void Dashboard::show() {

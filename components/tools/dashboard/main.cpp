@@ -69,6 +69,7 @@ int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
     fmt::print("everybody who can reach {} may watch and command the run\n", web.address);
   std::fflush(stdout);
   while (g_signal == 0 && board.over().empty()) board.serve();
+  if (!board.over().empty()) board.say_farewell();
   if (board.server().dropped() > 0)
     fmt::print("{} messages were dropped, because viewers were too slow for them\n", board.server().dropped());
   if (g_signal != 0) return 128 + g_signal;

@@ -142,8 +142,10 @@ std::string advertise_services(const std::vector<Service>& services) {
   return text_of({{"op", "advertiseServices"}, {"services", list}});
 }
 
-std::string status(int level, const std::string& message) {
-  return text_of({{"op", "status"}, {"level", level}, {"message", message}});
+std::string status(int level, const std::string& message, const std::string& id) {
+  json text = {{"op", "status"}, {"level", level}, {"message", message}};
+  if (!id.empty()) text["id"] = id;
+  return text_of(text);
 }
 
 std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message) {

@@ -43,8 +43,8 @@ struct ParameterValue {
 [[nodiscard]] std::string server_info(const std::string& name, const std::string& session);
 [[nodiscard]] std::string advertise(const std::vector<Channel>& channels);
 [[nodiscard]] std::string advertise_services(const std::vector<Service>& services);
-/// `level`: 0 information, 1 warning, 2 error.
-[[nodiscard]] std::string status(int level, const std::string& message);
+/// `level`: 0 information, 1 warning, 2 error. `id`: for programs; may be empty.
+[[nodiscard]] std::string status(int level, const std::string& message, const std::string& id = {});
 [[nodiscard]] std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message);
 
 /// `id`: of the request that this answers; empty: none.

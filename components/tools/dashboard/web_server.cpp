@@ -54,8 +54,9 @@ void WebServer::Impl::listen() {
   acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) {
-    throw std::runtime_error(fmt::format("cannot open port {} of {}: {}; choose another one with --port", options.port,
-                                         options.address, error.message()));
+    throw std::runtime_error(fmt::format(
+        "cannot open port {} of {}: {}; choose another one with --port (with `constrictor run --view`: --view-port)",
+        options.port, options.address, error.message()));
   }
   acceptor.non_blocking(true);
   accept();
@@ -106,6 +107,11 @@ void WebServer::set_parameters(const std::vector<ParameterValue>& values) {
   for (const auto& value : values) impl_->parameters.insert_or_assign(value.name, value);
   const auto sessions = impl_->sessions;  // as in send()
   for (const auto& session : sessions) session->send_news();
+}
+
+void WebServer::tell_end(const std::string& why) {
+  const auto sessions = impl_->sessions;  // as in send()
+  for (const auto& session : sessions) session->send_text(status(0, why, "end"));
 }
 
 void WebServer::poll() {

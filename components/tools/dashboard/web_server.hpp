@@ -65,6 +65,8 @@ class WebServer {
   void set_parameters(const std::vector<ParameterValue>& values);
   /// Does what sockets are ready for. Never waits.
   void poll();
+  /// Tells all viewers why this server is about to end.
+  void tell_end(const std::string& why);
 
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] bool on_this_host_only() const;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -37,6 +38,7 @@ namespace {
 using nlohmann::json;
 
 int draw(const json& wish) {
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit of the file's size is an error and not the end
   if (wish.at("picture") == "figure") {
     FigureOptions options;
     options.file = wish.at("file").get<std::string>();

@@ -1,6 +1,7 @@
 // Files that are cut, changed or of another kind: the reader refuses them with a reason, or returns a beginning of what
 // was written; it never crashes and never invents a message.
 #include "mcap_fixture.hpp"
+#include "recording/recovery.hpp"
 
 namespace constrictor::mcap {
 namespace {
@@ -59,6 +60,61 @@ TEST_F(McapFile, ACutFileIsRecovered) {
   }
 }
 
+TEST_F(McapFile, ADamagedChunkCostsItsOwnMessagesOnly) {
+  const auto written = write(file(), 42);
+  const std::string content = content_of(file());
+  Reader whole(file());
+  whole.read();
+  const auto& chunks = whole.contents().chunks;
+  ASSERT_EQ(chunks.size(), 6u);
+  for (std::size_t n = 0; n < chunks.size(); ++n) {
+    std::string changed = content;
+    changed[chunks[n].offset + chunks[n].length - 3] ^= 0x40;  // within the compressed messages
+    store(file("changed"), changed);
+    const Recovered recovered = copy_undamaged(file("changed"), file("recovered"));
+    auto expected = written;
+    expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(7 * n),
+                   expected.begin() + static_cast<std::ptrdiff_t>(7 * n + 7));
+    Reader reader(file("recovered"));
+    // The first chunk defines the channels. They are also in the summary.
+    EXPECT_EQ(lines_of(reader), expected) << n;
+    EXPECT_EQ(recovered.messages, 35u);
+    EXPECT_EQ(reader.incomplete(), "");
+    EXPECT_EQ(reader.contents().attachments.size(), 1u);
+    EXPECT_GE(recovered.places, 1u);
+    EXPECT_NE(recovered.why.find("damaged at byte " + std::to_string(chunks[n].offset)), std::string::npos)
+        << recovered.why;
+    EXPECT_EQ(content_of(file("changed")), changed) << "the damaged file must not be touched";
+  }
+}
+
+TEST_F(McapFile, WhatAVisitorCannotWriteIsNoDamageOfTheFileThatItReads) {
+  write(file(), 42);
+  Reader reader(file());
+  Visitor visitor;
+  visitor.message = [](const Channel&, const Message&) { throw DiskFull("no space"); };
+  try {
+    reader.read(visitor);
+    FAIL();
+  } catch (const DiskFull& error) {
+    EXPECT_STREQ(error.what(), "no space");
+  }
+}
+
+TEST_F(McapFile, ADiskThatIsNearlyFullCountsAsFull) {
+  Writer writer(file(), "", "test");
+  const std::uint16_t one = writer.add_channel(0, "one", "cdr");
+  writer.write({one, 1, 1, 1, bytes_of("before")});
+  writer.close_chunk();
+  writer.leave_free(std::uint64_t{1} << 60);
+  writer.write({one, 2, 2, 2, bytes_of("after")});
+  EXPECT_THROW(writer.close_chunk(), DiskFull);
+  writer.finish({{"dropped", {{"reason", "test"}}}});
+  Reader reader(file());
+  EXPECT_EQ(lines_of(reader).size(), 1u);
+  EXPECT_EQ(reader.incomplete(), "");
+}
+
 TEST_F(McapFile, RefusesOrReadsCorrectlyWhateverByteIsChanged) {
   const auto written = write(file(), 40);
   const std::string content = content_of(file());
@@ -107,7 +163,7 @@ TEST_F(McapFile, RefusesFilesOfOtherKinds) {
   store(file("hashes.bin"), "CNSTHLG2 and more bytes than a header has");
   store(file("empty"), "");
   EXPECT_NE(read_any(file("hashes.bin")).second.find("is not an MCAP file"), std::string::npos);
-  EXPECT_NE(read_any(file("empty")).second.find("is not an MCAP file"), std::string::npos);
+  EXPECT_NE(read_any(file("empty")).second.find("is empty"), std::string::npos);
   EXPECT_NE(read_any(file("missing")).second.find("No such file"), std::string::npos);
   EXPECT_NE(read_any(folder_.path()).second, "");
 }

@@ -1,11 +1,13 @@
 // `constrictor log`: what the processes of a run have to say, while it goes on or from the files of its report.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "cli/interrupt.hpp"
@@ -16,6 +18,7 @@
 #include "client/log_reader.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "cyclone/domain.hpp"
@@ -59,13 +62,30 @@ class Printer {
   std::string own_host_ = own_host();
 };
 
+/// Throws UsageError if a component of the filter has no line at all.
+void refuse_unknown_components(const LogOptions& options) {
+  for (const std::string& name : options.filter.components) {
+    LogFilter only;
+    only.components = {name};
+    if (!read_logs(options.folder, only).empty()) continue;
+    std::set<std::string> known;
+    for (const LogEntry& entry : read_logs(options.folder, {})) known.insert(entry.record.subject);
+    known.erase("");
+    const std::vector<std::string> names(known.begin(), known.end());
+    throw UsageError(
+        fmt::format("--component: found '{}', accepted {}{}", name, fmt::join(names, ", "), did_you_mean(name, names)));
+  }
+}
+
 int of_files(const LogOptions& options) {
   if (options.follow)
     throw UsageError(
         fmt::format("--follow: found together with the folder '{}', accepted for a run that goes on; "
                     "leave the folder out",
                     options.folder));
-  Printer(options).print_last(read_logs(options.folder, options.filter), options.last);
+  const auto entries = read_logs(options.folder, options.filter);
+  if (entries.empty() && !options.filter.components.empty()) refuse_unknown_components(options);
+  Printer(options).print_last(entries, options.last);
   return exit_status::kOk;
 }
 
@@ -167,6 +187,7 @@ void add_log(CLI::App& app, Action& action) {
   sub->add_flag("--follow,-f", options->follow, "print new lines until Ctrl-C or the end of the run");
   sub->add_option("--level", options->level, "only lines of this level and of those above it: info, warning, error")
       ->check(CLI::IsMember(names_of(constants::kLog)))
+      ->transform(CLI::Transformer(std::map<std::string, std::string>{{"warn", "warning"}}))
       ->capture_default_str();
   sub->add_option("--component", options->filter.components,
                   "only lines of this component, or of the process that contains it; `launcher` has those of "

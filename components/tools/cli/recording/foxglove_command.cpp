@@ -113,12 +113,7 @@ class Copy {
 };
 
 int foxglove(const FoxgloveOptions& options) {
-  const fs::path recording = recording_of(options.file);
-  if (recording.empty())
-    throw UsageError(
-        fmt::format("FILE: found {}, which has no run.mcap, accepted a recording, or the report directory "
-                    "of a run with --record",
-                    options.file));
+  const fs::path recording = recording_or_throw(options.file);
   std::error_code ignored;
   if (fs::equivalent(recording, options.output, ignored))
     throw UsageError(fmt::format("--output: found {}, the recording itself, accepted another file", options.output));
@@ -150,9 +145,7 @@ void add_foxglove(CLI::App& app, Action& action) {
   auto options = std::make_shared<FoxgloveOptions>();
   auto* sub = add_subcommand(app, "foxglove", "copy a recording and add the 3D scene, images and log for Foxglove",
                              action, options, foxglove);
-  sub->add_option("FILE", options->file, "recording (MCAP), or the report directory of a run with --record")
-      ->required()
-      ->check(CLI::ExistingPath);
+  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
   sub->add_option("-o,--output", options->output, "file (MCAP); an existing one is replaced when the copy is complete")
       ->capture_default_str();
   sub->footer(help_footer(

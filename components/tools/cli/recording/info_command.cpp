@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/recording/recorded_messages.hpp"
 #include "cli/recording/recording_text.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -12,6 +14,7 @@
 #include "recording/mcap_reader.hpp"
 #include "recording/mcap_writer.hpp"
 #include "recording/recording_summary.hpp"
+#include "recording/recovery.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -79,13 +82,14 @@ void print_topics(const RecordingSummary& summary) {
 }
 
 int show_info(const InfoOptions& options) {
-  const RecordingSummary summary = summarise_recording(options.file);
+  const std::string file = recording_or_throw(options.file).string();
+  const RecordingSummary summary = summarise_recording(file);
   const bool whole = summary.missing() == 0 && summary.incomplete.empty() && summary.dropped.empty();
   if (options.json) {
     fmt::print("{}\n", json_text(json_of(summary), 2));
     return whole ? exit_status::kOk : kMissing;
   }
-  fmt::print("{}: {}\n", options.file, describe_recording(summary));
+  fmt::print("{}: {}\n", file, describe_recording(summary));
   fmt::print("log time {} to {}\n", time_text(summary, summary.start_ns), time_text(summary, summary.end_ns));
   for (const auto& [name, value] : summary.recording) {
     if (!value.empty()) fmt::print("  {}: {}\n", name, value);
@@ -106,20 +110,41 @@ int show_info(const InfoOptions& options) {
   return whole ? exit_status::kOk : kMissing;
 }
 
-int recover(const std::string& file) {
+/// A damaged recording stays as it is, under another name: what is left out may be of use to somebody.
+int recover_damaged(const fs::path& file) {
+  fs::path kept = file.string() + ".damaged";
+  for (int number = 2; fs::exists(kept); ++number) kept = fmt::format("{}.damaged-{}", file.string(), number);
+  const fs::path part = file.string() + ".part";
+  try {
+    const mcap::Recovered recovered = mcap::copy_undamaged(file, part);
+    fs::rename(file, kept);
+    fs::rename(part, file);
+    fmt::print("{}: {} messages in {} chunks, {} bytes in {} places left out ({}); the damaged file is {}\n",
+               file.string(), recovered.messages, recovered.chunks, recovered.left_out_bytes, recovered.places,
+               recovered.why, kept.string());
+  } catch (const mcap::Error&) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    throw;
+  }
+  return exit_status::kOk;
+}
+
+int recover(const std::string& name) {
+  const std::string file = recording_or_throw(name).string();
   mcap::Reader reader(file);
-  std::string why;
   try {
     reader.read();
-    why = reader.incomplete();
-  } catch (const mcap::Error& error) {
-    why = error.what();
+  } catch (const mcap::Error&) {
+    mcap::File(file, mcap::File::Mode::kChange);  // refuses a file that another process is writing
+    return recover_damaged(file);
   }
+  const std::string why = reader.incomplete();
   if (why.empty()) {
     fmt::print("{}: is complete; nothing to recover\n", file);
     return exit_status::kOk;
   }
-  const std::uint64_t before = std::filesystem::file_size(file);
+  const std::uint64_t before = fs::file_size(file);
   const std::uint64_t kept = reader.data_end();
   mcap::Writer writer(reader);
   writer.finish({{"recovered", {{"cut_bytes", std::to_string(before - std::min(before, kept))}, {"reason", why}}}});
@@ -134,7 +159,7 @@ void add_recording_files(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   auto* info_app = add_subcommand(app, "info", "describe a recording: topics, rates, events, mission, what is missing",
                                   action, options, show_info);
-  info_app->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);
+  info_app->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
   info_app->add_flag("--json", options->json, "print JSON instead of text, for scripts");
   info_app->footer(help_footer(
       "Reads the whole file and checks everything in it. In the recording of a whole run in lock-step, the ticks name\n"
@@ -147,10 +172,12 @@ void add_recording_files(CLI::App& app, Action& action) {
   auto file = std::make_shared<std::string>();
   auto* recover_app = add_subcommand(app, "recover", "finish a recording whose writer was killed, or that is damaged",
                                      action, file, recover);
-  recover_app->add_option("FILE", *file, "recording (MCAP), which is changed")->required()->check(CLI::ExistingFile);
+  recover_app->add_option("FILE", *file, kFileMeaning)->required()->check(CLI::ExistingPath);
   recover_app->footer(help_footer(
-      "Keeps everything up to the last complete chunk before the end or the damage, and writes the indexes and the\n"
-      "summary. A recording that a process is still writing is refused.",
+      "If its writer was killed, the file is finished: everything up to the last complete chunk, with indexes and\n"
+      "summary. If it is damaged, everything that can be read goes into a new file of its name, and the damaged one "
+      "is\n"
+      "kept as FILE.damaged. A recording that a process is still writing is refused.",
       {"constrictor recover run.mcap"}, "0 the file is complete now; 64 wrong usage; 70 no MCAP file", "none"));
 }
 

@@ -14,6 +14,7 @@
 #include "cli/usage.hpp"
 #include "client/task_names.hpp"
 #include "constrictor/json.hpp"
+#include "recording/mcap_format.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -40,15 +41,12 @@ std::string ending_of(const std::string& file) {
   return ending.empty() ? ending : ending.substr(1);
 }
 
-/// The recording of a run may also be given by its report directory.
-std::string recording_file(const std::string& file) {
-  const fs::path recording = recording_of(file);
-  if (recording.empty())
-    throw UsageError(
-        fmt::format("FILE: found {}, which has no run.mcap, accepted a recording, or the report directory "
-                    "of a run with --record",
-                    file));
-  return recording.string();
+/// A picture must not take the place of a recording, which cannot be made again.
+void refuse_recording(const char* option, const fs::path& output) {
+  if (fs::is_directory(output))
+    throw UsageError(fmt::format("{}: found {}, a folder, accepted a file", option, output.string()));
+  if (mcap::is_mcap(output))
+    throw UsageError(fmt::format("{}: found {}, a recording, accepted another file", option, output.string()));
 }
 
 int figure(const FigureOptions& options) {
@@ -61,6 +59,7 @@ int figure(const FigureOptions& options) {
   const std::string format = options.format.empty() ? ending : options.format;
   if (known && format != ending)
     throw UsageError(fmt::format("--format: found {}, accepted {}, the ending of {}", format, ending, options.output));
+  refuse_recording("--output", options.output);
   std::vector<unsigned> events;
   for (const auto& name : options.events) {
     const auto event = event_by_name(name);
@@ -68,7 +67,7 @@ int figure(const FigureOptions& options) {
     events.push_back(*event);
   }
   return become("pictures", {json_text(nlohmann::json{{"picture", "figure"},
-                                                      {"file", recording_file(options.file)},
+                                                      {"file", recording_or_throw(options.file).string()},
                                                       {"output", named ? options.output : "figure." + format},
                                                       {"format", format},
                                                       {"width", options.width},
@@ -90,10 +89,11 @@ int film(const FilmOptions& options) {
                     options.size));
   if (ending_of(options.output) != "mp4")
     throw UsageError(fmt::format("--output: found {}, accepted a name that ends in .mp4", options.output));
+  refuse_recording("--output", options.output);
   if (options.from_s && options.to_s && *options.from_s >= *options.to_s)
     throw UsageError(
         fmt::format("--to: found {:g}, accepted more than --from ({:g} s)", *options.to_s, *options.from_s));
-  nlohmann::json wish = {{"picture", "film"},        {"file", recording_file(options.file)},
+  nlohmann::json wish = {{"picture", "film"},        {"file", recording_or_throw(options.file).string()},
                          {"output", options.output}, {"speed", options.speed},
                          {"fps", options.rate_hz},   {"width", width},
                          {"height", height},         {"jobs", options.jobs}};
@@ -103,9 +103,7 @@ int film(const FilmOptions& options) {
 }
 
 void add_file(CLI::App& sub, std::string& file) {
-  sub.add_option("FILE", file, "recording (MCAP), or the report directory of a run with --record")
-      ->required()
-      ->check(CLI::ExistingPath);
+  sub.add_option("FILE", file, kFileMeaning)->required()->check(CLI::ExistingPath);
 }
 
 constexpr const char* kStatuses =

@@ -52,6 +52,7 @@ class Player {
       reader.read();
       begin_ns_ = reader.contents().statistics.start_time;
       end_ns_ = std::max(begin_ns_, reader.contents().statistics.end_time);
+      refuse_empty_choice(options_, reader.contents());
     }
     try {
       for (std::optional<double> from_s = options_.from_s; from_s;) {

@@ -1,9 +1,11 @@
 // `constrictor record`: records topics of any domain, of any type, until the user ends it.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <deque>
+#include <optional>
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/recording/recording_text.hpp"
@@ -11,6 +13,8 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/command_error.hpp"
+#include "client/run_monitor.hpp"
+#include "client/run_registry.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/topic_tap.hpp"
 #include "recording/message_cdr.hpp"
@@ -23,6 +27,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+
+constexpr auto kLastMessages = 300ms;  // those of the end may arrive after the news of the end
 
 struct RecordOptions {
   ViewOptions view;
@@ -118,12 +124,22 @@ int record(const RecordOptions& options) {
   DomainRecorder recorder(options, view);
   fmt::print("recording DDS domain {} in {}; Ctrl-C ends it\n", view.domain(), options.file);
   std::fflush(stdout);
+  std::optional<RunMonitor> monitor;
+  for (const RunNote& run : live_runs()) {
+    if (run.domain == view.domain()) monitor.emplace(run, view.participant());
+  }
   const auto start = Clock::now();
   auto told = start;
   std::set<std::string> named;
   while (!interrupted() && recorder.failure().empty()) {
     recorder.poll(50ms);
     const auto now = Clock::now();
+    if (monitor) monitor->poll();
+    if (monitor && !monitor->attachment().over().empty()) {
+      fmt::print("{}\n", monitor->attachment().over());
+      for (const auto end = now + kLastMessages; Clock::now() < end;) recorder.poll(50ms);
+      break;
+    }
     if (options.for_s > 0 && std::chrono::duration<double>(now - start).count() >= options.for_s) break;
     for (const auto& [topic, why] : recorder.refused()) {
       if (named.insert(topic).second) fmt::print(stderr, "record: {} cannot be read: {}\n", topic, why);
@@ -141,11 +157,16 @@ int record(const RecordOptions& options) {
                    {"images", options.images},
                    {"domain", std::to_string(view.domain())}}});
   const std::string failure = recorder.failure();
-  if (!failure.empty()) last.push_back({"dropped", {{"tick", "?"}, {"reason", failure}}});
+  if (!failure.empty()) last.push_back({"dropped", {{"reason", failure}}});
   const std::string error = recorder.finish(std::move(last));
   const RecordingSummary summary = summarise_recording(options.file);
   fmt::print("{}: {}\n", options.file, describe_recording(summary));
   if (!error.empty()) throw CommandError("record: " + error);
+  if (summary.messages == 0 && !options.topics.empty()) {
+    fmt::print(stderr, "record: no message of a topic like {} arrived (`constrictor topic list`)\n",
+               fmt::join(options.topics, ", "));
+    return kMissing;
+  }
   return summary.missing() == 0 ? exit_status::kOk : kMissing;
 }
 
@@ -165,7 +186,7 @@ void add_record(CLI::App& app, Action& action) {
   sub->add_option("--images", options->images, "on, or off: leave the images of cameras out")
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off"}));
-  sub->add_option("--for", options->for_s, "[s] end after this time (default: until Ctrl-C)")
+  sub->add_option("--for", options->for_s, "[s] end after this time (default: until Ctrl-C, or the end of the run)")
       ->check(number(1e-3, 1e9, "s"));
   sub->add_flag("--force", options->force, "replace FILE if it exists");
   sub->footer(help_footer(
@@ -177,7 +198,8 @@ void add_record(CLI::App& app, Action& action) {
       "run's token if a client sent a command; it is readable by its owner only.",
       {"constrictor record session.mcap",
        "constrictor record arm.mcap --topic 'joint_*' --topic guidance/pose --for 10"},
-      "0 nothing is missing; 1 messages are missing; 64 wrong usage; 70 no run, or the file cannot be written",
+      "0 nothing is missing; 1 messages are missing, or no topic matched; 64 wrong usage; 70 no run, or the file "
+      "cannot be written",
       kDomainEnvironment));
 }
 

@@ -1,11 +1,14 @@
 #include "cli/recording/recorded_messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <tuple>
 
 #include "barrier/topic_ops.hpp"
+#include "cli/usage.hpp"
 #include "constrictor/topics.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/message_cdr.hpp"
@@ -42,6 +45,14 @@ void for_each_member_message(const fs::path& recording, const std::function<void
 fs::path recording_of(const fs::path& run) {
   const fs::path file = fs::is_directory(run) ? run / kRecordingFile : run;
   return fs::exists(file) ? file : fs::path();
+}
+
+fs::path recording_or_throw(const std::string& name) {
+  fs::path recording = recording_of(name);
+  if (!recording.empty()) return recording;
+  throw UsageError(fmt::format(
+      "FILE: found {}, which has no run.mcap, accepted a recording, or the report directory of a run with --record",
+      name));
 }
 
 bool has_images(const fs::path& recording) {

@@ -14,6 +14,12 @@ namespace constrictor::cli {
 /// The recording of a run that is given by its recording or its report directory; empty if it has none.
 [[nodiscard]] std::filesystem::path recording_of(const std::filesystem::path& run);
 
+/// The same; throws UsageError if there is none.
+[[nodiscard]] std::filesystem::path recording_or_throw(const std::string& name);
+
+/// What the help of a command says of such an argument.
+inline constexpr const char* kFileMeaning = "recording (MCAP), or the report directory of a run with --record";
+
 /// Whether the recording has the pixels of images.
 [[nodiscard]] bool has_images(const std::filesystem::path& recording);
 

@@ -25,10 +25,14 @@ std::string describe_recording(const RecordingSummary& summary) {
   } else {
     text += "; no gap was found";
   }
-  if (!summary.dropped.empty())
+  if (summary.dropped.contains("tick"))
     text += fmt::format("; the recording ends at tick {}: {}", entry(summary.dropped, "tick"),
                         entry(summary.dropped, "reason"));
-  if (!summary.recovered.empty()) text += "; it was recovered after its writer was killed";
+  else if (!summary.dropped.empty())
+    text += fmt::format("; the recording ends too early: {}", entry(summary.dropped, "reason"));
+  if (!summary.recovered.empty())
+    text += fmt::format("; it was recovered: {} bytes were left out ({})", entry(summary.recovered, "cut_bytes"),
+                        entry(summary.recovered, "reason"));
   if (!summary.incomplete.empty()) text += fmt::format("; {} (`constrictor recover` finishes it)", summary.incomplete);
   return text;
 }

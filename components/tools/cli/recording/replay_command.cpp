@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/recording/player.hpp"
+#include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "recording/mcap_reader.hpp"
@@ -54,7 +55,8 @@ int replay_components(const ReplayOptions& options) {
   return become("constrictor_host", std::move(arguments));
 }
 
-int replay(const ReplayOptions& options) {
+int replay(ReplayOptions options) {
+  options.file = recording_or_throw(options.file).string();
   if (!options.restored.empty() && std::filesystem::exists(options.restored))
     throw UsageError(
         fmt::format("--restore: found {}, a file that exists; accepted the path of a new file", options.restored));
@@ -71,7 +73,7 @@ void add_replay(CLI::App& app, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   auto* sub = add_subcommand(app, "replay", "replay a recording onto DDS, or repeat a component on its recorded inputs",
                              action, options, replay);
-  sub->add_option("FILE", options->file, "recording (MCAP)")->required()->check(CLI::ExistingFile);
+  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
   auto* component =
       sub->add_option("--component", options->components,
                       "repeat this component on its recorded inputs, without DDS, and compare its outputs "

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <string>
 
+#include "cli/recording/player.hpp"
+#include "recording/mcap_format.hpp"
+
 namespace constrictor::cli {
 
 /// Commands to a run and what proves membership: nobody should obey them again.
@@ -12,5 +15,8 @@ namespace constrictor::cli {
 [[nodiscard]] int depth_of(const std::string& topic);
 /// How many of the last messages before the beginning are published: more than one where each tells something else.
 [[nodiscard]] std::size_t kept_before(const std::string& topic);
+
+/// Throws UsageError if nothing of a recording with these contents would be replayed.
+void refuse_empty_choice(const PlayOptions& options, const mcap::Contents& contents);
 
 }  // namespace constrictor::cli

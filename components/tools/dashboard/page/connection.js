@@ -13,6 +13,7 @@ export class Connection {
     this.calls = new Map(); // {name, done, fail} by number
     this.number = 0;
     this.arrived = 0; // time of the last message
+    this.ended = null; // why the dashboard is about to end
     this.connect();
     setInterval(() => this.watch(), 500);
   }
@@ -26,7 +27,7 @@ export class Connection {
 
   connect() {
     this.services = {};
-    this.on.change("connecting", "");
+    if (!this.ended) this.on.change("connecting", "");
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     this.socket = new WebSocket(`${scheme}//${location.host}/`, ["foxglove.sdk.v1"]);
     this.socket.binaryType = "arraybuffer";
@@ -38,7 +39,8 @@ export class Connection {
       const calls = [...this.calls.values()];
       this.services = {};
       this.calls.clear();
-      this.on.change("not connected; trying again", "bad");
+      if (this.ended) this.on.change(`${this.ended}; waiting for the next one`, "");
+      else this.on.change("not connected; trying again", "bad");
       for (const call of calls) call.fail(new Error(`${call.name}: the connection was lost before the answer`));
       setTimeout(() => this.connect(), again_ms);
     };
@@ -57,7 +59,11 @@ export class Connection {
       if (list.length > 0) this.socket.send(JSON.stringify({ op: "subscribe", subscriptions: list }));
     } else if (message.op === "advertiseServices") {
       for (const service of message.services) this.services[service.name] = service.id;
+      this.ended = null;
       this.on.change("connected", "good");
+    } else if (message.op === "status" && message.id === "end") {
+      this.ended = message.message;
+      this.on.change(this.ended, "");
     } else if (message.op === "serviceCallFailure") {
       this.calls.get(message.callId)?.fail(new Error(message.message));
       this.calls.delete(message.callId);
