@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -64,7 +65,9 @@ class Waiting {
       if (const auto status = look(WaitClock::now() - *heard_ > kEventLost)) return *status;
       if (!domain_claimed(domain_)) return failed("the run has ended");
     }
-    print_failure("too_late", fmt::format("no {} within {}", wanted(), options_.timeout));
+    print_failure("too_late",
+                  fmt::format("no {} within {}{}", wanted(), options_.timeout,
+                              std::isdigit(static_cast<unsigned char>(options_.timeout.back())) ? " s" : ""));
     return exit_status::kWaitedTooLong;
   }
 

@@ -65,7 +65,8 @@ CLI::Validator number(double min, double max, const std::string& unit) {
   return {[=](std::string& text) {
             const auto value = parse<double>(text);
             if (value && std::isfinite(*value) && *value >= min && *value <= max) return std::string{};
-            return fmt::format("found '{}', accepted a number from {:g} to {:g} {}", text, min, max, unit);
+            return fmt::format("found '{}', accepted a number from {:g} to {:g}{}{}", text, min, max,
+                               unit.empty() ? "" : " ", unit);
           },
           ""};
 }

@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   std::optional<std::uint32_t> run;
   std::string token_file;
   dashboard::WebOptions web;
-  CLI::App app{"Shows a run, or the replay of a recording, in a web browser and in Foxglove."};
+  CLI::App app{"Shows a run, or the replay of a recording, in a web browser and in Foxglove.", "constrictor dashboard"};
   app.set_version_flag("--version", [] { return version_text("dashboard"); });
   app.add_option("--run", run,
                  "DDS domain of the run or replay, as `constrictor run` and `replay` print it (default: the only run\n"
@@ -107,7 +107,8 @@ int main(int argc, char** argv) {
       "topic, and the 3D scene as view/scene. The run does not wait for the dashboard or its viewers; a viewer that "
       "is\n"
       "too slow loses its oldest messages.\n\n"
-      "EXAMPLES\n  dashboard\n  dashboard --port 0\n  dashboard --run 3 --address 0.0.0.0\n\n"
+      "EXAMPLES\n  constrictor dashboard\n  constrictor dashboard --port 0\n  constrictor dashboard --run 3 --address "
+      "0.0.0.0\n\n"
       "EXIT STATUS\n  0 the run has ended; 64 wrong usage; 70 no run, or the port cannot be opened; 130 Ctrl-C, 143 "
       "SIGTERM");
   try {

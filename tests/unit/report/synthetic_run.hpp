@@ -213,16 +213,20 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       write_picture(out, tick, 64, 48, story);
     };
   }));
-  members.push_back(scripted("perception", {5, 1}, [story](Wiring& wiring) {
+  members.push_back(scripted("perception", {1, 1}, [story](Wiring& wiring) {
     return [story, line = wiring.output(topics::kLinePercept),
             out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
+      // The image of three ticks ago has arrived and is shown.
+      Tick exposure = tick;
+      exposure.index -= 3;
+      if (exposure.index >= 0 && exposure.index % 5 == 0) write_picture(out, exposure, 64, 48, story);
+      if (tick.index % 5 != 0) return;
       msg::LinePercept percept{};
       percept.visible = tick.index % 20 != 0;  // three of four
       for (double* value : {&percept.end_distance_m, &percept.offset_m, &percept.heading_rad, &percept.curvature_1_m,
                             &percept.near_m, &percept.far_m})
         *value = std::nan("");
       line.write(percept);
-      write_picture(out, tick, 64, 48, story);
     };
   }));
   return members;

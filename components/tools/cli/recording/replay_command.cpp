@@ -88,7 +88,12 @@ void add_replay(CLI::App& app, Action& action) {
       ->needs(component);
   of_dds(sub->add_option("--speed", options->speed, "times the recorded speed, or max: as fast as possible")
              ->capture_default_str()
-             ->check(CLI::IsMember({"max"}) | number(1e-3, 1e3, "")));
+             ->check(CLI::Validator(
+                 [](std::string& text) {
+                   std::string why = text == "max" ? std::string() : number(1e-3, 1e3, "")(text);
+                   return why.empty() ? why : why + ", or max";
+                 },
+                 "")));
   of_dds(sub->add_option("--from", options->play.from_s, "[s] begin this long after the first message")
              ->check(number(0, 1e9, "s")));
   of_dds(

@@ -28,8 +28,10 @@ function runText({ scene, world, run, stopped, replay }) {
 
 function missionText(mission) {
   if (!mission) return "no mission";
-  return `${mission.outcome}: object ${Math.min(mission.object + 1, mission.objects)} of ${mission.objects}` +
-    ` (${mission.colour}), ${mission.recoveries} recoveries ${mission.reason}`;
+  const objects = mission.objects > 0 // a mission along the line only has none
+    ? `object ${Math.min(mission.object + 1, mission.objects)} of ${mission.objects} (${mission.colour}), `
+    : "";
+  return `${mission.outcome}: ${objects}${mission.recoveries} recoveries ${mission.reason}`;
 }
 
 function showProcess(row, process) {
