@@ -72,9 +72,7 @@ class Discovered {
 
 RunNote join_run(std::optional<std::uint32_t> domain, std::chrono::milliseconds bound) {
   if (!domain) return find_run(domain);
-  const auto runs = live_runs();
-  const auto noted = std::find_if(runs.begin(), runs.end(), [&](const RunNote& run) { return run.domain == *domain; });
-  if (noted != runs.end()) return *noted;
+  if (auto noted = live_run(*domain)) return std::move(*noted);
   Discovered discovered(*domain);
   const auto end = WaitClock::now() + bound;
   for (auto changed = WaitClock::now(); WaitClock::now() < end; std::this_thread::sleep_for(kPoll)) {

@@ -87,6 +87,10 @@ std::vector<RunNote> live_runs() {
   return runs;
 }
 
+std::optional<RunNote> live_run(std::uint32_t domain) {
+  return domain_claimed(domain) ? read_note(domain) : std::nullopt;
+}
+
 RunNote find_run(std::optional<std::uint32_t> domain) {
   const auto runs = live_runs();
   std::string list;
@@ -103,9 +107,7 @@ RunNote find_run(std::optional<std::uint32_t> domain) {
 }
 
 RunKey run_key(std::uint32_t domain) {
-  if (domain_claimed(domain)) {
-    if (const auto note = read_note(domain)) return {note->run_id, note->token};
-  }
+  if (const auto note = live_run(domain)) return {note->run_id, note->token};
   const char* file = std::getenv("CONSTRICTOR_TOKEN_FILE");
   return {0, file && *file ? read_token_file(file) : std::string()};
 }

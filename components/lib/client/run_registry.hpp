@@ -60,6 +60,9 @@ class PublishedNote {
 /// The runs on this host whose launcher is alive, in the order of their domains.
 std::vector<RunNote> live_runs();
 
+/// The one of them in this domain; empty if there is none.
+std::optional<RunNote> live_run(std::uint32_t domain);
+
 /// The run to join: find_run(), or, if `domain` is given and no launcher on this host has noted a run there, the run
 /// that publishes its state in that domain: it was started by hand, or on another host. Waits up to `bound` for it.
 /// Throws CommandError (kNoRun) if there is none.

@@ -10,25 +10,41 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace constrictor {
+
+/// A new file: it is written beside `file`, as part(), and gets its name when it is complete. Until then an older file
+/// stays what it is, and nothing is left of one that is given up.
+class NewFile {
+ public:
+  explicit NewFile(std::filesystem::path file) : file_(std::move(file)), part_(file_.string() + ".part") {}
+  ~NewFile() {
+    std::error_code ignored;
+    std::filesystem::remove(part_, ignored);
+  }
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+  [[nodiscard]] const std::filesystem::path& part() const { return part_; }
+  /// To be called when part() is closed. Throws std::filesystem::filesystem_error.
+  void complete() { std::filesystem::rename(part_, file_); }
+
+ private:
+  std::filesystem::path file_, part_;
+};
 
 /// Writes a file beside `file` and renames it, so that readers, also those after a loss of power, see either the old or
 /// the new content. Throws std::runtime_error.
 inline void write_whole(const std::filesystem::path& file, std::string_view content) {
-  const std::filesystem::path beside = file.string() + ".part";
+  NewFile whole(file);
   {
-    std::ofstream stream(beside, std::ios::binary);
+    std::ofstream stream(whole.part(), std::ios::binary);
     stream << content;
-    if (!stream.flush()) {
-      const int error = errno;
-      stream.close();
-      std::error_code ignored;
-      std::filesystem::remove(beside, ignored);
-      throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(error)));
-    }
+    if (!stream.flush())
+      throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
   }
-  std::filesystem::rename(beside, file);
+  whole.complete();
 }
 
 }  // namespace constrictor

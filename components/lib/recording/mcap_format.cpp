@@ -1,11 +1,10 @@
 #include "recording/mcap_format.hpp"
 
 #include <fmt/format.h>
-
 #include <zlib.h>
-#include <fstream>
 
 #include <algorithm>
+#include <fstream>
 #include <type_traits>
 
 namespace constrictor::mcap {

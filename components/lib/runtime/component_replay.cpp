@@ -7,6 +7,7 @@
 #include "barrier/topic_ops.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 #include "faults/faulty_component.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/message_cdr.hpp"
@@ -168,17 +169,10 @@ std::vector<ReplayResult> replay_components(const fs::path& recording, const std
 }
 
 std::vector<ReplayResult> restore_images(const fs::path& recording, const fs::path& restored, const FindFactory& find) {
-  // The copy has its name when it is complete.
-  const fs::path part = restored.string() + ".part";
-  try {
-    auto results = ComponentReplay(recording, {}, find, {}).restore(recording, part);
-    fs::rename(part, restored);
-    return results;
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw;
-  }
+  NewFile file(restored);
+  auto results = ComponentReplay(recording, {}, find, {}).restore(recording, file.part());
+  file.complete();
+  return results;
 }
 
 int replay_main(const std::vector<std::string>& arguments, const FindFactory& find) {

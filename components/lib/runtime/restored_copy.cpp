@@ -6,25 +6,9 @@
 
 namespace constrictor {
 
-RestoredCopy::RestoredCopy(const std::filesystem::path& file, const mcap::Reader& reader)
-    : reader_(reader), writer_(file, reader.contents().profile, reader.contents().library) {}
-
 void RestoredCopy::copy(mcap::Metadata metadata) {
   if (metadata.name == "recording") metadata.entries["images"] = "on";
-  writer_.add_metadata(metadata);
-}
-
-void RestoredCopy::copy(const mcap::Channel& channel, const mcap::Message& message) {
-  const auto [id, is_new] = ids_.try_emplace(channel.id, 0);
-  if (is_new) {
-    const mcap::Schema* schema = reader_.schema_of(channel);
-    id->second = writer_.add_channel(
-        schema ? writer_.add_schema(schema->name, schema->encoding, schema->data) : std::uint16_t{0}, channel.topic,
-        channel.message_encoding, channel.metadata);
-  }
-  mcap::Message copied = message;
-  copied.channel_id = id->second;
-  writer_.write(copied);
+  copy_.copy(metadata);
 }
 
 void RestoredCopy::expect(const TopicInfo& topic, const mcap::Channel& channel, const mcap::Message& message) {
@@ -48,7 +32,7 @@ void RestoredCopy::complete(const TopicInfo& topic, const msg::CameraImage& comp
 }
 
 std::size_t RestoredCopy::finish() {
-  writer_.finish();
+  copy_.finish();
   return waiting_.size();
 }
 

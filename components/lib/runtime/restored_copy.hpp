@@ -7,22 +7,21 @@
 #include <utility>
 
 #include "constrictor/topics.hpp"
-#include "recording/mcap_reader.hpp"
-#include "recording/mcap_writer.hpp"
+#include "recording/mcap_copy.hpp"
 
 namespace constrictor {
 
 class RestoredCopy {
  public:
   /// `reader`: of the recording, which must outlive this object. Throws mcap::Error.
-  RestoredCopy(const std::filesystem::path& file, const mcap::Reader& reader);
-  void copy(const mcap::Attachment& attachment) { writer_.attach(attachment); }
+  RestoredCopy(const std::filesystem::path& file, const mcap::Reader& reader) : copy_(file, reader) {}
+  void copy(const mcap::Attachment& attachment) { copy_.copy(attachment); }
   void copy(mcap::Metadata metadata);
-  void copy(const mcap::Channel& channel, const mcap::Message& message);
+  void copy(const mcap::Channel& channel, const mcap::Message& message) { copy_.copy(channel, message); }
   /// An image without pixels: it is written when they have been computed.
   void expect(const TopicInfo& topic, const mcap::Channel& channel, const mcap::Message& message);
   void complete(const TopicInfo& topic, const msg::CameraImage& computed);
-  /// Ends the file. Returns how many images have not got their pixels.
+  /// Ends the file. Throws mcap::Error. Returns how many images have not got their pixels.
   [[nodiscard]] std::size_t finish();
 
  private:
@@ -31,9 +30,7 @@ class RestoredCopy {
     mcap::Message message;
     msg::CameraImage image;
   };
-  const mcap::Reader& reader_;
-  mcap::Writer writer_;
-  std::map<std::uint16_t, std::uint16_t> ids_;                         ///< of channels: here, by those of the recording
+  mcap::Copy copy_;
   std::map<std::pair<std::uint8_t, std::uint64_t>, Waiting> waiting_;  ///< by topic and sequence number
 };
 

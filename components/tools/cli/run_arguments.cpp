@@ -49,9 +49,8 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       ->allow_extra_args(false)
       ->excludes("--in-process");
   run->add_option("--report", options->report_dir,
-                  "directory for the report (default: a new one below runs/); the report of an\nearlier run there is "
-                  "replaced, but a "
-                  "recording only with --force");
+                  "directory for the report (default: a new one below runs/); the report of an\n"
+                  "earlier run there is replaced, but a recording only with --force");
   run->add_flag("--force", options->force, "replace the recording of an earlier run in the directory of --report");
   run->add_option("--faults", options->faults_file,
                   "file of faults (YAML): samples lost, late, wrong; processes killed, stopped, slow; see\n"

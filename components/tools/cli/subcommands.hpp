@@ -35,9 +35,9 @@ void add_record(CLI::App& app, Action& action);       ///< record
 void add_replay(CLI::App& app, Action& action);       ///< replay
 void add_recording_files(CLI::App& app, Action& action);  ///< info, recover
 void add_pictures(CLI::App& app, Action& action);         ///< figure, film
-void add_foxglove(CLI::App& app, Action& action);
-void add_agent(CLI::App& app, Action& action);       ///< agent
-void add_completion(CLI::App& app, Action& action);  ///< completion
+void add_foxglove(CLI::App& app, Action& action);         ///< foxglove
+void add_agent(CLI::App& app, Action& action);            ///< agent
+void add_completion(CLI::App& app, Action& action);       ///< completion
 /// man-pages; `date` of the release, for the pages, or empty.
 void add_man_pages(CLI::App& app, Action& action, const std::string& date);
 

@@ -111,7 +111,8 @@ void WebServer::set_parameters(const std::vector<ParameterValue>& values) {
 
 void WebServer::tell_end(const std::string& why) {
   const auto sessions = impl_->sessions;  // as in send()
-  for (const auto& session : sessions) session->send_text(status(0, why, "end"));
+  const std::string text = status(0, why, "end");
+  for (const auto& session : sessions) session->send_text(text);
 }
 
 void WebServer::poll() {

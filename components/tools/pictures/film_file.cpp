@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -20,7 +19,6 @@ constexpr std::uintmax_t kLeastSpace_bytes = 16 << 20;
 FilmFile::FilmFile(const fs::path& file, double rate_hz, int width, int height)
     : file_(file), part_(file), width_(width), height_(height) {
   part_.replace_extension(".part" + file.extension().string());
-  ::signal(SIGXFSZ, SIG_IGN);                  // a limit of the file's size is an error and not the end
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "8", 0);  // only what is fatal: FFmpeg's notes are not for users
   ::setenv("OPENCV_FFMPEG_WRITER_LOGLEVEL", "8", 0);
   for (const auto& [fourcc, name] : {std::pair{cv::VideoWriter::fourcc('a', 'v', 'c', '1'), "H.264"},

@@ -27,4 +27,5 @@ struct ContactArrow {
 [[nodiscard]] nlohmann::json log_of(const msg::LogLine& line);
 /// For the page: everything but images, in one object. Documented in README.md.
 [[nodiscard]] nlohmann::json page_state(const Newest& newest);
+
 }  // namespace constrictor::views

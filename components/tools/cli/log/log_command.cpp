@@ -64,12 +64,13 @@ class Printer {
 
 /// Throws UsageError if a component of the filter has no line at all.
 void refuse_unknown_components(const LogOptions& options) {
+  const std::vector<LogEntry> all = read_logs(options.folder, {});
   for (const std::string& name : options.filter.components) {
     LogFilter only;
     only.components = {name};
-    if (!read_logs(options.folder, only).empty()) continue;
+    if (std::any_of(all.begin(), all.end(), [&](const LogEntry& entry) { return only.accepts(entry); })) continue;
     std::set<std::string> known;
-    for (const LogEntry& entry : read_logs(options.folder, {})) known.insert(entry.record.subject);
+    for (const LogEntry& entry : all) known.insert(entry.record.subject);
     known.erase("");
     const std::vector<std::string> names(known.begin(), known.end());
     throw UsageError(

@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <system_error>
+#include <vector>
 
 #include "cli/interrupt.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
-#include "recording/mcap_reader.hpp"
-#include "recording/mcap_writer.hpp"
+#include "configuration/whole_file.hpp"
+#include "recording/mcap_copy.hpp"
 #include "runtime/host.hpp"
 #include "views/recorded_views.hpp"
 
@@ -28,65 +28,39 @@ struct FoxgloveOptions {
 /// Ctrl-C: no file is left.
 class Interrupted {};
 
-/// The new file, which has its name when it is complete.
-class NewFile {
- public:
-  explicit NewFile(fs::path file) : file_(std::move(file)), part_(file_.string() + ".part") {}
-  ~NewFile() {
-    std::error_code ignored;
-    fs::remove(part_, ignored);
-  }
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-  [[nodiscard]] const fs::path& part() const { return part_; }
-  void complete() { fs::rename(part_, file_); }
-
- private:
-  fs::path file_, part_;
-};
-
 bool is_view(const std::string& topic) {
   return std::any_of(views::kViewTopics.begin(), views::kViewTopics.end(),
                      [&](const views::ViewTopic& view) { return view.topic == topic; });
 }
 
-class Copy {
+class CopyForViewers {
  public:
-  Copy(const fs::path& from, const fs::path& to)
-      : reader_(from), writer_(to, reader_.contents().profile, reader_.contents().library) {
+  CopyForViewers(const fs::path& from, const fs::path& to) : reader_(from), copy_(to, reader_) {
     for (const views::ViewTopic& topic : views::kViewTopics) {
-      const auto schema = writer_.add_schema(topic.schema_name, topic.schema_encoding, topic.schema);
-      view_channels_.push_back(writer_.add_channel(schema, topic.topic, topic.encoding));
+      const auto schema = copy_.writer().add_schema(topic.schema_name, topic.schema_encoding, topic.schema);
+      view_channels_.push_back(copy_.writer().add_channel(schema, topic.topic, topic.encoding));
     }
   }
 
   void make() {
     mcap::Visitor visitor;
-    visitor.message = [this](const mcap::Channel& channel, const mcap::Message& message) { copy(channel, message); };
-    visitor.attachment = [this](const mcap::Attachment& attachment) { writer_.attach(attachment); };
-    visitor.metadata = [this](const mcap::Metadata& metadata) { writer_.add_metadata(metadata); };
+    visitor.message = [this](const mcap::Channel& channel, const mcap::Message& message) { take(channel, message); };
+    visitor.attachment = [this](const mcap::Attachment& attachment) { copy_.copy(attachment); };
+    visitor.metadata = [this](const mcap::Metadata& metadata) { copy_.copy(metadata); };
     reader_.read(visitor);
-    writer_.finish();
+    copy_.finish();
   }
   /// Why the recording is incomplete; empty: it is complete.
   [[nodiscard]] const std::string& incomplete() const { return reader_.incomplete(); }
   [[nodiscard]] std::uint64_t views() const { return views_count_; }
   [[nodiscard]] std::uint64_t images() const { return images_; }
-  [[nodiscard]] std::uint64_t size() const { return writer_.size(); }
+  [[nodiscard]] std::uint64_t size() const { return copy_.writer().size(); }
 
  private:
-  void copy(const mcap::Channel& channel, const mcap::Message& message) {
+  void take(const mcap::Channel& channel, const mcap::Message& message) {
     if (interrupt_signal() != 0) throw Interrupted();
     if (is_view(channel.topic)) return;  // of a recording that is such a copy: they are made again
-    const auto [place, added] = channels_.try_emplace(channel.id);
-    if (added) {
-      const mcap::Schema* schema = reader_.schema_of(channel);
-      const std::uint16_t id = schema ? writer_.add_schema(schema->name, schema->encoding, schema->data) : 0;
-      place->second = writer_.add_channel(id, channel.topic, channel.message_encoding, channel.metadata);
-    }
-    mcap::Message copied = message;
-    copied.channel_id = place->second;
-    writer_.write(copied);
+    copy_.copy(channel, message);
     made_.take(channel.topic, message.data, message.log_time);
     if (++messages_ % 1000 == 0)
       progress_.show_status(fmt::format("foxglove: {} messages copied, {} added", messages_, views_count_));
@@ -99,13 +73,12 @@ class Copy {
     message.sequence = static_cast<std::uint32_t>(views_count_);
     message.log_time = message.publish_time = time_ns;
     message.data = mcap::bytes_of(data);
-    writer_.write(message);
+    copy_.writer().write(message);
   }
 
   mcap::Reader reader_;
-  mcap::Writer writer_;
-  std::map<std::uint16_t, std::uint16_t> channels_;  ///< of the copy, by those of the recording
-  std::vector<std::uint16_t> view_channels_;         ///< in the order of views::View
+  mcap::Copy copy_;
+  std::vector<std::uint16_t> view_channels_;  ///< in the order of views::View
   views::RecordedViews made_{
       [this](views::View view, std::uint64_t time_ns, std::string_view data) { add(view, time_ns, data); }};
   std::uint64_t messages_ = 0, views_count_ = 0, images_ = 0;
@@ -122,7 +95,7 @@ int foxglove(const FoxgloveOptions& options) {
   catch_interrupts();
   NewFile file(options.output);
   try {
-    Copy copy(recording, file.part());
+    CopyForViewers copy(recording, file.part());
     copy.make();
     file.complete();
     ProgressDisplay().print(fmt::format("wrote {}: {:.1f} MB, with {} messages for viewers", options.output,

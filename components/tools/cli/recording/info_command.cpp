@@ -10,6 +10,7 @@
 #include "cli/recording/recording_text.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/mcap_writer.hpp"
@@ -114,19 +115,13 @@ int show_info(const InfoOptions& options) {
 int recover_damaged(const fs::path& file) {
   fs::path kept = file.string() + ".damaged";
   for (int number = 2; fs::exists(kept); ++number) kept = fmt::format("{}.damaged-{}", file.string(), number);
-  const fs::path part = file.string() + ".part";
-  try {
-    const mcap::Recovered recovered = mcap::copy_undamaged(file, part);
-    fs::rename(file, kept);
-    fs::rename(part, file);
-    fmt::print("{}: {} messages in {} chunks, {} bytes in {} places left out ({}); the damaged file is {}\n",
-               file.string(), recovered.messages, recovered.chunks, recovered.left_out_bytes, recovered.places,
-               recovered.why, kept.string());
-  } catch (const mcap::Error&) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw;
-  }
+  NewFile copy(file);
+  const mcap::Recovered recovered = mcap::copy_undamaged(file, copy.part());
+  fs::rename(file, kept);
+  copy.complete();
+  fmt::print("{}: {} messages in {} chunks, {} bytes in {} places left out ({}); the damaged file is {}\n",
+             file.string(), recovered.messages, recovered.chunks, recovered.left_out_bytes, recovered.places,
+             recovered.why, kept.string());
   return exit_status::kOk;
 }
 

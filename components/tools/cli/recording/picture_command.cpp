@@ -42,11 +42,11 @@ std::string ending_of(const std::string& file) {
 }
 
 /// A picture must not take the place of a recording, which cannot be made again.
-void refuse_recording(const char* option, const fs::path& output) {
+void refuse_recording(const fs::path& output) {
   if (fs::is_directory(output))
-    throw UsageError(fmt::format("{}: found {}, a folder, accepted a file", option, output.string()));
+    throw UsageError(fmt::format("--output: found {}, a folder, accepted a file", output.string()));
   if (mcap::is_mcap(output))
-    throw UsageError(fmt::format("{}: found {}, a recording, accepted another file", option, output.string()));
+    throw UsageError(fmt::format("--output: found {}, a recording, accepted another file", output.string()));
 }
 
 int figure(const FigureOptions& options) {
@@ -59,7 +59,8 @@ int figure(const FigureOptions& options) {
   const std::string format = options.format.empty() ? ending : options.format;
   if (known && format != ending)
     throw UsageError(fmt::format("--format: found {}, accepted {}, the ending of {}", format, ending, options.output));
-  refuse_recording("--output", options.output);
+  const std::string output = named ? options.output : "figure." + format;
+  refuse_recording(output);
   std::vector<unsigned> events;
   for (const auto& name : options.events) {
     const auto event = event_by_name(name);
@@ -68,7 +69,7 @@ int figure(const FigureOptions& options) {
   }
   return become("pictures", {json_text(nlohmann::json{{"picture", "figure"},
                                                       {"file", recording_or_throw(options.file).string()},
-                                                      {"output", named ? options.output : "figure." + format},
+                                                      {"output", output},
                                                       {"format", format},
                                                       {"width", options.width},
                                                       {"at", options.at_s},
@@ -89,7 +90,7 @@ int film(const FilmOptions& options) {
                     options.size));
   if (ending_of(options.output) != "mp4")
     throw UsageError(fmt::format("--output: found {}, accepted a name that ends in .mp4", options.output));
-  refuse_recording("--output", options.output);
+  refuse_recording(options.output);
   if (options.from_s && options.to_s && *options.from_s >= *options.to_s)
     throw UsageError(
         fmt::format("--to: found {:g}, accepted more than --from ({:g} s)", *options.to_s, *options.from_s));

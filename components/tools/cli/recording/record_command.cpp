@@ -125,9 +125,7 @@ int record(const RecordOptions& options) {
   fmt::print("recording DDS domain {} in {}; Ctrl-C ends it\n", view.domain(), options.file);
   std::fflush(stdout);
   std::optional<RunMonitor> monitor;
-  for (const RunNote& run : live_runs()) {
-    if (run.domain == view.domain()) monitor.emplace(run, view.participant());
-  }
+  if (const auto run = live_run(view.domain())) monitor.emplace(*run, view.participant());
   const auto start = Clock::now();
   auto told = start;
   std::set<std::string> named;

@@ -37,6 +37,7 @@ int depth_of(const std::string& topic) {
 std::size_t kept_before(const std::string& topic) {
   return topic == topics::kTaskEvent.name ? 50 : topic == barrier_topics::kStatus.name ? msg::kMaxMembers : 1;
 }
+
 void refuse_empty_choice(const PlayOptions& options, const mcap::Contents& contents) {
   const auto& all = contents.statistics;
   const double length_s = all.message_count > 0 ? 1e-9 * static_cast<double>(all.end_time - all.start_time) : 0.0;
