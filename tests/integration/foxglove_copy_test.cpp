@@ -44,6 +44,9 @@ TEST_F(Pictures, TheCopyForFoxgloveHasAllMessagesAndTheViews) {
   EXPECT_EQ(copy.views.at("view/processed"), images.at("perception/image"));
   EXPECT_NEAR(copy.views.at("view/scene"), 0.8 * 17, 2) << "each third tick";
 
+  ASSERT_EQ(command({"info", out("seen.mcap")}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("foxglove.SceneUpdate")) << "the type of a view is that of its schema: " << output_;
+
   // A copy is a recording: it is replayed, drawn, and copied again without having its views twice.
   EXPECT_EQ(command({"replay", out("seen.mcap"), "--component", "perception"}, 60s), exit_status::kOk) << output_;
   EXPECT_EQ(command({"figure", out("seen.mcap"), "--at", "0.5", "-o", out("f.png")}, 60s), exit_status::kOk) << output_;

@@ -108,6 +108,11 @@ TEST_F(GamepadDrive, TheRobotMovesOnlyWhileTheDeadManButtonIsHeld) {
   const std::string name = "navigation.travel.frequency_hz";
   ASSERT_EQ(command({"param", "set", name, "0.9"}), 0) << output_;
   EXPECT_TRUE(eventually([&] { return command({"param", "dump", tuned}) == 0; })) << output_;
+  EXPECT_EQ(command({"param", "dump", tuned}), exit_status::kUsage) << "a tuned file is not replaced by accident";
+  EXPECT_NE(output_.find("which exists, accepted a new file (or --force)"), std::string::npos) << output_;
+  EXPECT_EQ(command({"param", "dump", tuned, "--force"}), 0) << output_;
+  EXPECT_EQ(command({"param", "set", "navigation.travel.frequensy_hz", "0.5"}), exit_status::kFailed) << output_;
+  EXPECT_NE(output_.find("did you mean 'navigation.travel.frequency_hz'?"), std::string::npos) << output_;
   ASSERT_EQ(command({"param", "set", name, "0.5"}), 0) << output_;
   const auto value = [&] {
     command({"param", "get", name, "--json"});

@@ -11,6 +11,7 @@
 
 #include "client/polling.hpp"
 #include "component/parameters.hpp"
+#include "configuration/closest_name.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/discovery.hpp"
 #include "cyclone/endpoint.hpp"
@@ -95,6 +96,13 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
   return {reader.parameters(), reader.silent(has_writer)};
 }
 
+std::string did_you_mean(const std::string& name, const std::map<std::string, OwnedParameter>& known) {
+  if (known.contains(name)) return {};
+  std::vector<std::string> names;
+  for (const auto& [each, owned] : known) names.push_back(each);
+  return did_you_mean(std::string_view(name), names);
+}
+
 ParameterSetter::ParameterSetter(RequestClient& client)
     : client_(client),
       changes_(dds::Reader<msg::ParameterChange>::member(client.participant(),
@@ -115,7 +123,11 @@ msg::ParameterChange ParameterSetter::set(const std::string& name, double value,
   std::optional<msg::ParameterChange> change;
   for (const auto end = WaitClock::now() + bound; WaitClock::now() < end;) {
     const auto answer = client_.wait_for_answer(number, 20ms);
-    if (answer == RequestClient::Answer::kRefused) throw CommandError(client_.refusal(), CommandError::Cause::kRefused);
+    if (answer == RequestClient::Answer::kRefused) {
+      const std::string reason = client_.refusal();  // reading the parameters takes time
+      const auto known = read_parameters(client_.participant()).parameters;
+      throw CommandError(reason + did_you_mean(name, known), CommandError::Cause::kRefused);
+    }
     changes_.take([&](const msg::ParameterChange& each) {
       if (client_.source() == each.source && name == each.name) change = each;
     });

@@ -55,7 +55,9 @@ class Summariser {
       topic.name = printable(channel.topic);
       topic.first_ns = message.log_time;
       const auto type = channel.metadata.find("dds_type");
+      // Topics that are not DDS's, such as those of `constrictor foxglove`, have the type that their schema names.
       if (type != channel.metadata.end()) topic.type = printable(type->second);
+      else if (const mcap::Schema* schema = reader_.schema_of(channel)) topic.type = printable(schema->name);
       const auto why = channel.metadata.find("no_schema");
       if (channel.schema_id == 0)
         topic.no_schema = why == channel.metadata.end() ? "not described" : printable(why->second);

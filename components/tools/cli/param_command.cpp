@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -40,7 +41,8 @@ struct ParamOptions {
   std::string name;                  ///< get: the parameter's name; list: prefix of the names to print
   std::vector<std::string> changes;  ///< set: NAME VALUE NAME VALUE ...
   std::int64_t at_tick = 0;
-  std::string file;  ///< dump, load
+  std::string file;    ///< dump, load
+  bool force = false;  ///< dump: replace the file
 };
 
 std::string pending_text(const msg::Parameter& p) {
@@ -110,7 +112,8 @@ int get_parameter(const ParamOptions& options) {
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
     report_silent(view);
-    std::fprintf(stderr, "param: no parameter '%s'; `constrictor param list` lists all\n", options.name.c_str());
+    fmt::print(stderr, "param: no parameter '{}'{} (`constrictor param list` lists all)\n", options.name,
+               did_you_mean(options.name, view.parameters));
     return exit_status::kFailed;
   }
   const msg::Parameter& p = found->second.parameter;
@@ -192,6 +195,8 @@ int set_parameter(const ParamOptions& options) {
 }
 
 int dump(const ParamOptions& options) {
+  if (!options.force && options.file != "-" && std::filesystem::exists(options.file))
+    throw UsageError(fmt::format("FILE: found {}, which exists, accepted a new file (or --force)", options.file));
   const RunNote run = join_run(options.view.domain);
   const dds::Domain domain(run.domain);
   const ParameterView view = read_parameters(domain.participant());
@@ -273,6 +278,7 @@ void add_param(CLI::App& app, Action& action) {
   add_run_option(*dump_app, options->view.domain);
   dump_app->add_option("FILE", options->file, "YAML file; - is the standard output")->required();
   dump_app->add_flag("--changed", options->changed, "only parameters that were changed, or will be");
+  dump_app->add_flag("--force", options->force, "replace FILE if it exists");
   auto* load_app = add("load", "check a whole file, then set the parameters that it names", load);
   add_token_option(*load_app);
   load_app

@@ -10,7 +10,6 @@
 
 #include "component/data_path.hpp"
 #include "component/parameters.hpp"
-#include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
 
 namespace constrictor::cli {
@@ -71,9 +70,7 @@ class Reader {
           "`constrictor run --config {}=FILE`",
           component);
     }
-    std::vector<std::string> names;
-    for (const auto& [each, owned] : view_.parameters) names.push_back(each);
-    return "found no such parameter, accepted those of `constrictor param list`" + did_you_mean(name, names);
+    return "found no such parameter, accepted those of `constrictor param list`" + did_you_mean(name, view_.parameters);
   }
 
   std::string file_;

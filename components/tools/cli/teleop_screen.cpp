@@ -13,12 +13,15 @@ namespace constrictor::cli {
 namespace {
 
 constexpr ScreenSize kLargest{240, 80};
-constexpr std::size_t kUsualRows = 24;  // a terminal with more shows more joints and more events
-constexpr std::size_t kCell = 27;       // columns of a joint
+constexpr std::size_t kUsualRows = 24;  // a terminal with more shows more joints, longer bars and more events
+constexpr std::size_t kCell = 27;       // columns of a joint at least; a cell ends with a blank
+constexpr std::size_t kBesideBar = 15;  // columns of a cell that are not its bar
+constexpr std::size_t kLongestBar = 100;
 constexpr std::size_t kUsualJoints = 24;
 constexpr std::size_t kUsualEvents = 3;
-constexpr int kBar = 12;
-constexpr std::size_t kLinesBelow = 3;  // notice, emergency stop, prompt: they are always there
+constexpr const char* kShortHelp = "i/, j/l k drive  r release  q quit";  // where the whole help does not fit
+constexpr std::size_t kLinesBelow = 3;       // notice, emergency stop, prompt: they are always there
+constexpr std::size_t kLinesBeforeHelp = 4;  // time, authority, drive and task: more important than the help
 constexpr double kFullBar_nm = 6.0;
 constexpr double kSilent_s = 2.5;  // the conductor sends a RunState once a second at least
 
@@ -29,11 +32,14 @@ struct Block {
   std::vector<std::string> lines;
 };
 
-/// `text` cut to the screen, with "?" for each character that is not printable.
+/// `text` cut to the screen, with "?" for each character that is not printable. A cut line ends with ">".
 std::string line(std::string text, std::size_t columns) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  if (text.size() > columns) text.resize(columns);
+  text.erase(text.find_last_not_of(' ') + 1);
+  if (text.size() <= columns) return text;
+  text.resize(columns);
+  text.back() = '>';
   return text;
 }
 
@@ -93,24 +99,31 @@ std::string task_line(const TeleopScreen& s) {
                      100.0 * t.progress, t.carrying ? "  carrying" : "", t.reason);
 }
 
-std::string joint_cell(const msg::JointState& joints, std::size_t j) {
-  const double torque_nm = joints.torque_nm[j];
-  const int full = static_cast<int>(std::lround(std::clamp(std::abs(torque_nm) / kFullBar_nm, 0.0, 1.0) * kBar));
+std::string joint_cell(const msg::JointState& joints, std::size_t j, std::size_t bar) {
+  const double torque_nm = std::abs(joints.torque_nm[j]);
+  const double full = std::clamp(torque_nm / kFullBar_nm, 0.0, 1.0) * static_cast<double>(bar);
   return fmt::format("{:2} {:+5.2f}|{:<{}}|{:4.1f} ", j, joints.position_rad[j],
-                     std::string(static_cast<std::size_t>(full), '#'), kBar, std::abs(torque_nm));
+                     std::string(static_cast<std::size_t>(std::lround(full)), '#'), bar, torque_nm);
 }
 
-std::vector<std::string> joint_lines(const TeleopScreen& s, ScreenSize size) {
+/// The joints in as few columns as `rows` lines allow, so that their bars are long. A third of the lines is left for
+/// earlier events.
+std::vector<std::string> joint_lines(const TeleopScreen& s, ScreenSize size, std::size_t rows) {
   std::vector<std::string> lines = {
       fmt::format("joints     angle [rad], torque [Nm], a full bar is {:.0f} Nm", kFullBar_nm)};
   const std::size_t known = s.view.joints ? std::min<std::size_t>(s.view.joints->joint_count, msg::kMaxJoints) : 0;
-  const std::size_t most = size.rows > kUsualRows ? std::max(known, kUsualJoints) : kUsualJoints;
+  const bool large = size.rows > kUsualRows;
+  const std::size_t most = large && known > 0 ? known : kUsualJoints;
   const std::size_t count = std::min(known, most);
-  const std::size_t across = std::max<std::size_t>((size.columns + 1) / kCell, 1);  // a cell ends with a blank
-  const std::size_t rows = (most + across - 1) / across;
-  for (std::size_t row = 0; row < rows; ++row) {
+  const std::size_t most_across = std::max<std::size_t>((size.columns + 1) / kCell, 1);
+  const std::size_t usable = std::max<std::size_t>(rows * 2 / 3, 1);
+  const std::size_t fitting = large ? (most + usable - 1) / usable : most_across;
+  const std::size_t across = std::clamp<std::size_t>(fitting, 1, most_across);
+  const std::size_t below = (most + across - 1) / across;
+  const std::size_t bar = large ? std::min((size.columns + 1) / across - kBesideBar, kLongestBar) : kCell - kBesideBar;
+  for (std::size_t row = 0; row < below; ++row) {
     std::string text;
-    for (std::size_t j = row; j < count; j += rows) text += joint_cell(*s.view.joints, j);
+    for (std::size_t j = row; j < count; j += below) text += joint_cell(*s.view.joints, j, bar);
     lines.push_back(text);
   }
   return lines;
@@ -141,6 +154,12 @@ std::vector<std::string> event_lines(const TeleopScreen& s, std::size_t most) {
   return lines;
 }
 
+std::size_t line_count(const std::vector<Block>& blocks) {
+  std::size_t count = 0;
+  for (const Block& block : blocks) count += block.lines.size();
+  return count;
+}
+
 /// Keeps the blocks with the lowest ranks that have at most `rows` lines together, in their order on the screen.
 void fit(std::vector<Block>& blocks, std::size_t rows) {
   std::vector<Block*> by_rank;
@@ -165,24 +184,27 @@ std::vector<std::string> render(const TeleopScreen& s, ScreenSize size) {
                               {2, {task_line(s)}},
                               {5, {mission_line(s)}},
                               {1, {drive}},
-                              {7, joint_lines(s, size)},
+                              {7, {}},  // the joints
                               {6, {contact_line(s)}},
                               {4, event_lines(s, kUsualEvents)},
                               {3, help_lines(size.columns)}};
+  Block& joints = above[5];
+  Block& events = above[7];
+  Block& help = above[8];
+  if (help.lines.size() + kLinesBeforeHelp + kLinesBelow > size.rows) help.lines = {kShortHelp};
+  joints.lines = joint_lines(s, size, size.rows - std::min(size.rows, line_count(above) + kLinesBelow + 1));
   fit(above, size.rows - kLinesBelow);
-  std::size_t used = kLinesBelow;
-  for (const Block& block : above) used += block.lines.size();
-  Block& events = above[above.size() - 2];
+  const std::size_t used = line_count(above) + kLinesBelow;
   // The rows that are left show earlier events.
   if (!events.lines.empty() && used < size.rows) events.lines = event_lines(s, kUsualEvents + size.rows - used);
-  const std::vector<std::string> help = std::move(above.back().lines);
+  const std::vector<std::string> keys = std::move(help.lines);
   above.pop_back();
 
   std::vector<std::string> lines;
   for (const Block& block : above) lines.insert(lines.end(), block.lines.begin(), block.lines.end());
-  while (lines.size() + help.size() + kLinesBelow < size.rows) lines.emplace_back();
+  while (lines.size() + keys.size() + kLinesBelow < size.rows) lines.emplace_back();
   lines.push_back(s.prompt ? "" : s.notice);
-  lines.insert(lines.end(), help.begin(), help.end());
+  lines.insert(lines.end(), keys.begin(), keys.end());
   // In the prompt the space bar is a blank between words.
   lines.push_back(s.prompt ? "Esc SPACE emergency stop  Enter start" : kTeleopHelp[2]);
   lines.push_back(s.prompt ? "task> " + *s.prompt + "_" : "");

@@ -214,7 +214,7 @@ void Dashboard::change(WebServer::Change wish) {
     const auto& [name, value, real] = wish.values[i];
     const auto owned = known.find(name);
     if (owned == known.end()) {
-      results[i].refusal = "there is no such parameter";
+      results[i].refusal = "there is no such parameter" + did_you_mean(name, known);
     } else if (const std::string frozen = controls_->frozen(); !frozen.empty()) {
       results[i].refusal = frozen;
     } else if (const auto number = value_from_json(owned->second.parameter, value)) {

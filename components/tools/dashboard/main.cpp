@@ -17,6 +17,7 @@
 #include "dashboard/commands.hpp"
 #include "dashboard/dashboard.hpp"
 #include "dashboard/replay_controls.hpp"
+#include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version_text.hpp"
 
@@ -84,7 +85,7 @@ int main(int argc, char** argv) {
   std::string token_file;
   dashboard::WebOptions web;
   CLI::App app{"Shows a run, or the replay of a recording, in a web browser and in Foxglove.", "constrictor dashboard"};
-  app.set_version_flag("--version", [] { return version_text("dashboard"); });
+  app.set_version_flag("--version", [] { return version_text("dashboard", kGitRevision); });
   app.add_option("--run", run,
                  "DDS domain of the run or replay, as `constrictor run` and `replay` print it (default: the only run\n"
                  "here, or else the only replay)")

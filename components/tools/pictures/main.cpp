@@ -13,6 +13,7 @@
 #include "configuration/configuration.hpp"
 #include "pictures/pictures.hpp"
 #include "pictures/recorded_story.hpp"
+#include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
 #include "runtime/numeric_profile.hpp"
 #include "runtime/version_text.hpp"
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   using namespace constrictor;
   const std::string argument = argc == 2 ? argv[1] : "--help";
   if (argument == "--version") {
-    fmt::print("{}\n", version_text("pictures"));
+    fmt::print("{}\n", version_text("pictures", kGitRevision));
     return exit_status::kOk;
   }
   const auto wish = nlohmann::json::parse(argument, nullptr, false);

@@ -14,6 +14,7 @@
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "ros_bridge/bridge.hpp"
+#include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version_text.hpp"
 
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
       "EXIT STATUS\n  0 the run has ended, or SIGTERM, or Ctrl-C; 64 wrong usage; 70 no run, several and none chosen, "
       "or\n"
       "  DDS fails; 78 wrong robot file");
-  app.set_version_flag("--version", [] { return version_text("ros_bridge"); });
+  app.set_version_flag("--version", [] { return version_text("ros_bridge", kGitRevision); });
   app.add_option("--run,--domain", domain,
                  "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")
       ->envname("CONSTRICTOR_DOMAIN")

@@ -149,12 +149,41 @@ def test_parameters_are_read_set_and_refused(run):
         run.set_parameter(name, 9)
     with pytest.raises(KeyError, match="no parameter"):
         run.get_parameter("navigation.nothing")
+    with pytest.raises(KeyError, match="did you mean 'navigation.travel.frequency_hz'"):
+        run.get_parameter("navigation.travel.frequensy_hz")
+    with pytest.raises(constrictor.RefusedError, match="did you mean 'navigation.travel.frequency_hz'"):
+        run.set_parameter("navigation.travel.frequensy_hz", 0.8)
     assert run.get_parameter("control.drive.method") == "undulation"
     run.set_parameter("control.drive.method", "rolling")
     assert eventually(lambda: run.get_parameter("control.drive.method") == "rolling")
     run.set_parameter("control.drive.method", "undulation")
     with pytest.raises(ValueError, match="found 'moonwalk', accepted undulation, "):
         run.set_parameter("control.drive.method", "moonwalk")
+
+
+def test_wrong_types_are_named_with_argument_found_and_accepted(run):
+    wrong = [
+        (lambda: run.drive("fast"), r"drive: speed_m_s: found 'fast' \(str\), accepted float"),
+        (lambda: run.drive(0.1, None), r"turn_rad_s: found None \(NoneType\), accepted float"),
+        (lambda: run.step(1.5), r"ticks: found 1.5 \(float\), accepted int"),
+        (lambda: run.step(True), r"ticks: found True \(bool\), accepted int"),
+        (lambda: run.start(3), r"task: found 3 \(int\), accepted str"),
+        (lambda: run.start("rotate", direction=1), r"direction: found 1 \(int\), accepted str or None"),
+        (lambda: run.set_parameter("navigation.travel.frequency_hz", [1]), r"value: .* accepted float or str"),
+        (lambda: run.subscribe("joint_state", depth="8"), r"depth: found '8' \(str\), accepted int"),
+        (lambda: constrictor.join("3"), r"join: run: found '3' \(str\), accepted int or None"),
+    ]
+    for call, text in wrong:
+        with pytest.raises(TypeError, match=text):
+            call()
+    with pytest.raises(TypeError, match="unexpected keyword argument 'speed'"):
+        run.drive(speed=1.0)
+    for call in (lambda: run.reset(-1), lambda: run.start("grasp", object_handle=70000),
+                 lambda: run.subscribe("joint_state", depth=0)):
+        with pytest.raises(ValueError, match="found .*, accepted [01] to"):
+            call()
+    run.drive(np.float32(0.1), np.int64(0))  # numbers of NumPy are numbers
+    run.stand()
 
 
 def test_time_is_commanded(run):

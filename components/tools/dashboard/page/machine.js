@@ -1,8 +1,9 @@
 // The state machine of the mission (Fig. 3 of the paper) as a diagram with the present state lit.
 
 const svg = "http://www.w3.org/2000/svg";
-const cell = { width: 150, height: 74 };
-const box = { width: 118, height: 38 };
+const wide = { cell: { width: 150, height: 74 }, box: { width: 118, height: 38 }, letters: 13 };
+// On a phone the boxes are narrow and high, so that their texts are as large as those around the diagram.
+const narrow = { cell: { width: 96, height: 88 }, box: { width: 82, height: 54 }, letters: 11 };
 
 function make(name, attributes, parent) {
   const node = document.createElementNS(svg, name);
@@ -12,16 +13,39 @@ function make(name, attributes, parent) {
 }
 
 /** The point where the line from the middle of a box towards (x, y) leaves the box. */
-function border([cx, cy], [x, y], gap) {
+function border(box, [cx, cy], [x, y], gap) {
   const dx = x - cx;
   const dy = y - cy;
   const share = Math.min((box.width / 2 + gap) / Math.abs(dx || 1e-9), (box.height / 2 + gap) / Math.abs(dy || 1e-9));
   return [cx + dx * share, cy + dy * share];
 }
 
+/** The words in lines of at most `letters` characters; a longer word has a line of its own. */
+function lines(text, letters) {
+  const made = [];
+  for (const word of text.split(" ")) {
+    const last = made.length - 1;
+    if (last >= 0 && made[last].length + 1 + word.length <= letters) made[last] += ` ${word}`;
+    else made.push(word);
+  }
+  return made;
+}
+
 export class Machine {
   constructor(parent, description) {
+    this.parent = parent;
+    this.description = description;
     this.known = description.states;
+    const phone = matchMedia("(max-width: 600px)");
+    phone.addEventListener("change", () => this.draw(phone.matches ? narrow : wide));
+    this.draw(phone.matches ? narrow : wide);
+  }
+
+  draw(size) {
+    const { description } = this;
+    const { cell } = size;
+    const lit = this.present;
+    this.size = size;
     this.present = null;
     this.boxes = {};
     this.arrows = []; // {from, to, path}
@@ -36,11 +60,13 @@ export class Machine {
     }
     for (const [from, to] of description.transitions) this.arrows.push({ from, to, path: this.arrow(root, from, to) });
     for (const name of Object.keys(this.known)) this.boxes[name] = this.state(root, name);
-    parent.append(root);
+    this.parent.replaceChildren(root);
+    if (lit !== null && lit !== undefined) this.show(lit);
   }
 
   middle(name) {
     const [column, row] = this.known[name];
+    const { cell } = this.size;
     return [(column + 0.5) * cell.width, (row + 0.5) * cell.height];
   }
 
@@ -50,20 +76,19 @@ export class Machine {
     const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     const bend = 10 + length * 0.1;
     const turn = [(a[0] + b[0]) / 2 - ((b[1] - a[1]) / length) * bend, (a[1] + b[1]) / 2 + ((b[0] - a[0]) / length) * bend];
-    const begin = border(a, turn, 0);
-    const end = border(b, turn, 2);
+    const begin = border(this.size.box, a, turn, 0);
+    const end = border(this.size.box, b, turn, 2);
     return make("path", { d: `M${begin} Q${turn} ${end}`, class: "arrow", "marker-end": "url(#tip)" }, root);
   }
 
   state(root, name) {
     const [x, y] = this.middle(name);
+    const { box } = this.size;
     const group = make("g", { class: "state", "data-state": name }, root);
     make("rect", { x: x - box.width / 2, y: y - box.height / 2, width: box.width, height: box.height, rx: 8 }, group);
-    const words = name.split(" ");
-    const half = words.length > 2 ? Math.ceil(words.length / 2) : words.length;
-    const lines = [words.slice(0, half).join(" "), words.slice(half).join(" ")].filter((line) => line);
-    lines.forEach((line, i) => {
-      const text = make("text", { x, y: y + 5 + (i - (lines.length - 1) / 2) * 15, "text-anchor": "middle" }, group);
+    const texts = lines(name, this.size.letters);
+    texts.forEach((line, i) => {
+      const text = make("text", { x, y: y + 5 + (i - (texts.length - 1) / 2) * 15, "text-anchor": "middle" }, group);
       text.textContent = line;
     });
     return group;

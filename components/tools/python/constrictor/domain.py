@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any, Callable, Dict, Generic, Iterator, Optional, Type, TypeVar, Union
 
 from . import _native
+from .arguments import checked, checked_class, in_range
 from .errors import Error, WaitTimeoutError
 
 #: A sample: nested dictionaries by the fields' names. Numbers are int and float (NaN: unknown), texts are str, arrays
@@ -75,6 +76,7 @@ class _Endpoint(_Closing, Generic[_Native]):
         self._native.close()
 
 
+@checked_class
 class Subscription(_Endpoint[_native.Subscription]):
     """The samples of one topic, as dictionaries, in the order of their arrival.
 
@@ -122,6 +124,7 @@ class Subscription(_Endpoint[_native.Subscription]):
             raise Error(f"no further sample of '{self.topic}': {end.value or end}") from None
 
 
+@checked_class
 class Publisher(_Endpoint[_native.Publisher]):
     """Publishes messages on one topic, checked against its type. Made by Domain.publisher()."""
 
@@ -167,6 +170,7 @@ class _Latest:
         return kept
 
 
+@checked_class
 class Domain(_Closing):
     """A DDS domain: its topics, of any type, also of other programs. :func:`observe` makes one.
 
@@ -231,6 +235,7 @@ class Domain(_Closing):
 
         Raises Error if there is no such topic, or if its writer does not describe its type.
         """
+        in_range("depth", depth, 1, 1_000_000)
         native = _native.Subscription(self._session, topic, history=history, depth=depth, names=names, whole=whole)
         return self._noted(Subscription(native, timeout, self))
 
@@ -280,6 +285,7 @@ class Domain(_Closing):
             self.close()
 
 
+@checked
 def observe(domain: Optional[int] = None) -> Domain:
     """Opens a DDS domain to read its topics, also one without a run: a replay, or other programs.
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence, Tuple
 
 from . import _native
+from .arguments import checked, checked_class, in_range
 from .domain import Domain, domain_from_environment
 
 
@@ -40,6 +42,7 @@ class GoalEnd:
         return f"{self.state}: {self.reason}" if self.reason else self.state
 
 
+@checked_class
 class Goal:
     """A task that was started. The robot works on it whether somebody waits for it or not."""
 
@@ -76,6 +79,7 @@ class Goal:
         return f"<constrictor.Goal {self.task} {self.id & 0xFFFFFFFF}>"
 
 
+@checked_class
 class Run(Domain):
     """A run that this program has joined; :func:`join` makes one. Use it in a ``with`` statement.
 
@@ -175,6 +179,8 @@ class Run(Domain):
         frame of guidance/map. Which task needs what: idl/CLIENTS.md. Raises ValueError if a parameter is wrong or
         missing, RefusedError with the robot's reason, NoAnswerError.
         """
+        if object_handle is not None:
+            in_range("object_handle", object_handle, 0, 65535)
         goal = self._session.start(
             task,
             line_colour=line_colour,
@@ -215,9 +221,12 @@ class Run(Domain):
 
         Raises KeyError if there is no such parameter.
         """
-        found = self._session.parameters().get(name)
+        known = self._session.parameters()
+        found = known.get(name)
         if found is None:
-            raise KeyError(f"no parameter '{name}'; parameters() returns all")
+            close = difflib.get_close_matches(name, known, 1)
+            meant = f", did you mean '{close[0]}'?" if close else ""
+            raise KeyError(f"no parameter '{name}'{meant} (parameters() returns all)")
         value: float | str = found["value"]
         return value
 
@@ -232,7 +241,7 @@ class Run(Domain):
             if value not in choices:
                 raise ValueError(f"{name}: found '{value}', accepted {', '.join(choices) or 'a number'}")
             value = float(choices.index(value))
-        return self._session.set_parameter(name, value, at_tick)[1]
+        return self._session.set_parameter(name, value, in_range("at_tick", at_tick, 0, 9 * 10**15))[1]
 
     # --- the time of the run; each returns the RunState right after the command ---
 
@@ -246,9 +255,7 @@ class Run(Domain):
 
     def step(self, ticks: int = 1) -> dict[str, Any]:
         """Pauses the run, lets it make ``ticks`` ticks, and waits until they are done."""
-        if not 1 <= ticks <= 1_000_000:
-            raise ValueError(f"ticks: found {ticks}, accepted 1 to 1000000")
-        return self._session.step(ticks)
+        return self._session.step(in_range("ticks", ticks, 1, 1_000_000))
 
     def pace(self, factor: Optional[float]) -> dict[str, Any]:
         """Limits the run to ``factor`` times real time, 0.001 to 1000; None: lock-step, as fast as possible."""
@@ -258,7 +265,7 @@ class Run(Domain):
 
     def reset(self, seed: int) -> dict[str, Any]:
         """Ends the epoch and begins a new one with this seed."""
-        return self._session.reset(seed)
+        return self._session.reset(in_range("seed", seed, 0, 2**64 - 1))
 
     def end(self) -> dict[str, Any]:
         """Ends the run in order, with a complete report."""
@@ -273,6 +280,7 @@ def runs() -> list[RunNote]:
     return [RunNote(**note) for note in _native.live_runs()]
 
 
+@checked
 def join(
     run: Optional[int] = None,
     *,
