@@ -27,7 +27,10 @@ TEST_F(RobotExport, TheExamplesOfItsHelpWork) {
     Process example({"/bin/sh", "-c", "cd " + dir_.string() + " && " + line}, environment);
     EXPECT_EQ(example.wait(20s), exit_status::kOk) << line << example.errors();
   }
-  EXPECT_EQ(examples, 4);
+  EXPECT_EQ(examples, 5);
+  EXPECT_NE(
+      read("mamba.urdf").find("<mesh filename=\"file://" + fs::canonical(dir_).string() + "/meshes/module.stl\"/>"),
+      std::string::npos);
   EXPECT_NE(read("mamba.xml").find("<mujoco model=\"mamba\">"), std::string::npos);
   EXPECT_NE(read("serpens.xml").find("<mujoco model=\"serpens\">"), std::string::npos);
   EXPECT_NE(read("mamba.sdf").find("<model name=\"mamba\">"), std::string::npos);
@@ -60,6 +63,9 @@ TEST_F(RobotExport, RefusesWrongOptionsRobotsAndFiles) {
       {{}, exit_status::kUsage, "[--mjcf,--urdf,--sdf]"},
       {{"--urdf", "--sdf"}, exit_status::kUsage, "[--mjcf,--urdf,--sdf]"},
       {{"--urdf", "mamba"}, exit_status::kUsage, "mamba"},
+      {{"--mjcf", "--meshes", "meshes"}, exit_status::kUsage, "--meshes"},
+      {{"--urdf", "--mesh-uri", "package://p"}, exit_status::kUsage, "--meshes"},
+      {{"--urdf", "--meshes", "/dev/null/meshes"}, exit_status::kSoftware, "/dev/null/meshes"},
       {{"--mjfc"}, exit_status::kUsage, "--mjcf"},
       {{"--mjcf", "mamba"}, exit_status::kUsage, "mamba"},
       {{"--mjcf", "--robot", "mambo"}, exit_status::kConfiguration, "robot: found 'mambo'"},

@@ -29,7 +29,7 @@ constexpr double kLie_rad = std::numbers::pi / 2;
 
 class UrdfWriter {
  public:
-  explicit UrdfWriter(const RobotModel& robot) : robot_(robot) {}
+  UrdfWriter(const RobotModel& robot, const std::string& mesh) : robot_(robot), mesh_(xml_escaped(mesh)) {}
 
   std::string write() {
     xml_.line(0, R"(<?xml version="1.0"?>)");
@@ -55,7 +55,9 @@ class UrdfWriter {
     xml_.line(3, R"(<inertia ixx="{0}" iyy="{1}" izz="{1}" ixy="0" ixz="0" iyz="0"/>)", inertia.along_kg_m2,
               inertia.across_kg_m2);
     xml_.line(2, "</inertial>");
+    if (!mesh_.empty()) shape(i, "visual", centre, fmt::format(R"(<mesh filename="{}"/>)", mesh_), 0.0);
     for (const char* use : {"visual", "collision"}) {
+      if (!mesh_.empty() && use == std::string("visual")) continue;
       shape(i, use, centre,
             fmt::format(R"(<cylinder radius="{}" length="{}"/>)", robot_.module_radius_m, robot_.module_length_m));
       for (const double end : {0.5, -0.5}) {
@@ -66,9 +68,10 @@ class UrdfWriter {
     xml_.line(1, "</link>");
   }
 
-  void shape(std::size_t i, const char* use, const Vector3d& place, const std::string& geometry) {
+  void shape(std::size_t i, const char* use, const Vector3d& place, const std::string& geometry,
+             double pitch_rad = kLie_rad) {
     xml_.line(2, "<{}>", use);
-    xml_.line(3, R"(<origin xyz="{}" rpy="0 {} 0"/>)", text_of(place), kLie_rad);
+    xml_.line(3, R"(<origin xyz="{}" rpy="0 {} 0"/>)", text_of(place), pitch_rad);
     xml_.line(3, "<geometry>{}</geometry>", geometry);
     if (use == std::string("visual")) xml_.line(3, R"(<material name="{}"/>)", i == 0 ? "head" : "body");
     xml_.line(2, "</{}>", use);
@@ -99,12 +102,14 @@ class UrdfWriter {
   }
 
   const RobotModel& robot_;
+  std::string mesh_;
   XmlText xml_;
 };
 
 class SdfWriter {
  public:
-  SdfWriter(const RobotModel& robot, double tick_s) : robot_(robot), tick_s_(tick_s) {}
+  SdfWriter(const RobotModel& robot, const std::string& mesh, double tick_s)
+      : robot_(robot), mesh_(xml_escaped(mesh)), tick_s_(tick_s) {}
 
   std::string write() {
     xml_.line(0, R"(<?xml version="1.0"?>)");
@@ -136,9 +141,14 @@ class SdfWriter {
     xml_.line(3, "</inertial>");
     for (const char* use : {"visual", "collision"}) {
       xml_.line(3, R"(<{0} name="{0}">)", use);
-      xml_.line(4, "<pose>{} 0 {} 0</pose>", text_of(centre), kLie_rad);
-      xml_.line(4, "<geometry><capsule><radius>{}</radius><length>{}</length></capsule></geometry>",
-                robot_.module_radius_m, robot_.module_length_m);
+      const bool meshed = !mesh_.empty() && use == std::string("visual");
+      xml_.line(4, "<pose>{} 0 {} 0</pose>", text_of(centre), meshed ? 0.0 : kLie_rad);
+      if (meshed) {
+        xml_.line(4, "<geometry><mesh><uri>{}</uri></mesh></geometry>", mesh_);
+      } else {
+        xml_.line(4, "<geometry><capsule><radius>{}</radius><length>{}</length></capsule></geometry>",
+                  robot_.module_radius_m, robot_.module_length_m);
+      }
       if (use == std::string("collision")) skin();
       xml_.line(3, "</{}>", use);
     }
@@ -186,6 +196,7 @@ class SdfWriter {
   }
 
   const RobotModel& robot_;
+  std::string mesh_;
   double tick_s_;
   XmlText xml_;
 };
@@ -216,7 +227,9 @@ ModuleInertia module_inertia(const RobotModel& robot) {
   return inertia;
 }
 
-std::string urdf_model(const RobotModel& robot) { return UrdfWriter(robot).write(); }
-std::string sdf_model(const RobotModel& robot, double tick_s) { return SdfWriter(robot, tick_s).write(); }
+std::string urdf_model(const RobotModel& robot, const std::string& mesh) { return UrdfWriter(robot, mesh).write(); }
+std::string sdf_model(const RobotModel& robot, const std::string& mesh, double tick_s) {
+  return SdfWriter(robot, mesh, tick_s).write();
+}
 
 }  // namespace constrictor

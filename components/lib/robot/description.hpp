@@ -36,12 +36,13 @@ struct ModuleInertia {
 
 /// The text of a URDF file: links with masses, inertias and shapes, joints with axes, limits and friction, the frame of
 /// the camera. URDF has no capsule: each is a cylinder and two spheres, which together are exactly the capsule.
+/// `mesh`: URI of a mesh of the module (module_mesh.hpp), which is then drawn; empty: the shapes are drawn.
 /// Source: wiki.ros.org/urdf/XML, urdfdom 3.0.
-[[nodiscard]] std::string urdf_model(const RobotModel& robot);
+[[nodiscard]] std::string urdf_model(const RobotModel& robot, const std::string& mesh = {});
 
 /// The text of an SDF 1.9 file: the same with capsules, the friction of the skin along and across each module, and the
 /// camera as a sensor. The robot lies straight on the ground, the head above the origin. `tick_s`: the control period
-/// [s], from which the rate of the camera follows. Source: sdformat.org/spec?ver=1.9.
-[[nodiscard]] std::string sdf_model(const RobotModel& robot, double tick_s = 0.02);
+/// [s], from which the rate of the camera follows. `mesh`: as above. Source: sdformat.org/spec?ver=1.9.
+[[nodiscard]] std::string sdf_model(const RobotModel& robot, const std::string& mesh = {}, double tick_s = 0.02);
 
 }  // namespace constrictor

@@ -13,7 +13,9 @@
 #include "cli/launch_plan.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/whole_file.hpp"
 #include "robot/description.hpp"
+#include "robot/module_mesh.hpp"
 #include "robot/mujoco_model.hpp"
 #include "robot/robot_model.hpp"
 #include "runtime/host.hpp"
@@ -25,11 +27,26 @@ struct RobotOptions {
   bool mjcf = false, urdf = false, sdf = false;
   std::string robot = "mamba";
   std::filesystem::path output;  ///< empty: standard output
+  std::filesystem::path meshes;  ///< folder; empty: no mesh
+  std::string mesh_uri;          ///< of that folder, for the reader of the description; empty: file://FOLDER
 };
+
+/// Returns the URI of the mesh; empty: none was asked for.
+std::string write_mesh(const RobotOptions& options, const RobotModel& robot) {
+  if (options.meshes.empty()) return {};
+  std::filesystem::create_directories(options.meshes);
+  write_whole(options.meshes / "module.stl", stl_file(module_mesh(robot)));
+  const std::string folder =
+      options.mesh_uri.empty() ? "file://" + std::filesystem::canonical(options.meshes).string() : options.mesh_uri;
+  return folder + (folder.ends_with('/') ? "" : "/") + "module.stl";
+}
 
 int export_robot(const RobotOptions& options) {
   const RobotModel robot = load_robot(find_file(options.robot, kRobots));
-  const std::string text = options.mjcf ? mujoco_model(robot) : options.urdf ? urdf_model(robot) : sdf_model(robot);
+  const std::string mesh = write_mesh(options, robot);
+  const std::string text = options.mjcf   ? mujoco_model(robot)
+                           : options.urdf ? urdf_model(robot, mesh)
+                                          : sdf_model(robot, mesh);
   const bool to_file = !options.output.empty();
   errno = 0;
   std::ofstream file;
@@ -58,6 +75,15 @@ void add_robot(CLI::App& app, Action& action) {
       ->capture_default_str();
   sub->add_option("--output", options->output,
                   "file to write; an existing file is replaced (default: standard output)");
+  auto* meshes = sub->add_option("--meshes", options->meshes,
+                                 "folder for a mesh of the module, module.stl, which the URDF or SDF file then shows;\n"
+                                 "it is made if it does not exist, and an older mesh is replaced")
+                     ->excludes("--mjcf");
+  sub->add_option(
+         "--mesh-uri", options->mesh_uri,
+         "the folder of --meshes as the reader of the description finds it, such as package://my_robot/meshes\n"
+         "(default: file:// and its absolute path)")
+      ->needs(meshes);
   const std::string about =
       "All formats contain: the modules as capsules with mass and inertia; the joints with axes, ranges, limit of the\n"
       "torque and gear friction. The angles have the signs of this project.\n"
@@ -70,12 +96,14 @@ void add_robot(CLI::App& app, Action& action) {
       "publishes. SDF also: the camera as a sensor, and the friction of the skin.\n"
       "None contains: the flat undersides of the modules (a straight robot may roll), the speed-torque curve, "
       "backlash,\n"
-      "the noise of the sensors, objects and walls. No meshes are needed: capsules are exact.\n"
+      "the noise of the sensors, objects and walls. Capsules are exact, so that a mesh is needed only by\n"
+      "programs that draw no capsules, or as the place of a mesh of your own.\n"
       "Where the models differ from this project's physics is explained in components/lib/robot/README.md.";
   const std::string footer =
       help_footer(about,
                   {"constrictor robot export --mjcf > mamba.xml", "constrictor robot export --urdf > mamba.urdf",
                    "constrictor robot export --sdf --output mamba.sdf",
+                   "constrictor robot export --urdf --meshes meshes --output mamba.urdf",
                    "constrictor robot export --mjcf --robot serpens --output serpens.xml"},
                   "0 done; 64 wrong usage; 70 the file cannot be written; 78 no such robot, or "
                   "a wrong robot file",
