@@ -53,6 +53,8 @@ class JointServos {
   [[nodiscard]] const JointReading& reading(std::size_t joint) const { return joints_[joint].reading; }
   [[nodiscard]] ServoState state(std::size_t joint) const { return joints_[joint].state; }
   [[nodiscard]] std::size_t count() const { return joints_.size(); }
+  /// "servo 8 of joint 7 at /dev/ttyUSB0"
+  [[nodiscard]] std::string name_of(std::size_t joint) const;
   /// Every joint can follow commands.
   [[nodiscard]] bool complete() const;
   /// The watchdog of a servo has tripped: it obeys nothing until unlock().
@@ -89,7 +91,6 @@ class JointServos {
   /// The goal that lets the servo exert its whole goal current: as far ahead as the joint can come in one tick, at most
   /// its limit.
   [[nodiscard]] double torque_goal_rad(const Joint& joint, double torque_nm) const;
-  [[nodiscard]] std::string name_of(std::size_t joint) const;
   [[nodiscard]] dynamixel::Bytes ids_at(std::size_t port, ServoState state, bool unseen_only = false) const;
   void read_port(std::size_t port);
   void take(Joint& joint, const serial::Answer& answer);

@@ -45,6 +45,7 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       boards_(plan_, ports_),
       record_(setup.output_dir),
       gate_(wiring, robot_, config_.command),
+      stuck_(robot_.joints.size(), config_.stuck_ticks()),
       angles_rad_(robot_.joints.size()),
       rates_rad_s_(robot_.joints.size()),
       torques_nm_(robot_.joints.size()) {}
@@ -79,10 +80,22 @@ void ServoBus::measure() {
 
 void ServoBus::report_news() {
   for (const auto& news : {servos_.take_news(), boards_.take_news()}) {
-    for (const auto& line : news) {
-      wiring_.count_refusal(line);
-      record_.add_news(line);
-    }
+    for (const auto& line : news) report(line);
+  }
+}
+
+void ServoBus::report(const std::string& line) {
+  wiring_.count_refusal(line);
+  record_.add_news(line);
+}
+
+void ServoBus::look_for_stuck_joints(std::span<const JointSetpoint> goals) {
+  for (const auto& [joint, stuck, goal_rad] : stuck_.look(goals, angles_rad_)) {
+    const std::string name = servos_.name_of(joint);
+    report(stuck
+               ? fmt::format("{} does not move, although its goal moved by {:.2f} rad in {:g} s: is the joint blocked?",
+                             name, goal_rad, config_.stuck_after_s)
+               : name + " moves again");
   }
 }
 
@@ -130,7 +143,9 @@ void ServoBus::step(const Tick& tick) {
   const bool hold = locked_ || !servos_.complete();
   if (held_ && !hold) gate_.begin_at_posture();
   held_ = hold;
-  servos_.command(gate_.setpoints(tick, {angles_rad_, rates_rad_s_}, hold));
+  const auto& goals = gate_.setpoints(tick, {angles_rad_, rates_rad_s_}, hold);
+  servos_.command(goals);
+  look_for_stuck_joints(goals);
   if (bus_time_ns_ > 0) record_.add_duration(bus_time_ns_ + ports_.now_ns() - before_ns);
   if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
 }

@@ -9,6 +9,7 @@
 #include "servo_bus/bus_record.hpp"
 #include "servo_bus/joint_servos.hpp"
 #include "servo_bus/sensor_boards.hpp"
+#include "servo_bus/stuck_watch.hpp"
 
 namespace constrictor {
 
@@ -39,6 +40,8 @@ class ServoBus final : public Plant, public DeviceOwner {
   void measure();
   void write_joints(double elapsed_s);
   void report_news();
+  void report(const std::string& line);
+  void look_for_stuck_joints(std::span<const JointSetpoint> goals);
 
   Wiring& wiring_;
   ServoBusConfig config_;
@@ -49,6 +52,7 @@ class ServoBus final : public Plant, public DeviceOwner {
   SensorBoards boards_;
   BusRecord record_;
   PlantGate gate_;
+  StuckWatch stuck_;
   std::vector<double> angles_rad_, rates_rad_s_, torques_nm_;  ///< by joint; the torques are low-pass filtered
   bool started_ = false;
   bool continued_ = false;        ///< this process continues the run of its predecessor

@@ -26,6 +26,8 @@ struct ServoBusConfig : PlantParameters {
                              "A servo that does not answer for so long is lost: the robot holds its posture");
   bool reboot_on_error = add(reboot_on_error, "servo.reboot_on_error", false,
                              "Start a servo anew that has shut down with a hardware error, at most three times");
+  double stuck_after_s = add(stuck_after_s, "servo.stuck_after_s", 1.0, "s", {0.0, 60.0}, kAtStart,
+                             "A joint that stands still for so long while its goal moves is named; 0: never");
   double load_share =
       add(load_share, "servo.load_share", 0.75, "", {0.05, 1.0}, kAtStart,
           "Largest share of the stall current that is asked for: a servo shuts down when it bears more for long");
@@ -39,6 +41,7 @@ struct ServoBusConfig : PlantParameters {
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   /// The time in which a servo moves to its goal: one tick. [ms]
   [[nodiscard]] std::int64_t profile_ms() const { return std::max(1L, std::lround(control_period_s * 1e3)); }
+  [[nodiscard]] int stuck_ticks() const { return static_cast<int>(std::lround(stuck_after_s / control_period_s)); }
   [[nodiscard]] std::int64_t watchdog_units() const { return std::lround(watchdog_s / 0.02); }
 
   void complete(const Configuration& root) const {

@@ -95,7 +95,8 @@ set(CONSTRICTOR_LAYERS
   "components/lib/plant => idl|components/lib/(component|robot)"
   "components/lib/serial => components/lib/dynamixel"
   "components/lib/barrier => idl|components/lib/(component|configuration)"
-  "components/lib/faults => idl|components/lib/(component|barrier|configuration)"
+  "components/lib/device_faults => none"
+  "components/lib/faults => idl|components/lib/(component|barrier|configuration|device_faults)"
   "components/lib/cyclone => idl"
   "components/lib/recording => idl"
   "components/lib/client => idl|components/lib/(component|cyclone)"
@@ -110,7 +111,7 @@ set(CONSTRICTOR_LAYERS
   "components/video_capture => idl|components/lib/(component|configuration|robot|video)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
   "sim/emulation => idl|components/lib/(configuration|log)|sim/.*"
-  "sim/.* => idl|components/lib/(component|configuration|dynamixel|plant|robot)|sim/.*"
+  "sim/.* => idl|components/lib/(component|configuration|device_faults|dynamixel|plant|robot)|sim/.*"
   "tests/.* => .*")
 
 # Stops the configuration if a library links one that its folder must not know.

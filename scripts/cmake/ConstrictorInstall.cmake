@@ -95,7 +95,7 @@ install(CODE "
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)")
 
 # Libraries to build against, as Constrictor::messages and so on.
-set(PUBLIC_LIBRARIES options messages log component barrier faults cyclone recording client runtime
+set(PUBLIC_LIBRARIES options messages log component barrier device_faults faults cyclone recording client runtime
     configuration robot dynamixel serial plant scheduling)
 foreach(library IN LISTS PUBLIC_LIBRARIES)
   set_target_properties(constrictor_${library} PROPERTIES EXPORT_NAME ${library})

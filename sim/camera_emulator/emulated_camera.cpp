@@ -1,15 +1,11 @@
 #include "sim/camera_emulator/emulated_camera.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <stdexcept>
 
+#include "device_faults/device_commands.hpp"
 #include "robot/camera_mount.hpp"
 #include "sim/camera/camera.hpp"
 #include "sim/physics/scene_description.hpp"
@@ -19,28 +15,6 @@ namespace constrictor::camera_emulator {
 namespace {
 
 constexpr double kShadowRadius_m = 2.2;  // as the simulated camera's
-
-struct Command {
-  const char* value_name;  ///< null: there is none
-  double min, max;
-  std::function<void(CameraFaults&, double)> obey;
-};
-
-/// `mend` is not among them: it needs the usual faults.
-const std::map<std::string, Command>& commands() {
-  static const std::map<std::string, Command> known = {
-      {"off", {nullptr, 0, 0, [](CameraFaults& f, double) { f.off = true; }}},
-      {"on", {nullptr, 0, 0, [](CameraFaults& f, double) { f.off = false; }}},
-      {"silent", {nullptr, 0, 0, [](CameraFaults& f, double) { f.silent = true; }}},
-      {"black", {nullptr, 0, 0, [](CameraFaults& f, double) { f.black = true; }}},
-      {"freeze", {nullptr, 0, 0, [](CameraFaults& f, double) { f.frozen = true; }}},
-      {"blur", {"PIXELS", 0, 50, [](CameraFaults& f, double value) { f.blur_px = value; }}},
-      {"delay", {"SECONDS", 0, 10, [](CameraFaults& f, double value) { f.delay_s = value; }}},
-      {"jitter", {"SECONDS", 0, 10, [](CameraFaults& f, double value) { f.jitter_s = value; }}},
-      {"drop", {"PROBABILITY", 0, 1, [](CameraFaults& f, double value) { f.drop = value; }}},
-  };
-  return known;
-}
 
 Scene drawn_scene(const Scenario& scenario, const RobotModel& robot) {
   return scene_of(scene_description(scenario, robot));
@@ -94,29 +68,19 @@ EmulatedFrame EmulatedCamera::expose(const msg::WorldState& world) {
 }
 
 std::string EmulatedCamera::command(const std::string& line) {
-  std::istringstream words(line);
-  std::string name;
-  words >> name;
-  if (name == "mend" && (words >> std::ws).eof()) {
-    faults_ = settings_.usual;
-    return {};
-  }
-  const auto found = commands().find(name);
-  const auto usage_of = [](const auto& entry) {
-    return entry.first + (entry.second.value_name ? fmt::format(" {}", entry.second.value_name) : "");
-  };
-  if (found == commands().end()) {
-    std::string accepted = "mend";
-    for (const auto& entry : commands()) accepted += ", " + usage_of(entry);
-    return fmt::format("found '{}', accepted {}", line, accepted);
-  }
-  const Command& command = found->second;
-  double value = 0.0;
-  const bool read = (!command.value_name || (words >> value)) && (words >> std::ws).eof();
-  if (!read || !(value >= command.min && value <= command.max))
-    return fmt::format("found '{}', accepted {}{}", line, usage_of(*found),
-                       command.value_name ? fmt::format(" from {:g} to {:g}", command.min, command.max) : "");
-  command.obey(faults_, value);
+  const auto read = read_order("camera_emulator", line, {});
+  if (const auto* refusal = std::get_if<std::string>(&read)) return *refusal;
+  const auto& [known, index, value] = std::get<DeviceOrder>(read);
+  const std::string_view name = known->name;
+  if (name == "mend") faults_ = settings_.usual;
+  else if (name == "off" || name == "on") faults_.off = name == "off";
+  else if (name == "silent") faults_.silent = true;
+  else if (name == "black") faults_.black = true;
+  else if (name == "freeze") faults_.frozen = true;
+  else if (name == "blur") faults_.blur_px = value;
+  else if (name == "delay") faults_.delay_s = value;
+  else if (name == "jitter") faults_.jitter_s = value;
+  else if (name == "drop") faults_.drop = value;
   return {};
 }
 

@@ -64,6 +64,7 @@ void BoardDevice::measure(const msg::ImuState& imu) {
 void BoardDevice::measure(std::uint8_t module, const msg::ContactState& felt) {
   count();
   std::fill(memory_.begin() + map::contact::kForce, memory_.begin() + map::contact::kEnd, std::uint8_t{0});
+  if (numb_) return;
   put(map::contact::kForce, felt.force_n[module], map::kForce_n);
   put(map::contact::kMoment, felt.torque_nm[module], map::kMoment_nm);
   std::uint8_t& known = memory_[map::contact::kContacts];

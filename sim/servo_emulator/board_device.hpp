@@ -28,6 +28,9 @@ class BoardDevice final : public BusDevice {
   void reboot() override {}
   void heard(std::int64_t) override {}
 
+  /// A numb board goes on answering and counting, but its contact sensor feels nothing.
+  void make_numb(bool numb) { numb_ = numb; }
+
   /// A new measurement of the inertial unit.
   void measure(const msg::ImuState& imu);
   /// A new measurement of the contacts of one module, out of those of all modules.
@@ -40,6 +43,7 @@ class BoardDevice final : public BusDevice {
   void count();
 
   std::uint16_t model_number_;
+  bool numb_ = false;
   dynamixel::Bytes memory_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dynamixel/bus_plan.hpp"
@@ -42,6 +43,9 @@ class EmulatedRobot {
  private:
   void step();
   void break_cable(std::size_t port, std::size_t behind);
+  /// `how`: the name of a command of a port, or of a joint.
+  void break_line(std::size_t port, std::string_view how, double value);
+  void break_servo(std::size_t joint, std::string_view how, double value);
 
   dynamixel::BusPlan plan_;
   World world_;

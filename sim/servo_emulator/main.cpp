@@ -34,13 +34,14 @@ struct Options {
   fs::path bus = data_path("deploy/buses/mamba_emulated.yaml");
   fs::path output = ".";
   std::uint64_t seed = 1;
+  double note_every_s = 0.2;  ///< of world.jsonl
 };
 
 void emulate(const Options& options, const Log& log) {
   const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
   fs::create_directories(options.output);
   EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
-  WorldFile world(options.output / "world.jsonl", robot.world());
+  WorldFile world(options.output / "world.jsonl", robot.world(), options.note_every_s);
   emulation::SharedWorldWriter shared(options.output / "world.state");
   const auto sequence = emulation::mission_sequence(options.scenario);
   std::vector<std::unique_ptr<PseudoTerminal>> terminals;
@@ -107,6 +108,9 @@ int main(int argc, char** argv) {
                  "folder in which the ports, the pipe servo_emulator.commands, and the files world.jsonl,\nworld.state "
                  "and truth.json are made")
       ->capture_default_str();
+  app.add_option("--note-every", options.note_every_s, "[s] time between two lines of world.jsonl")
+      ->capture_default_str()
+      ->check(CLI::Range(0.004, 3600.0));
   app.footer(
       "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
       "EXAMPLES\n  servo_emulator --output /tmp/robot\n  echo 'cable 0 7' > /tmp/robot/servo_emulator.commands\n\n"

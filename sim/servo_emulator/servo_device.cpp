@@ -16,6 +16,7 @@ namespace {
 constexpr double kUnlimited_steps_s = 1e9;
 constexpr std::int64_t kTimeBasedProfile = 1 << 2;  // bit of the register drive_mode
 constexpr std::size_t kIndirect = 28;
+constexpr double kJam_nm = 200.0;  // a jammed gear holds whatever the robot can exert
 
 bool is_goal(const dynamixel::Register& reg) { return reg.name.starts_with("goal_"); }
 
@@ -26,6 +27,7 @@ ServoDevice::ServoDevice(const dynamixel::ServoModel& model, const dynamixel::Jo
     : model_(model),
       wiring_(wiring),
       traits_(traits),
+      healthy_(traits),
       random_(seed, "servo " + std::to_string(wiring.port) + "/" + std::to_string(wiring.id)),
       memory_(model.end(), 0),
       torque_enable_(&model_.at("torque_enable")),
@@ -213,7 +215,14 @@ void ServoDevice::advance(double dt_s, std::int64_t now_ns, const JointMotion& m
   now_ns_ = now_ns;
   reference_steps_ += torque_on() ? profile_step(dt_s) : 0.0;
   const double constant = wiring_.direction * wiring_.gear * wiring_.torque_constant_nm_a;
-  const double current_a = torque_on() ? motion.torque_nm / constant : 0.0;
+  double torque_nm = motion.torque_nm;
+  if (jam_rad_) {  // the world shows the torque of the jam, not that of the motor
+    const JointSetpoint to = wanted(dt_s);
+    torque_nm = to.torque_mode ? to.torque_nm
+                               : std::clamp(traits_.stiffness_nm_rad * (to.position_rad - motion.angle_rad),
+                                            -to.torque_limit_nm, to.torque_limit_nm);
+  }
+  const double current_a = torque_on() ? torque_nm / (constant * traits_.strength) : 0.0;
   protect(dt_s, current_a);
   measure(motion);
   if (!torque_on()) reference_steps_ = static_cast<double>(get("present_position"));
@@ -225,7 +234,18 @@ void ServoDevice::advance(double dt_s, std::int64_t now_ns, const JointMotion& m
   if (torque_on() && watchdog > 0 && now_ns - heard_ns_ > limit_ns) store(*watchdog_, dynamixel::kWatchdogTripped);
 }
 
+void ServoDevice::heal() {
+  jam_rad_.reset();
+  traits_ = healthy_;
+  set("id", wiring_.id);
+}
+
 JointSetpoint ServoDevice::order(double dt_s) const {
+  if (jam_rad_) return {*jam_rad_, 0.0, kJam_nm};
+  return wanted(dt_s);
+}
+
+JointSetpoint ServoDevice::wanted(double dt_s) const {
   if (!torque_on()) return {motion_.angle_rad, 0.0, 0.0};
   const std::int64_t offset = get("homing_offset") - std::llround(turns_steps_);
   const double steps_per_rad = wiring_.steps_per_rad(model_);
@@ -234,7 +254,7 @@ JointSetpoint ServoDevice::order(double dt_s) const {
   };
   const auto mode = static_cast<OperatingMode>(value_of(*mode_));
   const std::int64_t current = mode == OperatingMode::kPosition ? get("current_limit") : value_of(*goal_current_);
-  const double torque_nm = wiring_.torque_nm(model_, current);
+  const double torque_nm = traits_.strength * wiring_.torque_nm(model_, current);
   if (mode == OperatingMode::kCurrent) {
     if (tripped()) return {motion_.angle_rad, 0.0, 0.0};
     return {motion_.angle_rad, 0.0, std::abs(torque_nm), torque_nm, true};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "component/random.hpp"
@@ -29,6 +30,8 @@ struct ServoTraits {
   double current_noise_a = 0.01;     ///< standard deviation of the measured current
   double overload_share = 0.8;       ///< of the stall current, above which the servo counts overload
   double overload_s = 3.0;           ///< for so long, until it reports overload
+  double strength = 1.0;             ///< the share of its torque that a worn servo still exerts
+  double stiffness_nm_rad = 300.0;   ///< of its position control: for the current of a motor that cannot turn
 };
 
 class ServoDevice final : public BusDevice {
@@ -62,6 +65,12 @@ class ServoDevice final : public BusDevice {
   /// Sets these bits of the register hardware_error_status; the servo shuts down as its register `shutdown` says.
   void fail(std::uint8_t errors);
   ServoTraits& traits() { return traits_; }
+  /// The gear jams where the joint is now; the motor goes on pulling.
+  void jam() { jam_rad_ = motion_.angle_rad; }
+  /// The winding has this temperature from now on; it cools or warms from there.
+  void heat(double temperature_c) { temperature_c_ = temperature_c; }
+  /// Ends jam(), and gives the servo back its id and the traits that it had at first.
+  void heal();
   [[nodiscard]] double temperature_c() const { return temperature_c_; }
 
  private:
@@ -77,13 +86,16 @@ class ServoDevice final : public BusDevice {
   StatusError write_directly(std::uint16_t address, dynamixel::ByteView data, bool apply);
   void apply(const Register& reg, std::int64_t value);
   void measure(const JointMotion& motion);
+  /// What the motor would let the joint do if the gear were not jammed.
+  [[nodiscard]] JointSetpoint wanted(double dt_s) const;
   void protect(double dt_s, double current_a);
   void start_profile();
   [[nodiscard]] double profile_step(double dt_s) const;
 
   dynamixel::ServoModel model_;
   dynamixel::JointServo wiring_;
-  ServoTraits traits_;
+  ServoTraits traits_, healthy_;
+  std::optional<double> jam_rad_;  ///< the angle at which the gear is jammed
   Random random_;
   dynamixel::Bytes memory_;
   const Register *torque_enable_, *watchdog_, *goal_position_, *goal_current_, *mode_;  ///< in model_.registers

@@ -8,15 +8,14 @@
 namespace constrictor::servo_emulator {
 namespace {
 
-constexpr double kEvery_s = 0.2;
-
 nlohmann::json position(const Eigen::Isometry3d& pose) {
   return {pose.translation().x(), pose.translation().y(), pose.translation().z()};
 }
 
 }  // namespace
 
-WorldFile::WorldFile(const std::filesystem::path& file, const World& world) : file_(file, std::ios::trunc) {
+WorldFile::WorldFile(const std::filesystem::path& file, const World& world, double every_s)
+    : file_(file, std::ios::trunc), every_s_(every_s) {
   const Scenario& scenario = world.scenario();
   nlohmann::json scene = {{"scenario", scenario.name}, {"seed", scenario.seed}, {"robot", world.robot().name}};
   for (const ScenarioZone& zone : scenario.zones)
@@ -29,8 +28,9 @@ WorldFile::WorldFile(const std::filesystem::path& file, const World& world) : fi
 }
 
 void WorldFile::note(const World& world, std::int64_t left_out_ns) {
-  if (world.time_s() < next_s_) return;
-  next_s_ = world.time_s() + kEvery_s;
+  constexpr double kRounding_s = 1e-6;
+  if (world.time_s() < next_s_ - kRounding_s) return;
+  next_s_ = world.time_s() + every_s_;
   nlohmann::json now = {{"time_s", world.time_s()},
                         {"left_out_s", static_cast<double>(left_out_ns) * 1e-9},
                         {"head_m", position(world.module_pose(0))},

@@ -9,16 +9,17 @@
 
 namespace constrictor::servo_emulator {
 
-/// One JSON object a line: the scene first, then the world five times a second. README.md has the fields.
+/// One JSON object a line: the scene first, then the world again and again. README.md has the fields.
 class WorldFile {
  public:
   /// Throws std::runtime_error if the file cannot be written.
-  WorldFile(const std::filesystem::path& file, const World& world);
+  WorldFile(const std::filesystem::path& file, const World& world, double every_s);
   /// Notes the world if the last note is old enough.
   void note(const World& world, std::int64_t left_out_ns);
 
  private:
   std::ofstream file_;
+  double every_s_;
   double next_s_ = 0.0;
 };
 

@@ -15,6 +15,7 @@ namespace constrictor {
 namespace {
 
 constexpr double kLongest_s = 1e6;
+constexpr std::size_t kPorts = 16;  // a device refuses those that it does not have
 
 const std::vector<std::string> kTopicKinds = {"drop", "delay", "duplicate", "corrupt", "freeze", "bias"};
 const std::vector<std::string> kProcessKinds = {"kill", "stop", "slow"};
@@ -82,9 +83,42 @@ ProcessFault read_process_fault(Configuration& entry, const std::vector<std::str
   return fault;
 }
 
+std::string device_of(Configuration& entry, const FaultTargets& targets) {
+  const std::string name = entry.text("device", breakable_devices());
+  const auto& beside = targets.beside;
+  if (beside && std::find(beside->begin(), beside->end(), name) == beside->end()) {
+    throw entry.error("device", fmt::format("found {}, which does not run beside this run, accepted {}", name,
+                                            beside->empty() ? "none: the manifest has no emulated devices"
+                                                            : fmt::format("{}", fmt::join(*beside, ", "))));
+  }
+  return name;
+}
+
+DeviceFault read_device_fault(Configuration& entry, const FaultTargets& targets) {
+  DeviceFault fault;
+  const auto commands = commands_of(device_of(entry, targets));
+  std::vector<std::string> names;
+  for (const DeviceCommand* command : commands) names.emplace_back(command->name);
+  const std::string kind = entry.text("kind", names);
+  fault.order.command = *std::find_if(commands.begin(), commands.end(), [&](const auto* c) { return c->name == kind; });
+  const DeviceCommand& command = *fault.order.command;
+  const std::size_t most = command.of == "joint" ? targets.joints : command.of == "module" ? targets.modules : kPorts;
+  if (!command.of.empty())
+    fault.order.index =
+        static_cast<std::size_t>(entry.integer(std::string(command.of), 0, static_cast<std::int64_t>(most) - 1));
+  const std::string value(command.value);
+  if (command.whole)
+    fault.order.value = static_cast<double>(entry.integer(value, std::llround(command.min), std::llround(command.max)));
+  else if (!value.empty()) fault.order.value = entry.number(value, {command.min, command.max});
+  read_times(entry, fault);
+  if (command.end.empty() && entry.has("until_s"))
+    throw entry.error("until_s", fmt::format("found a time, accepted none: nothing ends {}", kind));
+  return fault;
+}
+
 }  // namespace
 
-FaultPlan load_fault_plan(const std::filesystem::path& file, const std::vector<std::string>& roster) {
+FaultPlan load_fault_plan(const std::filesystem::path& file, const FaultTargets& targets) {
   FaultPlan plan;
   if (file.empty()) return plan;
   Configuration root = Configuration::load(file);
@@ -92,13 +126,15 @@ FaultPlan load_fault_plan(const std::filesystem::path& file, const std::vector<s
   std::uint64_t number = 0;
   for (Configuration& entry : root.list("faults")) {
     ++number;
-    if (entry.has("topic") == entry.has("process"))
-      throw entry.error("topic", "found neither or both of topic and process, accepted one of them");
+    if (int{entry.has("topic")} + int{entry.has("process")} + int{entry.has("device")} != 1)
+      throw entry.error("topic", "found none or several of topic, process and device, accepted one of them");
     if (entry.has("topic")) {
       plan.topics.push_back(read_topic_fault(entry));
       plan.topics.back().number = number;
+    } else if (entry.has("device")) {
+      plan.devices.push_back(read_device_fault(entry, targets));
     } else {
-      plan.processes.push_back(read_process_fault(entry, roster));
+      plan.processes.push_back(read_process_fault(entry, targets.roster));
     }
     entry.finish();
   }
@@ -112,6 +148,10 @@ std::string describe(const TopicFault& fault) {
 
 std::string describe(const ProcessFault& fault) {
   return fmt::format("{} of {}", kProcessKinds[static_cast<std::size_t>(fault.kind)], fault.component);
+}
+
+std::string describe(const DeviceFault& fault) {
+  return fmt::format("{} of {}", line_of(fault.order), fault.order.command->device);
 }
 
 }  // namespace constrictor

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "constrictor/topics.hpp"
+#include "device_faults/device_commands.hpp"
 
 namespace constrictor {
 
@@ -46,18 +48,35 @@ struct ProcessFault {
   double step_ms = 0.0;       ///< [ms] wall time, of kSlow
 };
 
+/// What happens to an emulated device that runs beside the run. It is no member, so that it knows no tick.
+struct DeviceFault {
+  DeviceOrder order;
+  std::int64_t from_ns = 0;   ///< simulated time
+  std::int64_t until_ns = 0;  ///< simulated time
+};
+
 struct FaultPlan {
   std::uint64_t seed = 1;
   std::vector<TopicFault> topics;
   std::vector<ProcessFault> processes;
+  std::vector<DeviceFault> devices;
+};
+
+/// What a file of faults may name.
+struct FaultTargets {
+  std::vector<std::string> roster;
+  /// The programs that run beside the run; empty: not checked, because only the launcher knows them.
+  std::optional<std::vector<std::string>> beside = std::nullopt;
+  std::size_t joints = msg::kMaxJoints, modules = msg::kMaxModules;  ///< of the robot
 };
 
 /// Reads a file of faults; an empty path is a plan without faults. Throws ConfigurationError with file, line, key, what
-/// was found and what is accepted. `roster`: the components that a fault of a process may name.
-[[nodiscard]] FaultPlan load_fault_plan(const std::filesystem::path& file, const std::vector<std::string>& roster);
+/// was found and what is accepted.
+[[nodiscard]] FaultPlan load_fault_plan(const std::filesystem::path& file, const FaultTargets& targets);
 
 /// "drop of perception/objects", for messages.
 [[nodiscard]] std::string describe(const TopicFault& fault);
 [[nodiscard]] std::string describe(const ProcessFault& fault);
+[[nodiscard]] std::string describe(const DeviceFault& fault);
 
 }  // namespace constrictor

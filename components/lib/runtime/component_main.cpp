@@ -194,7 +194,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
     if (!token_file.empty()) options.token = read_token_file(token_file);
     options.setup.max_sim_time_s = options.max_sim_time_s;
     options.checkpoints = !no_checkpoints;
-    const auto plan = std::make_shared<const FaultPlan>(load_fault_plan(options.faults_file, options.roster));
+    const auto plan = std::make_shared<const FaultPlan>(load_fault_plan(options.faults_file, {options.roster}));
     const auto wait_ms = [](double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); };
     for (auto& factory : factories) factory = with_faults(std::move(factory), plan, wait_ms);
     if (check) {

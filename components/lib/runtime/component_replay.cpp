@@ -28,7 +28,7 @@ class ComponentReplay {
   ComponentReplay(const fs::path& recording, const std::vector<std::string>& components, const FindFactory& find,
                   const fs::path& output, const ReplayHooks& hooks = {})
       : run_(recording, output), find_(find), wanted_(components), concludes_(!output.empty()), hooks_(hooks) {
-    plan_ = std::make_shared<const FaultPlan>(load_fault_plan(run_.faults(), run_.roster));
+    plan_ = std::make_shared<const FaultPlan>(load_fault_plan(run_.faults(), {run_.roster}));
     for (const auto& name : components) add(name);
   }
 

@@ -1,10 +1,14 @@
 #include "cli/companions.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <thread>
 #include <utility>
 
@@ -21,7 +25,7 @@ constexpr auto kCompanionGrace = 3s;
 
 Companions::Companions(const LaunchManifest& manifest, std::uint64_t seed, const std::filesystem::path& report_dir,
                        Print print)
-    : print_(std::move(print)) {
+    : report_dir_(report_dir), print_(std::move(print)) {
   const auto logs = report_dir / "logs";
   if (!manifest.beside.empty()) std::filesystem::create_directories(logs);
   for (const CompanionPlan& plan : manifest.beside) {
@@ -49,6 +53,18 @@ void Companions::poll() {
     for (const auto& line : last_lines(companion.log, 0, 3)) print_(companion.program + ": " + line);
     print_(fmt::format("{}, which runs beside the run, {}; see {}", companion.program,
                        companion.process->poll()->describe(), companion.log.string()));
+  }
+}
+
+void Companions::obey(const std::vector<FaultDirector::Command>& commands) {
+  for (const auto& [device, line] : commands) {
+    const auto pipe = report_dir_ / (device + ".commands");
+    const std::string text = line + "\n";
+    // Without a reader the device has ended, and nobody is to wait for it.
+    const int file = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0 || ::write(file, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+      print_(fmt::format("fault: {} was not told '{}': {}: {}", device, line, pipe.string(), ::strerrordesc_np(errno)));
+    if (file >= 0) ::close(file);
   }
 }
 

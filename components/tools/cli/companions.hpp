@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/child_process.hpp"
+#include "cli/fault_director.hpp"
 #include "cli/manifest.hpp"
 
 namespace constrictor::cli {
@@ -26,6 +27,8 @@ class Companions {
 
   /// Prints a line for each program that has ended since the last call.
   void poll();
+  /// Breaks emulated devices by lines in their pipes for commands. Prints which one does not listen.
+  void obey(const std::vector<FaultDirector::Command>& commands);
 
  private:
   struct Companion {
@@ -34,6 +37,7 @@ class Companions {
     std::unique_ptr<ChildProcess> process;
     bool reported = false;
   };
+  std::filesystem::path report_dir_;
   std::vector<Companion> companions_;
   Print print_;
 };

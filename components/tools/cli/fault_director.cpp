@@ -19,6 +19,26 @@ FaultDirector::FaultDirector(FaultPlan plan) {
       announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
     else processes_.push_back({fault});
   }
+  for (const auto& fault : plan.devices) {
+    announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
+    devices_.push_back({fault});
+  }
+}
+
+std::vector<FaultDirector::Command> FaultDirector::commands(double sim_time_s) {
+  std::vector<Command> due;
+  for (auto& [fault, sent] : devices_) {
+    const std::string device(fault.order.command->device);
+    if (sent == 0 && sim_time_s >= seconds(fault.from_ns)) {
+      sent = 1;
+      due.push_back({device, line_of(fault.order)});
+    }
+    if (sent == 1 && sim_time_s >= seconds(fault.until_ns)) {
+      sent = 2;
+      due.push_back({device, end_of(fault.order)});
+    }
+  }
+  return due;
 }
 
 std::vector<FaultDirector::Signal> FaultDirector::due(double sim_time_s, Clock::time_point now) {

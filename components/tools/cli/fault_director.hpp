@@ -1,5 +1,5 @@
-// Carries out the faults of processes that a run is to suffer (`run --faults`): decides which process gets which signal
-// when. Pure: its owner sends the signals.
+// Carries out the faults of processes and devices that a run is to suffer (`run --faults`): decides which process gets
+// which signal when, and which device which command. Pure: its owner sends them.
 #pragma once
 
 #include <chrono>
@@ -18,11 +18,18 @@ class FaultDirector {
     int number;  ///< SIGKILL, SIGSTOP or SIGCONT
   };
 
+  struct Command {
+    std::string device;
+    std::string line;
+  };
+
   explicit FaultDirector(FaultPlan plan);
 
   /// The signals that are due at this simulated and wall time, each once. A fault begins when the run is seen at its
   /// time, up to 0.2 s of wall time later.
   std::vector<Signal> due(double sim_time_s, Clock::time_point now);
+  /// The commands that are due at this simulated time, each once.
+  std::vector<Command> commands(double sim_time_s);
   /// What has begun or ended since the last call, for people: "fault: drop of perception/objects begins".
   std::vector<std::string> news(double sim_time_s);
 
@@ -33,6 +40,10 @@ class FaultDirector {
     bool over = false;
     Clock::time_point end{};
   };
+  struct Device {
+    DeviceFault fault;
+    int sent = 0;  ///< 1: the command that begins it, 2: also the one that ends it
+  };
   struct Announced {
     std::string text;
     double from_s;
@@ -40,6 +51,7 @@ class FaultDirector {
     int said = 0;  ///< 1: that it begins, 2: that it ends
   };
   std::vector<Process> processes_;
+  std::vector<Device> devices_;
   std::vector<Announced> announced_;
 };
 

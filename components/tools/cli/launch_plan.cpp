@@ -15,6 +15,7 @@
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
 #include "constrictor/topics.hpp"
+#include "robot/robot_model.hpp"
 #include "runtime/numeric_profile.hpp"
 #include "runtime/pacer.hpp"
 
@@ -48,6 +49,15 @@ void require_keys(const ProcessPlan& process) {
                   "[CONSTRICTOR_SECURITY=FOLDER]` in the "
                   "manifest, with the folder of the keys on that host",
                   process.name(), process.host));
+}
+
+/// The faults that the run is to suffer; what they name must exist in this run.
+FaultPlan load_faults(const std::string& file, const LaunchPlan& plan) {
+  if (file.empty()) return {};
+  const RobotModel robot = load_robot(plan.manifest.robot_file);
+  std::vector<std::string> beside;
+  for (const auto& companion : plan.manifest.beside) beside.push_back(companion.program);
+  return load_fault_plan(file, {plan.roster, beside, robot.joints.size(), robot.module_count});
 }
 
 void add_config_files(LaunchManifest& manifest, const std::vector<std::string>& roster,
@@ -154,7 +164,7 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   require_file("robot", manifest.robot_file);
   add_config_files(manifest, plan.roster, options.config_files);
   for (const auto& process : manifest.processes) require_program(process);
-  plan.faults = load_fault_plan(options.faults_file, plan.roster);
+  plan.faults = load_faults(options.faults_file, plan);
   if (!options.faults_file.empty()) manifest.faults_file = fs::absolute(options.faults_file);
   std::vector<std::vector<std::string>> groups;
   if (options.in_process) {

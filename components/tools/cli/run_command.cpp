@@ -93,10 +93,8 @@ class Launcher {
     }
     companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& line) { log_.warn(line); });
     supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
-    if (options_.view) {
-      view_.emplace(claim_.domain(), options_.view_port, report_dir_ / "logs",
-                    [this](const auto& line) { display_.print(line); });
-    }
+    const auto print = [this](const auto& line) { display_.print(line); };
+    if (options_.view) view_.emplace(claim_.domain(), options_.view_port, report_dir_ / "logs", print);
     memory_sampled_ = start - kMemoryEvery + 500ms;  // the first sample is taken early: a run may be short
     watch_run();
     const double wall_time_s = std::chrono::duration<double>(Clock::now() - start).count();
@@ -158,6 +156,7 @@ class Launcher {
     bound_logs(report_dir_ / "logs");
     for (const auto& [component, signal] : faults_.due(view.sim_time_s(), Clock::now()))
       supervisor_.signal(component, signal);
+    companions_->obey(faults_.commands(view.sim_time_s()));
     for (const auto& line : faults_.news(view.sim_time_s())) log_.warn(line);
     // A launcher that was stopped (SIGSTOP) for long can miss the last statuses; mission.json shows the same.
     const bool reported = supervisor_.plant_is_gone() && fs::exists(report_dir_ / "mission.json");

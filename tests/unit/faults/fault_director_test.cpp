@@ -31,6 +31,28 @@ TEST(FaultDirector, KillsOnceAndStopsForItsTimeOfWallClock) {
   EXPECT_TRUE(director.due(9.0, start + 9s).empty());
 }
 
+TEST(FaultDirector, BreaksADeviceOnceAndMendsIt) {
+  FaultPlan plan;
+  const auto order = [](const std::string& line) {
+    return std::get<DeviceOrder>(read_order("servo_emulator", line, [](std::string_view) { return std::size_t{23}; }));
+  };
+  plan.devices = {{order("stuck 7"), 2'000'000'000, 3'000'000'000}, {order("reboot 4"), 0, INT64_MAX}};
+  FaultDirector director(plan);
+  const auto lines = [&](double at_s) {
+    std::vector<std::string> all;
+    for (const auto& [device, line] : director.commands(at_s)) all.push_back(device + ": " + line);
+    return all;
+  };
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(lines(0.1), Lines{"servo_emulator: reboot 4"});
+  EXPECT_EQ(lines(1.9), Lines{});
+  EXPECT_EQ(lines(2.1), Lines{"servo_emulator: stuck 7"});
+  EXPECT_EQ(lines(2.9), Lines{});
+  EXPECT_EQ(lines(3.1), Lines{"servo_emulator: heal 7"});
+  EXPECT_EQ(lines(9.0), Lines{});
+  EXPECT_EQ(director.news(2.5).front(), "fault: stuck 7 of servo_emulator begins at 2.0 s");
+}
+
 TEST(FaultDirector, SaysWhenAFaultBeginsAndEnds) {
   FaultPlan plan;
   plan.topics.resize(1);

@@ -17,7 +17,7 @@ class FaultFile : public ::testing::Test {
   FaultPlan load(const std::string& text) {
     const auto file = dir_.path() / "faults.yaml";
     std::ofstream(file) << text;
-    return load_fault_plan(file, {"physics", "camera", "control"});
+    return load_fault_plan(file, targets_);
   }
   /// The error about one fault, without the file; "accepted" if there is none.
   std::string error(const std::string& fault) {
@@ -29,6 +29,7 @@ class FaultFile : public ::testing::Test {
     }
     return "accepted";
   }
+  FaultTargets targets_{{"physics", "camera", "control"}};
   testing::TemporaryFolder dir_;
 };
 
@@ -61,8 +62,9 @@ TEST_F(FaultFile, NoFileIsAPlanWithoutFaults) {
 
 TEST_F(FaultFile, RefusesWhatCannotBe) {
   const std::pair<const char*, const char*> cases[] = {
-      {"kind: drop", "faults[0].topic: found neither or both of topic and process"},
-      {"kind: drop, topic: imu_state, process: camera", "faults[0].topic: found neither or both of topic and process"},
+      {"kind: drop", "faults[0].topic: found none or several of topic, process and device"},
+      {"kind: drop, topic: imu_state, process: camera",
+       "faults[0].topic: found none or several of topic, process and device"},
       {"topic: guidance/pos, kind: drop", "did you mean 'guidance/pose'?"},
       {"topic: imu_state, kind: lose", "faults[0].kind: found lose, accepted one of drop"},
       {"topic: imu_state, kind: drop, probability: 1.5", "faults[0].probability: found 1.5, accepted"},
@@ -85,6 +87,62 @@ TEST_F(FaultFile, RefusesWhatCannotBe) {
   for (const auto& [fault, message] : cases)
     EXPECT_NE(error(fault).find(message), std::string::npos) << fault << ": " << error(fault);
   EXPECT_EQ(error("topic: joint_state, kind: bias, field: 'position_rad[63]', amount: 1"), "accepted");
+}
+
+TEST_F(FaultFile, BreaksDevicesThatRunBesideTheRun) {
+  targets_.beside = {{"servo_emulator"}};
+  targets_.joints = 23;
+  const FaultPlan plan = load(
+      "faults:\n"
+      "  - {device: servo_emulator, kind: weak, joint: 22, share: 0.25, from_s: 2, until_s: 3}\n"
+      "  - {device: servo_emulator, kind: cable, port: 0, place: 7}\n");
+  ASSERT_EQ(plan.devices.size(), 2u);
+  EXPECT_EQ(describe(plan.devices[0]), "weak 22 0.25 of servo_emulator");
+  EXPECT_EQ(end_of(plan.devices[0].order), "heal 22");
+  EXPECT_EQ(plan.devices[0].until_ns, 3'000'000'000);
+  EXPECT_EQ(line_of(plan.devices[1].order), "cable 0 7");
+  const std::pair<const char*, const char*> cases[] = {
+      {"device: camera_emulator, kind: black", "which does not run beside this run, accepted servo_emulator"},
+      {"device: servo, kind: stuck, joint: 1", "faults[0].device: found servo, accepted one of camera_emulator"},
+      {"device: servo_emulator, kind: stick, joint: 1", "found stick, accepted one of ambient, cable"},
+      {"device: servo_emulator, kind: stuck, joint: 23", "faults[0].joint: found 23, accepted"},
+      {"device: servo_emulator, kind: stuck", "faults[0].joint"},
+      {"device: servo_emulator, kind: weak, joint: 1, share: 0", "faults[0].share: found 0, accepted"},
+      {"device: servo_emulator, kind: weak, joint: 1, share: .nan", "faults[0].share: found"},
+      {"device: servo_emulator, kind: id, joint: 1, id: 2.5", "faults[0].id: found 2.5, accepted"},
+      {"device: servo_emulator, kind: reboot, joint: 1, until_s: 3",
+       "found a time, accepted none: nothing ends reboot"},
+      {"device: servo_emulator, process: camera, kind: stuck", "found none or several of topic, process and device"}};
+  for (const auto& [fault, message] : cases)
+    EXPECT_NE(error(fault).find(message), std::string::npos) << fault << ": " << error(fault);
+  targets_.beside->clear();
+  EXPECT_NE(error("device: servo_emulator, kind: stuck, joint: 1").find("the manifest has no emulated devices"),
+            std::string::npos);
+  targets_.beside.reset();
+  EXPECT_EQ(error("device: camera_emulator, kind: black"), "accepted") << "only the launcher knows the devices";
+}
+
+TEST(DeviceCommands, EachIsReadAsItIsWrittenAndEndedByACommand) {
+  const auto count = [](std::string_view) { return std::size_t{3}; };
+  std::size_t commands = 0;
+  for (const auto& device : breakable_devices()) {
+    for (const DeviceCommand* command : commands_of(device)) {
+      ++commands;
+      for (const double value : {command->min, command->max}) {
+        const DeviceOrder order{command, command->of.empty() ? 0u : 2u, value};
+        const auto read = read_order(device, line_of(order), count);
+        ASSERT_TRUE(std::holds_alternative<DeviceOrder>(read)) << std::get<std::string>(read);
+        EXPECT_EQ(std::get<DeviceOrder>(read).command, command);
+        EXPECT_EQ(line_of(std::get<DeviceOrder>(read)), line_of(order));
+      }
+      const std::string end = end_of({command, 0, 0.0});
+      if (end.empty()) continue;
+      EXPECT_TRUE(std::holds_alternative<DeviceOrder>(read_order(device, end, count))) << end;
+    }
+  }
+  EXPECT_GT(commands, 20u);
+  EXPECT_EQ(std::get<std::string>(read_order("camera_emulator", "blur 51", count)),
+            "found 'blur 51', accepted blur PIXELS with 0 to 50");
 }
 
 TEST(MessageFields, ABiasChangesOneNumberOfACopy) {

@@ -64,6 +64,34 @@ TEST_F(BusFault, OneServoThatIsSilentStopsTheRobot) {
   EXPECT_NE(last_refusal().find("servo 7 of joint 6 at bus0 does not answer"), std::string::npos) << last_refusal();
 }
 
+TEST_F(BusFault, AStuckJointIsNamedAndTheRobotGoesOn) {
+  start_swinging();
+  EXPECT_EQ(last_refusal().find("does not move"), std::string::npos) << last_refusal();
+  ASSERT_EQ(bench_.robot->command("stuck 6"), "");
+  ticks(110);  // two windows of a second
+  EXPECT_NE(last_refusal().find("servo 7 of joint 6 at bus0 does not move, although its goal moved by 0."),
+            std::string::npos)
+      << last_refusal();
+  EXPECT_EQ(mode(), GateMode::kObeying);
+  ASSERT_EQ(bench_.robot->command("heal 6"), "");
+  ticks(110);
+  EXPECT_NE(last_refusal().find("servo 7 of joint 6 at bus0 moves again"), std::string::npos) << last_refusal();
+}
+
+TEST(StuckWatch, AJointThatAGraspHoldsIsNotStuck) {
+  StuckWatch watch(1, 50);
+  const auto changes = [&](double goal_rad, double angle_rad, double torque_limit_nm) {
+    return watch.look(std::vector<JointSetpoint>{{goal_rad, 0.0, torque_limit_nm}}, std::vector<double>{angle_rad});
+  };
+  std::size_t named = 0;
+  for (int i = 0; i < 200; ++i) named += changes(1.0, 0.4, 3.0).size();            // the goal stands still
+  for (int i = 0; i < 200; ++i) named += changes(0.01 * i, 0.4, 0.0).size();       // relaxed
+  for (int i = 0; i < 200; ++i) named += changes(0.01 * i, 0.01 * i, 3.0).size();  // follows
+  EXPECT_EQ(named, 0u);
+  for (int i = 0; i < 100; ++i) named += changes(0.01 * i, 0.4, 3.0).size();
+  EXPECT_EQ(named, 1u) << "once, not in every window";
+}
+
 TEST_F(BusFault, AServoThatStartsAnewIsConfiguredAgain) {
   start_swinging();
   ASSERT_EQ(bench_.robot->command("reboot 5"), "");

@@ -85,10 +85,21 @@ TEST_F(Robot, TheBoardsMeasureGravityAndWeight) {
   };
   EXPECT_NEAR(number(100, 0, map::imu::kLinearAcceleration + 4) * map::kAcceleration_m_s2, 9.81, 0.3);
   EXPECT_NEAR(number(100, 0, map::imu::kOrientation) * map::kUnitVector, 1.0, 1e-3);
+  const auto force_n = [&](int module) {
+    return number(static_cast<std::uint8_t>(101 + module), 1, map::contact::kForce + 4) * map::kForce_n;
+  };
   double weight_n = 0.0;
-  for (int i = 0; i < 24; ++i)
-    weight_n += number(static_cast<std::uint8_t>(101 + i), 1, map::contact::kForce + 4) * map::kForce_n;
+  for (int i = 0; i < 24; ++i) weight_n += force_n(i);
   EXPECT_NEAR(weight_n, 24 * 0.3 * 9.81, 3.0);
+
+  // A numb module feels nothing, though its board answers; the others go on feeling.
+  EXPECT_EQ(robot_.command("numb 5"), "");
+  pass(0.02);
+  EXPECT_EQ(force_n(5), 0.0);
+  EXPECT_NE(force_n(6), 0.0);
+  EXPECT_EQ(robot_.command("feel 5"), "");
+  pass(0.02);
+  EXPECT_NE(force_n(5), 0.0);
 }
 
 TEST_F(Robot, ABrokenCableTakesThePowerOfTheServosBehindIt) {
@@ -101,6 +112,52 @@ TEST_F(Robot, ABrokenCableTakesThePowerOfTheServosBehindIt) {
   EXPECT_EQ(robot_.command("mend 0"), "");
   write(9, "torque_enable", 1);
   EXPECT_EQ(robot_.servo(9).get("torque_enable"), 1);
+}
+
+TEST_F(Robot, AStuckJointStaysWhileItsMotorPullsAndMovesWhenItIsHealed) {
+  write(2, "operating_mode", 5);
+  write(2, "torque_enable", 1);
+  write(2, "goal_current", 300);
+  pass(0.2);
+  const double before = angle_rad(2);
+  EXPECT_EQ(robot_.command("stuck 2"), "");
+  write(2, "goal_position", plan_.joints[2].steps(plan_.model, 0.5));
+  pass(0.5);
+  EXPECT_NEAR(angle_rad(2), before, 0.005);
+  EXPECT_NEAR(static_cast<double>(std::abs(robot_.servo(2).get("present_current"))), 300, 30)
+      << "the motor exerts its goal current";
+  EXPECT_EQ(robot_.command("heal 2"), "");
+  pass(1.0);
+  EXPECT_NEAR(angle_rad(2), 0.5, 0.02);
+}
+
+TEST_F(Robot, AWeakServoExertsItsShareForTheSameCurrent) {
+  write(2, "torque_enable", 1);
+  const double whole_nm = robot_.servo(2).order(0.004).torque_limit_nm;
+  ASSERT_GT(whole_nm, 0.0);
+  EXPECT_EQ(robot_.command("weak 2 0.25"), "");
+  EXPECT_DOUBLE_EQ(robot_.servo(2).order(0.004).torque_limit_nm, 0.25 * whole_nm);
+  EXPECT_EQ(robot_.command("heal 2"), "");
+  EXPECT_DOUBLE_EQ(robot_.servo(2).order(0.004).torque_limit_nm, whole_nm);
+}
+
+TEST_F(Robot, AHotServoSwitchesItsTorqueOff) {
+  write(2, "torque_enable", 1);
+  EXPECT_EQ(robot_.command("hot 2 95"), "");
+  pass(0.02);
+  EXPECT_EQ(robot_.servo(2).get("present_temperature"), 95);
+  EXPECT_EQ(robot_.servo(2).get("hardware_error_status") & 4, 4) << "overheating";
+  EXPECT_EQ(robot_.servo(2).get("torque_enable"), 0);
+}
+
+TEST_F(Robot, AHealedServoHasItsIdAndItsVoltageAgainAndAnswers) {
+  const auto id = robot_.servo(4).get("id");
+  for (const char* line : {"id 4 77", "voltage 4 6", "silent 4", "heal 4"}) EXPECT_EQ(robot_.command(line), "") << line;
+  pass(0.02);
+  EXPECT_EQ(robot_.servo(4).get("id"), id);
+  EXPECT_EQ(robot_.servo(4).get("present_input_voltage"), 120);
+  write(4, "led", 1);
+  EXPECT_EQ(robot_.servo(4).get("led"), 1);
 }
 
 TEST_F(Robot, CommandsAreRefusedWithWhatIsAccepted) {
