@@ -12,6 +12,7 @@ namespace {
 constexpr double kRise_s = 1.0;       // in which the torque rises to its largest value
 constexpr double kTurnedShare = 0.5;  // of the amplitude: further, and the push ends; a fifth of it is no motion
 constexpr double kNoneShare = 0.1;
+constexpr double kAfterHold_s = 0.5;  // so long a measured torque may contain that of a hold: drivers filter it
 constexpr double kStillShare =
     0.15;  // of the other joint's angle: less, and the pushed joint is not the one that turns
 
@@ -24,12 +25,16 @@ PlantConformance::Pushed PlantConformance::push_joint(std::size_t joint, double 
   PlantCommand command = hand_.command();
   command.torque = true;
   command.torque_limit_nm[joint] = limit_nm;
+  double held_s = -kAfterHold_s;
   const auto periods = std::max(1L, std::lround(kRise_s / profile_.period_s));
   for (long i = 1; i <= periods; ++i) {
     command.torque_nm[joint] = way * profile_.push_nm * static_cast<double>(i) / static_cast<double>(periods);
     for (const JointSample& sample : hand_.send({command}, profile_.period_s)) {
       if (sample.position_rad.size() != start_rad.size()) continue;
-      pushed.largest_nm = std::max(pushed.largest_nm, std::abs(sample.torque_nm[joint]));
+      // A plant that holds, because this computer sent too late, exerts what holding needs.
+      if (sample.holding) held_s = sample.arrival_s;
+      if (sample.arrival_s - held_s > kAfterHold_s)
+        pushed.largest_nm = std::max(pushed.largest_nm, std::abs(sample.torque_nm[joint]));
       pushed.turned_rad = way * (sample.position_rad[joint] - start_rad[joint]);
       pushed.other_rad = 0.0;
       for (std::size_t k = 0; k < start_rad.size(); ++k) {
