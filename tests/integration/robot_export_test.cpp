@@ -40,6 +40,22 @@ TEST_F(RobotExport, TheExamplesOfItsHelpWork) {
   EXPECT_NE(check.output().find("module_23"), std::string::npos);
 }
 
+TEST_F(RobotExport, KeepsAMeshThatIsNotItsOwn) {
+  const auto export_with_mesh = [&] {
+    Process made =
+        command({"robot", "export", "--urdf", "--meshes", dir_.string(), "--output", (dir_ / "robot.urdf").string()});
+    EXPECT_EQ(made.wait(20s), exit_status::kOk) << made.errors();
+    return made.errors();
+  };
+  EXPECT_EQ(export_with_mesh(), "");
+  const std::string own = read("module.stl");
+  EXPECT_GT(own.size(), 1000u);
+  EXPECT_EQ(export_with_mesh(), "") << "its own mesh is replaced";
+  write("module.stl", "solid mine");
+  EXPECT_NE(export_with_mesh().find("is kept, because it is a mesh of your own"), std::string::npos);
+  EXPECT_EQ(read("module.stl"), "solid mine");
+}
+
 TEST_F(RobotExport, WritesTheSameToAFileAsToTheStandardOutput) {
   Process printed = command({"robot", "export", "--mjcf", "--robot", "serpens"});
   EXPECT_EQ(printed.wait(20s), exit_status::kOk) << printed.errors();

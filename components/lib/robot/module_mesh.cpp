@@ -54,7 +54,7 @@ std::vector<MeshTriangle> module_mesh(const RobotModel& robot) {
 }
 
 std::string stl_file(const std::vector<MeshTriangle>& triangles) {
-  std::string bytes = "a module, written by `constrictor robot export`; unit: m";
+  std::string bytes = std::string(kStlBegin) + "; unit: m";
   bytes.resize(80, ' ');
   put(bytes, static_cast<std::uint32_t>(triangles.size()), 4);
   for (const auto& [a, b, c] : triangles) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robot/robot_model.hpp"
@@ -17,6 +18,8 @@ using MeshTriangle = std::array<Eigen::Vector3d, 3>;
 /// own, with the same frame, can take its place.
 [[nodiscard]] std::vector<MeshTriangle> module_mesh(const RobotModel& robot);
 
+/// The text with which stl_file() begins.
+inline constexpr std::string_view kStlBegin = "a module, written by `constrictor robot export`";
 /// The bytes of a binary STL file. Source: en.wikipedia.org/wiki/STL_(file_format)#Binary.
 [[nodiscard]] std::string stl_file(const std::vector<MeshTriangle>& triangles);
 

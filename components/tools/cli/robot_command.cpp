@@ -31,11 +31,22 @@ struct RobotOptions {
   std::string mesh_uri;          ///< of that folder, for the reader of the description; empty: file://FOLDER
 };
 
+/// Whether somebody has put a mesh of their own there, which is not to be lost.
+bool is_foreign_mesh(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(kStlBegin.size(), '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return stream.gcount() > 0 && begin != kStlBegin;
+}
+
 /// Returns the URI of the mesh; empty: none was asked for.
 std::string write_mesh(const RobotOptions& options, const RobotModel& robot) {
   if (options.meshes.empty()) return {};
   std::filesystem::create_directories(options.meshes);
-  write_whole(options.meshes / "module.stl", stl_file(module_mesh(robot)));
+  const auto file = options.meshes / "module.stl";
+  if (is_foreign_mesh(file))
+    fmt::print(stderr, "robot export: {} is kept, because it is a mesh of your own\n", file.string());
+  else write_whole(file, stl_file(module_mesh(robot)));
   const std::string folder =
       options.mesh_uri.empty() ? "file://" + std::filesystem::canonical(options.meshes).string() : options.mesh_uri;
   return folder + (folder.ends_with('/') ? "" : "/") + "module.stl";
@@ -77,7 +88,7 @@ void add_robot(CLI::App& app, Action& action) {
                   "file to write; an existing file is replaced (default: standard output)");
   auto* meshes = sub->add_option("--meshes", options->meshes,
                                  "folder for a mesh of the module, module.stl, which the URDF or SDF file then shows;\n"
-                                 "it is made if it does not exist, and an older mesh is replaced")
+                                 "it is made if it does not exist. A mesh of your own of this name is kept")
                      ->excludes("--mjcf");
   sub->add_option(
          "--mesh-uri", options->mesh_uri,

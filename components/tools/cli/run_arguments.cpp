@@ -53,7 +53,8 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
                   "earlier run there is replaced, but a recording only with --force");
   run->add_flag("--force", options->force, "replace the recording of an earlier run in the directory of --report");
   run->add_option("--faults", options->faults_file,
-                  "file of faults (YAML): samples lost, late, wrong; processes killed, stopped, slow; see\n"
+                  "file of faults (YAML): samples lost, late, wrong; processes killed, stopped, slow;\nemulated "
+                  "devices broken; see\n"
                   "components/lib/faults/README.md");
   run->add_option("--max-sim-time", options->max_sim_time_s,
                   "[s] end the run at this simulated time (default: no limit but the report component's)")
