@@ -41,8 +41,8 @@ constexpr Row kRows[] = {
     {"PoseGone", "topic: guidance/pose, kind: drop, from_s: 5, until_s: 8", true, 15, 22},
     {"TrajectoryGone", "topic: desired_trajectory, kind: drop, from_s: 5, until_s: 8", true, 15, 22},
     {"ContactsGone", "topic: contact_state, kind: drop, from_s: 3", false, 59, 61},
-    {"RequestsLost", "topic: planner/request, kind: drop, probability: 0.5", true, 12, 30},
-    {"RequestsTwice", "topic: planner/request, kind: duplicate", true, 12, 16},
+    {"RequestsLost", "topic: planner/request/v2, kind: drop, probability: 0.5", true, 12, 30},
+    {"RequestsTwice", "topic: planner/request/v2, kind: duplicate", true, 12, 16},
     {"AuthorityUnknown", "topic: authority, kind: drop, from_s: 3, until_s: 6", true, 13, 20},
     {"EventsLost", "topic: task/event, kind: drop, probability: 0.3", false, 59, 61},
 };
