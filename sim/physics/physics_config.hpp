@@ -14,28 +14,34 @@ struct PhysicsConfig : PlantParameters {
   double control_period_s =
       add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, kAtStart, "Control tick; a multiple of solver.step_s");
   SolverSettings solver{
+      add(solver.engine, "solver.engine", SolverSettings{}.engine, {kEngineOde, kEngineChain},
+          "Engine: `chain` solves for the robot in generalised coordinates, exactly; `ode` is ODE's QuickStep"),
       add(solver.step_s, "solver.step_s", SolverSettings{}.step_s, "s", {0.0001, 0.02}, kAtStart,
-          "Step of the solver. A coarser step is faster, but the robot grasps less reliably"),
+          "Step of the solver. A coarser step is faster and less exact; ode was tuned for 0.004"),
       add(solver.iterations, "solver.iterations", SolverSettings{}.iterations, "", {1, 10000}, kAtStart,
-          "Iterations of QuickStep in a step. Fewer are faster, but the robot grasps less reliably"),
+          "ode: iterations of QuickStep in a step. Fewer are faster, but the robot grasps less reliably"),
       add(solver.over_relaxation, "solver.over_relaxation", SolverSettings{}.over_relaxation, "", {0.1, 1.9}, kAtStart,
-          "W of QuickStep"),
+          "ode: W of QuickStep"),
       add(solver.erp, "solver.erp", SolverSettings{}.erp, "", {0.0, 1.0}, kAtStart,
-          "Fraction of the position error of a joint that a step corrects"),
-      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, kAtStart, "Softness of joints"),
+          "ode: fraction of the position error of a hinge that a step corrects. chain: the same at the limits of an "
+          "angle"),
+      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, kAtStart,
+          "ode: softness of hinges. chain: softness of the limits of an angle"),
       add(solver.contact_stiffness_n_m, "solver.contact_stiffness_n_m", SolverSettings{}.contact_stiffness_n_m, "N/m",
           {100.0, 1e9}, Changes::kAtStart, "Stiffness of each contact"),
       add(solver.contact_damping_n_s_m, "solver.contact_damping_n_s_m", SolverSettings{}.contact_damping_n_s_m, "N s/m",
           {0.0, 1e6}, Changes::kAtStart, "Damping of each contact"),
+      add(solver.creep_resistance_n_s_m, "solver.creep_resistance_n_s_m", SolverSettings{}.creep_resistance_n_s_m,
+          "N s/m", {100.0, 1e9}, Changes::kAtStart,
+          "chain: friction below its bound lets bodies creep with force / creep_resistance_n_s_m"),
       add(solver.surface_layer_m, "solver.surface_layer_m", SolverSettings{}.surface_layer_m, "m", {0.0, 0.01},
           kAtStart, "Depth at which contacts may rest without correction"),
       add(solver.max_correcting_velocity_m_s, "solver.max_correcting_velocity_m_s",
           SolverSettings{}.max_correcting_velocity_m_s, "m/s", {0.001, 1000.0}, kAtStart,
-          "Greatest velocity with which a contact is corrected"),
+          "Greatest velocity at which bodies that overlap leave each other"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "At a joint only the front module touches the ground: the solver is a third faster, and the gait 1.4 % "
-          "faster")};
+          "At a joint only the front module touches the ground: ode is a third faster, and the gait 1.4 % faster")};
   GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sim/world/ode_eigen.hpp"
-
 namespace constrictor {
 namespace {
 
@@ -18,45 +16,18 @@ std::uint32_t key_of(std::uint8_t module, Touched touched, std::uint8_t index, s
          feature;
 }
 
-void copy(const Vector3d& from, dVector3 to) {
-  to[0] = from.x();
-  to[1] = from.y();
-  to[2] = from.z();
-  to[3] = 0.0;
-}
-
 /// R_WB^T v: a vector of W in the frame of the body.
-Vector3d to_body(dBodyID body, const Vector3d& v) {
-  const dReal* R = dBodyGetRotation(body);
-  return {R[0] * v.x() + R[4] * v.y() + R[8] * v.z(), R[1] * v.x() + R[5] * v.y() + R[9] * v.z(),
-          R[2] * v.x() + R[6] * v.y() + R[10] * v.z()};
-}
-
-/// Velocity in W of the point `p` of a body.
-Vector3d velocity_at(dBodyID body, const Vector3d& p) {
-  return vector_of(dBodyGetLinearVel(body)) +
-         vector_of(dBodyGetAngularVel(body)).cross(p - vector_of(dBodyGetPosition(body)));
-}
-
-/// The same at the end of the step, if nothing but the external forces acts on the body. A null body is at rest.
-Vector3d free_velocity(dBodyID body, const Vector3d& p, double step_s) {
-  if (body == nullptr) return Vector3d::Zero();
-  dMass mass;
-  dBodyGetMass(body, &mass);
-  return velocity_at(body, p) + step_s / mass.mass * vector_of(dBodyGetForce(body));
+Vector3d to_body(const BodyMotion& body, const Vector3d& v) {
+  const Eigen::Matrix3d& R = body.R_WB;
+  return {R(0, 0) * v.x() + R(1, 0) * v.y() + R(2, 0) * v.z(), R(0, 1) * v.x() + R(1, 1) * v.y() + R(2, 1) * v.z(),
+          R(0, 2) * v.x() + R(1, 2) * v.y() + R(2, 2) * v.z()};
 }
 
 }  // namespace
 
-ContactSet::ContactSet(dWorldID world, const SolverSettings& settings)
-    : world_(world), step_s_(settings.step_s), group_(dJointGroupCreate(0)) {
-  surface_.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
-  // ODE's softness of a spring and a damper in parallel. Unlike fixed numbers, it gives the same contact at each step.
-  const double spring = settings.step_s * settings.contact_stiffness_n_m;
-  surface_.soft_erp = spring / (spring + settings.contact_damping_n_s_m);
-  surface_.soft_cfm = 1.0 / (spring + settings.contact_damping_n_s_m);
-  feedback_.resize(kMostFelt);
-  records_.reserve(kMostFelt);
+ContactSet::ContactSet() {
+  contacts_.reserve(kMostFelt);
+  felt_.reserve(kMostFelt);
   sums_.reserve(kMostFelt);
 }
 
@@ -66,56 +37,19 @@ void ContactSet::begin_tick() {
 }
 
 void ContactSet::begin_step() {
-  dJointGroupEmpty(group_.get());
-  records_.clear();
+  contacts_.clear();
+  felt_.clear();
 }
 
-// ODE bounds each of two friction forces separately, so that the bound on their sum is a square: up to sqrt 2 times the
-// friction along its diagonals. With one of the two forces along the direction of sliding, the sum is right in each
-// direction.
-Vector3d ContactSet::sliding_direction(const TouchPoint& touch, dBodyID first, dBodyID second) const {
-  constexpr double kStill_m_s = 1e-9;
-  const Vector3d& p = touch.position_m;
-  Vector3d sliding = free_velocity(first, p, step_s_) - free_velocity(second, p, step_s_);
-  sliding -= touch.normal.dot(sliding) * touch.normal;
-  if (sliding.norm() < kStill_m_s) sliding = touch.normal.unitOrthogonal();
-  return sliding.normalized();
+void ContactSet::add_felt(const SolverContact& contact, Touched touched, std::size_t index, std::size_t feature) {
+  add(contact);
+  if (felt_.size() == kMostFelt) return;
+  felt_.push_back({contacts_.size() - 1, key_of(static_cast<std::uint8_t>(contact.first), touched,
+                                                static_cast<std::uint8_t>(index), static_cast<std::uint8_t>(feature))});
 }
 
-dJointID ContactSet::make(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second) {
-  dContact contact{};
-  contact.surface = surface_;
-  contact.surface.mu = friction.along;
-  contact.surface.mode |= dContactFDir1;
-  if (friction.direction != nullptr) {
-    contact.surface.mode |= dContactMu2;
-    contact.surface.mu2 = friction.across;
-    copy(*friction.direction, contact.fdir1);
-  } else {
-    copy(sliding_direction(touch, first, second), contact.fdir1);
-  }
-  copy(touch.position_m, contact.geom.pos);
-  copy(touch.normal, contact.geom.normal);
-  contact.geom.depth = touch.depth_m;
-  const dJointID joint = dJointCreateContact(world_, group_.get(), &contact);
-  dJointAttach(joint, first, second);
-  return joint;
-}
-
-void ContactSet::add(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second) {
-  make(touch, friction, first, second);
-}
-
-void ContactSet::add_felt(const TouchPoint& touch, const Friction& friction, dBodyID first, dBodyID second,
-                          std::uint8_t module, Touched touched, std::uint8_t index, std::uint8_t feature) {
-  const dJointID joint = make(touch, friction, first, second);
-  if (records_.size() == kMostFelt) return;
-  dJointSetFeedback(joint, &feedback_[records_.size()]);
-  records_.push_back({first, second, key_of(module, touched, index, feature), touch});
-}
-
-void ContactSet::sum_up(std::uint32_t key, dBodyID body, const Vector3d& position, const Vector3d& normal,
-                        const dReal* force) {
+void ContactSet::sum_up(std::uint32_t key, const BodyMotion& body, const TouchPoint& touch, const Vector3d& normal,
+                        const Vector3d& force_n) {
   auto at =
       std::lower_bound(sums_.begin(), sums_.end(), key, [](const Sum& sum, std::uint32_t k) { return sum.key < k; });
   if (at == sums_.end() || at->key != key) {
@@ -124,37 +58,38 @@ void ContactSet::sum_up(std::uint32_t key, dBodyID body, const Vector3d& positio
     fresh.key = key;
     at = sums_.insert(at, fresh);
   }
-  const Vector3d force_in_body = to_body(body, vector_of(force));
+  const Vector3d force_in_body = to_body(body, force_n);
   const double weight = force_in_body.norm() + 1e-12;  // a contact without force needs a position, too
   at->force += force_in_body;
-  at->position += weight * to_body(body, position - vector_of(dBodyGetPosition(body)));
+  at->position += weight * to_body(body, touch.position_m - body.position_m);
   at->normal += weight * to_body(body, normal);
   at->weight += weight;
 }
 
-void ContactSet::collect() {
+void ContactSet::collect(const Dynamics& dynamics) {
   ++steps_;
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    const Record& record = records_[i];
-    const dJointFeedback& feedback = feedback_[i];
-    sum_up(record.key, record.first, record.touch.position_m, record.touch.normal, feedback.f1);
-    const auto touched = static_cast<Touched>((record.key >> 16) & 0xFFU);
+  for (const auto& [index, key] : felt_) {
+    const SolverContact& contact = contacts_[index];
+    const Vector3d& force_n = dynamics.contact_force_n(index);
+    sum_up(key, dynamics.body(contact.first), contact.touch, contact.touch.normal, force_n);
+    const auto touched = static_cast<Touched>((key >> 16) & 0xFFU);
     if (touched != Touched::kSelf) continue;
     // The other module feels the same contact with the opposite normal.
-    const auto module = static_cast<std::uint8_t>(record.key >> 24);
-    const auto other = static_cast<std::uint8_t>(record.key >> 8);
-    sum_up(key_of(other, Touched::kSelf, module, static_cast<std::uint8_t>(record.key)), record.second,
-           record.touch.position_m, -record.touch.normal, feedback.f2);
+    const auto module = static_cast<std::uint8_t>(key >> 24);
+    const auto other = static_cast<std::uint8_t>(key >> 8);
+    sum_up(key_of(other, Touched::kSelf, module, static_cast<std::uint8_t>(key)), dynamics.body(contact.second),
+           contact.touch, -contact.touch.normal, -force_n);
   }
 }
 
-double ContactSet::felt_power_w() const {
+double ContactSet::felt_power_w(const Dynamics& dynamics) const {
   double power_w = 0.0;
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    const Record& record = records_[i];
-    power_w += vector_of(feedback_[i].f1).dot(velocity_at(record.first, record.touch.position_m));
-    if (record.second != nullptr)
-      power_w += vector_of(feedback_[i].f2).dot(velocity_at(record.second, record.touch.position_m));
+  for (const Felt& felt : felt_) {
+    const SolverContact& contact = contacts_[felt.contact];
+    const Vector3d& force_n = dynamics.contact_force_n(felt.contact);
+    const Vector3d& p = contact.touch.position_m;
+    power_w += force_n.dot(dynamics.body(contact.first).velocity_at(p));
+    if (contact.second != kFixed) power_w -= force_n.dot(dynamics.body(contact.second).velocity_at(p));
   }
   return power_w;
 }

@@ -31,15 +31,19 @@ double Servo::stretch_rad(double angle_rad) const { return motor_angle_rad_ - an
 ServoRow Servo::row(double angle_rad, double rate_rad_s) {
   const double h = step_s_;
   const double duration = h * steps_;
-  const double u = static_cast<double>(++step_) / steps_;
   // After torque mode the curve begins where the joint is, with its rate.
-  if (step_ == 1 && from_.torque_mode && !to_.torque_mode)
+  if (++step_ == 1 && from_.torque_mode && !to_.torque_mode)
     from_ = clamp_to_limits(model_, {angle_rad, rate_rad_s, 0.0});
   // Cubic Hermite curve from from_ to to_.
   const double d = to_.position_rad - from_.position_rad;
   const double a = from_.velocity_rad_s * duration;
   const double b = to_.velocity_rad_s * duration;
-  reference_rad_ = from_.position_rad + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)));
+  const auto curve = [&](double u) {
+    return from_.position_rad + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)));
+  };
+  const double u = static_cast<double>(step_) / steps_;
+  const double begin_rad = curve(static_cast<double>(step_ - 1) / steps_);
+  reference_rad_ = curve(u);
   reference_rate_rad_s_ = (a + u * (2.0 * (3.0 * d - 2.0 * a - b) + u * 3.0 * (a + b - 2.0 * d))) / duration;
   if (step_ == steps_) from_ = to_;
 
@@ -55,7 +59,7 @@ ServoRow Servo::row(double angle_rad, double rate_rad_s) {
     reference_rad_ = angle_rad;
     return torque_row(angle_rad, rate_rad_s);
   }
-  return position_row(reference_rad_, reference_rate_rad_s_, angle_rad, rate_rad_s);
+  return position_row(begin_rad, reference_rate_rad_s_, angle_rad, rate_rad_s);
 }
 
 ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, double angle_rad, double rate_rad_s) {
@@ -65,7 +69,10 @@ ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, 
   const double inertia = model_.rotor_inertia_kg_m2 / h;
   const double angle = model_.measured_rad(elastic() ? motor_angle_rad_ : angle_rad);
   const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
-  const double sum = inertia + h * kp + kd;
+  // The spring kp acts from where the joint is at the beginning of the step. With at least half of h kp as damping that
+  // is stable at each step, and the damping of usual servos is far above it; the spring at the end of the step would
+  // add a damping of h kp that no servo has.
+  const double sum = inertia + std::max(kd, 0.5 * h * kp);
   const double wanted_rate = std::clamp(reference_rate_rad_s, -model_.max_speed_rad_s, model_.max_speed_rad_s);
   ServoRow row;
   row.softness = 1.0 / sum;

@@ -28,7 +28,7 @@ struct ServoRow {
 ///   limits:   |u| <= the commanded limit and the speed-torque curve; u never accelerates the motor beyond the joint's
 ///             maximum speed; u is at most what the position controller would exert to stop the joint at its upper
 ///             limit, and at least what it would exert to stop it at its lower limit
-/// Both equations are integrated by the implicit Euler method together with the bodies, so that every step is stable.
+/// Rates are those at the end of the step (implicit Euler, together with the bodies), so that every step is stable.
 class Servo {
  public:
   explicit Servo(const JointModel& model) : model_(model) {}
@@ -56,7 +56,8 @@ class Servo {
 
  private:
   [[nodiscard]] double torque_limit_nm(double rate_rad_s, double driving) const;
-  /// The row of the position controller towards a reference.
+  /// The row of the position controller towards a reference: its angle at the beginning of the step, its rate at the
+  /// end.
   [[nodiscard]] ServoRow position_row(double reference_rad, double reference_rate_rad_s, double angle_rad,
                                       double rate_rad_s);
   [[nodiscard]] ServoRow torque_row(double angle_rad, double rate_rad_s);

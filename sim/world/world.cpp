@@ -7,19 +7,11 @@
 #include <stdexcept>
 
 #include "robot/kinematics.hpp"
-#include "sim/world/ode_eigen.hpp"
 
 namespace constrictor {
 namespace {
 
 using Eigen::Vector3d;
-
-void place(dBodyID body, const Eigen::Isometry3d& pose) {
-  const Eigen::Quaterniond q(pose.linear());
-  const dQuaternion quaternion = {q.w(), q.x(), q.y(), q.z()};
-  dBodySetPosition(body, pose.translation().x(), pose.translation().y(), pose.translation().z());
-  dBodySetQuaternion(body, quaternion);
-}
 
 Eigen::Isometry3d upright(const Eigen::Vector2d& position_m, double height_m, double yaw_rad) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -29,6 +21,7 @@ Eigen::Isometry3d upright(const Eigen::Vector2d& position_m, double height_m, do
 }
 
 OdeGeom make_geom(BodyShape shape, const Vector3d& size_m) {
+  ensure_ode();
   return OdeGeom(shape == BodyShape::kCylinder ? dCreateCylinder(nullptr, size_m.x(), size_m.z())
                                                : dCreateBox(nullptr, size_m.x(), size_m.y(), size_m.z()));
 }
@@ -37,17 +30,8 @@ double bound_of(BodyShape shape, const Vector3d& size_m) {
   return shape == BodyShape::kCylinder ? std::hypot(size_m.x(), 0.5 * size_m.z()) : 0.5 * size_m.norm();
 }
 
-OdeWorld make_world(const SolverSettings& settings, const Vector3d& gravity_m_s2) {
-  ensure_ode();
-  OdeWorld world(dWorldCreate());
-  dWorldSetGravity(world.get(), gravity_m_s2.x(), gravity_m_s2.y(), gravity_m_s2.z());
-  dWorldSetERP(world.get(), settings.erp);
-  dWorldSetCFM(world.get(), settings.cfm);
-  dWorldSetQuickStepNumIterations(world.get(), settings.iterations);
-  dWorldSetQuickStepW(world.get(), settings.over_relaxation);
-  dWorldSetContactSurfaceLayer(world.get(), settings.surface_layer_m);
-  dWorldSetContactMaxCorrectingVel(world.get(), settings.max_correcting_velocity_m_s);
-  return world;
+RigidBody body_of(const dMass& mass, const Eigen::Isometry3d& X_WB) {
+  return {mass.mass, {mass.I[0], mass.I[5], mass.I[10]}, X_WB};
 }
 
 }  // namespace
@@ -56,56 +40,46 @@ World::World(const RobotModel& robot, const Scenario& scenario, const SolverSett
     : robot_(robot),
       scenario_(scenario),
       settings_(settings),
-      world_(make_world(settings, scenario.gravity_m_s2)),
-      contacts_(world_.get(), settings),
-      reorder_state_(settings.reorder_seed) {
-  build_robot();
+      dynamics_(make_dynamics(mechanism(), settings)),
+      rows_(robot.joints.size()),
+      capsules_(robot.module_count) {
+  for (const JointModel& joint : robot_.joints) {
+    drives_.emplace_back(joint);
+    drives_.back().set({0.0, 0.0, joint.max_torque_nm});
+  }
   build_objects();
   build_obstacles();
 }
 
-void World::build_robot() {
+Mechanism World::mechanism() const {
+  Mechanism mechanism;
+  mechanism.joints = robot_.joints;
+  mechanism.half_length_m = 0.5 * robot_.module_length_m;
+  mechanism.gravity_m_s2 = scenario_.gravity_m_s2;
   dMass mass;
   dMassSetCapsuleTotal(&mass, robot_.module_mass_kg, 1, robot_.module_radius_m, robot_.module_length_m);
   const Eigen::Isometry3d X_WHead =
       upright(scenario_.start_m, scenario_.start_height_m + robot_.module_radius_m, scenario_.start_yaw_rad);
-  for (const Eigen::Isometry3d& pose : module_poses(robot_, {}, X_WHead)) {
-    const dBodyID body = dBodyCreate(world_.get());
-    dBodySetMass(body, &mass);
-    place(body, pose);
-    modules_.push_back(body);
-  }
-  for (std::size_t i = 0; i + 1 < modules_.size(); ++i) {
-    const Eigen::Isometry3d X_WM = module_pose(i);
-    const Vector3d p_WJ = X_WM * Vector3d(-0.5 * robot_.module_length_m, 0.0, 0.0);
-    const Vector3d a_W = X_WM.linear().col(robot_.joints[i].axis == JointAxis::kYaw ? 2 : 1);
-    const dVector3 anchor = {p_WJ.x(), p_WJ.y(), p_WJ.z()};
-    const dVector3 axis = {a_W.x(), a_W.y(), a_W.z()};
-    drives_.push_back(
-        std::make_unique<JointDrive>(world_.get(), robot_.joints[i], modules_[i], modules_[i + 1], anchor, axis));
-    drives_.back()->set({0.0, 0.0, robot_.joints[i].max_torque_nm});
-  }
-  capsules_.resize(modules_.size());
-}
-
-void World::build_objects() {
+  for (const Eigen::Isometry3d& pose : module_poses(robot_, {}, X_WHead))
+    mechanism.modules.push_back(body_of(mass, pose));
   for (const ScenarioObject& object : scenario_.objects) {
-    dMass mass;
     const Vector3d& size = object.size_m;
     if (object.shape == BodyShape::kCylinder) {
       dMassSetCylinderTotal(&mass, object.mass_kg, 3, size.x(), size.z());
     } else {
       dMassSetBoxTotal(&mass, object.mass_kg, size.x(), size.y(), size.z());
     }
-    const dBodyID body = dBodyCreate(world_.get());
-    dBodySetMass(body, &mass);
-    place(body, upright(object.position_m, 0.5 * size.z(), object.yaw_rad));
-    object_geoms_.push_back(make_geom(object.shape, size));
-    dGeomSetBody(object_geoms_.back().get(), body);
-    objects_.push_back(body);
-    object_bound_m_.push_back(bound_of(object.shape, size));
+    mechanism.objects.push_back(body_of(mass, upright(object.position_m, 0.5 * size.z(), object.yaw_rad)));
   }
-  forces_n_.assign(objects_.size(), Vector3d::Zero());
+  return mechanism;
+}
+
+void World::build_objects() {
+  for (const ScenarioObject& object : scenario_.objects) {
+    object_geoms_.push_back(make_geom(object.shape, object.size_m));
+    object_bound_m_.push_back(bound_of(object.shape, object.size_m));
+  }
+  pushes_n_.assign(object_count(), Vector3d::Zero());
 }
 
 void World::build_obstacles() {
@@ -133,7 +107,7 @@ void World::set_servo(std::span<const double> position_rad, std::span<const doub
                     position_rad.size(), velocity_rad_s.size(), torque_limit_nm.size(), drives_.size()));
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i]->set({position_rad[i], velocity_rad_s[i], torque_limit_nm[i]});
+    drives_[i].set({position_rad[i], velocity_rad_s[i], torque_limit_nm[i]});
   }
 }
 
@@ -141,30 +115,29 @@ void World::set_servo(std::span<const JointSetpoint> setpoints) {
   if (setpoints.size() != drives_.size())
     throw std::invalid_argument(fmt::format("World::set_servo: found {} setpoints, accepted {} (one for each joint)",
                                             setpoints.size(), drives_.size()));
-  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->set(setpoints[i]);
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].set(setpoints[i]);
 }
 
-void World::apply_force(std::size_t object, const Vector3d& force_n) { forces_n_.at(object) += force_n; }
+void World::apply_force(std::size_t object, const Vector3d& force_n) { pushes_n_.at(object) += force_n; }
 
 void World::move_object(std::size_t object, const Eigen::Vector2d& by_m) {
-  const dBodyID body = objects_.at(object);
-  const dReal* p = dBodyGetPosition(body);
-  dBodySetPosition(body, p[0] + by_m.x(), p[1] + by_m.y(), p[2]);
-  dBodySetLinearVel(body, 0, 0, 0);
-  dBodySetAngularVel(body, 0, 0, 0);
+  if (object >= object_count())
+    throw std::out_of_range(fmt::format("World::move_object: found object {}, accepted 0 to {}", object,
+                                        static_cast<std::ptrdiff_t>(object_count()) - 1));
+  dynamics_->move(object_body(object), {by_m.x(), by_m.y(), 0.0});
 }
 
 void World::advance(double duration_s, const std::function<void()>& after_step) {
   const auto count = std::max<std::int64_t>(1, std::llround(duration_s / settings_.step_s));
   const Vector3d velocity_before = module_velocity_m_s(0);
   contacts_.begin_tick();
-  for (const auto& drive : drives_) drive->begin_tick(static_cast<int>(count), settings_.step_s);
+  for (JointDrive& drive : drives_) drive.begin_tick(static_cast<int>(count), settings_.step_s);
   for (std::int64_t i = 0; i < count; ++i) {
     step();
     if (after_step) after_step();
   }
   acceleration_m_s2_ = (module_velocity_m_s(0) - velocity_before) / (static_cast<double>(count) * settings_.step_s);
-  std::fill(forces_n_.begin(), forces_n_.end(), Vector3d::Zero());
+  std::fill(pushes_n_.begin(), pushes_n_.end(), Vector3d::Zero());
   extend_hash();
 }
 
@@ -178,13 +151,14 @@ void World::stand_on_bellies() {
   constexpr double kNear_m = 0.01;
   const double most_nm = robot_.module_mass_kg * -scenario_.gravity_m_s2.z() * robot_.module_belly_half_width_m;
   if (most_nm <= 0.0) return;
-  for (const dBodyID body : modules_) {
-    const dReal* R = dBodyGetRotation(body);
-    const double roll_rad = std::atan2(R[9], R[10]);
-    if (std::abs(roll_rad) > kTipped_rad || dBodyGetPosition(body)[2] > robot_.module_radius_m + kNear_m) continue;
-    const double rate_rad_s = vector_of(dBodyGetAngularVel(body)).dot(Vector3d(R[0], R[4], R[8]));
+  for (std::size_t i = 0; i < module_count(); ++i) {
+    const BodyMotion& body = dynamics_->body(i);
+    const Vector3d axis = body.R_WB.col(0);
+    const double roll_rad = std::atan2(body.R_WB(2, 1), body.R_WB(2, 2));
+    if (std::abs(roll_rad) > kTipped_rad || body.position_m.z() > robot_.module_radius_m + kNear_m) continue;
+    const double rate_rad_s = body.angular_velocity_rad_s.dot(axis);
     const double share = std::clamp((roll_rad + kDamping_s * rate_rad_s) / kSoft_rad, -1.0, 1.0);
-    dBodyAddRelTorque(body, -most_nm * share, 0.0, 0.0);
+    dynamics_->add_torque(i, axis * (-most_nm * share));
   }
 }
 
@@ -193,9 +167,9 @@ void World::stand_on_bellies() {
 void World::resist_rolling() {
   constexpr double kSoft_rad_s = 0.05;
   constexpr double kMostOfRate = 0.5;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
+  for (std::size_t i = 0; i < object_count(); ++i) {
     const ScenarioObject& object = scenario_.objects[i];
-    const Vector3d rate = vector_of(dBodyGetAngularVel(objects_[i]));
+    const Vector3d& rate = dynamics_->body(object_body(i)).angular_velocity_rad_s;
     const double rolling_rad_s = std::hypot(rate.x(), rate.y());
     if (rolling_rad_s < 1e-9) continue;
     const double lever_m = object.shape == BodyShape::kCylinder ? object.size_m.x() : 0.5 * object.size_m.minCoeff();
@@ -203,44 +177,42 @@ void World::resist_rolling() {
     const double most_nm = kRollingResistance * weight_n * lever_m * std::min(1.0, rolling_rad_s / kSoft_rad_s);
     const double inertia_kg_m2 = 0.4 * object.mass_kg * lever_m * lever_m;  // at least
     const double torque_nm = std::min(most_nm, kMostOfRate * inertia_kg_m2 * rolling_rad_s / settings_.step_s);
-    dBodyAddTorque(objects_[i], -torque_nm * rate.x() / rolling_rad_s, -torque_nm * rate.y() / rolling_rad_s, 0.0);
+    dynamics_->add_torque(object_body(i),
+                          {-torque_nm * rate.x() / rolling_rad_s, -torque_nm * rate.y() / rolling_rad_s, 0.0});
   }
 }
 
 void World::step() {
-  for (const auto& drive : drives_) drive->drive();
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    dBodyAddForce(objects_[i], forces_n_[i].x(), forces_n_[i].y(), forces_n_[i].z());
-  }
+  for (std::size_t i = 0; i < drives_.size(); ++i) rows_[i] = drives_[i].drive();
+  for (std::size_t i = 0; i < object_count(); ++i) dynamics_->add_force(object_body(i), pushes_n_[i]);
   stand_on_bellies();
   resist_rolling();
   contacts_.begin_step();
   collide();
-  // QuickStep reorders constraints with a random generator that all worlds of the process share. Each world restores
-  // its own sequence, so that worlds in one process do not influence each other.
-  dRandSetSeed(reorder_state_);
-  if (dWorldQuickStep(world_.get(), settings_.step_s) == 0)
-    throw std::runtime_error("ODE: dWorldQuickStep failed: out of memory");
-  reorder_state_ = dRandGetSeed();
-  contacts_.collect();
-  for (const auto& drive : drives_) drive->measure(settings_.step_s, robot_.torque_filter_s);
+  dynamics_->step(rows_, contacts_.contacts());
+  contacts_.collect(*dynamics_);
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    drives_[i].measure(dynamics_->angle_rad(i), dynamics_->rate_rad_s(i), dynamics_->torque_nm(i), settings_.step_s,
+                       robot_.torque_filter_s);
   ++steps_done_;
 }
 
-Eigen::Isometry3d World::module_pose(std::size_t module) const { return pose_of(modules_[module]); }
-Vector3d World::module_velocity_m_s(std::size_t module) const { return vector_of(dBodyGetLinearVel(modules_[module])); }
+Eigen::Isometry3d World::module_pose(std::size_t module) const { return dynamics_->body(module).pose(); }
+Vector3d World::module_velocity_m_s(std::size_t module) const { return dynamics_->body(module).velocity_m_s; }
 Vector3d World::module_angular_velocity_rad_s(std::size_t module) const {
-  return vector_of(dBodyGetAngularVel(modules_[module]));
+  return dynamics_->body(module).angular_velocity_rad_s;
 }
-Eigen::Isometry3d World::object_pose(std::size_t object) const { return pose_of(objects_[object]); }
-Vector3d World::object_velocity_m_s(std::size_t object) const { return vector_of(dBodyGetLinearVel(objects_[object])); }
+Eigen::Isometry3d World::object_pose(std::size_t object) const { return dynamics_->body(object_body(object)).pose(); }
+Vector3d World::object_velocity_m_s(std::size_t object) const {
+  return dynamics_->body(object_body(object)).velocity_m_s;
+}
 Vector3d World::object_angular_velocity_rad_s(std::size_t object) const {
-  return vector_of(dBodyGetAngularVel(objects_[object]));
+  return dynamics_->body(object_body(object)).angular_velocity_rad_s;
 }
 
 ImuTruth World::imu() const {
   ImuTruth imu;
-  imu.q_WHead = quaternion_of(modules_[0]);
+  imu.q_WHead = dynamics_->body(0).q_WB;
   const Eigen::Matrix3d R_HeadW = module_pose(0).linear().transpose();
   imu.angular_velocity_rad_s = R_HeadW * module_angular_velocity_rad_s(0);
   imu.proper_acceleration_m_s2 = R_HeadW * (acceleration_m_s2_ + (Vector3d::Zero() - scenario_.gravity_m_s2));
@@ -250,20 +222,18 @@ ImuTruth World::imu() const {
 
 void World::extend_hash() {
   hash_values_.clear();
-  const auto append = [this](const dReal* values, int count) {
-    hash_values_.insert(hash_values_.end(), values, values + count);
+  const auto append = [this](const auto& vector) {
+    hash_values_.insert(hash_values_.end(), vector.data(), vector.data() + vector.size());
   };
-  for (const auto* bodies : {&modules_, &objects_}) {
-    for (const dBodyID body : *bodies) {
-      append(dBodyGetPosition(body), 3);
-      append(dBodyGetQuaternion(body), 4);
-      append(dBodyGetLinearVel(body), 3);
-      append(dBodyGetAngularVel(body), 3);
-    }
+  for (const BodyMotion& body : dynamics_->bodies()) {
+    append(body.position_m);
+    append(Eigen::Vector4d(body.q_WB.w(), body.q_WB.x(), body.q_WB.y(), body.q_WB.z()));
+    append(body.velocity_m_s);
+    append(body.angular_velocity_rad_s);
   }
-  for (const auto& drive : drives_) {
-    hash_values_.push_back(drive->angle_rad());
-    hash_values_.push_back(drive->rate_rad_s());
+  for (const JointDrive& drive : drives_) {
+    hash_values_.push_back(drive.angle_rad());
+    hash_values_.push_back(drive.rate_rad_s());
   }
   hash_.extend(hash_values_);
 }

@@ -1,6 +1,6 @@
-// The simulated world: the robot, its surroundings and ODE's solver. It has no topics, reads no files and no clock. Two
-// worlds that are built from equal arguments and receive equal commands stay equal bit for bit, also if they are
-// advanced alternately in one process.
+// The simulated world: the robot, its surroundings and the engine that moves them. It has no topics, reads no files and
+// no clock. Two worlds that are built from equal arguments and receive equal commands stay equal bit for bit, also if
+// they are advanced alternately in one process.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,6 +15,7 @@
 #include "robot/robot_model.hpp"
 #include "sim/scenario_loader/scenario.hpp"
 #include "sim/world/contact_set.hpp"
+#include "sim/world/dynamics.hpp"
 #include "sim/world/joint_drive.hpp"
 #include "sim/world/ode_handles.hpp"
 #include "sim/world/solver_settings.hpp"
@@ -55,16 +56,16 @@ class World {
   void advance(double duration_s, const std::function<void()>& after_step = {});
 
   [[nodiscard]] std::size_t joint_count() const { return drives_.size(); }
-  [[nodiscard]] std::size_t module_count() const { return modules_.size(); }
-  [[nodiscard]] std::size_t object_count() const { return objects_.size(); }
+  [[nodiscard]] std::size_t module_count() const { return robot_.module_count; }
+  [[nodiscard]] std::size_t object_count() const { return scenario_.objects.size(); }
   [[nodiscard]] double time_s() const { return static_cast<double>(steps_done_) * settings_.step_s; }
 
-  [[nodiscard]] double joint_angle_rad(std::size_t joint) const { return drives_[joint]->angle_rad(); }
-  [[nodiscard]] double joint_rate_rad_s(std::size_t joint) const { return drives_[joint]->rate_rad_s(); }
+  [[nodiscard]] double joint_angle_rad(std::size_t joint) const { return drives_[joint].angle_rad(); }
+  [[nodiscard]] double joint_rate_rad_s(std::size_t joint) const { return drives_[joint].rate_rad_s(); }
   /// Torque about the joint's axis on the module at the head's side, low-pass filtered with the robot's
   /// torque_filter_s.
-  [[nodiscard]] double joint_torque_nm(std::size_t joint) const { return drives_[joint]->torque_nm(); }
-  [[nodiscard]] const JointDrive& joint(std::size_t joint) const { return *drives_[joint]; }
+  [[nodiscard]] double joint_torque_nm(std::size_t joint) const { return drives_[joint].torque_nm(); }
+  [[nodiscard]] const JointDrive& joint(std::size_t joint) const { return drives_[joint]; }
 
   [[nodiscard]] Eigen::Isometry3d module_pose(std::size_t module) const;                  ///< X_WM
   [[nodiscard]] Eigen::Vector3d module_velocity_m_s(std::size_t module) const;            ///< of its centre, in W
@@ -75,7 +76,7 @@ class World {
   /// Contacts that the modules felt in the last advance(), in the order of falling force.
   [[nodiscard]] std::vector<ModuleContact> contacts() const { return contacts_.felt(); }
   /// [W] power that the contacts of the last step give to the robot and to the objects that it touches.
-  [[nodiscard]] double contact_power_w() const { return contacts_.felt_power_w(); }
+  [[nodiscard]] double contact_power_w() const { return contacts_.felt_power_w(*dynamics_); }
   [[nodiscard]] ImuTruth imu() const;
 
   /// SHA-256 chain. Each advance() appends position, quaternion (w x y z), linear and angular velocity of each module
@@ -99,12 +100,18 @@ class World {
     double bound_m = 0.0;  ///< [m] radius of a sphere about the centre that contains the obstacle
   };
 
-  void build_robot();
+  [[nodiscard]] Mechanism mechanism() const;
   void build_objects();
   void build_obstacles();
+  [[nodiscard]] std::size_t object_body(std::size_t object) const { return module_count() + object; }
+  /// Radius of a sphere about the centre of a module that contains it.
+  [[nodiscard]] double module_bound_m() const { return 0.5 * robot_.module_length_m + robot_.module_radius_m; }
   void collide();
+  void touch_ground(std::size_t module);
+  void touch_itself(std::size_t module);
   void collide_objects();
-  void collide_geoms(dGeomID first, dBodyID first_body, dGeomID second, dBodyID second_body);
+  void place_geom(std::size_t object);
+  void collide_geoms(dGeomID other, std::size_t object, std::size_t other_body);
   [[nodiscard]] Capsule capsule_of(std::size_t module) const;
   [[nodiscard]] ConvexSolid solid_of(std::size_t object) const;
   void step();
@@ -117,18 +124,16 @@ class World {
   RobotModel robot_;
   Scenario scenario_;
   SolverSettings settings_;
-  OdeWorld world_;
+  std::unique_ptr<Dynamics> dynamics_;
   ContactSet contacts_;
-  std::vector<dBodyID> modules_;
-  std::vector<std::unique_ptr<JointDrive>> drives_;
-  std::vector<dBodyID> objects_;
-  std::vector<OdeGeom> object_geoms_;
+  std::vector<JointDrive> drives_;
+  std::vector<ServoRow> rows_;
+  std::vector<OdeGeom> object_geoms_;  ///< only for contacts of objects with objects and obstacles
   std::vector<double> object_bound_m_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Eigen::Vector3d> forces_n_;  ///< on each object during the present advance()
+  std::vector<Eigen::Vector3d> pushes_n_;  ///< on each object during the present advance()
   std::vector<Capsule> capsules_;          ///< the modules in the present step
   TouchPoints touches_;
-  unsigned long reorder_state_;  ///< state of ODE's global random generator, set before each step
   std::int64_t steps_done_ = 0;
   Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean over the last advance()
   std::vector<double> hash_values_;

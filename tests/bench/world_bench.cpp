@@ -9,12 +9,14 @@ namespace {
 
 constexpr double kPeriod_s = 0.02;
 
-/// The gait on flat ground. Arguments: step [us], iterations, ground contacts at each joint.
+/// The gait on flat ground. Arguments: engine (0: ode, 1: chain), step [us], iterations of QuickStep, ground contacts
+/// at each joint.
 void undulate(benchmark::State& state) {
   SolverSettings settings;
-  settings.step_s = 1e-6 * static_cast<double>(state.range(0));
-  settings.iterations = static_cast<int>(state.range(1));
-  settings.one_ground_contact_a_joint = state.range(2) == 1;
+  settings.engine = state.range(0) == 1 ? kEngineChain : kEngineOde;
+  settings.step_s = 1e-6 * static_cast<double>(state.range(1));
+  settings.iterations = static_cast<int>(state.range(2));
+  settings.one_ground_contact_a_joint = state.range(3) == 1;
   World world(load_robot(testing::robot_path("mamba")), Scenario{}, settings);
   OpenLoopGait gait;
   int tick = 0;
@@ -30,14 +32,18 @@ void undulate(benchmark::State& state) {
   state.counters["speed_m_s"] = (centre_x() - from) / (kPeriod_s * (tick - first));
 }
 BENCHMARK(undulate)
-    ->ArgNames({"step_us", "iterations", "contacts"})
-    ->Args({2000, 50, 2})
-    ->Args({2000, 50, 1})
-    ->Args({2000, 20, 2})
-    ->Args({4000, 50, 2})
-    ->Args({4000, 50, 1})
-    ->Args({4000, 20, 2})
-    ->Args({1000, 500, 2})
+    ->ArgNames({"engine", "step_us", "iterations", "contacts"})
+    ->Args({0, 2000, 50, 2})
+    ->Args({0, 2000, 20, 2})
+    ->Args({0, 4000, 50, 2})
+    ->Args({0, 4000, 50, 1})
+    ->Args({0, 4000, 20, 2})
+    ->Args({0, 1000, 500, 2})
+    ->Args({1, 10000, 50, 2})
+    ->Args({1, 5000, 50, 2})
+    ->Args({1, 4000, 50, 2})
+    ->Args({1, 2000, 50, 2})
+    ->Args({1, 500, 50, 2})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(430);  // six cycles of the gait
 

@@ -9,10 +9,13 @@
 namespace constrictor {
 namespace {
 
+class Contact : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, Contact, kEngines, engine_name);
+
 using Eigen::Vector3d;
 
-TEST(Contact, GroundForcesStayWithinTheAnisotropicFrictionAndReachIt) {
-  World world(mamba(), {});
+TEST_P(Contact, GroundForcesStayWithinTheAnisotropicFrictionAndReachIt) {
+  World world(mamba(), {}, settings());
   OpenLoopGait gait;
   double along = 0.0;
   double across = 0.0;
@@ -34,11 +37,11 @@ TEST(Contact, GroundForcesStayWithinTheAnisotropicFrictionAndReachIt) {
   EXPECT_NEAR(weight, 24 * 0.3 * kG, 0.03 * 24 * 0.3 * kG);
 }
 
-TEST(Contact, PushesAnObjectWithTheForceThatItFeels) {
+TEST_P(Contact, PushesAnObjectWithTheForceThatItFeels) {
   // The head bends against an object, which slides. In steady sliding the contacts carry mu m g.
   Scenario scenario = with_object({0.085, 0.085, 0.15}, 0.4);
   scenario.objects[0].position_m = {-0.02, 0.128};
-  World world(mamba(), scenario);
+  World world(mamba(), scenario, settings());
   std::vector<double> angles(23, 0.0);
   double force = 0.0;
   for (int tick = 0; tick < 141; ++tick) {
@@ -57,8 +60,8 @@ TEST(Contact, PushesAnObjectWithTheForceThatItFeels) {
   EXPECT_NEAR(force, 0.4 * 0.4 * kG, 0.03 * 0.4 * 0.4 * kG);
 }
 
-TEST(Contact, SelfContactIsFeltByBothModulesEqually) {
-  World world(mamba(), {});
+TEST_P(Contact, SelfContactIsFeltByBothModulesEqually) {
+  World world(mamba(), {}, settings());
   std::vector<double> angles(23, 0.0);
   bool seen = false;
   for (int tick = 0; tick < 200;
@@ -81,10 +84,10 @@ TEST(Contact, SelfContactIsFeltByBothModulesEqually) {
   EXPECT_TRUE(seen);
 }
 
-TEST(Contact, WallsStopTheRobot) {
+TEST_P(Contact, WallsStopTheRobot) {
   Scenario scenario;
   scenario.obstacles.push_back({BodyShape::kBox, {0.1, 4.0, 0.3}, {1.2, 0.0}, 0.0});
-  World world(mamba(), scenario);
+  World world(mamba(), scenario, settings());
   OpenLoopGait gait;
   bool felt = false;
   for (int tick = 0; tick < 300; ++tick) {

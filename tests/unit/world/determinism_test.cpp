@@ -10,6 +10,9 @@
 namespace constrictor {
 namespace {
 
+class Determinism : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, Determinism, kEngines, engine_name);
+
 Scenario busy_scene() {
   Scenario scenario;
   ScenarioObject object;
@@ -22,30 +25,30 @@ Scenario busy_scene() {
   return scenario;
 }
 
-StateHash::Digest run_alone(const OpenLoopGait& gait, int ticks) {
-  World world(mamba(), busy_scene());
+StateHash::Digest run_alone(const SolverSettings& settings, const OpenLoopGait& gait, int ticks) {
+  World world(mamba(), busy_scene(), settings);
   for (int tick = 0; tick < ticks; ++tick) gait.drive(world, tick * kPeriod_s, kPeriod_s);
   return world.state_hash();
 }
 
-TEST(Determinism, WorldsThatTakeTurnsEqualWorldsThatRunAlone) {
+TEST_P(Determinism, WorldsThatTakeTurnsEqualWorldsThatRunAlone) {
   OpenLoopGait forward;
   OpenLoopGait turning;
   turning.curvature_1_m = 0.8;
-  World first(mamba(), busy_scene());
-  World second(mamba(), busy_scene());
+  World first(mamba(), busy_scene(), settings());
+  World second(mamba(), busy_scene(), settings());
   for (int tick = 0; tick < 60; ++tick) {
     forward.drive(first, tick * kPeriod_s, kPeriod_s);
     turning.drive(second, tick * kPeriod_s, kPeriod_s);
   }
-  EXPECT_EQ(first.state_hash(), run_alone(forward, 60));
-  EXPECT_EQ(second.state_hash(), run_alone(turning, 60));
+  EXPECT_EQ(first.state_hash(), run_alone(settings(), forward, 60));
+  EXPECT_EQ(second.state_hash(), run_alone(settings(), turning, 60));
   EXPECT_NE(first.state_hash(), second.state_hash());
 }
 
-TEST(Determinism, TheRobotPushesAnObjectIntoAnother) {
+TEST_P(Determinism, TheRobotPushesAnObjectIntoAnother) {
   // Both objects of busy_scene() move, so the test above covers contacts between objects.
-  World world(mamba(), busy_scene());
+  World world(mamba(), busy_scene(), settings());
   OpenLoopGait gait;
   for (int tick = 0; tick < 120; ++tick) gait.drive(world, tick * kPeriod_s, kPeriod_s);
   EXPECT_GT(world.object_pose(0).translation().x(), 0.55);

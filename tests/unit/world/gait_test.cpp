@@ -6,6 +6,12 @@
 namespace constrictor {
 namespace {
 
+class GaitOfTheStudy : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, GaitOfTheStudy, kEngines, engine_name);
+
+class Servos : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, Servos, kEngines, engine_name);
+
 struct Course {
   double speed_m_s;   ///< of the mean position of the body, along the initial heading
   double turn_rad_s;  ///< of the head
@@ -13,7 +19,7 @@ struct Course {
   double radius_m;    ///< distance travelled for each radian of turn
 };
 
-Course run(const OpenLoopGait& gait, const SolverSettings& settings = {}) {
+Course run(const OpenLoopGait& gait, const SolverSettings& settings) {
   World world(mamba(), Scenario{}, settings);
   const auto centre = [&] {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -44,46 +50,47 @@ Course run(const OpenLoopGait& gait, const SolverSettings& settings = {}) {
   return {moved.x() / measured_s, yaw / measured_s, moved.y(), path_m / std::abs(yaw)};
 }
 
-TEST(OpenLoopGait, DrivesStraightAtTheStudysSpeed) {
-  const Course course = run({});
+TEST_P(GaitOfTheStudy, DrivesStraightAtTheStudysSpeed) {
+  const Course course = run({}, settings());
   EXPECT_GT(course.speed_m_s, 0.6);
   EXPECT_LT(course.speed_m_s, 0.95);
   EXPECT_NEAR(course.drift_m, 0.0, 0.3);
 }
 
-TEST(OpenLoopGait, DrivesBackwardsAtTheStudysSpeed) {
+TEST_P(GaitOfTheStudy, DrivesBackwardsAtTheStudysSpeed) {
   OpenLoopGait gait;
   gait.frequency_hz = -0.7;
-  EXPECT_NEAR(run(gait).speed_m_s, -0.63, 0.1);
+  EXPECT_NEAR(run(gait, settings()).speed_m_s, -0.63, 0.1);
 }
 
-TEST(OpenLoopGait, TurnsWithTheStudysRadius) {
+TEST_P(GaitOfTheStudy, TurnsWithTheStudysRadius) {
   OpenLoopGait gait;
   gait.curvature_1_m = 0.8;
-  const Course course = run(gait);
+  const Course course = run(gait, settings());
   EXPECT_GT(course.turn_rad_s, 0.3);
   EXPECT_NEAR(course.radius_m, 1.1, 0.2);
 }
 
-TEST(OpenLoopGait, RotatesAlmostOnTheSpotWithStrongCurvature) {
+TEST_P(GaitOfTheStudy, RotatesAlmostOnTheSpotWithStrongCurvature) {
   OpenLoopGait gait;
   gait.curvature_1_m = -2.2;
-  const Course course = run(gait);
+  const Course course = run(gait, settings());
   EXPECT_LT(course.turn_rad_s, -66 * std::numbers::pi / 180);
   EXPECT_LT(course.radius_m, 0.3);
 }
 
 /// How well the servos of the yaw joints do their work in a steady gait.
-struct Servos {
+struct ServoWork {
   double tracking_rad;  ///< rms of setpoint minus angle at the end of each tick
   double ripple_nm;     ///< rms of the torque about its mean in each tick
   double work_j;        ///< of all joints
   double friction_j;    ///< taken by all contacts
 };
 
-Servos run_servos(const OpenLoopGait& gait, const RobotModel& robot, double period_s) {
-  World world(robot, Scenario{});
-  Servos servos{};
+ServoWork run_servos(const OpenLoopGait& gait, double period_s, const SolverSettings& settings) {
+  const RobotModel robot = mamba();
+  World world(robot, Scenario{}, settings);
+  ServoWork servos{};
   double error = 0.0;
   double ripple = 0.0;
   int ticks = 0;
@@ -98,10 +105,10 @@ Servos run_servos(const OpenLoopGait& gait, const RobotModel& robot, double peri
       for (std::size_t i = 0; i < rates.size(); ++i) {
         torques[i].push_back(world.joint(i).step_torque_nm());
         const double rate = 0.5 * (rates[i] + world.joint_rate_rad_s(i));  // the work of a step is exact with the mean
-        servos.work_j += SolverSettings{}.step_s * world.joint(i).step_torque_nm() * rate;
+        servos.work_j += settings.step_s * world.joint(i).step_torque_nm() * rate;
         rates[i] = world.joint_rate_rad_s(i);
       }
-      servos.friction_j -= SolverSettings{}.step_s * world.contact_power_w();
+      servos.friction_j -= settings.step_s * world.contact_power_w();
     });
     if (!measured) continue;
     const std::vector<double> setpoint = gait.angles(robot, time_s + period_s);
@@ -119,16 +126,16 @@ Servos run_servos(const OpenLoopGait& gait, const RobotModel& robot, double peri
   return servos;
 }
 
-TEST(Servos, FollowTheGaitWithoutRipple) {
+TEST_P(Servos, FollowTheGaitWithoutRipple) {
   for (const double period_s : {0.02, 0.04}) {  // the ripple must not grow with the jump of the setpoint
-    const Servos servos = run_servos({}, mamba(), period_s);
+    const ServoWork servos = run_servos({}, period_s, settings());
     EXPECT_LT(servos.tracking_rad, 0.005) << period_s;
     EXPECT_LT(servos.ripple_nm, 0.3) << period_s;
   }
 }
 
-TEST(Servos, DoTheWorkThatFrictionTakes) {
-  const Servos servos = run_servos({}, mamba(), kPeriod_s);
+TEST_P(Servos, DoTheWorkThatFrictionTakes) {
+  const ServoWork servos = run_servos({}, kPeriod_s, settings());
   EXPECT_GT(servos.work_j, 1.0);
   EXPECT_NEAR(servos.work_j, servos.friction_j, 0.01 * servos.work_j);
 }

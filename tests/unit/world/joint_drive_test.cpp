@@ -9,9 +9,12 @@
 namespace constrictor {
 namespace {
 
+class JointDrive : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, JointDrive, kEngines, engine_name);
+
 using Eigen::Vector3d;
 
-TEST(JointDrive, AnElasticJointSwingsAtItsNaturalFrequency) {
+TEST_P(JointDrive, AnElasticJointSwingsAtItsNaturalFrequency) {
   // Two equal links with a torsion spring between them fall freely. Both turn by opposite angles, so w^2 = 2 k / I with
   // I about the centre of a link.
   RobotModel robot = chain(2, JointAxis::kYaw);
@@ -19,17 +22,18 @@ TEST(JointDrive, AnElasticJointSwingsAtItsNaturalFrequency) {
   const double w = 15.0;
   robot.joints[0].stiffness_nm_rad = w * w * inertia / 2;
   robot.joints[0].max_torque_nm = 1.0;
-  World world(robot, in_the_air(8.0));
+  World world(robot, in_the_air(8.0), settings());
   // The motor jumps to 0.2 rad; the joint then swings about that angle.
   const double motor = 0.2;
   std::vector<double> crossings;
   double before = 0.0;
   world.set_servo(std::vector{motor}, std::vector{0.0}, std::vector{1.0});
   double reached = 0.0;
-  for (int i = 0; i < 250; ++i) {
-    world.advance(SolverSettings{}.step_s);
+  const double step_s = settings().step_s;
+  for (int i = 0; i < std::lround(1.0 / step_s); ++i) {
+    world.advance(step_s);
     const double now = world.joint_angle_rad(0) - motor;
-    if (i > 75 && before * now < 0.0) crossings.push_back(SolverSettings{}.step_s * (i + before / (before - now)));
+    if (i * step_s > 0.3 && before * now < 0.0) crossings.push_back(step_s * (i + before / (before - now)));
     before = now;
     reached = std::max(reached, world.joint_angle_rad(0));
   }
@@ -55,19 +59,19 @@ double lifted_head_torque(const World& world) {
   return -world.robot().module_mass_kg * kG * lever;  // gravity turns the nose down, the joint holds it up
 }
 
-TEST(JointDrive, AStiffJointMeasuresTheWeightItLifts) {
+TEST_P(JointDrive, AStiffJointMeasuresTheWeightItLifts) {
   RobotModel robot = chain(8, JointAxis::kPitch);
-  World world(robot, {});
+  World world(robot, {}, settings());
   lift_head(world, 6.0, 150);
   EXPECT_NEAR(world.joint_angle_rad(0), -0.6, 0.02);
   EXPECT_NEAR(world.joint_torque_nm(0), lifted_head_torque(world), 0.03 * std::abs(lifted_head_torque(world)));
 }
 
-TEST(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {
+TEST_P(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {
   RobotModel robot = chain(8, JointAxis::kPitch);
   for (JointModel& joint : robot.joints) joint.stiffness_nm_rad = 3.0;
   for (JointModel& joint : robot.joints) joint.damping_nm_s_rad = 0.05;
-  World world(robot, {});
+  World world(robot, {}, settings());
   lift_head(world, 6.0, 200);
   const double torque = lifted_head_torque(world);
   EXPECT_LT(torque, -0.05);
@@ -75,17 +79,17 @@ TEST(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {
   EXPECT_NEAR(world.joint(0).motor_angle_rad(), -0.6, 1e-3);
 }
 
-TEST(JointDrive, AJointNeverExceedsItsTorqueLimit) {
+TEST_P(JointDrive, AJointNeverExceedsItsTorqueLimit) {
   // The limit is below the torque that lifts the head, so the head stays down.
   RobotModel robot = chain(8, JointAxis::kPitch);
-  World world(robot, {});
+  World world(robot, {}, settings());
   lift_head(world, 0.05, 100);
   EXPECT_GT(world.joint_angle_rad(0), -0.1);
   EXPECT_LE(std::abs(world.joint_torque_nm(0)), 0.0501);
 }
 
-TEST(JointDrive, ARelaxedJointExertsNoTorque) {
-  World world(mamba(), {});
+TEST_P(JointDrive, ARelaxedJointExertsNoTorque) {
+  World world(mamba(), {}, settings());
   hold(world, 0.0, 0.0, 1.0);
   for (std::size_t i = 0; i < 23; ++i) EXPECT_NEAR(world.joint_torque_nm(i), 0.0, 1e-6);
 }

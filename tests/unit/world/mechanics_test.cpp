@@ -9,20 +9,23 @@
 namespace constrictor {
 namespace {
 
+class Mechanics : public EachEngine {};
+INSTANTIATE_TEST_SUITE_P(Engines, Mechanics, kEngines, engine_name);
+
 using Eigen::Vector3d;
 
-TEST(Mechanics, AFallingRobotFollowsTheParabola) {
-  World world(mamba(), in_the_air(3.0));
+TEST_P(Mechanics, AFallingRobotFollowsTheParabola) {
+  World world(mamba(), in_the_air(3.0), settings());
   const double start = world.module_pose(5).translation().z();
   hold(world, 0.0, 6.0, 0.6);
   // The integration in steps of h adds g t h / 2 to the fall.
-  const double h = SolverSettings{}.step_s;
+  const double h = settings().step_s;
   EXPECT_NEAR(start - world.module_pose(5).translation().z(), 0.5 * kG * 0.36 + 0.5 * kG * 0.6 * h, 1e-6);
   EXPECT_NEAR(world.imu().proper_acceleration_m_s2.norm(), 0.0, 1e-6);  // weightless
 }
 
-TEST(Mechanics, SwingingInTheAirKeepsMomentum) {
-  World world(mamba(), in_the_air(6.0));
+TEST_P(Mechanics, SwingingInTheAirKeepsMomentum) {
+  World world(mamba(), in_the_air(6.0), settings());
   const double mass = world.robot().module_mass_kg;
   OpenLoopGait gait;
   const auto momenta = [&] {
@@ -54,11 +57,11 @@ TEST(Mechanics, SwingingInTheAirKeepsMomentum) {
   EXPECT_NEAR(angular, 0.0, 0.002);
 }
 
-TEST(Mechanics, ASlidingBlockStopsAfterItsKineticEnergyIsSpent) {
+TEST_P(Mechanics, ASlidingBlockStopsAfterItsKineticEnergyIsSpent) {
   for (const double mu : {0.2, 0.4}) {
     Scenario scenario = with_object({0.1, 0.1, 0.06}, 0.5);
     scenario.friction.object_ground = mu;
-    World world(chain(2, JointAxis::kYaw), scenario);
+    World world(chain(2, JointAxis::kYaw), scenario, settings());
     hold(world, 0.0, 6.0, 0.2);
     world.apply_force(0, {40.0, 0.0, 0.0});
     world.advance(kPeriod_s);
@@ -72,11 +75,11 @@ TEST(Mechanics, ASlidingBlockStopsAfterItsKineticEnergyIsSpent) {
 }
 
 /// [m] how far a block slides that a force has pushed for one tick in this direction, seen from above.
-Eigen::Vector2d slide(double direction_rad, BodyShape shape) {
+Eigen::Vector2d slide(const SolverSettings& settings, double direction_rad, BodyShape shape) {
   Scenario scenario = with_object({0.1, 0.1, 0.06}, 0.5);
   scenario.objects[0].shape = shape;
   scenario.objects[0].yaw_rad = direction_rad;  // the block turns with the push: only the world's axes differ
-  World world(chain(2, JointAxis::kYaw), scenario);
+  World world(chain(2, JointAxis::kYaw), scenario, settings);
   hold(world, 0.0, 6.0, 0.2);
   const Vector3d from = world.object_pose(0).translation();
   world.apply_force(0, 40.0 * Vector3d(std::cos(direction_rad), std::sin(direction_rad), 0.0));
@@ -85,14 +88,14 @@ Eigen::Vector2d slide(double direction_rad, BodyShape shape) {
   return (world.object_pose(0).translation() - from).head<2>();
 }
 
-TEST(Mechanics, FrictionIsTheSameInEachDirectionOfTheWorld) {
+TEST_P(Mechanics, FrictionIsTheSameInEachDirectionOfTheWorld) {
   const double mu = Scenario{}.friction.object_ground;
   const double speed = (40.0 / 0.5 - mu * kG) * kPeriod_s;
   const double coasted_m = speed * speed / (2 * mu * kG) + 0.5 * speed * kPeriod_s;
   for (const BodyShape shape : {BodyShape::kCylinder, BodyShape::kBox}) {
     for (const double degrees : {0.0, 17.0, 30.0, 45.0, 72.0, 90.0, 135.0, -45.0, 180.0}) {
       const double direction = degrees * std::numbers::pi / 180.0;
-      const Eigen::Vector2d moved = slide(direction, shape);
+      const Eigen::Vector2d moved = slide(settings(), direction, shape);
       EXPECT_NEAR(moved.norm(), coasted_m, 0.02 * coasted_m) << degrees;
       EXPECT_NEAR(std::remainder(std::atan2(moved.y(), moved.x()) - direction, 2.0 * std::numbers::pi), 0.0, 0.02)
           << degrees;
@@ -100,8 +103,8 @@ TEST(Mechanics, FrictionIsTheSameInEachDirectionOfTheWorld) {
   }
 }
 
-TEST(Mechanics, ABlockAtRestStaysUntilFrictionIsOvercome) {
-  World world(chain(2, JointAxis::kYaw), with_object({0.1, 0.1, 0.06}, 0.5));
+TEST_P(Mechanics, ABlockAtRestStaysUntilFrictionIsOvercome) {
+  World world(chain(2, JointAxis::kYaw), with_object({0.1, 0.1, 0.06}, 0.5), settings());
   const double limit = 0.4 * 0.5 * kG;
   hold(world, 0.0, 6.0, 0.2);
   for (int i = 0; i < 50; ++i) {
@@ -116,11 +119,11 @@ TEST(Mechanics, ABlockAtRestStaysUntilFrictionIsOvercome) {
   EXPECT_NEAR(world.object_velocity_m_s(0).x(), 0.3 * limit / 0.5, 0.05);
 }
 
-TEST(Mechanics, ATallObjectPushedAtItsTopFallsOver) {
+TEST_P(Mechanics, ATallObjectPushedAtItsTopFallsOver) {
   // A force at the centre of a cylinder overturns it beyond m g r / (h / 2) if friction holds its foot.
   Scenario scenario = with_object({0.05, 0.05, 0.3}, 0.5);
   scenario.friction.object_ground = 3.0;
-  World world(chain(2, JointAxis::kYaw), scenario);
+  World world(chain(2, JointAxis::kYaw), scenario, settings());
   hold(world, 0.0, 6.0, 0.2);
   const double tipping = 0.5 * kG * 0.05 / 0.15;
   for (int i = 0; i < 50; ++i) {
@@ -137,10 +140,10 @@ TEST(Mechanics, ATallObjectPushedAtItsTopFallsOver) {
 }
 
 /// [m/s²] acceleration of a straight robot along x or y on a slope that falls in this direction.
-double slide_robot(double slope_rad, const Vector3d& downhill) {
+double slide_robot(const SolverSettings& settings, double slope_rad, const Vector3d& downhill) {
   Scenario scenario;
   scenario.gravity_m_s2 = kG * (std::sin(slope_rad) * downhill - std::cos(slope_rad) * Vector3d::UnitZ());
-  World world(chain(4, JointAxis::kYaw), scenario);
+  World world(chain(4, JointAxis::kYaw), scenario, settings);
   hold(world, 0.0, 6.0, 0.4);
   const double before = world.module_velocity_m_s(1).dot(downhill);
   hold(world, 0.0, 6.0, 0.4);
@@ -152,9 +155,9 @@ double slide_robot(double slope_rad, const Vector3d& downhill) {
 }
 
 // A solid cylinder that rolls without slipping: m a = F - c m g and m r² a / 2 = F r give a = -2/3 c g.
-TEST(Mechanics, ARollingCylinderIsSlowedDownByItsRollingResistance) {
+TEST_P(Mechanics, ARollingCylinderIsSlowedDownByItsRollingResistance) {
   const double radius = 0.05, mass = 0.4;
-  World world(mamba(), with_object({radius, radius, 0.4}, mass));
+  World world(mamba(), with_object({radius, radius, 0.4}, mass), settings());
   const auto push = [&](const Vector3d& force, double seconds) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kPeriod_s)); ++i) {
       world.apply_force(0, force);
@@ -174,15 +177,15 @@ TEST(Mechanics, ARollingCylinderIsSlowedDownByItsRollingResistance) {
   EXPECT_LT(world.object_velocity_m_s(0).norm(), 0.01);
 }
 
-TEST(Mechanics, ARobotOnASlopeHoldsUpToItsFrictionAngleAndThenAccelerates) {
+TEST_P(Mechanics, ARobotOnASlopeHoldsUpToItsFrictionAngleAndThenAccelerates) {
   const RobotModel robot = mamba();
   for (const auto& [downhill, mu] : {std::pair<Vector3d, double>(Vector3d::UnitX(), robot.friction_along),
                                      std::pair<Vector3d, double>(Vector3d::UnitY(), robot.friction_across)}) {
     const double angle = std::atan(mu);
-    EXPECT_NEAR(slide_robot(0.95 * angle, downhill), 0.0, 0.002);
+    EXPECT_NEAR(slide_robot(settings(), 0.95 * angle, downhill), 0.0, 0.002);
     const double beyond = 1.2 * angle;
     const double expected = kG * (std::sin(beyond) - mu * std::cos(beyond));
-    EXPECT_NEAR(slide_robot(beyond, downhill), expected, 0.01 * expected);
+    EXPECT_NEAR(slide_robot(settings(), beyond, downhill), expected, 0.01 * expected);
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace constrictor {
 
-inline constexpr int kSteps = 5;
-inline constexpr double kStep_s = SolverSettings{}.step_s;
+inline constexpr double kStep_s = 0.002;  // as SolverSettings
+inline constexpr int kSteps = 10;
 inline constexpr double kTick_s = kSteps * kStep_s;
 
 /// A body that turns about one fixed axis, moved by a servo.

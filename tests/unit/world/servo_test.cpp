@@ -41,7 +41,7 @@ TEST(Servo, SwingsAsASecondOrderSystem) {
   Joint joint(soft, 0.01);
   joint.angle_rad = 0.3;
   std::vector<double> crossings_s;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < std::lround(2.0 / kStep_s); ++i) {
     if (i % kSteps == 0) {
       joint.servo.set({0.0, 0.0, 6.0});
       joint.servo.begin_tick(kSteps, kStep_s);

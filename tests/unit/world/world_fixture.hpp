@@ -1,9 +1,12 @@
 // Robots, scenes and formulas for tests of the world.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "support/project.hpp"
@@ -13,6 +16,23 @@ namespace constrictor {
 
 inline constexpr double kPeriod_s = 0.02;
 inline constexpr double kG = 9.81;  ///< [m/s²]
+
+/// A test that runs with each engine of the dynamics.
+class EachEngine : public ::testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] static SolverSettings settings() {
+    SolverSettings settings;
+    settings.engine = GetParam();
+    if (settings.engine == kEngineOde) {
+      settings.step_s = 0.004;  // for which its softness and over-relaxation were chosen
+      settings.iterations = 100;
+    }
+    return settings;
+  }
+};
+
+inline const auto kEngines = ::testing::Values(kEngineOde, kEngineChain);
+inline std::string engine_name(const ::testing::TestParamInfo<std::string>& info) { return info.param; }
 
 inline RobotModel mamba() { return load_robot(testing::robot_path("mamba")); }
 

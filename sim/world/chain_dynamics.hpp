@@ -1,0 +1,61 @@
+// The dynamics of the robot as one chain in generalised coordinates: the pose of the head and the angles of the joints.
+// The hinges hold exactly, because no coordinate could open them, and the forces of a step are solved for exactly
+// instead of by a number of relaxation sweeps. README.md compares it with OdeDynamics.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "sim/world/chain_system.hpp"
+#include "sim/world/dynamics.hpp"
+
+namespace constrictor {
+
+class ChainDynamics : public Dynamics {
+ public:
+  ChainDynamics(const Mechanism& mechanism, const SolverSettings& settings);
+
+  void move(std::size_t body, const Eigen::Vector3d& by_m) override;
+  void step(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) override;
+  [[nodiscard]] std::vector<double> save() const override;
+  void load(std::span<const double> memory) override;
+
+  /// Iterations of Newton's method since the engine was built, for all groups of bodies.
+  [[nodiscard]] std::int64_t iterations() const { return iterations_; }
+
+ private:
+  struct Inertial {
+    double mass_kg;
+    Eigen::Vector3d inertia_kg_m2;
+  };
+
+  /// Poses, or velocities, of all modules from those of the head and the joints.
+  void place_modules();
+  void move_modules();
+  void prepare_chain();
+  void prepare_joints(std::span<const ServoRow> rows);
+  void prepare_object(std::size_t body);
+  void prepare_contacts(std::span<const SolverContact> contacts);
+  /// Groups the bodies that touch each other, directly or over others, and solves for each group.
+  void solve_groups(std::span<const SolverContact> contacts);
+  void integrate();
+  /// The spatial momentum of the chain about the origin of W, and the matrix that turns a velocity which all modules
+  /// share into such a momentum.
+  [[nodiscard]] std::pair<Vector6d, Matrix6d> momentum() const;
+  void restore_momentum(const Vector6d& wanted);
+  [[nodiscard]] Eigen::Vector3d axis(std::size_t joint) const;  ///< in W
+  [[nodiscard]] const Eigen::Vector3d& reference(std::size_t body) const;
+  [[nodiscard]] Eigen::Matrix3d inertia_W(std::size_t body) const;
+
+  std::vector<Inertial> inertial_;
+  std::vector<JointModel> models_;
+  double half_length_m_;
+  Eigen::Vector3d gravity_m_s2_;
+  ChainSystem system_;
+  std::vector<std::size_t> groups_;  // of each body: the number of a body in the same group
+  std::vector<std::size_t> group_objects_;
+  std::vector<std::size_t> group_contacts_;
+  std::int64_t iterations_ = 0;
+};
+
+}  // namespace constrictor

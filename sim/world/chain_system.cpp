@@ -1,0 +1,288 @@
+#include "sim/world/chain_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace constrictor {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+/// [N s, N m s] An iteration ends when no entry of the gradient is larger. In a step of 4 ms it belongs to a force of
+/// 0.25 mN.
+constexpr double kTolerance = 1e-6;
+constexpr int kMostIterations = 50;
+/// The line search ends when the derivative has fallen to this share.
+constexpr double kFlat = 0.1;
+
+}  // namespace
+
+double ChainSystem::Joint::torque_nm(double rate) const {
+  const double held = servo.torque_nm(rate);
+  return stop_side == 0.0 ? held
+                          : held + stop_side * std::max(0.0, stop_side * (stop.velocity_rad_s - rate) / stop.softness);
+}
+
+double ChainSystem::Joint::slope(double rate) const {
+  double slope = 0.0;
+  if (std::abs(servo.velocity_rad_s - rate) < servo.torque_limit_nm * servo.softness) slope += 1.0 / servo.softness;
+  if (stop_side * (stop.velocity_rad_s - rate) > 0.0) slope += 1.0 / stop.softness;
+  return slope;
+}
+
+void ChainSystem::begin(bool with_chain, std::span<const std::size_t> objects) {
+  with_chain_ = with_chain;
+  objects_ = objects;
+  members_.clear();
+  for (std::size_t k = 0; with_chain && k < modules_; ++k) members_.push_back(k);
+  members_.insert(members_.end(), objects.begin(), objects.end());
+  size_ = with_chain ? static_cast<Index>(6 + joints_.size()) : 0;
+  offsets_.resize(bodies_.size());
+  for (const std::size_t object : objects) {
+    offsets_[object] = size_;
+    size_ += 6;
+  }
+  change_.resize(bodies_.size());
+  wrench_.resize(bodies_.size());
+  stiffness_.resize(bodies_.size());
+  coupling_.resize(modules_);
+  relative_.assign(bodies_.size(), Vector6d::Zero());
+  gradient_.resize(size_);
+  step_.resize(size_);
+  hessian_.resize(size_, size_);
+  rates_before_rad_s_.clear();
+  for (const Joint& joint : joints_) rates_before_rad_s_.push_back(joint.rate_rad_s);
+  for (const std::size_t index : active_) {
+    Contact& contact = contacts_[index];
+    contact.velocity_m_s = contact.on_first.transpose() * bodies_[contact.first].velocity;
+    if (contact.second != kFixed)
+      contact.velocity_m_s -= contact.on_second.transpose() * bodies_[contact.second].velocity;
+  }
+}
+
+double ChainSystem::evaluate() {
+  for (const std::size_t b : members_) wrench_[b] = bodies_[b].inertia * relative_[b] - bodies_[b].impulse;
+  for (const std::size_t index : active_) {
+    Contact& contact = contacts_[index];
+    contact.law.bound(contact.velocity_m_s);
+    contact.force_n = contact.law.force_n(contact.velocity_m_s);
+    const Vector3d impulse = step_s_ * contact.force_n;
+    wrench_[contact.first] -= contact.on_first * impulse;
+    if (contact.second != kFixed) wrench_[contact.second] += contact.on_second * impulse;
+  }
+  if (with_chain_) {
+    for (std::size_t k = modules_ - 1; k > 0; --k) {
+      const Joint& joint = joints_[k - 1];
+      gradient_[static_cast<Index>(5 + k)] = joint.axis.dot(wrench_[k]) - step_s_ * joint.torque_nm(joint.rate_rad_s);
+      wrench_[k - 1] += wrench_[k];
+    }
+    gradient_.head<6>() = wrench_[0];
+  }
+  for (const std::size_t object : objects_) gradient_.segment<6>(offsets_[object]) = wrench_[object];
+  return gradient_.cwiseAbs().maxCoeff();
+}
+
+void ChainSystem::assemble() {
+  for (const std::size_t b : members_) stiffness_[b] = bodies_[b].inertia;
+  const auto is_self = [&](const Contact& contact) {
+    return is_module(contact.first) && contact.second != kFixed && is_module(contact.second);
+  };
+  for (const std::size_t index : active_) {
+    const Contact& contact = contacts_[index];
+    if (is_self(contact)) continue;
+    const ContactSlope slope = contact.law.slope(contact.velocity_m_s);
+    for (std::size_t i = 0; i < slope.count; ++i) {
+      const double weight = step_s_ * slope.terms[i].slope;
+      const Vector6d first = contact.on_first * slope.terms[i].axis;
+      stiffness_[contact.first].noalias() += (weight * first) * first.transpose();
+      if (contact.second == kFixed) continue;
+      const Vector6d second = contact.on_second * slope.terms[i].axis;
+      stiffness_[contact.second].noalias() += (weight * second) * second.transpose();
+    }
+  }
+  // Of objects, the chain's recursion overwrites nothing, so that they can come first.
+  assemble_objects();
+  if (!with_chain_) return;
+  assemble_chain();
+  for (const std::size_t index : active_)
+    if (is_self(contacts_[index])) add_self_contact(contacts_[index]);
+}
+
+// The composite-rigid-body algorithm. Only the lower triangle is needed.
+void ChainSystem::assemble_chain() {
+  for (std::size_t k = modules_ - 1; k > 0; --k) {
+    const Index row = static_cast<Index>(5 + k);
+    const Joint& joint = joints_[k - 1];
+    const Vector6d momentum = stiffness_[k] * joint.axis;
+    hessian_(row, row) = joint.axis.dot(momentum) + step_s_ * joint.slope(joint.rate_rad_s);
+    for (std::size_t j = k - 1; j > 0; --j)
+      hessian_(row, static_cast<Index>(5 + j)) = joints_[j - 1].axis.dot(momentum);
+    hessian_.row(row).head<6>() = momentum.transpose();
+    stiffness_[k - 1] += stiffness_[k];
+  }
+  hessian_.topLeftCorner<6, 6>() = stiffness_[0];
+}
+
+// The rows of the objects: with themselves, with objects before them, and with the chain.
+void ChainSystem::assemble_objects() {
+  for (std::size_t o = 0; o < objects_.size(); ++o) {
+    const Index row = offsets_[objects_[o]];
+    hessian_.middleRows<6>(row).leftCols(row).setZero();
+    hessian_.block<6, 6>(row, row) = stiffness_[objects_[o]];
+  }
+  for (const std::size_t object : objects_) {
+    const Index row = offsets_[object];
+    bool touched = false;
+    for (const std::size_t index : active_) {
+      const Contact& contact = contacts_[index];
+      if (contact.second == kFixed || (contact.first != object && contact.second != object)) continue;
+      const std::size_t other = contact.first == object ? contact.second : contact.first;
+      const bool above = is_module(other) || offsets_[other] < row;
+      if (!above) continue;
+      const auto& on_object = contact.first == object ? contact.on_first : contact.on_second;
+      const auto& on_other = contact.first == object ? contact.on_second : contact.on_first;
+      if (is_module(other) && !touched) {
+        touched = true;
+        std::fill(coupling_.begin(), coupling_.end(), Matrix6d::Zero());
+      }
+      const ContactSlope slope = contact.law.slope(contact.velocity_m_s);
+      for (std::size_t i = 0; i < slope.count; ++i) {
+        const Vector6d mine = (-step_s_ * slope.terms[i].slope) * (on_object * slope.terms[i].axis);
+        const Vector6d others = on_other * slope.terms[i].axis;
+        if (is_module(other)) {
+          coupling_[other].noalias() += mine * others.transpose();
+        } else {
+          hessian_.block<6, 6>(row, offsets_[other]).noalias() += mine * others.transpose();
+        }
+      }
+    }
+    if (!touched) continue;
+    for (std::size_t k = modules_ - 1; k > 0; --k) {
+      hessian_.block<6, 1>(row, static_cast<Index>(5 + k)).noalias() = coupling_[k] * joints_[k - 1].axis;
+      coupling_[k - 1] += coupling_[k];
+    }
+    hessian_.block<6, 6>(row, 0) = coupling_[0];
+  }
+}
+
+// A contact between two modules depends only on the joints between them.
+void ChainSystem::add_self_contact(const Contact& contact) {
+  const std::size_t front = std::min(contact.first, contact.second);
+  const std::size_t back = std::max(contact.first, contact.second);
+  const auto& on_back = contact.first == back ? contact.on_first : contact.on_second;
+  const ContactSlope slope = contact.law.slope(contact.velocity_m_s);
+  const auto count = static_cast<Index>(back - front);
+  const auto at = static_cast<Index>(6 + front);  // row of the joint behind the module `front`
+  for (std::size_t i = 0; i < slope.count; ++i) {
+    const Vector6d wrench = on_back * slope.terms[i].axis;
+    for (Index j = 0; j < count; ++j) step_[j] = joints_[front + static_cast<std::size_t>(j)].axis.dot(wrench);
+    hessian_.block(at, at, count, count).noalias() +=
+        (step_s_ * slope.terms[i].slope) * step_.head(count) * step_.head(count).transpose();
+  }
+}
+
+void ChainSystem::spread() {
+  if (with_chain_) {
+    change_[0] = step_.head<6>();
+    for (std::size_t k = 1; k < modules_; ++k)
+      change_[k] = change_[k - 1] + joints_[k - 1].axis * step_[static_cast<Index>(5 + k)];
+  }
+  for (const std::size_t object : objects_) change_[object] = step_.segment<6>(offsets_[object]);
+  for (const std::size_t index : active_) {
+    Contact& contact = contacts_[index];
+    contact.change_m_s = contact.on_first.transpose() * change_[contact.first];
+    if (contact.second != kFixed) contact.change_m_s -= contact.on_second.transpose() * change_[contact.second];
+  }
+  inertia_before_ = 0.0;
+  inertia_slope_ = 0.0;
+  for (const std::size_t b : members_) {
+    const Vector6d momentum = bodies_[b].inertia * change_[b];
+    inertia_before_ += momentum.dot(relative_[b]) - change_[b].dot(bodies_[b].impulse);
+    inertia_slope_ += momentum.dot(change_[b]);
+  }
+}
+
+double ChainSystem::derivative(double share) const {
+  double work = inertia_before_ + share * inertia_slope_;
+  for (const std::size_t index : active_) {
+    const Contact& contact = contacts_[index];
+    work -= step_s_ * contact.change_m_s.dot(contact.law.force_n(contact.velocity_m_s + share * contact.change_m_s));
+  }
+  for (std::size_t j = 0; with_chain_ && j < joints_.size(); ++j) {
+    const double change = step_[static_cast<Index>(6 + j)];
+    work -= step_s_ * change * joints_[j].torque_nm(joints_[j].rate_rad_s + share * change);
+  }
+  return work;
+}
+
+// The derivative never falls with the share, because the function is convex.
+double ChainSystem::search() const {
+  const double flat = kFlat * std::abs(gradient_.dot(step_));
+  double low = 0.0;
+  double high = 1.0;
+  double at_low = gradient_.dot(step_);
+  double at_high = derivative(high);
+  while (at_high < -flat && high < 16.0) {
+    low = high;
+    at_low = at_high;
+    high *= 2.0;
+    at_high = derivative(high);
+  }
+  for (int i = 0; i < 20 && at_high > flat; ++i) {
+    // Regula falsi; now and then the middle, so that neither end stays where it is.
+    const double share = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
+    const double at_share = derivative(share);
+    if (std::abs(at_share) <= flat) return share;
+    (at_share < 0.0 ? low : high) = share;
+    (at_share < 0.0 ? at_low : at_high) = at_share;
+  }
+  return high;
+}
+
+void ChainSystem::begin_as_before() {
+  if (with_chain_) {
+    step_.head<6>() = bodies_[0].change;
+    for (std::size_t j = 0; j < joints_.size(); ++j) step_[static_cast<Index>(6 + j)] = joints_[j].change_rad_s;
+  }
+  for (const std::size_t object : objects_) step_.segment<6>(offsets_[object]) = bodies_[object].change;
+  spread();
+  move(1.0);
+}
+
+void ChainSystem::remember_changes() {
+  for (const std::size_t b : members_) bodies_[b].change = relative_[b];
+  for (std::size_t j = 0; with_chain_ && j < joints_.size(); ++j)
+    joints_[j].change_rad_s = joints_[j].rate_rad_s - rates_before_rad_s_[j];
+}
+
+void ChainSystem::move(double share) {
+  for (const std::size_t b : members_) {
+    relative_[b] += share * change_[b];
+    bodies_[b].velocity += share * change_[b];
+  }
+  for (std::size_t j = 0; with_chain_ && j < joints_.size(); ++j)
+    joints_[j].rate_rad_s += share * step_[static_cast<Index>(6 + j)];
+  for (const std::size_t index : active_) contacts_[index].velocity_m_s += share * contacts_[index].change_m_s;
+}
+
+int ChainSystem::solve(bool with_chain, std::span<const std::size_t> objects, std::span<const std::size_t> contacts,
+                       double step_s) {
+  step_s_ = step_s;
+  active_ = contacts;
+  begin(with_chain, objects);
+  begin_as_before();
+  int iteration = 0;
+  while (evaluate() > kTolerance && iteration < kMostIterations) {
+    assemble();
+    factor_.compute(hessian_);
+    step_ = factor_.solve(-gradient_);
+    spread();
+    move(search());
+    ++iteration;
+  }
+  remember_changes();
+  return iteration;
+}
+
+}  // namespace constrictor
