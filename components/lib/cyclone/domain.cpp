@@ -20,14 +20,14 @@ constexpr const char* kLoopback = R"(<CycloneDDS><Domain>
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>
-<Peers><Peer Address="localhost"/></Peers></Discovery>
-<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing>
-)";
+<Peers><Peer Address="localhost"/></Peers></Discovery>)";
+constexpr const char* kTracing =
+    "<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing></Domain></CycloneDDS>";
 
 /// The configuration that the launcher of a run on several hosts has published for this domain, or the built-in one.
 std::string configuration_of(std::uint32_t domain) {
   std::string published = published_dds_configuration(domain);
-  return published.empty() ? std::string(kLoopback) + kInternalSettings + "</Domain></CycloneDDS>" : published;
+  return published.empty() ? loopback_configuration() : published;
 }
 
 /// Writes the lines that Cyclone DDS logs, at most kMostLines in each kInterval: packets from strangers can cause a
@@ -72,6 +72,17 @@ void limit_log_of_dds() {
 }
 
 }  // namespace
+
+std::string internal_settings(int heartbeat_ms) {
+  return "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks><MaxSampleSize>64MB</MaxSampleSize>"
+         "<NackDelay>5ms</NackDelay><AutoReschedNackDelay>100ms</AutoReschedNackDelay>"
+         "<HeartbeatInterval min=\"2ms\" minsched=\"5ms\" max=\"500ms\">" +
+         std::to_string(heartbeat_ms) + "ms</HeartbeatInterval></Internal>";
+}
+
+std::string loopback_configuration() {
+  return std::string(kLoopback) + internal_settings(kLoopbackHeartbeat_ms) + kTracing;
+}
 
 Entity create_participant(std::uint32_t domain, Reach reach, const std::string& identity) {
   const Qos qos = make_qos();

@@ -19,16 +19,23 @@ enum class Reach {
   kNetwork,  ///< Cyclone DDS's default, which processes of ROS 2 use
 };
 
+/// [ms] after its last sample, a writer asks the readers for an acknowledgement; so do samples that follow after more
+/// than four fifths of it. Between hosts, the last message of a tick may be lost, and the run stands still until the
+/// reader hears that it lacks one. The loopback interface loses a message only if the buffer of a socket is full; there
+/// more questions would only cost CPU time: with 10 ms, every second or third datagram of a run was one of them.
+inline constexpr int kNetworkHeartbeat_ms = 10;
+inline constexpr int kLoopbackHeartbeat_ms = 100;
+
 /// The element `Internal` of every configuration that this project makes, as XML. The high-water mark prevents that a
 /// writer of images waits for a reader whose process is stopped; keep-last bounds the histories. Larger samples than
 /// the largest image are dropped, so that a stranger cannot fill the memory with a few of them. The times let a lost
 /// message be sent again within milliseconds. Cyclone's defaults (heartbeats every 100 ms, 100 ms until a lost message
 /// is requested) let a barrier over a link that loses 1 % of its packets make 5 times fewer ticks.
-inline constexpr const char* kInternalSettings =
-    "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks><MaxSampleSize>64MB</MaxSampleSize>"
-    "<NackDelay>5ms</NackDelay>"
-    "<AutoReschedNackDelay>100ms</AutoReschedNackDelay>"
-    "<HeartbeatInterval min=\"2ms\" minsched=\"5ms\" max=\"500ms\">10ms</HeartbeatInterval></Internal>";
+[[nodiscard]] std::string internal_settings(int heartbeat_ms);
+
+/// The configuration that applies without $CYCLONEDDS_URI to a run on one host, as XML. deploy/cyclonedds/loopback.xml
+/// is the same for other programs.
+[[nodiscard]] std::string loopback_configuration();
 
 /// The participant of a Domain, or a further one of a process that has joined `domain` already. Throws as Domain does.
 [[nodiscard]] Entity create_participant(std::uint32_t domain, Reach reach, const std::string& identity);

@@ -22,7 +22,7 @@ std::string dds_configuration(const std::string& own, const std::vector<std::str
       "<MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
       "<Peers>{}</Peers></Discovery>{}"
       "<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing></Domain></CycloneDDS>",
-      own, message_bytes, peers, dds::kInternalSettings);
+      own, message_bytes, peers, dds::internal_settings(dds::kNetworkHeartbeat_ms));
   return additional.empty() ? configuration : configuration + "," + additional;
 }
 
