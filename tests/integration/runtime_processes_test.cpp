@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "integration/toy_run.hpp"
@@ -19,6 +20,25 @@ TEST(RuntimeProcesses, EveryGroupingGivesTheSameResult) {
     ToyRun run(300);
     run.start_all(groups);
     EXPECT_EQ(run.result(), expected);
+  }
+}
+
+// A datagram for each message would need half as much CPU time again (components/lib/cyclone/README.md).
+TEST(RuntimeProcesses, SendAllMessagesOfAStepToAProcessAsOneDatagram) {
+  const int ticks = 300;
+  ToyRun run(ticks);
+  run.start_all(kEach);
+  ASSERT_NE(run.result().find("result"), std::string::npos);
+  for (const auto& [name, process] : run.processes) {
+    const std::string log = process.errors();
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(log, found, std::regex("sent (\\d+) messages of its steps in (\\d+) datagrams")))
+        << name << ": " << log;
+    const int messages = std::stoi(found[1]);
+    const int datagrams = std::stoi(found[2]);
+    EXPECT_LE(datagrams, (ticks + 2) * static_cast<int>(kEach.size() - 1)) << name;
+    if (name != "physics") continue;
+    EXPECT_GT(messages, 4 * datagrams / 3) << "Cyclone DDS does not call the sendmsg of the program";
   }
 }
 

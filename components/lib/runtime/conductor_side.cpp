@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "cyclone/gathered_sends.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/member_side.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -191,8 +192,11 @@ void ConductorSide::send_epoch(const EpochId& epoch, std::uint64_t seed) {
 void ConductorSide::tick(const msg::Tick& message) {
   if (recorder_) recorder_->add(message);
   save();
-  plant_.publish_sample();
-  tick_writer_.write(message);
+  {
+    const dds::GatheredSends gathered;
+    plant_.publish_sample();
+    tick_writer_.write(message);
+  }
   members_.on_tick(message);
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "barrier/plant_topics.hpp"
+#include "cyclone/gathered_sends.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -179,7 +180,9 @@ bool MemberSide::step() {
     if (local.thread) continue;
     for (;;) {
       const auto start = HostContext::Clock::now();
-      if (!local.member->try_step()) break;
+      if (!local.member->begin_step()) break;
+      local.member->run_step();
+      finish_step(*local.member);
       note_step(local, HostContext::Clock::now() - start);
       any = true;
     }
@@ -192,11 +195,16 @@ bool MemberSide::step_in_thread(LocalMember& local) {
   const bool finished = member.stepping() && local.thread->finished();
   if (finished) {
     const auto duration = local.thread->collect();
-    member.finish_step();
+    finish_step(member);
     note_step(local, duration);
   }
   if (member.begin_step()) local.thread->start([&member] { member.run_step(); });
   return finished;
+}
+
+void MemberSide::finish_step(Member& member) {
+  const dds::GatheredSends gathered;  // the outputs and the TickDone
+  member.finish_step();
 }
 
 void MemberSide::note_step(LocalMember& local, std::chrono::nanoseconds duration) {

@@ -110,6 +110,8 @@ class MemberSide : private MemberSink {
   void make_threads();
   /// Finishes the step that the member's thread has done, if any, and starts the next one.
   bool step_in_thread(LocalMember& local);
+  /// Publishes the outputs of a step and reports it.
+  static void finish_step(Member& member);
   void note_step(LocalMember& local, std::chrono::nanoseconds duration);
   void publish_status(LocalMember& local, std::uint8_t state);
 
