@@ -27,8 +27,8 @@ enum class Section {
 
 struct CrossSection {
   Section section = Section::kNothing;
-  double centre_m = 0.0;  ///< centre of the line, to the left of the point; with kGood and kOneEdge
-  double width_m = 0.0;   ///< of the visible part of the line; with kGood and kOneEdge
+  double centre_m = 0.0;  ///< centre of the line, to the left of the point; valid with kGood and kOneEdge
+  double width_m = 0.0;   ///< of the visible part of the line; valid with kGood and kOneEdge
 };
 
 /// [m] size of a pixel on the ground, and what points and cross-sections of the ground show. Points in G. The arguments

@@ -45,7 +45,7 @@ struct PerceptionConfig : ParameterSet {
   double slope_time_s = add(slope_time_s, "ground.slope_time_s", 4.0, "s", {0.0, 600.0}, kWhileRunning,
                             "Time constant of the mean that finds the slope; 0: the ground is level");
   double level_rad = add(level_rad, "ground.level_rad", 0.015, "rad", {0.0, 0.3}, kWhileRunning,
-                         "Ground that is inclined by less counts as level");
+                         "Ground that is inclined by less than this counts as level");
   int frozen_after = add(frozen_after, "camera.frozen_after", 3, "images", {0, 1000}, kWhileRunning,
                          "After this many equal images, further ones are refused: the camera is frozen. 0: never");
   double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, kWhileRunning,

@@ -196,8 +196,8 @@ class MissionPlanner {
   [[nodiscard]] std::optional<double> wanted_turn_rad(const PlannerInputs& inputs) const;
   /// Whether a turn may end: the course has the wanted direction, or has passed it.
   [[nodiscard]] bool has_turned(const PlannerInputs& inputs) const;
-  /// Whether the visible line may be followed from here: the course has the wanted direction along it, and a body
-  /// without an object is not curled up.
+  /// Whether the robot may follow the visible line from here: its course leads along the line in the wanted direction.
+  /// Where the line is known already, a body without an object must also be straight enough.
   [[nodiscard]] bool may_follow(const PlannerInputs& inputs) const;
   // Requests.
   [[nodiscard]] WantedTask task_of_state(const PlannerInputs& inputs);

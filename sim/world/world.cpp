@@ -162,8 +162,8 @@ void World::stand_on_bellies() {
   }
 }
 
-// Without it, a cylinder that was knocked over would roll on for ever. The torque grows linearly with slow rates, and
-// never takes more than half of a rate in one step, because more would excite it.
+// Without this torque, a cylinder that was knocked over would roll on for ever. The torque of an object that rolls
+// slowly is proportional to its rate. One step removes at most half of the rate, so that the object cannot oscillate.
 void World::resist_rolling() {
   constexpr double kSoft_rad_s = 0.05;
   constexpr double kMostOfRate = 0.5;

@@ -1,7 +1,7 @@
 // "wrap": the desired posture (the base of a U) slides along the body from in front of the head to its place, while the
 // body undulates along itself. Each module follows the module in front of it round the object, and the head ends up
-// facing backwards. Done when the posture is in its place. Source: follow-the-leader motion; speed and gait were
-// measured for the whole-body grasp.
+// facing backwards. The method is done when the posture is in its place. Source: follow-the-leader motion; the
+// values of speed and gait were found by measurements of grasps.
 #include <algorithm>
 #include <cmath>
 

@@ -126,7 +126,7 @@ class Member {
     std::uint64_t count = 0;  ///< samples since the epoch began
     int in_this_step = 0;
   };
-  /// What a step in progress needs and leaves. Only run_step() uses it until finish_step().
+  /// Inputs and results of a step in progress. Until finish_step(), only run_step() uses them.
   struct Step {
     Tick tick;
     std::vector<std::pair<const TopicInfo*, Sample>> outputs{};

@@ -45,7 +45,7 @@ void ExchangePort::begin_tick(const Tick&) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return awaited_ || ended_ || finished_; });
   current_.clear();
-  // A reset may drop a tick after it has begun. The checks still wait for it then, and have nothing new to write.
+  // A reset may have dropped the last tick after its begin. The checks have then decided nothing for this one.
   if (decided_) current_ = *std::exchange(decided_, std::nullopt);
 }
 

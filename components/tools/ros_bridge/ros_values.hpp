@@ -47,7 +47,7 @@ inline bool sayable(std::int64_t time_ns) {
   return time_ns >= 0 && time_ns / kSecond_ns <= std::numeric_limits<std::int32_t>::max();
 }
 
-/// Why no message with this header can be represented; empty: it can.
+/// The reason why the bridge cannot write this message in the form of ROS; empty: it can.
 template <class T>
 std::string broken(const T& message) {
   if (auto violation = validate(message)) return *std::move(violation);

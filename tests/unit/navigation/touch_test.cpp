@@ -111,7 +111,7 @@ TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
     EXPECT_GT(side * p_HO.y(), 0.1);
     EXPECT_LT(side * p_HO.y(), 0.2);
     EXPECT_LT(p_HO.x(), -0.7);
-    // Its distance from every module is about its radius or more.
+    // The object touches modules, but does not overlap them: 0.085 m is its radius, 0.035 m is that of a module.
     for (const PlanarPose& module : body) EXPECT_GT((module.p - p_HO).norm(), 0.085 + 0.035 - 0.02);
   }
 }

@@ -31,7 +31,7 @@ TEST(Kinematics, AStraightBodyTrailsTheHead) {
 }
 
 TEST(Kinematics, PositiveYawTurnsTheHeadSideLeft) {
-  // In the frame of the tail module, a head side that is turned left is displaced to +y.
+  // The module ahead of the joint turns to the left, so that it lies at positive y in the frame of the module behind.
   const RobotModel robot = robot_of(2, {JointAxis::kYaw});
   const auto poses = module_poses(robot, std::vector<double>{0.5});
   const Eigen::Vector3d p_TailHead = (poses[1].inverse() * poses[0]).translation();
