@@ -75,7 +75,7 @@ const std::vector<Sweep>& sweeps() {
 }
 
 /// Compares the speeds of the defaults after both models have been refined: a tenth of the smoothing of Coulomb's law
-/// in the planar model, an eighth of the step and eight times the iterations in the simulation.
+/// in the planar model, an eighth of the step in the simulation.
 Case compare_fine_solutions() {
   const RobotModel robot = mamba();
   const Setting setting;
@@ -83,7 +83,6 @@ Case compare_fine_solutions() {
   sharp.smoothing_m_s *= 0.1;
   SolverSettings fine;
   fine.step_s /= 8.0;
-  fine.iterations *= 8;
   const PlanarModel model(planar_robot(robot, FrictionPlaces::kModuleEnds), sharp);
   return {"defaults, both models refined: ends",
           "m/s",
