@@ -29,10 +29,10 @@ class Engine {
   [[nodiscard]] virtual Eigen::Vector3d object_position_m() const = 0;  ///< only if there is an object
 };
 
-/// This project's physics: sim/world on ODE.
-class OdeEngine : public Engine {
+/// This project's physics: sim/world.
+class WorldEngine : public Engine {
  public:
-  OdeEngine(const RobotModel& robot, const SolverSettings& settings, const std::optional<ScenarioObject>& object)
+  WorldEngine(const RobotModel& robot, const SolverSettings& settings, const std::optional<ScenarioObject>& object)
       : world_(robot, scenario_of(object), settings) {}
   void tick(const ServoCommand& command, double period_s, const std::function<void()>& after_step) override {
     world_.set_servo(command.position_rad, command.velocity_rad_s, command.torque_limit_nm);

@@ -30,17 +30,17 @@ double cpu_time_s() {
 }
 
 struct Settings {
-  std::optional<SolverSettings> ode;
+  std::optional<SolverSettings> world;
   std::optional<MujocoSettings> mujoco;
 };
 
 std::unique_ptr<Engine> make_engine(const RobotModel& robot, const Settings& settings, const Motion& motion) {
-  if (settings.ode) return std::make_unique<OdeEngine>(robot, *settings.ode, motion.object());
+  if (settings.world) return std::make_unique<WorldEngine>(robot, *settings.world, motion.object());
   return std::make_unique<MujocoEngine>(robot, *settings.mujoco, motion.object());
 }
 
 json describe(const Settings& settings) {
-  if (settings.ode) return {{"step_s", settings.ode->step_s}, {"iterations", settings.ode->iterations}};
+  if (settings.world) return {{"engine", settings.world->engine}, {"step_s", settings.world->step_s}};
   const char* const solvers[] = {"PGS", "CG", "Newton"};
   const char* const grounds[] = {"exported", "lasting", "rectangle"};
   return {{"step_s", settings.mujoco->step_s},
@@ -113,7 +113,7 @@ json deviation(const json& value, const json& reference) {
 /// One engine with its production settings, with half the step and twice the iterations, and converged.
 json study(const RobotModel& robot, const std::string& name, const Settings& production, const Settings& converged) {
   Settings finer = production;
-  if (finer.ode) finer.ode->step_s *= 0.5, finer.ode->iterations *= 2;
+  if (finer.world) finer.world->step_s *= 0.5;
   if (finer.mujoco) finer.mujoco->step_s *= 0.5, finer.mujoco->iterations *= 2;
   json result = {{"production", measure(robot, name, production)},
                  {"half_step_double_iterations", measure(robot, name, finer)},
@@ -125,7 +125,7 @@ json study(const RobotModel& robot, const std::string& name, const Settings& pro
 }
 
 /// Both engines simulate the motion in turns of half a second.
-json race(const RobotModel& robot, const std::string& name, const Settings& ode, const Settings& mujoco) {
+json race(const RobotModel& robot, const std::string& name, const Settings& world, const Settings& mujoco) {
   constexpr int kTurn = 25;  // ticks
   struct Runner {
     std::unique_ptr<Motion> motion;
@@ -134,7 +134,7 @@ json race(const RobotModel& robot, const std::string& name, const Settings& ode,
     std::vector<double> ticks_s;
   };
   std::vector<Runner> runners;
-  for (const Settings& settings : {ode, mujoco}) {
+  for (const Settings& settings : {world, mujoco}) {
     auto motion = make_motion(name, robot);
     auto engine = make_engine(robot, settings, *motion);
     runners.push_back({std::move(motion), std::move(engine), 0, {}});
@@ -187,9 +187,9 @@ Settings mujoco(GroundContact ground, double step_s) {
 json compare(const RobotModel& robot, const std::string& name) {
   // The step of each engine is the largest one whose results differ from the converged ones by a few percent, as those
   // of this project's default settings do.
-  const Settings ode{SolverSettings{}, {}};
+  const Settings world{SolverSettings{}, {}};
   const auto converged = [](Settings settings) {
-    if (settings.ode) settings.ode->step_s = 0.001, settings.ode->iterations = 200;
+    if (settings.world) settings.world->step_s = 0.0005;
     if (settings.mujoco) {
       settings.mujoco->step_s = 0.0005;
       settings.mujoco->iterations = 100;
@@ -197,7 +197,7 @@ json compare(const RobotModel& robot, const std::string& name) {
     }
     return settings;
   };
-  json result = {{"constrictor", study(robot, name, ode, converged(ode))}};
+  json result = {{"constrictor", study(robot, name, world, converged(world))}};
   const std::vector<std::pair<const char*, Settings>> variants = {
       {"mujoco_exported", mujoco(GroundContact::kExported, 0.002)},
       {"mujoco_lasting", mujoco(GroundContact::kLasting, 0.004)},
@@ -206,7 +206,7 @@ json compare(const RobotModel& robot, const std::string& name) {
     result[variant] = study(robot, name, settings, converged(settings));
     result[variant]["converged_from_constrictor"] =
         deviation(result[variant]["converged"], result["constrictor"]["converged"]);
-    result[variant]["race"] = race(robot, name, ode, settings);
+    result[variant]["race"] = race(robot, name, world, settings);
   }
   return result;
 }
