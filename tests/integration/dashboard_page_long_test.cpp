@@ -63,34 +63,25 @@ TEST_F(DashboardPage, DrawsTheRunAndItsButtonsCommandIt) {
 }
 
 TEST_F(DashboardPage, ThePadAndTheKeysDriveWhileTheyAreHeld) {
-  Process page = browse("1300x1000", {kConnected,
-                                      "press=#pad",
-                                      answered("m/s"),
-                                      "wait=document.querySelector('#authority').textContent.includes('dashboard.')",
-                                      "wait=document.querySelector('#state').textContent.includes('suspended')",
-                                      "let",
-                                      answered("stands"),
-                                      "click=#keys",
-                                      "down=ArrowUp",
-                                      answered("drive: 0.30 m/s, 0.00 rad/s"),
-                                      "down=ArrowLeft",
-                                      answered("drive: 0.30 m/s, 1.00 rad/s"),
-                                      "up=ArrowUp",
-                                      answered("drive: 0.00 m/s, 1.00 rad/s"),
-                                      "up=ArrowLeft",
-                                      answered("stands"),
-                                      "click=#task_start",
-                                      answered("follow_line was accepted"),
-                                      "click=#task_cancel",
-                                      answered("the robot stands"),
-                                      "click=#parameters summary",
-                                      "wait=document.querySelectorAll('#parameter_rows tr').length > 50",
-                                      "print=(i => { i.value = '9999'; i.dispatchEvent(new Event('change')); })"
-                                      "(document.querySelector('#parameter_rows input'))",
-                                      answered("accepted"),
-                                      "click=#release",
-                                      answered("released")});
-  EXPECT_EQ(page.wait(240s), 0) << page.errors();
+  Process page = browse(
+      "1300x1000", {kConnected, "press=#pad", answered("m/s"),
+                    "wait=document.querySelector('#authority').textContent.includes('dashboard.')",
+                    "wait=document.querySelector('#state').textContent.includes('suspended')", "let",
+                    answered("stands"), "click=#keys", "down=ArrowUp", answered("drive: 0.30 m/s, 0.00 rad/s"),
+                    "down=ArrowLeft", answered("drive: 0.30 m/s, 1.00 rad/s"), "up=ArrowUp",
+                    answered("drive: 0.00 m/s, 1.00 rad/s"), "up=ArrowLeft", answered("stands"), "click=#task_start",
+                    answered("follow_line was accepted"), "click=#task_cancel", answered("the robot stands"),
+                    "click=#parameters summary", "wait=document.querySelectorAll('#parameter_rows tr').length > 50",
+                    "print=(i => { i.value = '9999'; i.dispatchEvent(new Event('change')); })"
+                    "(document.querySelector('#parameter_rows input'))",
+                    answered("accepted"), "click=#release", answered("released"), "print='handed back'",
+                    // Somebody else changes a parameter, and the page shows it without being asked.
+                    "wait=[...document.querySelectorAll('#parameter_rows tr.changed input')].some("
+                    "i => i.dataset.name === 'navigation.travel.frequency_hz' && i.value === '0.85')"});
+  ASSERT_TRUE(page.wait_for("\"handed back\"", 240s)) << page.errors();
+  Process changed = command({"param", "set", "navigation.travel.frequency_hz", "0.85"});
+  EXPECT_EQ(changed.wait(20s), 0) << changed.errors();
+  EXPECT_EQ(page.wait(120s), 0) << page.errors();
 }
 
 TEST_F(DashboardPage, ShowsTheSceneFromAboveWhereTheBrowserHasNoWebGl) {

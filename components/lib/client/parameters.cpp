@@ -22,6 +22,8 @@ namespace {
 using namespace std::chrono_literals;
 /// Writers keep several lists for late readers. The lists arrive one after the other; the last one is valid.
 constexpr auto kQuiet = 300ms;
+/// After this time all writers of the run are known.
+constexpr auto kDiscovery = 700ms;
 
 /// The name of a value; null if the parameter is a number.
 std::optional<std::string> name_of(const msg::Parameter& parameter, double value) {
@@ -32,7 +34,8 @@ std::optional<std::string> name_of(const msg::Parameter& parameter, double value
 
 }  // namespace
 
-ParameterReader::ParameterReader(std::int32_t participant) {
+ParameterReader::ParameterReader(std::int32_t participant)
+    : changes_(dds::Reader<msg::ParameterChange>::member(participant, std::string(topics::kParameterChange.name))) {
   for (const auto& topic : topics::kInfos) {
     if (topic.type == topics::kNavigationParameters.type) {
       sources_.push_back(
@@ -49,6 +52,12 @@ bool ParameterReader::poll() {
       any = true;
     });
   }
+  changes_.take([&](const msg::ParameterChange& change) {
+    const std::string name = change.name;
+    // Anybody can write this topic, so that the number of names is limited.
+    if (newest_changes_.size() < msg::kMaxParameterChanges || newest_changes_.contains(name))
+      newest_changes_.insert_or_assign(name, change);
+  });
   return any;
 }
 
@@ -76,6 +85,27 @@ bool ParameterReader::complete() const {
   return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) { return source.newest.has_value(); });
 }
 
+bool ParameterReader::up_to_date() const {
+  if (WaitClock::now() - start_ < kDiscovery) return false;
+  const auto waiting = [](const Source& source) { return !source.newest && source.reader.writers() > 0; };
+  if (std::any_of(sources_.begin(), sources_.end(), waiting)) return false;
+  return std::all_of(newest_changes_.begin(), newest_changes_.end(), [&](const auto& entry) {
+    return std::all_of(sources_.begin(), sources_.end(),
+                       [&](const auto& source) { return !source.newest || has_taken(*source.newest, entry.second); });
+  });
+}
+
+bool has_taken(const msg::ParameterList& list, const msg::ParameterChange& change) {
+  const auto* const end = list.parameters + std::min<std::size_t>(list.count, msg::kMaxParameters);
+  const auto* const found = std::find_if(list.parameters, end, [&](const msg::Parameter& each) {
+    return std::string_view(each.name) == std::string_view(change.name);
+  });
+  if (found == end) return true;
+  if (list.header.epoch != change.header.epoch) return list.header.epoch > change.header.epoch;
+  return found->changed_tick >= change.effective_tick ||
+         (found->pending_tick >= 0 && found->pending_tick <= change.effective_tick);
+}
+
 ParameterView read_parameters(std::int32_t participant, std::chrono::milliseconds bound) {
   ParameterReader reader(participant);
   const dds::Discovery discovery(participant);
@@ -89,7 +119,7 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
     if (reader.poll()) heard = WaitClock::now();
     const auto waited = WaitClock::now() - start;
     // A component whose list has no writer after discovery has settled is not part of this run.
-    const bool all = reader.complete() || (waited > 700ms && reader.silent(has_writer).empty());
+    const bool all = reader.complete() || (waited > kDiscovery && reader.silent(has_writer).empty());
     if ((all && WaitClock::now() - heard > kQuiet) || waited > bound) break;
     std::this_thread::sleep_for(kPoll);
   }

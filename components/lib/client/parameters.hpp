@@ -40,6 +40,9 @@ class ParameterReader {
   [[nodiscard]] std::vector<std::string> silent(const std::function<bool(std::string_view topic)>& has_writer) const;
   /// Whether a list of every component that the table of topics names has arrived.
   [[nodiscard]] bool complete() const;
+  /// Whether the lists of all components of the run have arrived and show every change of a parameter that has. An
+  /// owner publishes its list a tick after the change. False at first, until discovery has met all writers.
+  [[nodiscard]] bool up_to_date() const;
 
  private:
   struct Source {
@@ -47,8 +50,16 @@ class ParameterReader {
     dds::Reader<msg::ParameterList> reader;
     std::optional<msg::ParameterList> newest;
   };
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<Source> sources_;
+  dds::Reader<msg::ParameterChange> changes_;
+  std::map<std::string, msg::ParameterChange> newest_changes_;  ///< by parameter
 };
+
+/// Whether the owner of a parameter had received this change of it when it made the list: the value is in force, or it
+/// waits for its tick, or the list shows an earlier change that also waits. A list of a later epoch is newer than the
+/// change, because a reset brings the defaults back. True for a list of another component.
+[[nodiscard]] bool has_taken(const msg::ParameterList& list, const msg::ParameterChange& change);
 
 /// Reads the parameter lists of all components over a DDS participant. Returns when no new list has arrived for a short
 /// time, or after `bound`.

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 const std::vector<std::string> kControls = {"pause", "resume", "step", "pace"};
 const std::vector<std::string> kStops = {"stop", "clear_stop"};
-const std::vector<std::string> kParameters = {"param_list", "param_set"};
+const std::vector<std::string> kParameters = {kParameterList, "param_set"};
 constexpr const char* kChange = "(change of parameters)";  // no service: viewers cannot call it
 const std::vector<std::string> kDrives = {"take", "release", "drive", "stand", "task"};
 
@@ -27,6 +27,12 @@ std::string describe(const msg::RunState& state) {
 }
 
 }  // namespace
+
+std::string parameters_text(const std::map<std::string, OwnedParameter>& parameters) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [name, owned] : parameters) list.push_back(to_json(owned));
+  return list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 std::vector<std::string> Commands::services() const {
   std::vector<std::string> all;
@@ -126,12 +132,7 @@ std::string Commands::stop(const WebServer::Call& call) {
 
 std::string Commands::parameter(const WebServer::Call& call) {
   if (call.service == kChange) return change_all(call.request);
-  if (call.service == "param_list") {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const auto& [name, owned] : read_parameters(parameters_.participant()).parameters)
-      list.push_back(to_json(owned));
-    return list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
+  if (call.service == kParameterList) return parameters_text(read_parameters(parameters_.participant()).parameters);
   const std::string name = request_text(call, "name");
   const double value = request_number(call, "value", -1e12, 1e12);
   parameters_.connect_or_throw(5s);

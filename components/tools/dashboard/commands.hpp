@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@
 #include "dashboard/web_server.hpp"
 
 namespace constrictor::dashboard {
+
+/// The service that lists all parameters. Its answer is parameters_text().
+inline constexpr const char* kParameterList = "param_list";
+[[nodiscard]] std::string parameters_text(const std::map<std::string, OwnedParameter>& parameters);
 
 /// The services that the page and other viewers can call: `pause`, `resume`, `step` {"ticks": N}, `pace` {"pace": X}
 /// (0: as fast as possible), `stop` (emergency stop), `clear_stop`, `param_list`, `param_set` {"name", "value"}, and

@@ -10,6 +10,7 @@
 #include "constrictor/reflect.hpp"
 #include "constrictor/text.hpp"
 #include "constrictor/topics.hpp"
+#include "dashboard/commands.hpp"
 #include "views/camera_views.hpp"
 #include "views/view_topics.hpp"
 #include "views/views.hpp"
@@ -94,8 +95,7 @@ struct Dashboard::Readers {
 Dashboard::Dashboard(std::unique_ptr<Controls> controls, const std::string& name, WebOptions options)
     : controls_(std::move(controls)),
       server_(
-          std::move(options), name, controls_->services(),
-          [this](WebServer::Call call) { controls_->add(std::move(call)); },
+          std::move(options), name, controls_->services(), [this](WebServer::Call wish) { call(std::move(wish)); },
           [this](WebServer::Change wish) { change(std::move(wish)); }),
       tap_(controls_->participant(), shown, false),
       readers_(std::make_unique<Readers>(controls_->participant())),
@@ -201,6 +201,15 @@ void Dashboard::take_parameters() {
     values.push_back({name, shown, shown.is_number() && !parameter.is_integer});
   }
   server_.set_parameters(values);
+}
+
+/// Answers at once what this process knows already, and passes on the rest.
+void Dashboard::call(WebServer::Call call) {
+  take_parameters();
+  // Until the lists are known, the call waits for them in a thread of its own.
+  if (call.service == kParameterList && parameters_.up_to_date())
+    call.answer(parameters_text(parameters_.parameters()));
+  else controls_->add(std::move(call));
 }
 
 /// Passes on what is a value of a known parameter, as `constrictor param set` does. `input` decides about the rest.

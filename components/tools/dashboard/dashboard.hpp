@@ -38,6 +38,7 @@ class Dashboard {
   void take_typed();
   void take_images();
   void take_parameters();
+  void call(WebServer::Call call);
   void change(WebServer::Change wish);
   void show();
 

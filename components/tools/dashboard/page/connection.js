@@ -5,7 +5,8 @@ const again_ms = 1000;
 const silent_ms = 3000; // the dashboard sends at least twice a second
 
 export class Connection {
-  /** `topics`: those to subscribe to. `on`: functions `message(topic, view, from)`, `change(text, kind)`. */
+  /** `topics`: those to subscribe to. `on`: functions `message(topic, view, from)`, `change(text, kind)`,
+   * `parameters(values)` with the name and value of each parameter that has changed, whoever changed it. */
   constructor(topics, on) {
     this.topics = topics;
     this.on = on;
@@ -61,6 +62,9 @@ export class Connection {
       for (const service of message.services) this.services[service.name] = service.id;
       this.ended = null;
       this.on.change("connected", "good");
+      this.socket.send(JSON.stringify({ op: "subscribeParameterUpdates", parameterNames: [] }));
+    } else if (message.op === "parameterValues") {
+      this.on.parameters(message.parameters);
     } else if (message.op === "status" && message.id === "end") {
       this.ended = message.message;
       this.on.change(this.ended, "");

@@ -55,7 +55,9 @@ function onChange(text, kind) {
     element(id).disabled = !offered;
     if (kind === "good") element(id).closest("label, button").hidden = !offered; // a recording obeys fewer of them
   }
-  if (kind === "good") element("operate").hidden = !connection.has("drive");
+  if (kind !== "good") return;
+  element("operate").hidden = !connection.has("drive");
+  if (element("parameters").open) parameters.read(); // another run may have begun meanwhile
 }
 
 function onMessage(topic, view, from) {
@@ -109,6 +111,7 @@ const parts = [
 const connection = new Connection(["view/state", "view/camera", "view/processed"], {
   message: onMessage,
   change: (text, kind) => onChange(text, kind),
+  parameters: (values) => parameters.take(values),
 });
 
 for (const name of plain) element(name).addEventListener("click", () => call(name, {}));
@@ -116,7 +119,7 @@ element("step").addEventListener("click", () => call("step", { ticks: 1 }));
 element("pace").addEventListener("change", (event) => call("pace", { pace: Number(event.target.value) }));
 const timeline = new Timeline(connection, call);
 new Drive(connection, say, () => call("stop", {}));
-new Parameters(connection, call);
+const parameters = new Parameters(connection, call);
 addEventListener("resize", () => (scenes = true));
 
 /// A file of the dashboard, which may end and come back in the middle of it.

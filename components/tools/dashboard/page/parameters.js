@@ -26,6 +26,15 @@ export class Parameters {
     this.show();
   }
 
+  /** These parameters have other values, whoever has changed them. */
+  take(values) {
+    for (const { name, value } of values) {
+      const parameter = this.list.find((each) => each.name === name);
+      if (parameter) Object.assign(parameter, { value, pending: null });
+    }
+    this.show();
+  }
+
   show() {
     const filter = element("parameter_filter").value.trim();
     const shown = this.list.filter((parameter) => parameter.name.includes(filter));

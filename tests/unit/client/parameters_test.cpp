@@ -1,0 +1,58 @@
+// When a list of parameters shows a change of one of them.
+#include <gtest/gtest.h>
+
+#include "client/parameters.hpp"
+#include "cyclone/endpoint.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr const char* kName = "navigation.travel.frequency_hz";
+
+/// A list with one parameter that was changed at this tick and waits for another change (-1: never, none).
+msg::ParameterList list_with(std::int64_t changed_tick, std::int64_t pending_tick, std::uint32_t epoch = 1) {
+  msg::ParameterList list{};
+  list.header.epoch = epoch;
+  list.count = 1;
+  dds::set_text(list.parameters[0].name, std::string(kName));
+  list.parameters[0].changed_tick = changed_tick;
+  list.parameters[0].pending_tick = pending_tick;
+  return list;
+}
+
+msg::ParameterChange change_for(std::int64_t effective_tick, std::uint32_t epoch = 1) {
+  msg::ParameterChange change{};
+  change.header.epoch = epoch;
+  dds::set_text(change.name, std::string(kName));
+  change.effective_tick = effective_tick;
+  return change;
+}
+
+TEST(ParameterChanges, AreTakenWhenTheyAreInForceOrWaitForTheirTick) {
+  const msg::ParameterChange change = change_for(100);
+  EXPECT_FALSE(has_taken(list_with(-1, -1), change));
+  EXPECT_FALSE(has_taken(list_with(60, -1), change)) << "an earlier change is in force";
+  EXPECT_TRUE(has_taken(list_with(60, 100), change));
+  EXPECT_TRUE(has_taken(list_with(100, -1), change));
+  EXPECT_TRUE(has_taken(list_with(101, -1), change)) << "the owner steps every other tick";
+}
+
+TEST(ParameterChanges, ThatWaitBehindAnEarlierOneAreTaken) {
+  EXPECT_TRUE(has_taken(list_with(-1, 80), change_for(100))) << "a list shows the next change only";
+  EXPECT_FALSE(has_taken(list_with(-1, 200), change_for(100))) << "this one would be the next";
+}
+
+TEST(ParameterChanges, EndWithTheirEpoch) {
+  EXPECT_TRUE(has_taken(list_with(-1, -1, 2), change_for(100, 1))) << "the reset has undone it";
+  EXPECT_FALSE(has_taken(list_with(150, -1, 1), change_for(100, 2))) << "a list from before the reset";
+}
+
+TEST(ParameterChanges, DoNotConcernTheListsOfOtherComponents) {
+  EXPECT_TRUE(has_taken(msg::ParameterList{}, change_for(100)));
+  msg::ParameterList damaged = list_with(-1, -1);
+  damaged.count = 60000;  // of a stranger
+  EXPECT_FALSE(has_taken(damaged, change_for(100)));
+}
+
+}  // namespace
+}  // namespace constrictor
