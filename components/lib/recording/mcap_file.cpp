@@ -97,9 +97,11 @@ void File::leave_free(std::uint64_t size, std::uint64_t more) const {
   if (::fstatvfs(descriptor_, &disk) != 0) return;
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   if (free >= size + more) return;
-  throw DiskFull(
-      fmt::format("{}: the disk is nearly full: found {:.0f} MB, accepted at least {:.0f} MB after this file",
-                  path_.string(), 1e-6 * static_cast<double>(free), 1e-6 * static_cast<double>(size)));
+  throw DiskFull(fmt::format(
+      "{}: the disk is nearly full: found {:.1f} MB free, accepted at least {:.1f} MB, of which {:.1f} MB are left to "
+      "other files",
+      path_.string(), 1e-6 * static_cast<double>(free), 1e-6 * static_cast<double>(size + more),
+      1e-6 * static_cast<double>(size)));
 }
 
 }  // namespace constrictor::mcap

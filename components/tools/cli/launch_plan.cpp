@@ -119,6 +119,17 @@ std::map<std::string, fs::path> recorded_files(const RunOptions& options, const 
   return files;
 }
 
+/// What the user may have meant by a name that is not one of `names`: a name of another kind, or a similar one.
+std::string hint_of(const std::string& text, const std::vector<std::string>& names) {
+  for (const auto& [files, option] :
+       {std::pair(kScenarios, ""), std::pair(kManifests, "--manifest "), std::pair(kRobots, "--robot ")}) {
+    const auto others = names_of(files);
+    if (std::find(others.begin(), others.end(), text) != others.end())
+      return fmt::format(" (there is a {} of this name: constrictor run {}{})", files.kind, option, text);
+  }
+  return did_you_mean(text, names);
+}
+
 }  // namespace
 
 std::vector<std::string> names_of(const NamedFiles& files) {
@@ -137,7 +148,7 @@ fs::path find_file(const std::string& text, const NamedFiles& files) {
   const auto names = names_of(files);
   if (std::find(names.begin(), names.end(), text) != names.end()) return data_path(files.folder / (text + ".yaml"));
   throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", files.kind, text,
-                                       fmt::join(names, ", "), did_you_mean(text, names)));
+                                       fmt::join(names, ", "), hint_of(text, names)));
 }
 
 fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }

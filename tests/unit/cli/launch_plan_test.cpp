@@ -86,6 +86,8 @@ TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {
 TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {
   options_.scenario = "lime";
   expect_refused(options_, {"scenario: found 'lime'", "case_study, channel", "did you mean 'line'?"});
+  options_.scenario = "manual";
+  expect_refused(options_, {"there is a manifest of this name: constrictor run --manifest manual"});
   options_ = {};
   options_.robot = "momba";
   expect_refused(options_, {"robot: found 'momba'", "did you mean 'mamba'?"});
