@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "constrictor/text.hpp"
 
@@ -28,9 +29,14 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
   note_drops(inputs);
+  memory_.unseen_s = inputs.new_percepts ? 0.0 : memory_.unseen_s + elapsed_s;
   const bool mine = may_command(inputs, elapsed_s);
+  // Time under the authority of others does not count: the robot may have looked away or stood still.
+  if (!mine) memory_.unseen_s = 0.0;
+  const bool waits = mine && waits_for_percepts(inputs);
   memory_.hindrance = hindrance(inputs);
-  if (!mine) return std::nullopt;
+  if (waits && std::exchange(memory_.requested, false)) return cancellation();
+  if (!mine || waits) return std::nullopt;
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   memory_.active_s += elapsed_s;
   // Navigation's report about a held object and the state change at different ticks, so a short contradiction is
@@ -53,20 +59,23 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (const std::string reason = refusals().give_up(memory_.active_s); !reason.empty()) enter(fail(reason));
   memory_.hindrance = hindrance(inputs);
   const bool over = memory_.state == kDone || memory_.state == kFailed;
-  if (over && memory_.goals > 0) {  // no state will end the running task any more
-    WantedTask cancel;
-    cancel.goal_id = memory_.goals;
-    cancel.command = msg::kCommandCancel;
-    return cancel;
-  }
+  if (over && memory_.goals > 0) return cancellation();  // no state will end the running task any more
   if (memory_.requested || over) return std::nullopt;
   if (refusals().pausing(memory_.active_s) || barred(memory_.state)) {
     memory_.entered_s += elapsed_s;  // the pause is no part of the state's time
     return std::nullopt;
   }
+  if (waits_for_percepts(inputs)) return std::nullopt;  // the state that has begun needs them
   memory_.requested = true;
   memory_.requested_s = memory_.active_s;
   return task_of_state(inputs);
+}
+
+WantedTask MissionPlanner::cancellation() const {
+  WantedTask cancel;
+  cancel.goal_id = memory_.goals;
+  cancel.command = msg::kCommandCancel;
+  return cancel;
 }
 
 void MissionPlanner::enter(MissionState state) {
@@ -124,6 +133,20 @@ void MissionPlanner::resume(const PlannerInputs& inputs) {
     enter(kTurnRound);
   }
   memory_.requested = false;
+}
+
+bool MissionPlanner::waits_for_percepts(const PlannerInputs& inputs) {
+  if (memory_.blind && inputs.new_percepts) {
+    memory_.blind = false;
+    resume(inputs);
+  }
+  // Grasp and drop work by touch: breaking them off would lose the object.
+  const bool by_touch = memory_.state == kGrasp || memory_.state == kDrop;
+  if (!by_touch && memory_.unseen_s > config_.blind_pause_s) memory_.blind = true;
+  if (memory_.blind && memory_.unseen_s > config_.blind_timeout_s)
+    enter(fail("no percepts for " + std::to_string(std::lround(memory_.unseen_s)) +
+               " s: are the camera and perception running?"));
+  return memory_.blind;
 }
 
 MissionState MissionPlanner::fail(const std::string& reason) {

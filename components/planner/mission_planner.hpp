@@ -100,6 +100,8 @@ struct MissionMemory {
   std::string reason;                  ///< why the mission failed
   std::string hindrance;               ///< what keeps the mission from its task, as a predicate; empty: nothing
   double suspended_s = 0.0;            ///< duration of the present suspension
+  double unseen_s = 0.0;               ///< time without percepts
+  bool blind = false;                  ///< the mission waits for percepts
   std::uint64_t refused_sequence = 0;  ///< number of the planner's last request that `input` has refused
   RefusalMemory refusals;
 
@@ -109,7 +111,7 @@ struct MissionMemory {
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick, placed,
-            displaced, hindrance, suspended_s, refused_sequence, refusals);
+            displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals);
   }
 };
 
@@ -130,6 +132,9 @@ class MissionPlanner {
   // Supervision.
   [[nodiscard]] bool may_command(const PlannerInputs& inputs, double elapsed_s);
   void resume(const PlannerInputs& inputs);
+  /// Whether the robot must stand still because no percepts have arrived for a while. Fails the mission if that lasts.
+  [[nodiscard]] bool waits_for_percepts(const PlannerInputs& inputs);
+  [[nodiscard]] WantedTask cancellation() const;
   // The next state, by cause; empty: the state stays.
   [[nodiscard]] std::optional<MissionState> next(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs);

@@ -52,6 +52,8 @@ std::optional<MissionState> MissionPlanner::next_without_answer(const PlannerInp
 }
 
 std::string MissionPlanner::hindrance(const PlannerInputs& inputs) const {
+  if (!memory_.suspended && memory_.blind)
+    return "waits because no percepts arrive: are the camera and perception running?";
   if (!memory_.suspended) return refusals().answer();
   if (memory_.stopped)
     return "waits because of an emergency stop: clear it, and let a source take and release authority";

@@ -82,6 +82,10 @@ struct PlannerConfig : ParameterSet {
   double suspended_timeout_s =
       add(suspended_timeout_s, "suspended_timeout_s", 3600.0, "s", {1, 86400}, kAtStart,
           "The mission fails after such a time of another source's authority, or of a latched stop");
+  double blind_pause_s = add(blind_pause_s, "blind_pause_s", 3.0, "s", {0.2, 600}, kAtStart,
+                             "The robot stands still after such a time without percepts, unless it grasps or drops");
+  double blind_timeout_s = add(blind_timeout_s, "blind_timeout_s", 30.0, "s", {0.5, 86400}, kAtStart,
+                               "The mission fails after such a time without percepts");
   int max_recoveries = add(max_recoveries, "max_recoveries", 60, "", {0, 10000}, kAtStart,
                            "The mission fails after more recoveries than this");
 
@@ -90,6 +94,8 @@ struct PlannerConfig : ParameterSet {
 
   /// Checks what spans several rows. Throws ConfigurationError.
   void complete(const Configuration& root) const {
+    if (blind_timeout_s <= blind_pause_s)
+      throw root.error("blind_timeout_s", "found a time that is not longer than blind_pause_s");
     if (std::find(sequence.begin(), sequence.end(), line_colour) == sequence.end()) return;
     throw root.error("sequence", "found the line's colour, accepted other colours");
   }

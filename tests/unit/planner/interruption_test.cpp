@@ -103,5 +103,53 @@ TEST_F(PlannerTest, AfterAnEmergencyStopWaitsUntilASourceReleasesAuthority) {
   EXPECT_FALSE(memory_.suspended);
 }
 
+TEST_F(PlannerTest, WithoutPerceptsTheRobotStandsAndTheMissionGoesOnWhenTheyAreBack) {
+  find_line();
+  images_ = false;
+  steps(140);  // 2.8 s
+  EXPECT_TRUE(memory_.hindrance.empty());
+  std::optional<WantedTask> wanted;
+  for (int i = 0; i < 20 && !wanted; ++i) wanted = step();
+  ASSERT_TRUE(wanted);
+  EXPECT_EQ(wanted->command, msg::kCommandCancel);
+  EXPECT_EQ(wanted->goal_id, memory_.goals) << "of the task that was going on";
+  EXPECT_NE(memory_.hindrance.find("no percepts"), std::string::npos) << memory_.hindrance;
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(step()) << "a blind robot makes no move";
+  images_ = true;
+  see_nothing();
+  ASSERT_TRUE(step());
+  EXPECT_EQ(memory_.state, kSearchLineOrObject);
+  EXPECT_TRUE(memory_.hindrance.empty());
+  EXPECT_EQ(memory_.recoveries, 0);
+  find_line();
+}
+
+TEST_F(PlannerTest, WithoutPerceptsForTooLongTheMissionFailsWithTheReason) {
+  find_line();
+  images_ = false;
+  while (memory_.state != kFailed && time_s_ < 60) step();
+  EXPECT_NEAR(time_s_, config_.blind_timeout_s, 1.0);
+  EXPECT_EQ(memory_.reason, "no percepts for 30 s: are the camera and perception running?");
+  EXPECT_EQ(last_.command, msg::kCommandCancel);
+}
+
+TEST_F(PlannerTest, AGraspIsNotBrokenOffForLackOfPercepts) {
+  find_line();
+  drive(4.0);
+  see(msg::kColourGreen, msg::kBlobObject, 1.2);
+  steps(4);
+  succeed(msg::kEventObjectReached);
+  succeed(msg::kEventObjectPregrasped);
+  ASSERT_EQ(memory_.state, kGrasp);
+  images_ = false;
+  for (int i = 0; i < 500; ++i) ASSERT_FALSE(step());
+  status_.carrying = true;
+  EXPECT_FALSE(step({event(msg::kEventObjectGrasped, msg::kGoalSucceeded)}));
+  EXPECT_EQ(memory_.state, kSearchLine);
+  EXPECT_FALSE(step()) << "it waits with the object in its body";
+  images_ = true;
+  EXPECT_TRUE(step());
+}
+
 }  // namespace
 }  // namespace constrictor

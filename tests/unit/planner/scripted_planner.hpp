@@ -39,7 +39,7 @@ class PlannerTest : public ::testing::Test {
     inputs.tick = ++tick_;
     inputs.line = &line_;
     inputs.objects = &objects_;
-    inputs.new_percepts = true;
+    inputs.new_percepts = images_;
     inputs.pose = &pose_;
     inputs.map = &map_;
     inputs.authority = &authority_;
@@ -196,6 +196,7 @@ class PlannerTest : public ::testing::Test {
   msg::Authority authority_{};
   std::vector<std::uint64_t> taken_;
   bool with_status_ = true;
+  bool images_ = true;  ///< each step has the percepts of a new image
   WantedTask last_;
   double time_s_ = 0.0;
   std::int64_t tick_ = 0;
