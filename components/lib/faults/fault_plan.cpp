@@ -1,6 +1,7 @@
 #include "faults/fault_plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -65,6 +66,41 @@ TopicFault read_topic_fault(Configuration& entry) {
   return fault;
 }
 
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+LinkFault read_link_fault(Configuration& entry, const std::vector<std::string>& roster) {
+  LinkFault fault;
+  fault.components = entry.texts("link", roster);
+  if (fault.components.empty() ||
+      std::all_of(roster.begin(), roster.end(), [&](const auto& name) { return contains(fault.components, name); }))
+    throw entry.error("link", "found none or all components of the run, accepted those on one side of the link");
+  static_cast<void>(entry.text("kind", {"down"}));
+  read_times(entry, fault);
+  return fault;
+}
+
+/// What the fault of a link does to each topic that crosses the link.
+std::vector<TopicFault> topics_across(const LinkFault& link, const std::vector<std::string>& roster) {
+  std::vector<std::string> others;
+  for (const auto& name : roster) {
+    if (!contains(link.components, name)) others.push_back(name);
+  }
+  std::vector<TopicFault> faults;
+  for (const auto& topic : topics::kInfos) {
+    if (!contains(roster, topic.writer)) continue;
+    TopicFault fault;
+    fault.kind = TopicFault::Kind::kLinkDown;
+    fault.topic = &topic;
+    fault.from_ns = link.from_ns;
+    fault.until_ns = link.until_ns;
+    fault.readers = contains(link.components, topic.writer) ? others : link.components;
+    faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
 ProcessFault read_process_fault(Configuration& entry, const std::vector<std::string>& roster) {
   ProcessFault fault;
   fault.component = entry.text("process");
@@ -126,11 +162,17 @@ FaultPlan load_fault_plan(const std::filesystem::path& file, const FaultTargets&
   std::uint64_t number = 0;
   for (Configuration& entry : root.list("faults")) {
     ++number;
-    if (int{entry.has("topic")} + int{entry.has("process")} + int{entry.has("device")} != 1)
-      throw entry.error("topic", "found none or several of topic, process and device, accepted one of them");
+    if (int{entry.has("topic")} + int{entry.has("link")} + int{entry.has("process")} + int{entry.has("device")} != 1)
+      throw entry.error("topic", "found none or several of topic, link, process and device, accepted one of them");
     if (entry.has("topic")) {
       plan.topics.push_back(read_topic_fault(entry));
       plan.topics.back().number = number;
+    } else if (entry.has("link")) {
+      plan.links.push_back(read_link_fault(entry, targets.roster));
+      for (TopicFault& fault : topics_across(plan.links.back(), targets.roster)) {
+        fault.number = number;
+        plan.topics.push_back(std::move(fault));
+      }
     } else if (entry.has("device")) {
       plan.devices.push_back(read_device_fault(entry, targets));
     } else {
@@ -144,6 +186,10 @@ FaultPlan load_fault_plan(const std::filesystem::path& file, const FaultTargets&
 
 std::string describe(const TopicFault& fault) {
   return fmt::format("{} of {}", kTopicKinds[static_cast<std::size_t>(fault.kind)], fault.topic->name);
+}
+
+std::string describe(const LinkFault& fault) {
+  return fmt::format("link down between {} and the others", fmt::join(fault.components, ", "));
 }
 
 std::string describe(const ProcessFault& fault) {

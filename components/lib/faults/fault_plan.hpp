@@ -12,7 +12,7 @@
 
 namespace constrictor {
 
-/// What happens to the samples of one topic, for all of its readers alike.
+/// What happens to the samples of one topic, for all of its readers alike, or for `readers`.
 struct TopicFault {
   enum class Kind {
     kDrop,       ///< the sample never arrives
@@ -21,16 +21,26 @@ struct TopicFault {
     kCorrupt,    ///< one bit of it is changed; readers refuse it if it is no valid message then
     kFreeze,     ///< it has the content of the last sample before the fault, with its own time stamp
     kBias,       ///< `amount` is added to the number `field`
+    kLinkDown,   ///< it arrives when the link is up again, if the topic's history still contains it then
   };
   Kind kind = Kind::kDrop;
   const TopicInfo* topic = nullptr;
-  std::int64_t from_ns = 0;   ///< simulated time of the first sample that may be concerned
-  std::int64_t until_ns = 0;  ///< and of the first one that is not any more
-  double probability = 1.0;   ///< that a sample within this time is concerned
-  int delay_ticks = 0;        ///< [ticks] of kDelay
-  std::string field;          ///< of kBias: "position_rad[3]", "pose.x_m"
-  double amount = 0.0;        ///< of kBias, in the unit of the field
-  std::uint64_t number = 0;   ///< its place in the file; with the seeds it decides which samples are concerned
+  std::int64_t from_ns = 0;          ///< simulated time of the first sample that may be concerned
+  std::int64_t until_ns = 0;         ///< and of the first one that is not any more
+  double probability = 1.0;          ///< that a sample within this time is concerned
+  int delay_ticks = 0;               ///< [ticks] of kDelay
+  std::string field;                 ///< of kBias: "position_rad[3]", "pose.x_m"
+  double amount = 0.0;               ///< of kBias, in the unit of the field
+  std::vector<std::string> readers;  ///< of kLinkDown: the components on the other side of the link from the writer
+  std::uint64_t number = 0;          ///< its place in the file; with the seeds it decides which samples are concerned
+};
+
+/// The link between some components and all others carries nothing. FaultPlan::topics contains what follows from it for
+/// each topic that crosses the link.
+struct LinkFault {
+  std::vector<std::string> components;  ///< on one side of the link
+  std::int64_t from_ns = 0;             ///< simulated time
+  std::int64_t until_ns = 0;            ///< simulated time
 };
 
 /// What happens to the process of one component. It changes no result in lock-step.
@@ -58,6 +68,7 @@ struct DeviceFault {
 struct FaultPlan {
   std::uint64_t seed = 1;
   std::vector<TopicFault> topics;
+  std::vector<LinkFault> links;
   std::vector<ProcessFault> processes;
   std::vector<DeviceFault> devices;
 };
@@ -76,6 +87,7 @@ struct FaultTargets {
 
 /// "drop of perception/objects", for messages.
 [[nodiscard]] std::string describe(const TopicFault& fault);
+[[nodiscard]] std::string describe(const LinkFault& fault);
 [[nodiscard]] std::string describe(const ProcessFault& fault);
 [[nodiscard]] std::string describe(const DeviceFault& fault);
 

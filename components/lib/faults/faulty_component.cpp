@@ -1,5 +1,6 @@
 #include "faults/faulty_component.hpp"
 
+#include <algorithm>
 #include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
@@ -16,7 +17,8 @@ namespace {
 
 class FaultyWiring : public Wiring {
  public:
-  FaultyWiring(Wiring& real, const FaultPlan& plan, std::uint64_t seed) : real_(real), plan_(plan), seed_(seed) {}
+  FaultyWiring(Wiring& real, std::string component, const FaultPlan& plan, std::uint64_t seed)
+      : real_(real), component_(std::move(component)), plan_(plan), seed_(seed) {}
 
   std::shared_ptr<ClientRequests> client_requests() override { return real_.client_requests(); }
   std::shared_ptr<StopOrders> stop_orders() override { return real_.stop_orders(); }
@@ -27,7 +29,9 @@ class FaultyWiring : public Wiring {
   const InputSlot* input(const TopicInfo& topic, bool events) override {
     std::vector<TopicFault> faults;
     for (const auto& fault : plan_.topics) {
-      if (fault.topic->id == topic.id) faults.push_back(fault);
+      const bool reads = fault.readers.empty() ||
+                         std::find(fault.readers.begin(), fault.readers.end(), component_) != fault.readers.end();
+      if (fault.topic->id == topic.id && reads) faults.push_back(fault);
     }
     if (faults.empty()) return real_.input(topic, events);
     return inputs_.emplace_back(real_.input(topic, true), events, std::move(faults), seed_).slot();
@@ -49,6 +53,7 @@ class FaultyWiring : public Wiring {
 
  private:
   Wiring& real_;
+  std::string component_;
   const FaultPlan& plan_;
   std::uint64_t seed_;
   std::deque<FaultyInput> inputs_;  // a deque, because its elements keep the addresses that components store
@@ -122,7 +127,7 @@ ComponentFactory with_faults(ComponentFactory factory, std::shared_ptr<const Fau
   ComponentFactory faulty = factory;
   faulty.create = [create = std::move(factory.create), name = factory.name, plan, wait_ms = std::move(wait_ms)](
                       Wiring& real, const Setup& setup) -> std::unique_ptr<Component> {
-    auto wiring = std::make_unique<FaultyWiring>(real, *plan, plan->seed * 0x9e3779b97f4a7c15 + setup.seed);
+    auto wiring = std::make_unique<FaultyWiring>(real, name, *plan, plan->seed * 0x9e3779b97f4a7c15 + setup.seed);
     auto inner = create(*wiring, setup);
     if (dynamic_cast<Plant*>(inner.get()))
       return std::make_unique<FaultyPlant>(name, plan, std::move(wiring), std::move(inner), wait_ms);

@@ -80,6 +80,14 @@ void FaultyInput::suffer(Sample sample, const Tick& tick, const std::function<vo
       case TopicFault::Kind::kDelay:
         late_.push_back({tick.index + fault.delay_ticks, sample});
         return;
+      case TopicFault::Kind::kLinkDown: {
+        // Reliable writers send again what their history contains, as soon as the link is up.
+        const std::int64_t rest_ns = fault.until_ns - tick.time_ns;
+        if (rest_ns <= 0) break;
+        late_.push_back({tick.index + (rest_ns - 1) / tick.period_ns + 1, sample});
+        if (late_.size() > slot_.topic->depth) late_.erase(late_.begin());
+        return;
+      }
       case TopicFault::Kind::kDuplicate:
         copies = 2;
         break;

@@ -12,7 +12,11 @@ double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nan
 }  // namespace
 
 FaultDirector::FaultDirector(FaultPlan plan) {
-  for (const auto& fault : plan.topics)
+  for (const auto& fault : plan.topics) {
+    if (fault.kind != TopicFault::Kind::kLinkDown)  // the link's fault announces all of its topics
+      announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
+  }
+  for (const auto& fault : plan.links)
     announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
   for (const auto& fault : plan.processes) {
     if (fault.kind == ProcessFault::Kind::kSlow)

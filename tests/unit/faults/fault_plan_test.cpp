@@ -54,6 +54,27 @@ TEST_F(FaultFile, SaysWhatHappensToWhatAndWhen) {
   EXPECT_EQ(describe(plan.topics[0]), "delay of camera/image");
 }
 
+TEST_F(FaultFile, ALinkThatIsDownConcernsEachTopicThatCrossesIt) {
+  targets_.roster = {"physics", "camera", "perception", "control"};
+  const FaultPlan plan = load("faults:\n  - {link: [perception], kind: down, from_s: 2, until_s: 3}\n");
+  ASSERT_EQ(plan.links.size(), 1u);
+  EXPECT_EQ(describe(plan.links[0]), "link down between perception and the others");
+  const auto readers_of = [&](std::uint8_t topic) {
+    for (const auto& fault : plan.topics) {
+      if (fault.topic->id == topic) return fault.readers;
+    }
+    return std::vector<std::string>{"no fault"};
+  };
+  EXPECT_EQ(readers_of(topics::kCameraImage.id), (std::vector<std::string>{"perception"}));
+  EXPECT_EQ(readers_of(topics::kLinePercept.id), (std::vector<std::string>{"physics", "camera", "control"}));
+  EXPECT_EQ(readers_of(topics::kTaskEvent.id), (std::vector<std::string>{"no fault"})) << "nobody writes it here";
+  for (const auto& fault : plan.topics) {
+    EXPECT_EQ(fault.kind, TopicFault::Kind::kLinkDown);
+    EXPECT_EQ(fault.from_ns, 2'000'000'000);
+    EXPECT_EQ(fault.until_ns, 3'000'000'000);
+  }
+}
+
 TEST_F(FaultFile, NoFileIsAPlanWithoutFaults) {
   const FaultPlan plan = load_fault_plan({}, {});
   EXPECT_TRUE(plan.topics.empty());
@@ -62,9 +83,9 @@ TEST_F(FaultFile, NoFileIsAPlanWithoutFaults) {
 
 TEST_F(FaultFile, RefusesWhatCannotBe) {
   const std::pair<const char*, const char*> cases[] = {
-      {"kind: drop", "faults[0].topic: found none or several of topic, process and device"},
+      {"kind: drop", "faults[0].topic: found none or several of topic, link, process and device"},
       {"kind: drop, topic: imu_state, process: camera",
-       "faults[0].topic: found none or several of topic, process and device"},
+       "faults[0].topic: found none or several of topic, link, process and device"},
       {"topic: guidance/pos, kind: drop", "did you mean 'guidance/pose'?"},
       {"topic: imu_state, kind: lose", "faults[0].kind: found lose, accepted one of drop"},
       {"topic: imu_state, kind: drop, probability: 1.5", "faults[0].probability: found 1.5, accepted"},
@@ -80,6 +101,11 @@ TEST_F(FaultFile, RefusesWhatCannotBe) {
       {"topic: imu_state, kind: bias, field: angular_velocity_rad_s, amount: 1", "a group of fields"},
       {"topic: imu_state, kind: bias, field: angular_velocity_rad_s.w, amount: 1", "there is no such field"},
       {"topic: imu_state, kind: bias, field: angular_velocity_rad_s.z.z, amount: 1", "it goes on after a number"},
+      {"link: [], kind: down", "faults[0].link: found none or all components of the run"},
+      {"link: [control, camera, physics], kind: down", "faults[0].link: found none or all components of the run"},
+      {"link: [cammera], kind: down", "found cammera, accepted one of physics, camera, control"},
+      {"link: [camera], kind: up", "faults[0].kind: found up, accepted"},
+      {"link: [camera], kind: down, probability: 0.5", "faults[0].probability: found an unknown key"},
       {"process: cammera, kind: kill, at_s: 1", "did you mean 'camera'?"},
       {"process: camera, kind: kill", "faults[0].at_s"},
       {"process: camera, kind: stop, at_s: 1", "faults[0].for_s"},
@@ -112,7 +138,8 @@ TEST_F(FaultFile, BreaksDevicesThatRunBesideTheRun) {
       {"device: servo_emulator, kind: id, joint: 1, id: 2.5", "faults[0].id: found 2.5, accepted"},
       {"device: servo_emulator, kind: reboot, joint: 1, until_s: 3",
        "found a time, accepted none: nothing ends reboot"},
-      {"device: servo_emulator, process: camera, kind: stuck", "found none or several of topic, process and device"}};
+      {"device: servo_emulator, process: camera, kind: stuck",
+       "found none or several of topic, link, process and device"}};
   for (const auto& [fault, message] : cases)
     EXPECT_NE(error(fault).find(message), std::string::npos) << fault << ": " << error(fault);
   targets_.beside->clear();

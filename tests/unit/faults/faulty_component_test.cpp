@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "barrier/local_run.hpp"
@@ -115,6 +116,36 @@ TEST_F(FaultyComponent, ADelayedSampleArrivesWithItsOwnStampAndNeverReplacesANew
   EXPECT_EQ(seen_[5].fresh, (std::vector<double>{3}));
   EXPECT_EQ(seen_[6].fresh, (std::vector<double>{4, 6}));
   EXPECT_EQ(seen_[7].fresh, (std::vector<double>{5, 7}));
+}
+
+// As over a real link: reliable writers repeat what their history contains when the link is up again.
+TEST_F(FaultyComponent, WhatWasSentWhileTheLinkWasDownArrivesAfterwardsAsFarAsTheHistoryReaches) {
+  constexpr std::int64_t kDepth = topics::kJointState.depth;
+  constexpr std::int64_t kFrom = 3, kUntil = kFrom + kDepth + 5;
+  TopicFault down = fault(TopicFault::Kind::kLinkDown, kFrom * kTick_s, kUntil * kTick_s);
+  down.readers = {"control"};
+  run({down}, true)->advance(kUntil + 3);
+  for (const auto& [tick, seen] : seen_) {
+    std::vector<double> expected;
+    for (std::int64_t k = kUntil - kDepth; tick == kUntil && k < kUntil; ++k)
+      expected.push_back(static_cast<double>(k));
+    if (tick < kFrom || tick >= kUntil) expected.push_back(static_cast<double>(tick));
+    EXPECT_EQ(seen.fresh, expected) << tick;
+  }
+  run({down}, false)->advance(kUntil + 3);
+  for (const auto& [tick, seen] : seen_)
+    EXPECT_EQ(seen.latest, tick >= kFrom && tick < kUntil ? kFrom - 1.0 : static_cast<double>(tick)) << tick;
+  down.readers = {"navigation"};
+  run({down}, true)->advance(kUntil + 3);
+  for (const auto& [tick, seen] : seen_)
+    EXPECT_EQ(seen.fresh, std::vector<double>{static_cast<double>(tick)}) << "on the writer's side of the link";
+}
+
+TEST_F(FaultyComponent, ALinkThatStaysDownCarriesNothing) {
+  TopicFault down = fault(TopicFault::Kind::kLinkDown, 3 * kTick_s, 1);
+  down.until_ns = std::numeric_limits<std::int64_t>::max();
+  run({down}, true)->advance(50);
+  for (const auto& [tick, seen] : seen_) EXPECT_EQ(seen.fresh.empty(), tick >= 3) << tick;
 }
 
 TEST_F(FaultyComponent, ADuplicateArrivesTwiceForReadersOfEverySample) {
