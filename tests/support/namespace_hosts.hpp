@@ -112,7 +112,8 @@ class NamespaceHosts {
     fs::copy_file(root() / "key", ssh / "key");
     fs::copy_file(root() / "key.pub", ssh / "authorized_keys");
     std::ofstream(ssh / "sshd_config") << "HostKey /etc/ssh/host_key\nAuthorizedKeysFile /etc/ssh/authorized_keys\n"
-                                          "StrictModes no\nUsePAM no\nPidFile none\nPermitRootLogin yes\n";
+                                          "StrictModes no\nUsePAM no\nPidFile none\nPermitRootLogin yes\n"
+                                          "SetEnv XDG_STATE_HOME=/tmp/state\n";  // the hosts share the home directory
     std::ofstream(ssh / "ssh_config") << "Host *\n  IdentityFile /etc/ssh/key\n  StrictHostKeyChecking no\n"
                                          "  UserKnownHostsFile /dev/null\n  LogLevel ERROR\n";
     hosts_.emplace_back(std::vector<std::string>{

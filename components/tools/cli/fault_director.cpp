@@ -24,8 +24,21 @@ FaultDirector::FaultDirector(FaultPlan plan) {
     else processes_.push_back({fault});
   }
   for (const auto& fault : plan.devices) {
-    announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});
+    announced_.push_back(
+        {describe(fault), seconds(fault.from_ns), seconds(fault.until_ns), fault.order.command->end.empty()});
     devices_.push_back({fault});
+  }
+}
+
+void FaultDirector::continue_at(double sim_time_s) {
+  for (auto& process : processes_)
+    process.begun = process.over = process.begun || sim_time_s >= seconds(process.fault.from_ns);
+  for (auto& [fault, sent] : devices_) {
+    const bool momentary = fault.order.command->end.empty();
+    if (sim_time_s >= seconds(momentary ? fault.from_ns : fault.until_ns)) sent = 2;
+  }
+  for (auto& announced : announced_) {
+    if (sim_time_s >= (announced.momentary ? announced.from_s : announced.until_s)) announced.said = 2;
   }
 }
 
@@ -65,7 +78,7 @@ std::vector<FaultDirector::Signal> FaultDirector::due(double sim_time_s, Clock::
 
 std::vector<std::string> FaultDirector::news(double sim_time_s) {
   std::vector<std::string> lines;
-  for (auto& [text, from_s, until_s, said] : announced_) {
+  for (auto& [text, from_s, until_s, momentary, said] : announced_) {
     if (said == 0 && sim_time_s >= from_s) {
       said = 1;
       lines.push_back(fmt::format("fault: {} begins at {:.1f} s", text, from_s));

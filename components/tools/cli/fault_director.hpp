@@ -25,6 +25,9 @@ class FaultDirector {
 
   explicit FaultDirector(FaultPlan plan);
 
+  /// For a run that is continued at this simulated time: what has happened before it is not repeated. A fault of a
+  /// device that lasts begins again, because the device was started anew.
+  void continue_at(double sim_time_s);
   /// The signals that are due at this simulated and wall time, each once. A fault begins when the run is seen at its
   /// time, up to 0.2 s of wall time later.
   std::vector<Signal> due(double sim_time_s, Clock::time_point now);
@@ -48,7 +51,8 @@ class FaultDirector {
     std::string text;
     double from_s;
     double until_s;
-    int said = 0;  ///< 1: that it begins, 2: that it ends
+    bool momentary = false;  ///< nothing ends it
+    int said = 0;            ///< 1: that it begins, 2: that it ends
   };
   std::vector<Process> processes_;
   std::vector<Device> devices_;

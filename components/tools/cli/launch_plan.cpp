@@ -40,17 +40,6 @@ void require_program(const ProcessPlan& process) {
   require_program(process.program, "process " + process.name());
 }
 
-/// The keys of a run are not sent to other hosts: private keys stay where they were put.
-void require_keys(const ProcessPlan& process) {
-  const auto names_keys = [](const std::string& variable) { return variable.starts_with("CONSTRICTOR_SECURITY="); };
-  if (process.host.empty() || std::any_of(process.environment.begin(), process.environment.end(), names_keys)) return;
-  throw ConfigurationError(
-      fmt::format("--secure: found process {} on host {} without keys, accepted `environment: "
-                  "[CONSTRICTOR_SECURITY=FOLDER]` in the "
-                  "manifest, with the folder of the keys on that host",
-                  process.name(), process.host));
-}
-
 /// The faults that the run is to suffer; what they name must exist in this run.
 FaultPlan load_faults(const std::string& file, const LaunchPlan& plan) {
   if (file.empty()) return {};
@@ -185,9 +174,6 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   }
   for (const auto& group : options.groups) groups.push_back(CLI::detail::split(group, ','));
   regroup(manifest, groups);
-  for (const auto& process : manifest.processes) {
-    if (!options.secure.empty()) require_keys(process);
-  }
   for (auto& process : manifest.processes) {
     const auto& hosted = process.components;
     if (options.no_checkpoints && std::find(hosted.begin(), hosted.end(), manifest.plant) != hosted.end())

@@ -37,6 +37,9 @@ struct ProcessPlan {
   [[nodiscard]] std::string name() const;
 };
 
+/// Whether the manifest names a folder of keys on the process's own host, which the launcher leaves as they are.
+[[nodiscard]] bool has_own_keys(const ProcessPlan& process);
+
 /// A program that runs beside the run without taking part in it, such as emulated devices.
 struct CompanionPlan {
   std::string program;
@@ -62,6 +65,8 @@ struct LaunchManifest {
   std::map<std::string, HostPlan> hosts;                      ///< the other hosts, by name
   int packet_bytes = 1400;                                    ///< [byte] largest packet of a run with other hosts
 
+  /// ProcessPlan::host of the plant's process.
+  [[nodiscard]] std::string host_of_plant() const;
   /// Every component, in the order that is part of the run's identity.
   [[nodiscard]] std::vector<std::string> roster() const;
 };

@@ -48,6 +48,19 @@ HostPlan read_host(Configuration entry) {
 
 }  // namespace
 
+bool has_own_keys(const ProcessPlan& process) {
+  return std::any_of(process.environment.begin(), process.environment.end(),
+                     [](const std::string& variable) { return variable.starts_with("CONSTRICTOR_SECURITY="); });
+}
+
+std::string LaunchManifest::host_of_plant() const {
+  for (const auto& process : processes) {
+    const auto& hosted = process.components;
+    if (std::find(hosted.begin(), hosted.end(), plant) != hosted.end()) return process.host;
+  }
+  return {};
+}
+
 void read_hosts(Configuration& root, LaunchManifest& manifest) {
   Configuration section = root.section("hosts", false);
   std::vector<std::string> names;

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 
 #include "cli/companions.hpp"
-#include "cli/fault_director.hpp"
 #include "cli/keys/keys_command.hpp"
 #include "cli/live_view.hpp"
 #include "cli/log/launch_log.hpp"
@@ -17,6 +15,7 @@
 #include "cli/recording/recording_text.hpp"
 #include "cli/remote/host_set.hpp"
 #include "cli/run_ending.hpp"
+#include "cli/run_faults.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/run_record.hpp"
 #include "cli/run_report.hpp"
@@ -25,8 +24,6 @@
 #include "cli/swap.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
-#include "configuration/configuration.hpp"
-#include "cyclone/domain_claim.hpp"
 #include "cyclone/run_token.hpp"
 #include "cyclone/security.hpp"
 #include "runtime/host.hpp"
@@ -51,17 +48,19 @@ struct Interrupted {
 /// One run, from the start of its processes to its report.
 class Launcher {
  public:
-  /// `resumed`: the run that is continued; null: a new one.
-  Launcher(const RunOptions& options, LaunchPlan plan, const RunRecord* resumed)
+  /// `resumed`: the run that is continued; null: a new one. `lock`: of its folder, if that exists.
+  Launcher(const RunOptions& options, LaunchPlan plan, const RunRecord* resumed, Descriptor lock)
       : options_(options),
         plan_(std::move(plan)),
+        resumed_(resumed != nullptr),
+        record_(resumed ? *resumed : RunRecord{absolute_options(options, plan_), new_run_id(), {}, new_hosts_token()}),
         hosts_(
-            plan_.manifest, [this](const std::string& line) { display_.print(line); }, [this] { wait_for_hosts(); }),
+            plan_.manifest, {record_.hosts_token, options.secure, !options.no_checkpoints, resumed_},
+            [this](const std::string& line) { display_.print(line); }, [this] { wait_for_hosts(); }),
         claim_(options.domain, hosts_.used_domains()),
         report_dir_(resumed ? options.report_dir : make_report_dir(options, plan_.manifest.scenario_file)),
+        lock_(lock.open() ? std::move(lock) : lock_run(report_dir_)),
         scenario_(plan_.manifest.scenario_file.stem().string()),
-        resumed_(resumed != nullptr),
-        record_(resumed ? *resumed : RunRecord{absolute_options(options, plan_), new_run_id(), {}}),
         run_id_(record_.run_id),
         note_({claim_.domain(), ::getpid(), scenario_, options.seed, plan_.roster, plan_.manifest.plant, report_dir_,
                run_id_, new_token()}),
@@ -89,7 +88,7 @@ class Launcher {
     const auto start = Clock::now();
     if (resumed_) {
       fs::remove(report_dir_ / "report.json");  // it says why the run was interrupted
-      log_.say(prepare_checkpoint(report_dir_));
+      log_.say(plan_.manifest.host_of_plant().empty() ? prepare_checkpoint(report_dir_) : hosts_.continued());
     }
     companions_.emplace(plan_.manifest, options_.seed, report_dir_, [this](const auto& line) { log_.warn(line); });
     supervisor_.start(resumed_ ? record_.incarnations : std::map<std::string, std::uint32_t>{});
@@ -99,7 +98,7 @@ class Launcher {
     watch_run();
     const double wall_time_s = std::chrono::duration<double>(Clock::now() - start).count();
     end_processes();
-    hosts_.finish();
+    hosts_.finish(ended_in_order());
     for (const auto& line : observer_.poll()) display_.print(line);
     return report(wall_time_s);
   }
@@ -121,13 +120,15 @@ class Launcher {
       display_.print(fmt::format("{}; the run goes on, but it cannot be resumed", error.what()));
     }
   }
+  [[nodiscard]] bool ended_in_order() const { return killed_.empty() && supervisor_.failure().empty(); }
   /// Removes the checkpoints of a run that ended in order. If it did not, says how to continue it.
   void note_end() {
-    if (killed_.empty() && supervisor_.failure().empty()) {
+    if (ended_in_order()) {
       record_.over = true;
       write_record();
       remove_checkpoints(report_dir_);
-    } else if (fs::exists(report_dir_ / RunStore::kFile)) {
+    } else if (fs::exists(report_dir_ / RunStore::kFile) ||
+               (!plan_.manifest.host_of_plant().empty() && !options_.no_checkpoints)) {
       display_.print(fmt::format("to continue this run: constrictor run --resume {}", report_dir_.string()));
     }
   }
@@ -154,10 +155,7 @@ class Launcher {
     supervisor_.run_is_at(view.tick, view.held());
     log_.at(view);
     bound_logs(report_dir_ / "logs");
-    for (const auto& [component, signal] : faults_.due(view.sim_time_s(), Clock::now()))
-      supervisor_.signal(component, signal);
-    companions_->obey(faults_.commands(view.sim_time_s()));
-    for (const auto& line : faults_.news(view.sim_time_s())) log_.warn(line);
+    faults_.poll(view, supervisor_, *companions_, [this](const auto& line) { log_.warn(line); });
     // A launcher that was stopped (SIGSTOP) for long can miss the last statuses; mission.json shows the same.
     const bool reported = supervisor_.plant_is_gone() && fs::exists(report_dir_ / "mission.json");
     if (reported || view.run_is_over()) supervisor_.expect_end();
@@ -226,8 +224,8 @@ class Launcher {
       status = 128 + SIGHUP;
     } else if (ending_.requested()) {
       outcome.end_reason = fmt::format("ended by user at {:.1f} s", view.sim_time_s());
-      if (!killed_.empty()) outcome.error = outcome.end_reason + "; processes killed because " + killed_;
-      else outcome.error = supervisor_.failure();
+      outcome.error =
+          killed_.empty() ? supervisor_.failure() : outcome.end_reason + "; processes killed because " + killed_;
     } else if (!supervisor_.failure().empty()) {
       outcome.error = supervisor_.failure();
       status = supervisor_.failure_status();
@@ -250,12 +248,13 @@ class Launcher {
   LaunchPlan plan_;
   SignalQueue signals_;  // first, because it must exist before any thread or process is started
   ProgressDisplay display_;
+  bool resumed_;
+  RunRecord record_;
   HostSet hosts_;
   DomainClaim claim_;
   fs::path report_dir_;
+  Descriptor lock_;  ///< of report_dir_
   std::string scenario_;
-  bool resumed_;
-  RunRecord record_;
   std::uint64_t run_id_;
   PublishedNote note_;
   bool hosts_prepared_;              ///< before the observer, which needs the DDS configuration
@@ -263,7 +262,7 @@ class Launcher {
   RunObserver observer_;
   LaunchLog log_;
   Supervisor supervisor_;
-  FaultDirector faults_{plan_.faults};
+  RunFaults faults_{plan_.faults, resumed_};
   Clock::time_point memory_sampled_{};
   RunEnding ending_;
   std::optional<Companions> companions_;  ///< programs beside the run; they end after it
@@ -277,6 +276,7 @@ class Launcher {
 
 int run_command(const RunOptions& given) {
   std::optional<RunRecord> resumed;
+  Descriptor lock;
   RunOptions options = given;
   if (!given.resume_dir.empty()) {
     resumed = read_run_record(given.resume_dir);
@@ -285,12 +285,13 @@ int run_command(const RunOptions& given) {
     options.view = given.view;
     options.view_port = given.view_port;
   }
+  const fs::path folder = resumed ? given.resume_dir : options.report_dir;
+  if (fs::is_directory(folder)) lock = lock_run(folder);  // before anything in it is changed
   LaunchPlan plan = make_launch_plan(options);
-  if (resumed) expect_plant_here(plan);
   check_components(options, plan);
   if (!options.secure.empty()) use_keys(options.secure, plan);
   try {
-    return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr).run();
+    return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr, std::move(lock)).run();
   } catch (const Interrupted& interrupted) {
     return 128 + interrupted.signal;
   }

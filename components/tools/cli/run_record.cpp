@@ -1,8 +1,10 @@
 #include "cli/run_record.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -45,6 +47,7 @@ void write_run_record(const fs::path& folder, const RunRecord& record) {
                      {"run_id", record.run_id},
                      {"over", record.over},
                      {"incarnations", record.incarnations},
+                     {"hosts_token", record.hosts_token},
                      {"scenario", options.scenario},
                      {"manifest", options.manifest},
                      {"robot", options.robot},
@@ -77,6 +80,7 @@ RunRecord read_run_record(const fs::path& folder) {
           fmt::format("found release {}, accepted {}: another release computes other results", version, kVersion));
     record.run_id = json.at("run_id");
     record.over = json.at("over");
+    record.hosts_token = json.at("hosts_token");
     record.incarnations = json.at("incarnations").get<std::map<std::string, std::uint32_t>>();
     RunOptions& options = record.options;
     options.scenario = json.at("scenario");
@@ -100,13 +104,12 @@ RunRecord read_run_record(const fs::path& folder) {
   return record;
 }
 
-void expect_plant_here(const LaunchPlan& plan) {
-  for (const auto& process : plan.manifest.processes) {
-    const auto& hosted = process.components;
-    if (!process.host.empty() && std::find(hosted.begin(), hosted.end(), plan.manifest.plant) != hosted.end())
-      throw ConfigurationError(
-          fmt::format("--resume: the plant runs on {}, accepted a run whose plant is on this host", process.host));
-  }
+Descriptor lock_run(const fs::path& folder) {
+  Descriptor lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!lock.open() || (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK))
+    throw ConfigurationError(
+        fmt::format("{}: another launcher uses this folder; is the run still going on?", folder.string()));
+  return lock;
 }
 
 std::string prepare_checkpoint(const fs::path& folder) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/launch_plan.hpp"
+#include "cli/remote/message_channel.hpp"
 
 namespace constrictor::cli {
 
@@ -14,6 +15,7 @@ struct RunRecord {
   RunOptions options;  ///< of the launcher that began the run; all files as absolute paths
   std::uint64_t run_id = 0;
   std::map<std::string, std::uint32_t> incarnations;  ///< newest incarnation of each process, by its name
+  std::string hosts_token;                            ///< names the run for the agents of other hosts
   bool over = false;                                  ///< the run ended in order: there is nothing to continue
 };
 
@@ -25,8 +27,9 @@ void write_run_record(const std::filesystem::path& folder, const RunRecord& reco
 /// Throws ConfigurationError if there is no such file, if it is of another release, or if the run is over.
 [[nodiscard]] RunRecord read_run_record(const std::filesystem::path& folder);
 
-/// Throws ConfigurationError if the plant of this plan runs on another host: its checkpoint is not here.
-void expect_plant_here(const LaunchPlan& plan);
+/// Keeps other launchers away from the run in `folder` as long as the returned descriptor is open. Throws
+/// ConfigurationError if another one has it.
+[[nodiscard]] Descriptor lock_run(const std::filesystem::path& folder);
 /// Makes sure that the plant will find a complete checkpoint: the newest one, or the copy on the disk if the computer
 /// was started anew or the newest one is damaged. Waits a few seconds for processes of the run that are still ending.
 /// Returns a line for the user. Throws ConfigurationError if the run is still going on, or if there is no complete

@@ -74,13 +74,23 @@ TEST_F(LaunchPlanTest, ImagesOfARealCameraCannotBeComputedAgain) {
   static_cast<void>(make_launch_plan(options_));
 }
 
-TEST_F(LaunchPlanTest, AProcessOnAnotherHostOfASecureRunNeedsKeysThere) {
+// The robot's computer has the loop from joints to commands; what it need not wait for has a latency.
+TEST_F(LaunchPlanTest, TheExampleOfTwoHostsPutsComponentsWhereTheyBelong) {
   options_.manifest = "two_hosts";
-  EXPECT_EQ(make_launch_plan(options_).manifest.hosts.size(), 1u);
-  options_.secure = "keys";
-  EXPECT_THROW(static_cast<void>(make_launch_plan(options_)), ConfigurationError);
+  const LaunchManifest manifest = make_launch_plan(options_).manifest;
+  EXPECT_EQ(manifest.hosts.size(), 1u);
+  EXPECT_EQ(manifest.host_of_plant(), "robot");
+  for (const auto& process : manifest.processes) {
+    const std::string& name = process.components.front();
+    const bool far = name == "perception" || name == "planner" || name == "report";
+    EXPECT_EQ(process.host, far ? "" : "robot") << name;
+    EXPECT_EQ(manifest.latency_ticks.contains(name), far) << name;
+  }
   options_.in_process = true;
-  EXPECT_TRUE(make_launch_plan(options_).manifest.hosts.empty());
+  const LaunchManifest one = make_launch_plan(options_).manifest;
+  EXPECT_TRUE(one.hosts.empty());
+  EXPECT_EQ(one.host_of_plant(), "");
+  EXPECT_EQ(one.latency_ticks, manifest.latency_ticks) << "the same run";
 }
 
 TEST_F(LaunchPlanTest, RefusesNamesThatDoNotExistAndProposesTheClosest) {

@@ -53,6 +53,30 @@ TEST(FaultDirector, BreaksADeviceOnceAndMendsIt) {
   EXPECT_EQ(director.news(2.5).front(), "fault: stuck 7 of servo_emulator begins at 2.0 s");
 }
 
+TEST(FaultDirector, ARunThatIsContinuedDoesNotRepeatWhatHasHappened) {
+  const auto order = [](const std::string& line) {
+    return std::get<DeviceOrder>(read_order("servo_emulator", line, [](std::string_view) { return std::size_t{23}; }));
+  };
+  FaultPlan plan;
+  plan.processes = {{ProcessFault::Kind::kKill, "camera", 2'000'000'000, 0, 0, 0},
+                    {ProcessFault::Kind::kStop, "control", 3'000'000'000, 0, 1.5, 0},
+                    {ProcessFault::Kind::kKill, "planner", 8'000'000'000, 0, 0, 0}};
+  plan.devices = {{order("stuck 7"), 2'000'000'000, 3'000'000'000},
+                  {order("stuck 8"), 2'000'000'000, 9'000'000'000},
+                  {order("reboot 4"), 2'000'000'000, INT64_MAX}};
+  FaultDirector director(plan);
+  director.continue_at(5.0);
+  const auto start = FaultDirector::Clock::now();
+  EXPECT_TRUE(director.due(5.0, start).empty());
+  EXPECT_TRUE(director.due(5.0, start + 9s).empty()) << "the stopped process has died with its launcher";
+  const auto commands = director.commands(5.0);
+  ASSERT_EQ(commands.size(), 1u) << "a new device is whole, so that the fault that lasts begins again";
+  EXPECT_EQ(commands[0].line, "stuck 8");
+  EXPECT_EQ(director.news(5.0), std::vector<std::string>{"fault: stuck 8 of servo_emulator begins at 2.0 s"});
+  ASSERT_EQ(director.due(8.0, start).size(), 1u);
+  EXPECT_EQ(director.commands(9.0).front().line, "heal 8");
+}
+
 TEST(FaultDirector, SaysWhenAFaultBeginsAndEnds) {
   FaultPlan plan;
   plan.topics.resize(1);

@@ -34,7 +34,7 @@ struct Facts {
 };
 
 /// The faults that `doctor` can find, in the order of deploy/TROUBLESHOOTING.md, which has a section for each.
-inline constexpr std::array<std::string_view, 18> kFaultNames{"empty domain",
+inline constexpr std::array<std::string_view, 19> kFaultNames{"empty domain",
                                                               "wrong domain",
                                                               "unreadable configuration",
                                                               "wrong interface",
@@ -51,7 +51,8 @@ inline constexpr std::array<std::string_view, 18> kFaultNames{"empty domain",
                                                               "port in use",
                                                               "ports closed",
                                                               "hosts differ",
-                                                              "host refused"};
+                                                              "host refused",
+                                                              "keys refused"};
 
 /// One of kFaultNames; any other name does not compile.
 class Fault {

@@ -11,6 +11,7 @@
 
 #include "cli/introspection/diagnosis.hpp"
 #include "cli/introspection/domain_view.hpp"
+#include "cli/keys/keys_command.hpp"
 #include "cli/launch_plan.hpp"
 #include "cli/remote/host_check.hpp"
 #include "cli/subcommands.hpp"
@@ -148,6 +149,7 @@ void tell(const Diagnosis& diagnosis) {
 
 struct DoctorOptions : ViewOptions {
   std::string manifest;  ///< name in deploy or a path; empty: no hosts are checked
+  std::string secure;    ///< folder with the keys of a run on these hosts; empty: keys are not checked
 };
 
 /// Checks the hosts of a manifest.
@@ -155,9 +157,17 @@ int check_manifest(const DoctorOptions& options) {
   const LaunchManifest manifest = load_manifest(find_file(options.manifest, kManifests));
   if (manifest.hosts.empty())
     throw UsageError("--manifest: found one that names no other host, accepted one with hosts");
+  if (!options.secure.empty()) {
+    const std::string problems = problems_of_keys(options.secure, manifest);
+    if (!problems.empty())
+      throw ConfigurationError(
+          fmt::format("--secure: {} cannot be used for this run:{}\n  `constrictor keys {} --manifest {}` makes what "
+                      "is missing",
+                      options.secure, problems, options.secure, options.manifest));
+  }
   bool well = true;
   auto list = nlohmann::ordered_json::array();
-  for (const auto& host : check_hosts(manifest, options.domain.value_or(1))) {
+  for (const auto& host : check_hosts(manifest, options.domain.value_or(1), options.secure)) {
     well = well && host.findings.empty();
     auto findings = nlohmann::ordered_json::array();
     if (!options.json) fmt::print("host {}: {}\n", host.name, host.facts.empty() ? "not reached" : host.facts);
@@ -201,6 +211,9 @@ void add_doctor(CLI::App& app, Action& action) {
   add_view_options(*sub, *options);
   sub->add_option("--manifest", options->manifest,
                   "check the other hosts of this launch manifest instead: a name or a file");
+  sub->add_option("--secure", options->secure,
+                  "with --manifest, also check whether all hosts can use these keys: a folder of `constrictor keys`")
+      ->needs("--manifest");
   sub->footer(help_footer(
       "Finds: a wrong domain or interface, missing multicast, differing IDL hash, QoS or types, two plants, two "
       "members\n"

@@ -69,8 +69,8 @@ int keys(const KeysOptions& options) {
   issue(folder, "client", rights_of_client(), identities, permissions, options.days);
   issue(folder, "observer", rights_of_observer(), identities, permissions, options.days);
   fmt::print(
-      "`constrictor run --secure {0}` uses them. Each host needs the files in {0} and the folders of its own\n"
-      "processes; keep authority/ in a safe place: anybody who has it can make further identities.\n",
+      "`constrictor run --secure {0}` uses them, and sends the keys of its own processes to each other host.\n"
+      "Keep authority/ in a safe place: anybody who has it can make further identities.\n",
       folder.string());
   return exit_status::kOk;
 }
@@ -79,14 +79,29 @@ int keys(const KeysOptions& options) {
 
 std::string identity_of(const ProcessPlan& process) { return fmt::format("{}", fmt::join(process.components, "+")); }
 
-void use_keys(const fs::path& folder, const LaunchPlan& plan) {
+std::vector<fs::path> files_of_identities(const std::vector<std::string>& identities) {
+  std::vector<fs::path> files{"identity_ca.pem", "permissions_ca.pem", "governance.p7s"};
+  for (const fs::path name : identities) {
+    for (const char* file : {"certificate.pem", "key.pem", "permissions.p7s"}) files.push_back(name / file);
+  }
+  return files;
+}
+
+std::string problems_of_keys(const fs::path& folder, const LaunchManifest& manifest) {
   std::vector<std::string> names{"operator"};
-  for (const auto& process : plan.manifest.processes) names.push_back(identity_of(process));
+  for (const auto& process : manifest.processes) {
+    if (!has_own_keys(process)) names.push_back(identity_of(process));
+  }
   std::string problems;
   for (const auto& name : names) {
     const std::string problem = dds::problem_of_identity(folder, name);
     if (!problem.empty()) problems += "\n  " + problem;
   }
+  return problems;
+}
+
+void use_keys(const fs::path& folder, const LaunchPlan& plan) {
+  const std::string problems = problems_of_keys(folder, plan.manifest);
   if (problems.empty()) {
     ::setenv("CONSTRICTOR_SECURITY", fs::absolute(folder).c_str(), 1);
     ::unsetenv("CONSTRICTOR_IDENTITY");  // each process has the identity of its components

@@ -30,38 +30,19 @@ using namespace std::chrono_literals;
 
 constexpr auto kAgentPoll = 50ms;
 constexpr auto kStateEvery = 1s;
-constexpr auto kGoneAfter = 10s;    // a closed connection without a new one: the launcher has died
-constexpr auto kTermination = 3s;   // from SIGTERM to SIGKILL
-constexpr auto kMakingBound = 60s;  // an agent's folder this young may not be locked yet
+constexpr auto kGoneAfter = 10s;   // a closed connection without a new one: the launcher has died
+constexpr auto kTermination = 3s;  // from SIGTERM to SIGKILL
 
 [[noreturn]] void fail(const std::string& what) { throw std::system_error(errno, std::generic_category(), what); }
 
 }  // namespace
-
-fs::path agent_folder(const std::string& token) { return run_directory() / ("agent-" + token); }
-
-void remove_stale_agents(const fs::path& own) {
-  for (const auto& entry : fs::directory_iterator(run_directory())) {
-    if (!entry.path().filename().string().starts_with("agent-")) continue;
-    std::error_code ignored;
-    const bool young = fs::file_time_type::clock::now() - fs::last_write_time(entry.path(), ignored) < kMakingBound;
-    if (young && entry.path() != own) continue;
-    const Descriptor lock(::open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC));
-    if (lock.open() && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) continue;
-    // A run that goes on continues from what its processes have written, for example from the plant's checkpoint.
-    for (const auto& part : fs::directory_iterator(entry.path())) {
-      if (entry.path() != own || part.path().filename() != "output") fs::remove_all(part.path(), ignored);
-    }
-    if (entry.path() != own) fs::remove(entry.path(), ignored);
-  }
-}
 
 Agent::Agent(const std::string& token) : folder_(agent_folder(token)) {
   remove_stale_agents(folder_);
   if (::mkdir(folder_.c_str(), 0700) != 0 && errno != EEXIST) fail(folder_.string());
   lock_ = Descriptor(::open((folder_ / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600));
   if (!lock_.open() || ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) fail((folder_ / "lock").string());
-  for (const char* name : {"files", "logs", "output"}) fs::create_directory(folder_ / name);
+  make_folders();
   listener_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -80,14 +61,6 @@ Agent::Agent(const std::string& token) : folder_(agent_folder(token)) {
 }
 
 Agent::~Agent() { clean_up(); }
-
-void Agent::clean_up() {
-  kill_all();
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-  dds_ = {};
-  claim_.reset();
-}
 
 int Agent::run() {
   while (!over_ && !abandoned()) {
@@ -153,7 +126,7 @@ void Agent::take(const nlohmann::json& message) {
   else if (op == "signal") signal(message);
   else if (op == "collect") collect();
   else if (op == "echo") open_echo(message);
-  else if (op == "end") over_ = true;
+  else if (op == "end") over_ = true, keep_ = field<bool>(message, "keep");
   else if (op == "ping") last_state_ = {};
   else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, echo, end, ping");
 }
@@ -165,6 +138,10 @@ void Agent::take_hello(const nlohmann::json& message) {
   const auto patience_s = field<double>(message, "patience_s");
   if (!(patience_s >= 1 && patience_s <= 86400)) throw ProtocolError("patience_s: accepted 1 to 86400");
   patience_ = std::chrono::duration<double>(patience_s);
+  const auto sender = field<std::string>(message, "launcher");
+  if (!launcher_.empty() && sender != launcher_) start_over();
+  launcher_ = sender;
+  keep_ = keep_ || field<bool>(message, "resume");
   for (const auto& [name, offset] : field<std::map<std::string, std::uintmax_t>>(message, "logs"))
     processes_[name].log_sent = offset;
   HostPlan plan;
@@ -186,28 +163,6 @@ void Agent::take_hello(const nlohmann::json& message) {
   send_state();
 }
 
-void Agent::prepare(const nlohmann::json& message) {
-  dds_xml_ = field<std::string>(message, "dds");
-  const auto domain = field<std::uint32_t>(message, "domain");
-  if (field<bool>(message, "claim") && !claim_) {
-    claim_ = std::make_unique<DomainClaim>(domain);
-    dds_ = PublishedDdsConfiguration(domain, dds_xml_);
-  }
-  for (const auto& file : field<std::vector<nlohmann::json>>(message, "files")) {
-    const auto number = field<unsigned>(file, "number");
-    const auto name = field<std::string>(file, "name");
-    if (!is_plain_name(name)) throw ProtocolError("files: found the name \"" + name + "\", accepted a file name");
-    const fs::path path = folder_ / "files" / std::to_string(number) / name;
-    fs::create_directories(path.parent_path());
-    if (!(std::ofstream(path, std::ios::binary) << field<std::string>(file, "text")).flush())
-      throw std::runtime_error("cannot write " + path.string());
-    // One of the files has the token of the run.
-    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
-  }
-  prepared_ = true;
-  channel_->send({{"op", "prepared"}});
-}
-
 void Agent::start(const nlohmann::json& message) {
   const auto name = field<std::string>(message, "name");
   const auto incarnation = field<std::uint32_t>(message, "incarnation");
@@ -218,15 +173,12 @@ void Agent::start(const nlohmann::json& message) {
   if (incarnation <= process.incarnation) return;                           // a repeated request
   std::vector<std::string> argv = {(program_folder() / program).string()};  // an absolute path stays as it is
   for (auto& argument : field<std::vector<std::string>>(message, "arguments")) argv.push_back(std::move(argument));
-  std::vector<std::string> environment = run_environment();
+  const std::vector<std::string> environment = run_environment();
   auto more = field<std::vector<std::string>>(message, "environment");
+  // First, so that keys that the manifest names take precedence.
+  if (fs::exists(folder_ / "keys")) more.insert(more.begin(), "CONSTRICTOR_SECURITY=" + (folder_ / "keys").string());
   if (!dds_xml_.empty()) more.push_back("CYCLONEDDS_URI=" + dds_xml_);
-  for (const auto& variable : more) {
-    const std::string variable_name = variable.substr(0, variable.find('=') + 1);
-    std::erase_if(environment, [&](const std::string& other) { return other.starts_with(variable_name); });
-    environment.push_back(variable);
-  }
-  process.child = std::make_unique<ChildProcess>(argv, environment, log_of(name));
+  process.child = std::make_unique<ChildProcess>(argv, with_variables(environment, more), log_of(name));
   process.incarnation = incarnation;
   last_state_ = {};
 }
@@ -248,7 +200,7 @@ bool Agent::reap() {
   return ended;
 }
 
-void Agent::kill_all() {
+void Agent::kill_all(bool at_once) {
   const auto running = [this] {
     reap();
     for (const auto& [name, process] : processes_) {
@@ -262,9 +214,9 @@ void Agent::kill_all() {
     }
   };
   const auto begin = Clock::now();
-  signal_all(SIGTERM);
+  if (!at_once) signal_all(SIGTERM);
   signal_all(SIGCONT);
-  while (running() && Clock::now() - begin < kTermination) std::this_thread::sleep_for(10ms);
+  while (!at_once && running() && Clock::now() - begin < kTermination) std::this_thread::sleep_for(10ms);
   signal_all(SIGKILL);
   while (running()) std::this_thread::sleep_for(1ms);
 }

@@ -12,6 +12,7 @@
 #include "cli/child_process.hpp"
 #include "cli/remote/message_channel.hpp"
 #include "cyclone/domain_claim.hpp"
+#include "cyclone/security.hpp"
 
 namespace constrictor::cli {
 
@@ -20,13 +21,15 @@ namespace constrictor::cli {
 
 /// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder
 /// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run:
-/// the killed agent was its predecessor. In this one, the output of the processes is kept.
+/// the killed agent was its predecessor. In this one, the output of the processes is kept. Also removes output that was
+/// kept for a run that nobody has continued for a week.
 void remove_stale_agents(const std::filesystem::path& own);
 
 /// Starts processes, reports how they end, forwards their logs and the files that they write. It outlives a broken
 /// connection: the launcher connects again to its socket. It kills its processes and removes its folder when the
 /// launcher says so, after the patience without a message from the launcher, and soon after the launcher has closed the
-/// connection without a new one. If the agent itself is killed, the kernel kills its processes.
+/// connection without a new one. If the agent itself is killed, the kernel kills its processes. Output of a run that is
+/// not over is kept in the user's state folder, so that `constrictor run --resume` finds it.
 class Agent {
  public:
   /// Makes the folder of the agent and listens on the socket in it. Throws std::system_error.
@@ -49,7 +52,13 @@ class Agent {
   void accept_connection();
   void take(const nlohmann::json& message);
   void take_hello(const nlohmann::json& message);
+  /// Another launcher continues the run: ends what runs of it, and keeps what has been written.
+  void start_over();
   void prepare(const nlohmann::json& message);
+  void store_files(const nlohmann::json& message);
+  /// Stores the keys of this host's processes. Throws std::runtime_error if they cannot be used here.
+  void store_keys(const nlohmann::json& message);
+  void make_folders();
   void start(const nlohmann::json& message);
   void signal(const nlohmann::json& message);
   void collect();
@@ -67,8 +76,10 @@ class Agent {
   bool reap();
   /// Why the agent has to end; empty: it has not.
   [[nodiscard]] bool abandoned() const;
-  void kill_all();
-  /// Kills all processes, removes all files and frees the domain.
+  /// `at_once`: without SIGTERM first.
+  void kill_all(bool at_once);
+  /// Kills all processes, removes all files and frees the domain. What processes have written is kept if the run may
+  /// be continued.
   void clean_up();
   [[nodiscard]] std::filesystem::path log_of(const std::string& name) const {
     return folder_ / "logs" / (name + ".log");
@@ -83,10 +94,14 @@ class Agent {
   std::chrono::duration<double> patience_{60};
   std::unique_ptr<DomainClaim> claim_;
   PublishedDdsConfiguration dds_;
+  std::unique_ptr<dds::PublishedSecurity> security_;
   std::string dds_xml_;
   std::map<std::string, Managed> processes_;
   std::map<std::string, std::uintmax_t> files_to_send_;  ///< output files by path: [byte] that have been sent
   nlohmann::json description_;                           ///< of this host; null before the first hello
+  std::string launcher_;                                 ///< that sent the last hello; another one continues the run
+  std::string continued_;  ///< how a run is continued whose plant is here; empty: it is not
+  bool keep_ = false;      ///< the run may be continued later
   bool prepared_ = false;
   bool collecting_ = false;
   bool over_ = false;

@@ -125,7 +125,8 @@ void Agent::collect() {
   files_to_send_.clear();
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "output")) {
     const std::string path = fs::relative(entry.path(), folder_ / "output").string();
-    if (entry.is_regular_file() && is_plain_path(path)) files_to_send_[path] = 0;
+    // The plant's checkpoints stay here: a run is continued from this host's, and one that is over needs none.
+    if (entry.is_regular_file() && is_plain_path(path) && !path.starts_with("checkpoint")) files_to_send_[path] = 0;
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/remote/host_description.hpp"
 #include "cli/remote/host_link.hpp"
+#include "cli/remote/host_set.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -85,8 +86,33 @@ void check_network(HostLink& link, const LaunchManifest& manifest, std::uint32_t
   }
 }
 
+constexpr const char* kKeysCure =
+    "`constrictor keys DIR` with the same manifest makes and renews keys; set the clock of a host that is wrong";
+
+/// Lets the host store the keys of its processes and examine them, with its own clock.
+void check_keys(HostLink& link, const LaunchManifest& manifest, std::uint32_t domain,
+                const std::filesystem::path& secure, HostReport& report) {
+  nlohmann::json message = {{"op", "prepare"},
+                            {"domain", domain},
+                            {"claim", false},
+                            {"keep", false},
+                            {"resume", false},
+                            {"dds", ""},
+                            {"files", nlohmann::json::array()}};
+  try {
+    add_keys(secure, manifest, link.name(), message);
+    link.prepare(message);
+    if (!wait_until(
+            link, [&] { return link.prepared(); }, kEchoBound))
+      report.findings.push_back({"host silent", "its agent did not answer", "look at the load of the host"});
+    else report.facts += fmt::format(", {} identities in order", message["identities"].size());
+  } catch (const HostError& error) {
+    report.findings.push_back({"keys refused", error.what(), kKeysCure});
+  }
+}
+
 HostReport check_host(const std::string& name, const HostPlan& plan, const LaunchManifest& manifest,
-                      const nlohmann::json& ours, std::uint32_t domain) {
+                      const nlohmann::json& ours, std::uint32_t domain, const std::filesystem::path& secure) {
   HostReport report{name, "", {}};
   HostLink link(name, plan, "doctor-" + std::to_string(Clock::now().time_since_epoch().count()) + "-" + name,
                 kReachBound_s, [](const std::string&) {});
@@ -102,7 +128,8 @@ HostReport check_host(const std::string& name, const HostPlan& plan, const Launc
     for (const auto& difference : differences(ours, theirs))
       report.findings.push_back({"hosts differ", difference, "install the same release and packages on all hosts"});
     check_network(link, manifest, domain, report);
-    link.end();
+    if (!secure.empty()) check_keys(link, manifest, domain, secure, report);
+    link.end(false);
     static_cast<void>(wait_until(
         link, [&] { return link.ended(); }, kLinkEndBound));
   } catch (const HostError& error) {
@@ -116,10 +143,12 @@ HostReport check_host(const std::string& name, const HostPlan& plan, const Launc
 
 }  // namespace
 
-std::vector<HostReport> check_hosts(const LaunchManifest& manifest, std::uint32_t domain) {
+std::vector<HostReport> check_hosts(const LaunchManifest& manifest, std::uint32_t domain,
+                                    const std::filesystem::path& secure) {
   const nlohmann::json ours = describe_this_host();
   std::vector<HostReport> reports;
-  for (const auto& [name, plan] : manifest.hosts) reports.push_back(check_host(name, plan, manifest, ours, domain));
+  for (const auto& [name, plan] : manifest.hosts)
+    reports.push_back(check_host(name, plan, manifest, ours, domain, secure));
   return reports;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <random>
 
 #include "cli/remote/host_description.hpp"
 #include "runtime/version.hpp"
@@ -31,12 +32,16 @@ bool is_final(const std::string& error) {
 
 }  // namespace
 
-HostLink::HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print)
+HostLink::HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print, bool resume)
     : name_(std::move(name)),
       plan_(std::move(plan)),
       token_(std::move(token)),
       patience_(patience_s),
-      print_(std::move(print)) {}
+      print_(std::move(print)),
+      resume_(resume) {
+  std::random_device entropy;
+  launcher_ = fmt::format("{:08x}{:08x}", entropy(), entropy());
+}
 
 HostLink::~HostLink() = default;
 
@@ -113,6 +118,8 @@ void HostLink::say_hello(SshConnection& connection) {
   for (const auto& [process, state] : processes_) logs[process] = state.received;
   connection.channel().send({{"op", "hello"},
                              {"protocol", kAgentProtocol},
+                             {"launcher", launcher_},
+                             {"resume", resume_},
                              {"patience_s", patience_.count()},
                              {"interface", plan_.interface},
                              {"address", plan_.address},
@@ -150,7 +157,7 @@ void HostLink::take(const nlohmann::json& message) {
   else if (op == "state") take_state(message);
   else if (op == "log") take_log(message);
   else if (op == "file") take_file(message);
-  else if (op == "prepared") prepared_ = true;
+  else if (op == "prepared") prepared_ = true, continued_ = field<std::string>(message, "continued");
   else if (op == "collected") collecting_ = false, collected_ = true;
   else if (op == "ended") ended_ = true;
   else if (op == "echoing") echo_answer_ = message;
@@ -176,7 +183,7 @@ void HostLink::take_hello(const nlohmann::json& message) {
 }
 
 void HostLink::resend() {
-  if (ending_) return send({{"op", "end"}});
+  if (ending_) return send({{"op", "end"}, {"keep", keep_}});
   if (!preparation_.is_null() && !description_.value("prepared", false)) send(preparation_);
   for (const auto& [process, state] : processes_) {
     if (state.exit) continue;
@@ -259,9 +266,10 @@ void HostLink::take_file(const nlohmann::json& message) {
   file << bytes;
 }
 
-void HostLink::end() {
+void HostLink::end(bool keep) {
   ending_ = true;
-  if (up_) return send({{"op", "end"}});
+  keep_ = keep;
+  if (up_) return send({{"op", "end"}, {"keep", keep}});
   if (!begun_) ended_ = true;
 }
 

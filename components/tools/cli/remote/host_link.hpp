@@ -43,8 +43,9 @@ class HostLink {
     std::uintmax_t received = 0;  ///< [byte] of the log on the other host
   };
 
-  /// Begins to connect. `patience_s`: how long the host may be away before the run fails.
-  HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print);
+  /// Begins to connect. `patience_s`: how long the host may be away before the run fails. `resume`: the host has kept
+  /// something of the run, and keeps it until end().
+  HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print, bool resume = false);
   ~HostLink();
   HostLink(const HostLink&) = delete;
   HostLink& operator=(const HostLink&) = delete;
@@ -58,9 +59,11 @@ class HostLink {
   /// The folder of the agent on its host.
   [[nodiscard]] std::string folder() const { return description_.value("folder", ""); }
 
-  /// Claims the domain on the host and sends the files of the run. prepared() tells when that is done.
+  /// Claims the domain on the host and sends files and keys of the run. prepared() tells when that is done.
   void prepare(const nlohmann::json& request);
   [[nodiscard]] bool prepared() const { return prepared_; }
+  /// From where the plant, which is on this host, continues the run; empty: it is not there, or the run is new.
+  [[nodiscard]] const std::string& continued() const { return continued_; }
   void start(const std::string& process, std::uint32_t incarnation, nlohmann::json request,
              const std::filesystem::path& log);
   void signal(const std::string& process, int number);
@@ -72,8 +75,8 @@ class HostLink {
   void echo(std::uint16_t port) { send({{"op", "echo"}, {"port", port}}); }
   /// Empty: the agent has not answered. Otherwise {error: text}, where an empty text means that the port is open.
   [[nodiscard]] const nlohmann::json& echo_answer() const { return echo_answer_; }
-  /// Ends the agent and all its processes.
-  void end();
+  /// Ends the agent and all its processes. `keep`: what they have written is kept, to continue the run later.
+  void end(bool keep);
   [[nodiscard]] bool ended() const { return ended_; }
   /// The host has been away for longer than the patience.
   [[nodiscard]] bool lost() const { return lost_; }
@@ -116,6 +119,10 @@ class HostLink {
                     attempt_began_{};
   std::chrono::milliseconds pause_{250};
   std::string last_error_;
+  std::string launcher_;  ///< identifies this process for the agent
+  std::string continued_;
+  bool resume_;
+  bool keep_ = false;  ///< of end()
 };
 
 }  // namespace constrictor::cli

@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "cli/keys/keys_command.hpp"
 #include "cli/remote/dds_configuration.hpp"
 #include "cli/remote/host_description.hpp"
 #include "cli/remote/remote_child.hpp"
@@ -24,15 +25,35 @@ using namespace std::chrono_literals;
 constexpr auto kCollectBound = 60s;
 constexpr auto kHostsEndBound = 6s;
 
-std::string random_token() {
-  std::random_device entropy;
-  return fmt::format("{:08x}{:08x}", entropy(), entropy());
+std::string bytes_in(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (!stream) throw HostError("cannot read " + file.string());
+  return text;
 }
 
 }  // namespace
 
-HostSet::HostSet(const LaunchManifest& manifest, HostLink::Print print, std::function<void()> wait)
-    : manifest_(manifest), print_(std::move(print)), wait_(std::move(wait)) {
+std::string new_hosts_token() {
+  std::random_device entropy;
+  return fmt::format("{:08x}{:08x}", entropy(), entropy());
+}
+
+void add_keys(const fs::path& folder, const LaunchManifest& manifest, const std::string& host,
+              nlohmann::json& message) {
+  auto& identities = message["identities"] = nlohmann::json::array();
+  auto& keys = message["keys"] = nlohmann::json::object();
+  if (folder.empty()) return;
+  for (const auto& process : manifest.processes) {
+    if (process.host == host && !has_own_keys(process)) identities.push_back(identity_of(process));
+  }
+  if (identities.empty()) return;
+  for (const auto& file : files_of_identities(identities.get<std::vector<std::string>>()))
+    keys[file.string()] = bytes_in(folder / file);
+}
+
+HostSet::HostSet(const LaunchManifest& manifest, HostOptions options, HostLink::Print print, std::function<void()> wait)
+    : manifest_(manifest), options_(std::move(options)), print_(std::move(print)), wait_(std::move(wait)) {
   if (manifest.hosts.empty()) return;
   try {
     connect();
@@ -43,9 +64,9 @@ HostSet::HostSet(const LaunchManifest& manifest, HostLink::Print print, std::fun
 }
 
 void HostSet::connect() {
-  const std::string token = random_token();
   for (const auto& [name, plan] : manifest_.hosts)
-    links_.push_back(std::make_unique<HostLink>(name, plan, token + "-" + name, manifest_.patience_s, print_));
+    links_.push_back(std::make_unique<HostLink>(name, plan, options_.token + "-" + name, manifest_.patience_s, print_,
+                                                options_.resume));
   exchange();  // the connections are made while this host describes itself
   ours_ = describe_this_host();
   for (const auto& line : ask_host("--describe")) {
@@ -65,7 +86,7 @@ HostSet::~HostSet() { end_agents(); }
 void HostSet::end_agents() {
   const auto over = [](const auto& link) { return link->ended() || !link->up(); };
   try {
-    for (const auto& link : links_) link->end();
+    for (const auto& link : links_) link->end(keep_at_end_);
     exchange_until([&] { return std::all_of(links_.begin(), links_.end(), over); }, kHostsEndBound);
   } catch (const std::exception&) {  // the agents end by themselves
   }
@@ -106,12 +127,17 @@ std::set<std::uint32_t> HostSet::used_domains() const {
 
 void HostSet::add_file(const fs::path& file) {
   if (places_.contains(file.string())) return;
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw HostError("cannot read " + file.string());
+  const std::string text = bytes_in(file);
   const auto number = files_.size();
   files_.push_back({{"number", number}, {"name", file.filename().string()}, {"text", text}});
   places_[file.string()] = fmt::format("files/{}/{}", number, file.filename().string());
+}
+
+std::string HostSet::continued() const {
+  for (const auto& link : links_) {
+    if (!link->continued().empty()) return link->continued();
+  }
+  return {};
 }
 
 void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs::path& token_file) {
@@ -155,11 +181,15 @@ void HostSet::prepare(std::uint32_t domain, const fs::path& report_dir, const fs
   for (const auto& link : links_) {
     const std::string ip = ip_of(*link);
     const bool claim = claimed.insert(link->description().value("network", "")).second;
-    link->prepare({{"op", "prepare"},
-                   {"domain", domain},
-                   {"claim", claim},
-                   {"files", files_},
-                   {"dds", own_ip.empty() ? additional : configuration(ip.empty() ? own_ip : ip)}});
+    nlohmann::json message = {{"op", "prepare"},
+                              {"domain", domain},
+                              {"claim", claim},
+                              {"files", files_},
+                              {"keep", options_.keep},
+                              {"resume", options_.resume && link->name() == manifest_.host_of_plant()},
+                              {"dds", own_ip.empty() ? additional : configuration(ip.empty() ? own_ip : ip)}};
+    add_keys(options_.secure, manifest_, link->name(), message);
+    link->prepare(message);
   }
   while (!std::all_of(links_.begin(), links_.end(), [](const auto& link) { return link->prepared(); })) {
     exchange();
@@ -210,7 +240,8 @@ std::unique_ptr<Child> HostSet::start(const ProcessPlan& plan, std::uint32_t inc
   return std::make_unique<RemoteChild>(link, plan.name());
 }
 
-void HostSet::finish() {
+void HostSet::finish(bool over) {
+  keep_at_end_ = options_.keep && !over;
   const auto all = [this](auto condition) {
     return std::all_of(links_.begin(), links_.end(), [&](const auto& link) { return !link->up() || condition(*link); });
   };
@@ -222,7 +253,7 @@ void HostSet::finish() {
           fmt::format("host {} does not answer: the files that its processes wrote are not in the report; its agent "
                       "ends all its processes within {:g} s",
                       link->name(), manifest_.patience_s));
-    link->end();
+    link->end(keep_at_end_);
   }
   exchange_until([&] { return all([](const HostLink& link) { return link.ended(); }); }, kHostsEndBound);
 }

@@ -19,11 +19,27 @@
 
 namespace constrictor::cli {
 
+/// What hosts need to know of a run.
+struct HostOptions {
+  std::string token;             ///< names the run on all hosts; a run that is continued has the token of its begin
+  std::filesystem::path secure;  ///< folder with the keys of the run; empty: without DDS Security
+  bool keep = true;              ///< the run can be continued, so that hosts keep what it has written until it is over
+  bool resume = false;           ///< this launcher continues the run
+};
+
+/// Adds to the message `prepare` of a host the identities of its processes and their files from `folder`; none if the
+/// folder is empty. Throws HostError if one cannot be read.
+void add_keys(const std::filesystem::path& folder, const LaunchManifest& manifest, const std::string& host,
+              nlohmann::json& message);
+
+/// A new token.
+[[nodiscard]] std::string new_hosts_token();
+
 class HostSet {
  public:
   /// Connects to all hosts of the manifest and compares them with this one; does nothing if it names none. `wait` is
   /// called meanwhile; it waits a moment, and throws to interrupt. Throws HostError with all differences.
-  HostSet(const LaunchManifest& manifest, HostLink::Print print, std::function<void()> wait);
+  HostSet(const LaunchManifest& manifest, HostOptions options, HostLink::Print print, std::function<void()> wait);
   ~HostSet();
   HostSet(const HostSet&) = delete;
   HostSet& operator=(const HostSet&) = delete;
@@ -31,16 +47,18 @@ class HostSet {
   /// The DDS domains that are in use on one of the other hosts.
   [[nodiscard]] std::set<std::uint32_t> used_domains() const;
   /// Claims the domain on all hosts, publishes the DDS configuration, and sends the files of the run, `token_file`
-  /// among them. Throws HostError.
+  /// among them, and the keys of each host's own processes. Throws HostError.
   void prepare(std::uint32_t domain, const std::filesystem::path& report_dir, const std::filesystem::path& token_file);
   /// For the supervisor: starts a process on the host that its plan names.
   [[nodiscard]] std::unique_ptr<Child> start(const ProcessPlan& plan, std::uint32_t incarnation,
                                              const std::vector<std::string>& argv,
                                              const std::vector<std::string>& environment,
                                              const std::filesystem::path& log);
+  /// From where the plant continues the run, if it is on another host; else empty.
+  [[nodiscard]] std::string continued() const;
   /// Fetches the files that the processes of the other hosts have written into the report's directory, and ends the
-  /// agents. All processes must have ended.
-  void finish();
+  /// agents. All processes must have ended. `over`: the run will not be continued.
+  void finish(bool over);
   /// For report.json: {name: {host, release, libraries ...}}, this host first, under the name "here". Null without
   /// other hosts.
   [[nodiscard]] nlohmann::ordered_json report() const;
@@ -58,6 +76,8 @@ class HostSet {
   [[nodiscard]] std::string there(const HostLink& link, const std::string& argument) const;
 
   const LaunchManifest& manifest_;
+  HostOptions options_;
+  bool keep_at_end_ = options_.resume;  ///< a new run that does not begin leaves nothing
   HostLink::Print print_;
   std::function<void()> wait_;
   std::vector<std::unique_ptr<HostLink>> links_;

@@ -17,7 +17,7 @@ class ProtocolError : public std::runtime_error {
 };
 
 /// Number of this protocol. Launcher and agent must have the same.
-inline constexpr int kAgentProtocol = 1;
+inline constexpr int kAgentProtocol = 2;
 
 /// A file descriptor that is closed when its owner is destroyed.
 class Descriptor {
