@@ -39,7 +39,7 @@ struct ControlConfig : ParameterSet {
           "Share of the wave's amplitude in the first links (1 in all others); 0 keeps the head on the mean heading"),
       add(weights.rigid_bend_rad, "wave.rigid_bend_rad", 1.047, "rad", {0.1, 3.2}, kAtStart,
           "A link between two joints of the posture that are bent by this angle does not undulate")};
-  double amplitude_rate_rad_s = add(amplitude_rate_rad_s, "wave.amplitude_rate_rad_s", 0.5, "rad/s", {0.01, 10.0},
+  double amplitude_rate_rad_s = add(amplitude_rate_rad_s, "wave.amplitude_rate_rad_s", 1.0, "rad/s", {0.01, 10.0},
                                     kWhileRunning, "Maximum rate of change of the wave's amplitude");
   double frequency_rate_hz_s = add(frequency_rate_hz_s, "wave.frequency_rate_hz_s", 1.0, "Hz/s", {0.01, 10.0},
                                    kWhileRunning, "Maximum rate of change of the wave's frequency");
@@ -83,7 +83,7 @@ struct ControlConfig : ParameterSet {
           "Inertia that the law knows: of the whole body, or of each joint by itself")};
   double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
-  double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.1, "rad/s", {0.001, 2.0}, kWhileRunning,
+  double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.2, "rad/s", {0.001, 2.0}, kWhileRunning,
                                   "Speed of the squeeze, summed over the joints of the base");
   double opening_share = add(opening_share, "squeeze.opening_share", 0.5, "", {0.0, 1.0}, kWhileRunning,
                              "Share of the squeeze by which the two joints beside the base open, in total");

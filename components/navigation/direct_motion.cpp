@@ -77,7 +77,7 @@ void step_motion(const NavigationConfig& config, const GripSense& sense, const G
       break;
     case msg::kMotionWrap:
       output.phase = "wrap";
-      wrap_round(config, sense, config.grasp.wrap, state.wrapped_side, config.grasp.wrap_speed_m_s, grip, output);
+      wrap_round(sense, config.grasp.wrap, state.wrapped_side, config.grasp.wrap_speed_m_s, grip, output);
       break;
     case msg::kMotionSqueeze:
       output.phase = "squeeze";

@@ -20,11 +20,22 @@ std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double an
   return shape;
 }
 
+// The yaw joints of the base are corners of a regular polygon, whose sides touch an object. A base of one joint has one
+// corner only, and no bound.
+double GripSense::side_m() const {
+  return robot_.module_length_m * static_cast<double>(base_joints_[1] - base_joints_[0]);
+}
+
 double GripSense::largest_radius_m() const {
-  // The yaw joints of the base are corners of a regular polygon. A base of one joint has one corner only, and no bound.
   if (base_joints_.size() < 2 || config_.base_angle_rad <= 0.0) return 1e9;
-  const double side_m = robot_.module_length_m * static_cast<double>(base_joints_[1] - base_joints_[0]);
-  return 0.5 * side_m / std::tan(0.5 * std::min(config_.base_angle_rad, 3.0)) - robot_.module_radius_m;
+  return 0.5 * side_m() / std::tan(0.5 * std::min(config_.base_angle_rad, 3.0)) - robot_.module_radius_m;
+}
+
+double GripSense::open_angle_rad(double radius_m) const {
+  if (base_joints_.size() < 2) return config_.base_angle_rad;
+  const double closed_rad = 2.0 * std::atan(0.5 * side_m() / (radius_m + robot_.module_radius_m));
+  const double least_rad = std::min(config_.widest_angle_rad, config_.base_angle_rad);
+  return std::clamp(closed_rad - config_.closing_rad, least_rad, config_.base_angle_rad);
 }
 
 double GripSense::largest_closing_nm(const msg::JointState& joints, double side) const {
@@ -86,13 +97,15 @@ double GripSense::held_aside_m(const Grip& grip) const {
   return held_object_H(planar_body(robot_, posture), grip.radius_m).y();
 }
 
-std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, double side) const {
+std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip) const {
+  const double side = grip.side;
+  const double open_rad = open_angle_rad(grip.radius_m);
   std::array<double, msg::kMaxJoints> shape{};
   double closed_rad = 0.0;
   for (int i = 0; i < config_.base_joints; ++i) {
     const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
     shape[k] = joints.position_rad[yaw_joints_[k]] + side * config_.hold_margin_rad;
-    closed_rad += shape[k] - side * config_.base_angle_rad;
+    closed_rad += shape[k] - side * open_rad;
   }
   // The joints beside the base keep the angle to which the squeeze has opened them, so that the arms are parallel.
   const double beside_rad = 0.5 * config_.opening_share * closed_rad;

@@ -18,6 +18,7 @@ struct Grip {
   std::uint8_t colour = 0;
   std::uint16_t handle = 0;
   double radius_m = 0.085;                          ///< of the object
+  double height_m = 0.0;                            ///< of the object; 0: unknown
   double hold_torque_nm = 0.0;                      ///< cap of the base joints while carrying
   Eigen::Vector2d p_MO{0.0, 0.0};                   ///< [m] where the body touched the object
   std::array<double, msg::kMaxJoints> shape_rad{};  ///< posture that holds the object, by yaw joint
@@ -27,7 +28,7 @@ struct Grip {
   double below_s = 0.0;        ///< time for which both have been below their thresholds
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(pregrasped, carrying, side, colour, handle, radius_m, hold_torque_nm, p_MO.x(), p_MO.y());
+    archive(pregrasped, carrying, side, colour, handle, radius_m, height_m, hold_torque_nm, p_MO.x(), p_MO.y());
     for (double& angle : shape_rad) archive(angle);
     archive(torque_nm, contact_share, below_s);
   }
@@ -40,8 +41,12 @@ class GripSense {
 
   /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.
   [[nodiscard]] std::array<double, msg::kMaxJoints> open_shape(double side, double angle_rad) const;
-  /// [m] radius of the largest object that the open U can hold: the circle that touches the middle of each link between
-  /// the base joints of the U, minus the radius of a module.
+  /// [rad] angle of each base joint in the open U for an object of this radius: base_angle_rad, and less for an object
+  /// that would not leave closing_rad to close. A U with parallel arms is as wide as the largest object, which wedges
+  /// between the arms before it reaches the base.
+  [[nodiscard]] double open_angle_rad(double radius_m) const;
+  /// [m] radius of the largest object that the U with the angles base_angle_rad can hold: the circle that touches the
+  /// middle of each link between the base joints of the U, minus the radius of a module.
   [[nodiscard]] double largest_radius_m() const;
   /// [Nm] largest and mean torque by which the base joints close the U.
   [[nodiscard]] double largest_closing_nm(const msg::JointState& joints, double side) const;
@@ -61,7 +66,7 @@ class GripSense {
   /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left.
   [[nodiscard]] double held_aside_m(const Grip& grip) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with the base closed by the hold margin more.
-  [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, double side) const;
+  [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip) const;
 
   /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while.
   bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const;
@@ -71,6 +76,8 @@ class GripSense {
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
 
  private:
+  [[nodiscard]] double side_m() const;  ///< length of a link between two base joints
+
   const RobotModel& robot_;
   const GripConfig& config_;
   std::vector<std::size_t> yaw_joints_;   ///< indices among all joints

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "constrictor/text.hpp"
@@ -26,8 +27,8 @@ void set_posture(const Grip& grip, TaskOutput& output) {
   output.desired.torque_limit_nm = grip.hold_torque_nm;
 }
 
-void set_open_u(const NavigationConfig& config, const GripSense& sense, double side, TaskOutput& output) {
-  const auto shape_rad = sense.open_shape(side, config.grip.base_angle_rad);
+void set_open_u(const GripSense& sense, double side, const Grip& grip, TaskOutput& output) {
+  const auto shape_rad = sense.open_shape(side, sense.open_angle_rad(grip.radius_m));
   output.desired.shape_count = static_cast<std::uint16_t>(sense.yaw_joint_count());
   std::copy_n(shape_rad.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
 }
@@ -74,26 +75,48 @@ void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Gr
   for (std::size_t k = first; k < end; ++k) output.desired.shape_rad[k] += each_rad;
 }
 
-void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,
-                const Grip& grip, TaskOutput& output) {
+void wrap_round(const GripSense& sense, const Gait& gait, double side, double speed_m_s, const Grip& grip,
+                TaskOutput& output) {
   undulate(gait, 0.0, 1.0, grip, output);
   set_text(output.desired.method, "wrap");
-  set_open_u(config, sense, side, output);
+  set_open_u(sense, side, grip, output);
   output.desired.wrap_side = side;
   output.desired.speed_m_s = speed_m_s;
 }
 
 void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
                TaskOutput& output) {
-  undulate(config.grasp.squeeze, 0.0, 1.0, grip, output);
+  undulate(gentle(config.grasp.squeeze, config, grip), 0.0, 1.0, grip, output);
   set_text(output.desired.method, "squeeze");
-  set_open_u(config, sense, side, output);
+  set_open_u(sense, side, grip, output);
   output.desired.squeeze_rad = config.grasp.squeeze_max_rad;
   output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
 }
 
-const Gait& present_gait(const NavigationConfig& config, const Grip& grip) {
-  return grip.carrying ? config.carry : config.travel;
+double tipping_acceleration_m_s2(const Grip& grip) {
+  constexpr double kGravity_m_s2 = 9.81;
+  if (grip.height_m <= 0.0) return std::numeric_limits<double>::infinity();
+  return kGravity_m_s2 * grip.radius_m / (0.5 * grip.height_m);
+}
+
+double lateral_acceleration_m_s2(const Gait& gait) {
+  return 2.0 * std::numbers::pi * gait.amplitude_rad * gait.wavelength_m * gait.frequency_hz * gait.frequency_hz;
+}
+
+Gait gentle(const Gait& gait, const NavigationConfig& config, const Grip& grip) {
+  const double share = config.grip.tipping_share * tipping_acceleration_m_s2(grip) / lateral_acceleration_m_s2(gait);
+  if (!(share < 1.0)) return gait;
+  // A smaller wave carries farther than a slower one of the same acceleration, unless it is so small that it slips.
+  constexpr double kLeastAmplitude_rad = 0.4;
+  const double amplitude_rad = share * gait.amplitude_rad;
+  Gait slower = gait;
+  slower.amplitude_rad = std::max(amplitude_rad, std::min(gait.amplitude_rad, kLeastAmplitude_rad));
+  slower.frequency_hz *= std::sqrt(amplitude_rad / slower.amplitude_rad);
+  return slower;
+}
+
+Gait present_gait(const NavigationConfig& config, const Grip& grip) {
+  return grip.carrying ? gentle(config.carry, config, grip) : config.travel;
 }
 
 double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {

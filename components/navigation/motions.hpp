@@ -19,14 +19,22 @@ void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput&
 /// The same with three neighbouring yaw joints, of which `first` is the one next to the head (0: the foremost).
 void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
 /// Wraps the body round the object on `side` (+1 left, -1 right): the arc slides along the body at `speed_m_s`.
-void wrap_round(const NavigationConfig& config, const GripSense& sense, const Gait& gait, double side, double speed_m_s,
-                const Grip& grip, TaskOutput& output);
+void wrap_round(const GripSense& sense, const Gait& gait, double side, double speed_m_s, const Grip& grip,
+                TaskOutput& output);
 /// Closes the base of the wrapped body with a limited torque while the body drives on.
 void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
                TaskOutput& output);
 
+/// [m/s2] horizontal acceleration at which an upright object tips over its edge, like a block on a cart: gravity times
+/// its radius through half of its height. Infinite if its height is unknown.
+double tipping_acceleration_m_s2(const Grip& grip);
+/// [m/s2] largest lateral acceleration of a body that undulates with this gait: the body moves sideways by
+/// amplitude x wavelength / 2 pi.
+double lateral_acceleration_m_s2(const Gait& gait);
+/// The gait with an amplitude, and if necessary a frequency, at which the arms of the U do not knock the object over.
+Gait gentle(const Gait& gait, const NavigationConfig& config, const Grip& grip);
 /// The gait for a body with or without an object.
-const Gait& present_gait(const NavigationConfig& config, const Grip& grip);
+Gait present_gait(const NavigationConfig& config, const Grip& grip);
 
 /// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
 /// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.

@@ -39,8 +39,10 @@ void Navigation::step(const Tick& tick) {
   // The pose is one tick old, and the tasks use it as the present one. It is therefore stored under the present tick,
   // so that the positions of objects are late by the same tick and are right relative to X_MH.
   remember_pose(tick.index, X_MH, state_.sightings);
-  if (field_.objects && field_.objects.fresh())
+  if (field_.objects && field_.objects.fresh()) {
     update_object_tracker(config_.object, *field_.objects, state_.sightings);
+    measure_heights(robot_, *field_.objects, state_.sightings);
+  }
   if (field_.map && field_.map.fresh()) forget_dropped(config_.object, *field_.map, state_.sightings);
 
   const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);

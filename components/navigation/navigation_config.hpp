@@ -2,60 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "component/mission.hpp"
-#include "configuration/parameter_set.hpp"
 #include "navigation/line_tracker.hpp"
+#include "navigation/navigation_section.hpp"
 #include "navigation/object_tracker.hpp"
-#include "navigation/pid.hpp"
 #include "navigation/sliding_steering.hpp"
 
 namespace constrictor {
-
-/// Bounds that several parameters share, in the unit of the parameter.
-namespace bounds {
-inline constexpr Range kLength{0.0, 10.0};
-inline constexpr Range kAngle{0.0, 6.3};
-inline constexpr Range kTime{0.0, 600.0};
-inline constexpr Range kTorque{0.0, 20.0};
-inline constexpr Range kForce{0.0, 100.0};
-inline constexpr Range kSpeed{0.001, 2.0};
-inline constexpr Range kCurvature{0.0, 5.0};
-inline constexpr Range kShare{0.0, 1.0};
-inline constexpr Range kCount{1, 20};
-}  // namespace bounds
-
-/// An undulation.
-struct Gait {
-  double frequency_hz = 0.0;   ///< undulations per second
-  double amplitude_rad = 0.0;  ///< of the wave's heading
-  double wavelength_m = 1.0;   ///< along the body
-};
-
-/// A group of navigation's parameters, with rows for gaits and PID controllers.
-struct NavigationSection : ParameterSet {
-  using ParameterSet::add;
-  Gait add(Gait& gait, const std::string& key, const Gait& fallback, Changes changes, const std::string& meaning) {
-    return {add(gait.frequency_hz, key + ".frequency_hz", fallback.frequency_hz, "Hz", {0.05, 2.0}, changes,
-                meaning + ": undulations per second"),
-            add(gait.amplitude_rad, key + ".amplitude_rad", fallback.amplitude_rad, "rad", {0.0, 1.2}, changes,
-                meaning + ": amplitude of the wave's heading"),
-            add(gait.wavelength_m, key + ".wavelength_m", fallback.wavelength_m, "m", {0.2, 5.0}, changes,
-                meaning + ": length of the wave along the body")};
-  }
-  /// A PID controller from `error` to the curvature of the path.
-  PidGains add(PidGains& gains, const std::string& key, const PidGains& fallback, Changes changes,
-               const std::string& error) {
-    const std::string meaning = "Curvature for the " + error + ": ";
-    return {add(gains.kp, key + ".kp", fallback.kp, "", {0.0, 100.0}, changes, meaning + "proportional gain"),
-            add(gains.ki, key + ".ki", fallback.ki, "1/s", {0.0, 100.0}, changes, meaning + "integral gain"),
-            add(gains.kd, key + ".kd", fallback.kd, "s", {0.0, 100.0}, changes, meaning + "derivative gain"),
-            add(gains.limit, key + ".limit_1_m", fallback.limit, "1/m", bounds::kCurvature, changes, meaning + "bound"),
-            add(gains.derivative_filter_s, key + ".derivative_filter_s", fallback.derivative_filter_s, "s",
-                bounds::kTime, kAtStart, meaning + "time constant of the derivative's low-pass; 0: none")};
-  }
-};
 
 /// The U that holds an object, and the monitor of its loss.
 struct GripConfig : ParameterSet {
@@ -65,6 +19,16 @@ struct GripConfig : ParameterSet {
       add(base_joints, "base_joints", 3, "", {1, 8}, kAtStart, "Number of yaw joints in the base of the U");
   double base_angle_rad = add(base_angle_rad, "base_angle_rad", 1.047, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint in the open U");
+  double widest_angle_rad =
+      add(widest_angle_rad, "widest_angle_rad", 0.9, "rad", bounds::kAngle, kAtStart,
+          "Smallest angle of each base joint in the open U: for a large object the U opens wider than base_angle_rad");
+  double closing_rad = add(closing_rad, "closing_rad", 0.2, "rad", bounds::kAngle, kAtStart,
+                           "Angle by which each base joint has to close until the base fits the object: the U opens "
+                           "wider if it would be less");
+  double tipping_share =
+      add(tipping_share, "tipping_share", 1.0, "", {0.1, 100.0}, kAtStart,
+          "Largest lateral acceleration of the arms, relative to the one that tips the object in the U over; the gaits "
+          "become smaller for tall and narrow objects");
   double opening_share =
       add(opening_share, "opening_share", 0.5, "", bounds::kShare, kAtStart,
           "Share of the closing by which the joints beside the base open; equal to control's squeeze.opening_share");
@@ -185,7 +149,7 @@ struct PregraspConfig : NavigationSection {
                       "Distance by which the head passes the object's centre before the touch movement");
   double brake_m = add(brake_m, "brake_m", 0.12, "m", bounds::kLength, kAtStart,
                        "Distance that the body slides after the wave stops");
-  double settle_s = add(settle_s, "settle_s", 1.5, "s", bounds::kTime, kAtStart,
+  double settle_s = add(settle_s, "settle_s", 0.8, "s", bounds::kTime, kAtStart,
                         "The body stands for this time before the touch movement");
   double touch_rate_rad_s = add(touch_rate_rad_s, "touch_rate_rad_s", 0.12, "rad/s", bounds::kSpeed, kAtStart,
                                 "Speed of each of the three joints next to the head in the touch movement");
@@ -206,18 +170,18 @@ struct PregraspConfig : NavigationSection {
 };
 
 struct GraspConfig : NavigationSection {
-  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.15, "m/s", bounds::kSpeed, kAtStart,
+  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.25, "m/s", bounds::kSpeed, kAtStart,
                               "Speed of the arc along the body at the beginning; later it is the speed of the body");
   double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, kAtStart,
                             "The body begins to move after the arc has slid this far");
   double wrap_speed_min_m_s =
-      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.16, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
+      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.2, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
   double wrap_speed_max_m_s =
       add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
   double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
                                    "Time constant of the low-pass on the body's speed");
   Gait wrap = add(wrap, "wrap", {0.7, 0.45, 1.07}, kAtStart, "Gait of the wrap");
-  Gait seat = add(seat, "seat", {1.0, 0.5, 1.07}, kAtStart, "Gait that drives the base to the object");
+  Gait seat = add(seat, "seat", {1.1, 0.8, 1.2}, kAtStart, "Gait that drives the base to the object");
   Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, kAtStart, "Gait of the squeeze");
   double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, kAtStart,
                               "A touch counts for this time, because the gait interrupts touches");
@@ -229,6 +193,9 @@ struct GraspConfig : NavigationSection {
                               "The grasp is given up if the base does not touch the object within this time");
   double squeeze_max_rad = add(squeeze_max_rad, "squeeze_max_rad", 0.9, "rad", bounds::kAngle, kAtStart,
                                "Largest closing angle, summed over the base joints");
+  double squeeze_settle_s = add(squeeze_settle_s, "squeeze_settle_s", 1.0, "s", bounds::kTime, kAtStart,
+                                "The torque of the squeeze counts after this time: the larger wave of the seat has "
+                                "faded by then");
   double squeeze_torque_nm = add(squeeze_torque_nm, "squeeze_torque_nm", 3.0, "Nm", bounds::kTorque, kWhileRunning,
                                  "Closing torque of a base joint at which the object is held");
   double squeeze_cap_nm = add(squeeze_cap_nm, "squeeze_cap_nm", 6.0, "Nm", bounds::kTorque, kWhileRunning,
@@ -237,7 +204,7 @@ struct GraspConfig : NavigationSection {
                              "Maximum number of squeezes; the body drives on between two of them");
   int touching_modules = add(touching_modules, "touching_modules", 2, "", {0, 20}, kAtStart,
                              "Number of modules that must touch a held object");
-  double check_s = add(check_s, "check_s", 3.0, "s", bounds::kTime, kAtStart, "Duration of the check of the hold");
+  double check_s = add(check_s, "check_s", 2.0, "s", bounds::kTime, kAtStart, "Duration of the check of the hold");
 };
 
 struct DropConfig : NavigationSection {
@@ -253,10 +220,10 @@ struct DropConfig : NavigationSection {
                            "The robot steers towards the point of the course this far ahead");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
-  double open_s = add(open_s, "open_s", 4.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
-  Gait back = add(back, "back", {0.7, 0.5, 1.07}, kAtStart, "Gait by which the open U leaves the object");
+  double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  Gait back = add(back, "back", {1.1, 0.5, 1.07}, kAtStart, "Gait by which the open U leaves the object");
   double back_m =
-      add(back_m, "back_m", 1.3, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
+      add(back_m, "back_m", 1.05, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =
       add(back_timeout_s, "back_timeout_s", 20.0, "s", bounds::kTime, kAtStart, "Longest time of each backing off");
   double clear_m =

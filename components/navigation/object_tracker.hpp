@@ -11,6 +11,7 @@
 #include "constrictor/messages.hpp"
 #include "navigation/debounce.hpp"
 #include "robot/planar.hpp"
+#include "robot/robot_model.hpp"
 
 namespace constrictor {
 
@@ -20,6 +21,7 @@ struct Sighting : Visibility {
   double x_m = 0.0;    ///< centre in M
   double y_m = 0.0;
   double radius_m = 0.0;     ///< estimate
+  double height_m = 0.0;     ///< estimate, of an object; 0: no image has shown its top yet
   double weight = 0.0;       ///< number of images in the average of the position, limited to memory_images
   double bearing_rad = 0.0;  ///< in the newest image that showed it, in frame G
   double range_m = 0.0;      ///< to its nearest ground point in that image; NaN: unknown
@@ -28,7 +30,8 @@ struct Sighting : Visibility {
   [[nodiscard]] Eigen::Vector2d p_M() const { return {x_m, y_m}; }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(seen, missed, visible, known, x_m, y_m, radius_m, weight, bearing_rad, range_m, seen_tick, handle);
+    archive(seen, missed, visible, known, x_m, y_m, radius_m, height_m, weight, bearing_rad, range_m, seen_tick,
+            handle);
   }
 };
 
@@ -65,6 +68,13 @@ void remember_pose(std::int64_t tick, const PlanarPose& X_MH, ObjectTrackerState
 /// for the object, and for the zone, of its colour that is visible already.
 void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
                            ObjectTrackerState& state);
+
+/// [m] height of the upright object of this blob. If the image cuts its top off, this is a lower bound. 0: the range is
+/// unknown. The error is that of the head's pitch, 0.02 m for a degree at 1 m.
+[[nodiscard]] double seen_height_m(const RobotModel& robot, const msg::Blob& blob);
+
+/// Averages the heights of the objects over the images, for the blobs that update_object_tracker takes for them.
+void measure_heights(const RobotModel& robot, const msg::ObjectPercepts& percepts, ObjectTrackerState& state);
 
 /// Forgets the places of objects and zones that the map has given up: their landmark is gone, and the map has no other
 /// one there.

@@ -104,7 +104,7 @@ class Drop : public StatefulTask<DropState> {
       enter(input, kOver);
     }
     output.phase = state_.phase == kApproach ? "approach" : "over the zone";
-    const double period_s = gait_period_s(input.config.carry);
+    const double period_s = gait_period_s(present_gait(input.config, grip));
     const double now_s = input.tick.time_s();
     const Eigen::Vector2d p_HO = input.grip_sense.held_object_H(input.body, grip.radius_m);
     state_.object.observe(now_s, input.X_MH.to_parent(p_HO), period_s);
@@ -121,7 +121,7 @@ class Drop : public StatefulTask<DropState> {
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
-    const Gait& gait = d.norm() > config.slow_m ? input.config.carry : config.gait;
+    const Gait gait = gentle(d.norm() > config.slow_m ? input.config.carry : config.gait, input.config, grip);
     undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
     if (state_.phase_s > config.approach_timeout_s)
@@ -133,9 +133,10 @@ class Drop : public StatefulTask<DropState> {
   }
 
   void stop(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    constexpr double kSlides_s = 0.5;  // the wave fades, and the object with it, within this time
     output.phase = "stop";
     stand(grip, output);
-    if (state_.phase_s < 1.0) return;
+    if (state_.phase_s < kSlides_s) return;
     grip.carrying = false;  // on purpose: no loss is reported
     enter(input, kOpen);
   }
@@ -164,7 +165,7 @@ class Drop : public StatefulTask<DropState> {
     const DropConfig& config = input.config.drop;
     output.phase = "back off";
     const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
-    undulate_on(config.back, 0.0, -1.0, shape, input.grip_sense.yaw_joint_count(), output);
+    undulate_on(gentle(config.back, input.config, grip), 0.0, -1.0, shape, input.grip_sense.yaw_joint_count(), output);
     if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s)
       enter(input, kStraighten);
   }

@@ -31,7 +31,7 @@ class FollowLine : public StatefulTask<FollowLineState> {
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const NavigationConfig& config = input.config;
     const std::uint8_t colour = input.parameters.line_colour;
-    const Gait& gait = present_gait(config, grip);
+    const Gait gait = present_gait(config, grip);
     PidGains gains = config.follow_line.steering;
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
     if (input.line) {

@@ -37,7 +37,7 @@ class FollowPath : public StatefulTask<FollowPathState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const auto& config = input.config.follow_path;
-    const Gait& gait = present_gait(input.config, grip);
+    const Gait gait = present_gait(input.config, grip);
     PidGains gains = config.steering;
     if (grip.carrying) gains.limit = input.config.follow_line.carry_limit_1_m;
     advance(input.X_MH.p, state_);

@@ -41,6 +41,7 @@ class Grasp : public StatefulTask<GraspState> {
   }
   void start(const TaskInput& input, Grip& grip) override {
     grip.pregrasped = false;
+    state_.touched_s.fill(1e9);
     if (grip.handle == 0) grip.handle = input.parameters.object_handle;
     state_.before = input.X_MH;
     state_.speed_m_s = input.config.grasp.wrap_speed_m_s;
@@ -55,7 +56,7 @@ class Grasp : public StatefulTask<GraspState> {
 
  private:
   static std::array<double, msg::kMaxJoints> open_u(const TaskInput& input, const Grip& grip) {
-    return input.grip_sense.open_shape(grip.side, input.config.grip.base_angle_rad);
+    return input.grip_sense.open_shape(grip.side, input.grip_sense.open_angle_rad(grip.radius_m));
   }
 
   void wrap(const TaskInput& input, Grip& grip, TaskOutput& output) {
@@ -72,7 +73,7 @@ class Grasp : public StatefulTask<GraspState> {
     const double speed_m_s = state_.slid_m < config.wrap_still_m
                                  ? config.wrap_speed_m_s
                                  : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
-    wrap_round(input.config, input.grip_sense, gait, grip.side, speed_m_s, grip, output);
+    wrap_round(input.grip_sense, gait, grip.side, speed_m_s, grip, output);
     state_.slid_m += speed_m_s * input.tick.dt_s();
     if (input.motion_done && state_.phase_s > 0.2) state_.enter(kSeat);
   }
@@ -80,9 +81,15 @@ class Grasp : public StatefulTask<GraspState> {
   void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "seat";
-    undulate_on(config.seat, 0.0, 1.0, open_u(input, grip), input.grip_sense.yaw_joint_count(), output);
+    undulate_on(gentle(config.seat, input.config, grip), 0.0, 1.0, open_u(input, grip),
+                input.grip_sense.yaw_joint_count(), output);
     if (input.grip_sense.apex_force_n(input.touches) >= config.seat_force_n) state_.seated_s += input.tick.dt_s();
-    if (state_.seated_s >= config.seat_time_s) {
+    count_touching(input);
+    // A large object wedges between the arms before it reaches the middle of the base. It moves with the body all the
+    // same, and the squeeze shows whether it is held.
+    constexpr double kLong_s = 8.0;  // twice the usual time
+    const bool wedged = state_.phase_s > kLong_s && state_.touching >= config.touching_modules;
+    if (state_.seated_s >= config.seat_time_s || wedged) {
       state_.touched_s.fill(1e9);
       state_.enter(kSqueeze);
     } else if (state_.phase_s > config.seat_timeout_s) {
@@ -108,7 +115,8 @@ class Grasp : public StatefulTask<GraspState> {
     squeeze_u(input.config, input.grip_sense, grip.side, grip, output);
     const double torque_nm = input.grip_sense.largest_closing_nm(input.joints, grip.side);
     count_touching(input);
-    const bool firm = torque_nm >= config.squeeze_torque_nm && state_.touching >= config.touching_modules;
+    const bool settled = state_.phase_s >= config.squeeze_settle_s;  // the wave of the seat loads the joints, too
+    const bool firm = settled && torque_nm >= config.squeeze_torque_nm && state_.touching >= config.touching_modules;
     const bool closed = input.motion_done && state_.phase_s > 0.5;
     if (!firm && !closed) return;
     if (!firm && ++state_.squeezes < config.squeeze_attempts) {
@@ -116,7 +124,7 @@ class Grasp : public StatefulTask<GraspState> {
       state_.enter(kSeat);
       return;
     }
-    grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip.side);
+    grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip);
     input.grip_sense.hold_starts(grip);
     state_.enter(kCheck);
   }
@@ -125,7 +133,8 @@ class Grasp : public StatefulTask<GraspState> {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
     // The robot drives with the gait for carrying: the base pushes an object that is inside the U, and so touches it.
-    undulate_on(input.config.carry, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
+    undulate_on(gentle(input.config.carry, input.config, grip), 0.0, 1.0, grip.shape_rad,
+                input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input);
     const bool lost = input.grip_sense.lost(input.joints, input.touches, input.tick.dt_s(), grip);

@@ -24,19 +24,20 @@ struct PregraspState : PhaseState {
   double course_rad = 0.0;  ///< heading of the passing line in M
   Eigen::Vector2d p_MO{0.0, 0.0};
   double radius_m = 0.085;
-  double past_m = 0.0;  ///< distance by which the head must pass the object's centre
-  int attempts = 0;     ///< touch movements so far
-  int misses = 0;       ///< attempts without a touch
-  bool felt = false;    ///< the present attempt touched the object
-  bool deep = false;    ///< the object lies between deep_min_m and deep_max_m along the body
-  PlanarPose rest;      ///< the head before the touch movement
-  int bend_joint = 0;   ///< first of the yaw joints that bend in the touch movement
+  double height_m = 0.0;  ///< of the object; 0: unknown
+  double past_m = 0.0;    ///< distance by which the head must pass the object's centre
+  int attempts = 0;       ///< touch movements so far
+  int misses = 0;         ///< attempts without a touch
+  bool felt = false;      ///< the present attempt touched the object
+  bool deep = false;      ///< the object lies between deep_min_m and deep_max_m along the body
+  PlanarPose rest;        ///< the head before the touch movement
+  int bend_joint = 0;     ///< first of the yaw joints that bend in the touch movement
   SteeringState steering;
   double unseen_s = 0.0;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, past_m, attempts, misses, felt, deep, rest,
-            bend_joint, steering, unseen_s);
+    archive(phase, phase_s, side, course_rad, p_MO.x(), p_MO.y(), radius_m, height_m, past_m, attempts, misses, felt,
+            deep, rest, bend_joint, steering, unseen_s);
   }
 };
 
@@ -62,6 +63,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     state_.p_MO = object.p_M();
     state_.radius_m = object.radius_m;
+    state_.height_m = object.height_m;
     state_.past_m = input.config.pregrasp.past_m;
     state_.side = choose_side(input);
     state_.course_rad = tangent_course(input, state_.side);
@@ -73,6 +75,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     if (state_.phase == kBendAway && object.missed == 0 && input.new_percepts) {
       state_.p_MO = object.p_M();
       state_.radius_m = object.radius_m;
+      state_.height_m = object.height_m;
     }
     output.direction = state_.side > 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
     output.progress = std::min(0.95, 0.2 * state_.phase + 0.1 * state_.attempts);
@@ -226,6 +229,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
       grip.colour = input.parameters.object_colour;
       grip.handle = object_handle(input);
       grip.radius_m = state_.radius_m;
+      grip.height_m = state_.height_m;
       grip.p_MO = state_.p_MO;
       output.emit(msg::kEventObjectPregrasped, grip.colour, grip.handle);
       output.succeed();

@@ -56,7 +56,7 @@ class SearchObject : public StatefulTask<SearchState> {
     }
     // With an object in the U the head cannot turn by itself, so the robot looks around by driving in bends.
     if (grip.carrying) {
-      undulate(input.config.carry, std::sin(0.3 * state_.phase_s), 1.0, grip, output);
+      undulate(present_gait(input.config, grip), std::sin(0.3 * state_.phase_s), 1.0, grip, output);
       output.phase = "drive";
       return;
     }

@@ -1,0 +1,162 @@
+// What tall, narrow and large objects ask for: their height from the image, a gait that does not knock them over, and a
+// U that is wide enough.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "component/data_path.hpp"
+#include "navigation/grip.hpp"
+#include "navigation/motions.hpp"
+#include "navigation/object_tracker.hpp"
+
+namespace constrictor {
+namespace {
+
+class ObjectShape : public ::testing::Test {
+ protected:
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  NavigationConfig config;
+  GripSense grip_sense{robot, config.grip};
+
+  /// [pixel] row of a point straight ahead, by the angles at the camera.
+  [[nodiscard]] double row(double ahead_m, double height_m) const {
+    const CameraModel& camera = robot.camera;
+    const double focal = 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad);
+    const double up_rad = std::atan2(height_m - robot.module_radius_m - camera.p_HC.z(), ahead_m - camera.p_HC.x());
+    return 0.5 * camera.height - focal * std::tan(up_rad + camera.tilt_rad);
+  }
+  /// A cylinder straight ahead, as the camera on a level head sees it.
+  [[nodiscard]] msg::Blob cylinder(double range_m, double radius_m, double height_m) const {
+    msg::Blob blob{};
+    blob.colour = msg::kColourGreen;
+    blob.kind = msg::kBlobObject;
+    blob.range_m = range_m;
+    blob.width_m = 2.0 * radius_m;
+    blob.area_fraction = 0.05;
+    const double top = std::min(row(range_m, height_m), row(range_m + 2.0 * radius_m, height_m));
+    blob.cut_top = top < 0.0;
+    blob.u_min = static_cast<std::uint16_t>(robot.camera.width / 2 - 5);
+    blob.u_max = static_cast<std::uint16_t>(robot.camera.width / 2 + 4);
+    blob.v_min = static_cast<std::uint16_t>(std::max(0.0, std::floor(top)));
+    return blob;
+  }
+  static Grip held(double radius_m, double height_m) {
+    Grip grip;
+    grip.carrying = true;
+    grip.side = 1.0;
+    grip.radius_m = radius_m;
+    grip.height_m = height_m;
+    return grip;
+  }
+};
+
+TEST_F(ObjectShape, TheImageShowsTheHeight) {
+  for (const double height_m : {0.05, 0.08, 0.15, 0.23, 0.3}) {
+    for (const double range_m : {0.7, 1.0, 1.5}) {
+      const msg::Blob blob = cylinder(range_m, 0.06, height_m);
+      ASSERT_FALSE(blob.cut_top);
+      EXPECT_NEAR(seen_height_m(robot, blob), height_m, 0.012 * range_m) << "two pixels; range " << range_m;
+    }
+  }
+}
+
+TEST_F(ObjectShape, ATopBeyondTheImageGivesALowerBound) {
+  ObjectTrackerState state;
+  msg::ObjectPercepts percepts{};
+  percepts.blob_count = 1;
+  percepts.blobs[0] = cylinder(0.3, 0.06, 0.3);
+  ASSERT_TRUE(percepts.blobs[0].cut_top);
+  measure_heights(robot, percepts, state);
+  const Sighting& object = state.objects[msg::kColourGreen];
+  EXPECT_GT(object.height_m, 0.1);
+  EXPECT_LT(object.height_m, 0.3);
+  percepts.blobs[0] = cylinder(1.0, 0.06, 0.3);
+  for (int i = 0; i < 60; ++i) measure_heights(robot, percepts, state);
+  EXPECT_NEAR(object.height_m, 0.3, 0.012);
+  percepts.blobs[0] = cylinder(0.3, 0.06, 0.3);
+  for (int i = 0; i < 60; ++i) measure_heights(robot, percepts, state);
+  EXPECT_NEAR(object.height_m, 0.3, 0.012) << "the nearer view says nothing against it";
+}
+
+// A cylinder on a cart: gravity turns it back about its edge, inertia turns it over.
+TEST_F(ObjectShape, AnObjectTipsWhenInertiaTurnsItOverItsEdge) {
+  for (const auto& [radius_m, height_m] : {std::pair{0.05, 0.23}, {0.085, 0.15}, {0.1, 0.08}}) {
+    const double mass_kg = 0.4;
+    const double acceleration_m_s2 = tipping_acceleration_m_s2(held(radius_m, height_m));
+    const double back_nm = mass_kg * 9.81 * radius_m;
+    const double over_nm = mass_kg * acceleration_m_s2 * 0.5 * height_m;
+    EXPECT_NEAR(back_nm, over_nm, 1e-12);
+  }
+  EXPECT_TRUE(std::isinf(tipping_acceleration_m_s2(held(0.085, 0.0)))) << "the height is unknown";
+}
+
+// The lateral path of a sine whose heading has this amplitude, differentiated twice by numbers.
+TEST_F(ObjectShape, TheLateralAccelerationIsThatOfTheWave) {
+  const Gait gait{1.1, 0.3, 1.07};
+  const auto aside_m = [&](double time_s) {
+    double sum_m = 0.0;  // of heading x step along the body, from the wave's crest on
+    for (int i = 0; i < 1000; ++i)
+      sum_m += gait.amplitude_rad * std::cos(2.0 * M_PI * (i + 0.5) * 1e-3 * gait.frequency_hz * time_s) *
+               gait.frequency_hz * time_s * gait.wavelength_m * 1e-3;
+    return sum_m;
+  };
+  double largest = 0.0;
+  for (double t = 0.05; t < 1.0; t += 0.005)
+    largest = std::max(largest, std::abs(aside_m(t + 1e-3) - 2.0 * aside_m(t) + aside_m(t - 1e-3)) / 1e-6);
+  EXPECT_NEAR(lateral_acceleration_m_s2(gait), largest, 0.01 * largest);
+}
+
+TEST_F(ObjectShape, TheArmsMoveMoreGentlyAroundWhatFallsOverEasily) {
+  const Gait& carry = config.carry;
+  const double usual_m_s2 = lateral_acceleration_m_s2(carry);
+  EXPECT_EQ(lateral_acceleration_m_s2(gentle(carry, config, held(0.085, 0.15))), usual_m_s2)
+      << "the object of the case study does not fall over";
+  double before_m_s2 = usual_m_s2;
+  for (const double height_m : {0.2, 0.25, 0.3}) {
+    const Grip grip = held(0.05, height_m);
+    const Gait slower = gentle(carry, config, grip);
+    EXPECT_LT(lateral_acceleration_m_s2(slower), before_m_s2);
+    EXPECT_NEAR(lateral_acceleration_m_s2(slower), config.grip.tipping_share * tipping_acceleration_m_s2(grip), 1e-9);
+    EXPECT_GE(slower.amplitude_rad, 0.4 - 1e-9) << "a smaller wave slips";
+    before_m_s2 = lateral_acceleration_m_s2(slower);
+    EXPECT_EQ(lateral_acceleration_m_s2(present_gait(config, grip)), before_m_s2);
+  }
+  Grip empty = held(0.05, 0.3);
+  empty.carrying = false;
+  EXPECT_EQ(lateral_acceleration_m_s2(present_gait(config, empty)), lateral_acceleration_m_s2(config.travel));
+}
+
+// The middle of a link between two base joints touches the object when the joints have closed.
+TEST_F(ObjectShape, TheUOpensWiderForLargeObjects) {
+  const double link_m = 2.0 * robot.module_length_m;
+  EXPECT_EQ(grip_sense.open_angle_rad(0.05), config.grip.base_angle_rad);
+  double before_rad = config.grip.base_angle_rad;
+  for (const double radius_m : {0.09, 0.095, 0.1, 0.105}) {
+    const double open_rad = grip_sense.open_angle_rad(radius_m);
+    EXPECT_LT(open_rad, before_rad);
+    const double closed_rad = open_rad + config.grip.closing_rad;
+    EXPECT_NEAR(0.5 * link_m / std::tan(0.5 * closed_rad), radius_m + robot.module_radius_m, 1e-9);
+    before_rad = open_rad;
+  }
+  EXPECT_EQ(grip_sense.open_angle_rad(grip_sense.largest_radius_m()), config.grip.widest_angle_rad);
+}
+
+TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
+  const Grip grip = held(0.11, 0.15);
+  TaskOutput output;
+  squeeze_u(config, grip_sense, grip.side, grip, output);
+  const auto first = static_cast<std::size_t>(config.grip.base_first_joint);
+  EXPECT_EQ(output.desired.shape_rad[first], grip_sense.open_angle_rad(grip.radius_m));
+  EXPECT_LT(output.desired.shape_rad[first], config.grip.base_angle_rad);
+  // Held as it is, the joints beside the base open by a share of what the base has closed.
+  msg::JointState joints{};
+  joints.joint_count = static_cast<std::uint16_t>(robot.joints.size());
+  const std::vector<std::size_t> yaw = robot.yaw_joints();
+  for (std::size_t k = first; k < first + 3; ++k) joints.position_rad[yaw[k]] = output.desired.shape_rad[first];
+  const auto shape = grip_sense.hold_shape(joints, grip);
+  const double closed_rad = 3.0 * config.grip.hold_margin_rad;
+  EXPECT_NEAR(shape[first - 1], -0.5 * config.grip.opening_share * closed_rad, 1e-9);
+}
+
+}  // namespace
+}  // namespace constrictor
