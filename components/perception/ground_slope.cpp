@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "perception/ground_camera.hpp"
+#include "robot/rotation.hpp"
 
 namespace constrictor::perception {
 
@@ -23,7 +24,7 @@ msg::Quaternion GroundSlope::relative_to_ground(const msg::Quaternion& attitude,
   inclined_ = angle_rad() > (inclined_ ? level_rad * 2.0 / 3.0 : level_rad);
   if (!inclined_) return attitude;
   const Eigen::Vector3d normal(x_, y_, std::sqrt(std::max(0.0, 1.0 - x_ * x_ - y_ * y_)));
-  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(normal, Eigen::Vector3d::UnitZ()) *
+  const Eigen::Quaterniond turned = shortest_rotation(normal, Eigen::Vector3d::UnitZ()) *
                                     Eigen::Quaterniond(attitude.w, attitude.x, attitude.y, attitude.z);
   return {turned.w(), turned.x(), turned.y(), turned.z()};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "robot/planar_message.hpp"
+#include "robot/rotation.hpp"
 
 namespace constrictor {
 namespace {
@@ -78,7 +79,7 @@ msg::ImuState Sensors::imu(const World& world, double elapsed_s) {
   ImuTruth truth = world.imu();
   // An inertial unit measures its orientation relative to gravity, which a slope tilts relative to W.
   if (truth.up_W != Eigen::Vector3d::UnitZ())
-    truth.q_WHead = Eigen::Quaterniond::FromTwoVectors(truth.up_W, Eigen::Vector3d::UnitZ()) * truth.q_WHead;
+    truth.q_WHead = shortest_rotation(truth.up_W, Eigen::Vector3d::UnitZ()) * truth.q_WHead;
   if (!started_) {
     started_ = true;
     start_yaw_rad_ = yaw_of(quaternion(truth.q_WHead));

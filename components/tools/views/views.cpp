@@ -10,6 +10,7 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/text.hpp"
 #include "robot/planar_message.hpp"
+#include "robot/rotation.hpp"
 #include "views/foxglove_json.hpp"
 
 namespace constrictor::views {
@@ -114,7 +115,7 @@ json robot(const Newest& newest, std::uint64_t time_ns) {
         cube(pose_of(world.module_poses[i]), size, torque_colour(known ? newest.joints->torque_nm[i] : 0.0)));
   }
   for (const ContactArrow& arrow : contact_arrows(newest)) {
-    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), arrow.force_W_n);
+    const auto q = shortest_rotation(Eigen::Vector3d::UnitX(), arrow.force_W_n);
     list["arrows"].push_back({{"pose",
                                {{"position", point(arrow.p_W.x(), arrow.p_W.y(), arrow.p_W.z())},
                                 {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}}},
