@@ -26,8 +26,10 @@ ChainDynamics::ChainDynamics(const Mechanism& mechanism, const SolverSettings& s
     : Dynamics(mechanism, settings),
       models_(mechanism.joints),
       half_length_m_(mechanism.half_length_m),
+      radius_m_(mechanism.radius_m),
       gravity_m_s2_(mechanism.gravity_m_s2),
-      system_(mechanism.modules.size()) {
+      system_(mechanism.modules.size()),
+      drifts_(mechanism.modules.size()) {
   for (const auto* bodies : {&mechanism.modules, &mechanism.objects}) {
     for (const RigidBody& body : *bodies) {
       BodyMotion& state = bodies_[inertial_.size()];

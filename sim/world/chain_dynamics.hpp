@@ -36,6 +36,7 @@ class ChainDynamics : public Dynamics {
   void prepare_joints(std::span<const ServoRow> rows);
   void prepare_object(std::size_t body);
   void prepare_contacts(std::span<const SolverContact> contacts);
+  [[nodiscard]] Eigen::Vector3d drift_m_s(const SolverContact& contact, std::size_t module) const;
   /// Groups the bodies that touch each other, directly or over others, and solves for each group.
   void solve_groups(std::span<const SolverContact> contacts);
   void integrate();
@@ -50,8 +51,14 @@ class ChainDynamics : public Dynamics {
   std::vector<Inertial> inertial_;
   std::vector<JointModel> models_;
   double half_length_m_;
+  double radius_m_;  ///< of the modules
   Eigen::Vector3d gravity_m_s2_;
   ChainSystem system_;
+  struct Drift {
+    Eigen::Vector3d angular_rad_s2{0.0, 0.0, 0.0};
+    Eigen::Vector3d linear_m_s2{0.0, 0.0, 0.0};  ///< of the centre
+  };
+  std::vector<Drift> drifts_;        ///< accelerations of the modules at constant generalised velocities
   std::vector<std::size_t> groups_;  // of each body: the number of a body in the same group
   std::vector<std::size_t> group_objects_;
   std::vector<std::size_t> group_contacts_;

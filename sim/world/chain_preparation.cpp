@@ -46,6 +46,7 @@ void ChainDynamics::prepare_chain() {
       angular -= w_ahead.cross(rates_rad_s_[k - 1] * a);
       linear += angular.cross(from_joint) + w.cross(w.cross(from_joint));
     }
+    drifts_[k] = {angular, linear};
     const Matrix3d inertia = inertia_W(k);
     const double mass = inertial_[k].mass_kg;
     const Vector3d c = body.position_m - p_WRef;
@@ -87,6 +88,22 @@ void ChainDynamics::prepare_object(std::size_t body) {
       spatial(h * external_[body].torque_nm + inertia * turn, h * (external_[body].force_n + mass * gravity_m_s2_));
 }
 
+// While joints and body turn, a point does not move along the straight line of its velocity: in a step of h it moves by
+// h (v + h/2 a), with the acceleration a that it has at constant generalised velocities. Without the second term a body
+// that rolls would slip a little in each step. The point is the one of the module's axis above the contact, because the
+// surface of a round body rolls on.
+Vector3d ChainDynamics::drift_m_s(const SolverContact& contact, std::size_t module) const {
+  if (module >= module_count()) return Vector3d::Zero();
+  const BodyMotion& body = bodies_[module];
+  const Vector3d normal = module == contact.first ? contact.touch.normal : Vector3d(-contact.touch.normal);
+  const Vector3d on_axis = contact.touch.position_m + radius_m_ * normal - body.position_m;
+  const Vector3d& w = body.angular_velocity_rad_s;
+  const auto& [angular, linear] = drifts_[module];
+  const Vector3d acceleration =
+      linear + w.cross(w.cross(on_axis)) + angular.cross(contact.touch.position_m - body.position_m);
+  return 0.5 * settings_.step_s * acceleration;
+}
+
 void ChainDynamics::prepare_contacts(std::span<const SolverContact> contacts) {
   std::vector<ChainSystem::Contact>& prepared = system_.contacts();
   prepared.clear();
@@ -99,6 +116,8 @@ void ChainDynamics::prepare_contacts(std::span<const SolverContact> contacts) {
       if (contact.second != kFixed)
         row.on_second.col(i) = at_point(contact.touch.position_m - reference(contact.second), direction);
     }
+    row.drift_m_s =
+        row.law.frame().transpose() * (drift_m_s(contact, contact.first) - drift_m_s(contact, contact.second));
   }
 }
 

@@ -55,7 +55,7 @@ void ChainSystem::begin(bool with_chain, std::span<const std::size_t> objects) {
   for (const Joint& joint : joints_) rates_before_rad_s_.push_back(joint.rate_rad_s);
   for (const std::size_t index : active_) {
     Contact& contact = contacts_[index];
-    contact.velocity_m_s = contact.on_first.transpose() * bodies_[contact.first].velocity;
+    contact.velocity_m_s = contact.drift_m_s + contact.on_first.transpose() * bodies_[contact.first].velocity;
     if (contact.second != kFixed)
       contact.velocity_m_s -= contact.on_second.transpose() * bodies_[contact.second].velocity;
   }

@@ -53,6 +53,7 @@ class ChainSystem {
     Eigen::Matrix<double, 6, 3> on_first;   ///< wrenches of unit forces along the axes of the contact's frame
     Eigen::Matrix<double, 6, 3> on_second;  ///< the same about the reference of the second body
     ContactLaw law;
+    Eigen::Vector3d drift_m_s{0.0, 0.0, 0.0};  ///< in the contact's frame: added to the velocity that the law sees
     Eigen::Vector3d velocity_m_s{0.0, 0.0, 0.0};
     Eigen::Vector3d change_m_s{0.0, 0.0, 0.0};
     Eigen::Vector3d force_n{0.0, 0.0, 0.0};

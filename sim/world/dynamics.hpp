@@ -32,6 +32,7 @@ struct Mechanism {
   std::vector<RigidBody> modules;  ///< straight, all joints at the angle 0
   std::vector<JointModel> joints;  ///< joint i is between the modules i and i + 1
   double half_length_m = 0.0;      ///< from the centre of a module to each of its joints, along its x axis
+  double radius_m = 0.0;           ///< of the modules, which are capsules
   std::vector<RigidBody> objects;
   Eigen::Vector3d gravity_m_s2{0.0, 0.0, -9.81};  ///< in W
 };

@@ -55,6 +55,7 @@ Mechanism World::mechanism() const {
   Mechanism mechanism;
   mechanism.joints = robot_.joints;
   mechanism.half_length_m = 0.5 * robot_.module_length_m;
+  mechanism.radius_m = robot_.module_radius_m;
   mechanism.gravity_m_s2 = scenario_.gravity_m_s2;
   dMass mass;
   dMassSetCapsuleTotal(&mass, robot_.module_mass_kg, 1, robot_.module_radius_m, robot_.module_length_m);

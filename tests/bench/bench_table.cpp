@@ -25,7 +25,7 @@ const std::map<std::string, double> kBudgets = {{"physics", 2.0},  {"camera", 0.
 const std::map<std::string, double> kExponents = {
     {"modules", 1.2}, {"members", 1.1}, {"objects", 1.1}, {"columns", 2.1}};
 /// The benchmark of bench_world with the default settings: one period of control, 20 ms.
-const std::string kReference = "undulate/engine:1/step_us:2000/iterations:50/contacts:2/iterations:430";
+const std::string kReference = "undulate/engine:1/step_us:4000/iterations:50/contacts:2/iterations:430";
 
 std::vector<json> results_of(const fs::path& file) {
   std::ifstream stream(file);

@@ -8,7 +8,7 @@
 
 namespace constrictor {
 
-inline constexpr double kStep_s = 0.002;  // as SolverSettings
+inline constexpr double kStep_s = 0.002;
 inline constexpr int kSteps = 10;
 inline constexpr double kTick_s = kSteps * kStep_s;
 
