@@ -19,13 +19,13 @@ TEST_F(MissionRun, NineProcessesFollowTheLineToItsEndByCamera) {
   for (const auto& process : report_["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
 }
 
-// The bend is sharper than the snake can follow: 109 degrees with a radius of 0.2 m.
+// The bend is sharper than the snake can follow: 115 degrees with a radius of 0.2 m.
 TEST_F(MissionRun, FindsTheLineAgainAfterLosingItBehindASharpBend) {
   const std::string bend = scenario(
       "name: sharp_bend\nmission: {sequence: [], line_colour: blue}\nline:\n  colour: blue\n  width_m: 0.05\n  "
       "begin_m: [0.3, 0.0]\n  segments:\n    - {length_m: "
       "2.0}\n"
-      "    - {length_m: 0.42, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
+      "    - {length_m: 0.4, curvature_1_m: 5.0}\n    - {length_m: 3.0}\n"
       "start: {frame: line_begin, position_m: [-0.3, 0.0], yaw_rad: 0.0}\nnoise: {sensors: true, camera_sd: 0.01}\n");
   ASSERT_NO_FATAL_FAILURE(succeeds(bend, 40.0));
   const double lost_s = event_s("line_lost");
