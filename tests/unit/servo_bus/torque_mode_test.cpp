@@ -36,20 +36,20 @@ TEST_F(DrivenRobot, ATorqueTurnsItsJointInItsDirection) {
 TEST_F(DrivenRobot, TheServoIsAskedForTheCurrentOfTheTorqueAndForAGoalAhead) {
   start();
   ticks(10);
-  command_ = push(4, 1.0);
+  command_ = push(4, 0.8);
   ticks(2);
   for (int i = 0; i < 20; ++i) {
     ticks(1);
     const double measured_rad = run_->latest(topics::kJointState)->position_rad[4];
     const auto& servo = bench_.robot->servo(4);
     const double goal_rad = plan_.joints[4].angle_rad(plan_.model, servo.get("goal_position"));
-    EXPECT_NEAR(static_cast<double>(servo.get("goal_current")) * kNmPerUnit, 1.0, kNmPerUnit);
+    EXPECT_NEAR(static_cast<double>(servo.get("goal_current")) * kNmPerUnit, 0.8, kNmPerUnit);
     EXPECT_NEAR(goal_rad, measured_rad + 4.0 * 0.02, 2 * M_PI / 4096) << "as far as the joint can come in one tick";
     EXPECT_EQ(servo.get("profile_velocity"), 0);
     EXPECT_EQ(servo.get("operating_mode"), 5) << "the mode is in the EEPROM, and changing it needs the torque off";
     EXPECT_EQ(servo.get("torque_enable"), 1);
     EXPECT_EQ(bench_.robot->servo(5).get("goal_current"), 0) << "the others are free";
-    EXPECT_LE(std::abs(bench_.robot->world().joint(4).step_torque_nm()), 1.0 + 0.01);
+    EXPECT_LE(std::abs(bench_.robot->world().joint(4).step_torque_nm()), 0.8 + 0.01);
   }
 }
 
