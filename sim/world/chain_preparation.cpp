@@ -1,6 +1,4 @@
 // The part of ChainDynamics that sets the equations of a step up.
-#include <algorithm>
-
 #include "sim/world/chain_dynamics.hpp"
 
 namespace constrictor {
@@ -14,11 +12,6 @@ using Eigen::Vector3d;
 Vector3d gyroscopic_change(const Vector3d& inertia, const Matrix3d& R_WB, const Vector3d& w_W, double step_s) {
   const Vector3d w = R_WB.transpose() * w_W;
   const Vector3d momentum = inertia.cwiseProduct(w);
-  const auto skew = [](const Vector3d& v) {
-    Matrix3d matrix;
-    matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return matrix;
-  };
   const Matrix3d J = Matrix3d(inertia.asDiagonal()) + step_s * (skew(w) * inertia.asDiagonal() - skew(momentum));
   return R_WB * Vector3d(-J.inverse() * (step_s * w.cross(momentum)));
 }

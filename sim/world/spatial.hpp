@@ -18,6 +18,13 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
   return vector;
 }
 
+/// The matrix that turns a vector u into v x u.
+[[nodiscard]] inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
 /// The wrench of a force at the point `p` (from the reference). Its dot product with a spatial velocity is the power;
 /// so for a unit force it is the velocity of the body at that point in the direction of the force.
 [[nodiscard]] inline Vector6d at_point(const Eigen::Vector3d& p, const Eigen::Vector3d& force) {
@@ -32,9 +39,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 /// The matrix that turns a spatial velocity into the spatial momentum of a body whose centre is at `c`.
 [[nodiscard]] inline Matrix6d spatial_inertia(double mass_kg, const Eigen::Matrix3d& inertia_kg_m2,
                                               const Eigen::Vector3d& c) {
-  Eigen::Matrix3d mc;
-  mc << 0.0, -c.z(), c.y(), c.z(), 0.0, -c.x(), -c.y(), c.x(), 0.0;
-  mc *= mass_kg;
+  const Eigen::Matrix3d mc = mass_kg * skew(c);
   Matrix6d inertia;
   inertia.topLeftCorner<3, 3>() =
       inertia_kg_m2 + mass_kg * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
