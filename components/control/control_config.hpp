@@ -87,7 +87,7 @@ struct ControlConfig : ParameterSet {
                                   "Speed of the squeeze, summed over the joints of the base");
   double opening_share = add(opening_share, "squeeze.opening_share", 0.5, "", {0.0, 1.0}, kWhileRunning,
                              "Share of the squeeze by which the two joints beside the base open, in total");
-  double speed_share = add(speed_share, "safety.speed_share", 1.0, "", {0.01, 1.0}, kAtStart,
+  double speed_share = add(speed_share, "safety.speed_share", 0.8, "", {0.01, 1.0}, kAtStart,
                            "Share of the servos' maximum speed that control uses");
   std::int64_t hold_after_ticks =
       add(hold_after_ticks, "safety.hold_after_ticks", 10, "ticks", {2, 1000}, kAtStart,

@@ -8,6 +8,8 @@
 namespace constrictor {
 namespace {
 
+constexpr double kAgreement_rad = 0.1;  // a joint this close to its setpoint follows it: it does not jump
+
 double limit_nm(const JointModel& joint, double wanted_nm) {
   return std::isfinite(wanted_nm) ? std::clamp(wanted_nm, 0.0, joint.max_torque_nm) : joint.max_torque_nm;
 }
@@ -15,6 +17,16 @@ double limit_nm(const JointModel& joint, double wanted_nm) {
 }  // namespace
 
 JointLimiter::JointLimiter(const RobotModel& robot, double speed_share) : robot_(robot), speed_share_(speed_share) {}
+
+std::optional<double> JointLimiter::before_rise(std::size_t j, double limit_nm, double measured_rad,
+                                                const LimiterState& state) const {
+  const double before_nm = state.torque_limit_nm[j];
+  const double apart_rad = state.position_rad[j] - measured_rad;
+  if (!(limit_nm > before_nm && std::abs(apart_rad) > kAgreement_rad)) return std::nullopt;
+  const double reach_rad = before_nm / robot_.joints[j].position_gain_nm_rad;
+  if (std::abs(apart_rad) <= reach_rad) return std::nullopt;
+  return clamp_position(robot_.joints[j], measured_rad + std::copysign(reach_rad, apart_rad));
+}
 
 msg::JointCommand JointLimiter::limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s,
                                       LimiterState& state) const {
@@ -26,13 +38,19 @@ msg::JointCommand JointLimiter::limit(const Setpoints& wanted, const JointArray&
     if (!state.started)
       state.position_rad[j] = clamp_position(joint, std::isfinite(measured_rad[j]) ? measured_rad[j] : 0.0);
     const double previous_rad = state.position_rad[j];
-    const double target_rad =
+    double target_rad =
         std::isfinite(wanted.position_rad[j]) ? clamp_position(joint, wanted.position_rad[j]) : previous_rad;
+    double torque_limit_nm = limit_nm(joint, wanted.torque_limit_nm[j]);
+    if (!state.started) state.torque_limit_nm[j] = torque_limit_nm;
+    if (const auto back_rad = before_rise(j, torque_limit_nm, measured_rad[j], state)) {
+      target_rad = *back_rad;
+      torque_limit_nm = state.torque_limit_nm[j];
+    }
     const double step_rad = speed_share_ * joint.max_speed_rad_s * dt_s;
     const double position_rad = std::clamp(target_rad, previous_rad - step_rad, previous_rad + step_rad);
     command.position_rad[j] = position_rad;
     command.velocity_rad_s[j] = (position_rad - previous_rad) / dt_s;
-    command.torque_limit_nm[j] = limit_nm(joint, wanted.torque_limit_nm[j]);
+    command.torque_limit_nm[j] = state.torque_limit_nm[j] = torque_limit_nm;
     state.position_rad[j] = position_rad;
   }
   state.started = true;
@@ -57,6 +75,7 @@ msg::JointCommand JointLimiter::relax(const JointArray& measured_rad, LimiterSta
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     if (std::isfinite(measured_rad[j])) state.position_rad[j] = clamp_position(robot_.joints[j], measured_rad[j]);
     command.position_rad[j] = state.position_rad[j];
+    state.torque_limit_nm[j] = 0.0;
   }
   state.started = true;
   return command;

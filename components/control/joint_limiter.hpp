@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "constrictor/messages.hpp"
 #include "robot/robot_model.hpp"
@@ -22,11 +23,13 @@ struct Setpoints {
 
 struct LimiterState {
   bool started = false;
-  JointArray position_rad{};  ///< last setpoint
+  JointArray position_rad{};     ///< last setpoint
+  JointArray torque_limit_nm{};  ///< last limit
   template <class Archive>
   void serialize(Archive& archive) {
     archive(started);
     for (double& p : position_rad) archive(p);
+    for (double& limit : torque_limit_nm) archive(limit);
   }
 };
 
@@ -34,12 +37,16 @@ struct LimiterState {
 /// the measured posture, so that the body does not jump when control starts. Where a demanded position is not finite,
 /// the joint keeps its setpoint; where a torque limit is not finite, the robot's own limit applies; where a torque is
 /// not finite, the joint exerts none.
+///
+/// A low torque limit can keep a joint away from its setpoint. The joint would jump there when the limit rises, faster
+/// than the robot's limit. Its setpoint therefore first returns to the angle at which the servo exerts the old limit,
+/// and the limit rises when the setpoint has arrived, or is within 0.1 rad of the joint.
 class JointLimiter {
  public:
   /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1.
   JointLimiter(const RobotModel& robot, double speed_share);
 
-  /// `measured_rad`: joint positions, used in the first call and in torque mode. `dt_s` > 0.
+  /// `measured_rad`: joint positions, used in the first call, in torque mode and when a torque limit rises. `dt_s` > 0.
   msg::JointCommand limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s,
                           LimiterState& state) const;
   /// The command that exerts torques; the setpoints follow the measured posture.
@@ -48,6 +55,10 @@ class JointLimiter {
   msg::JointCommand relax(const JointArray& measured_rad, LimiterState& state) const;
 
  private:
+  /// Where the setpoint of joint `j` must return before its torque limit rises to `limit_nm`. Nothing if it need not.
+  [[nodiscard]] std::optional<double> before_rise(std::size_t j, double limit_nm, double measured_rad,
+                                                  const LimiterState& state) const;
+
   const RobotModel& robot_;
   double speed_share_;
 };

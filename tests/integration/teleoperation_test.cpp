@@ -248,7 +248,7 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
 }
 
 TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
-  Process launcher = start({"run", "case_study", "--in-process", "--pace", "1x", "--report", (dir_ / "r").string()});
+  Process launcher = start({"run", "case_study", "--in-process", "--pace", "4x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Watcher watcher(domain());
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityPlanner));

@@ -171,7 +171,7 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
     });
   if (is("too_fast"))
     command([](msg::JointCommand& c) {
-      if (c.position_rad[6] > 1.1) c.position_rad[6] = 1.5;
+      if (c.position_rad[6] > 0.9) c.position_rad[6] = 1.5;
       return true;
     });
   if (is("strong"))

@@ -58,6 +58,41 @@ TEST_F(JointLimiterTest, RandomSetpointsNeverExceedTheLimitsOfTheRobot) {
   }
 }
 
+TEST_F(JointLimiterTest, AJointKeptAwayFromItsSetpointDoesNotJumpWhenItsTorqueLimitRises) {
+  constexpr double kWeak_nm = 1.5;
+  LimiterState state;
+  Setpoints wanted;
+  wanted.position_rad[4] = 0.8;  // an object keeps the joint at 0
+  wanted.torque_limit_nm[4] = kWeak_nm;
+  for (int tick = 0; tick < 50; ++tick) limiter.limit(wanted, {}, 0.02, state);
+  ASSERT_NEAR(state.position_rad[4], 0.8, 1e-12);
+  const JointModel& joint = robot.joints[4];
+  wanted.torque_limit_nm[4] = joint.max_torque_nm;
+  double previous_rad = 0.8;
+  for (int tick = 0; tick < 50; ++tick) {
+    const auto command = limiter.limit(wanted, {}, 0.02, state);
+    ASSERT_LE(std::abs(command.position_rad[4] - previous_rad), joint.max_speed_rad_s * 0.02 + 1e-12);
+    previous_rad = command.position_rad[4];
+    if (command.torque_limit_nm[4] > kWeak_nm) {
+      EXPECT_LE(command.position_rad[4], 0.1 + joint.max_speed_rad_s * 0.02);
+      EXPECT_GE(command.position_rad[4], kWeak_nm / joint.position_gain_nm_rad);
+      return;
+    }
+  }
+  ADD_FAILURE() << "the limit did not rise";
+}
+
+TEST_F(JointLimiterTest, AJointThatFollowsItsSetpointGetsItsTorqueAtOnce) {
+  LimiterState state;
+  Setpoints wanted;
+  JointArray measured{};
+  wanted.position_rad[4] = measured[4] = 0.05;
+  wanted.torque_limit_nm[4] = 1.5;
+  limiter.limit(wanted, measured, 0.02, state);
+  wanted.torque_limit_nm[4] = 5.0;
+  EXPECT_EQ(limiter.limit(wanted, measured, 0.02, state).torque_limit_nm[4], 5.0);
+}
+
 TEST_F(JointLimiterTest, VelocityIsTheRateOfTheSetpoint) {
   LimiterState state;
   Setpoints wanted;
