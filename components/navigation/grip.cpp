@@ -97,14 +97,16 @@ double GripSense::held_aside_m(const Grip& grip) const {
   return held_object_H(planar_body(robot_, posture), grip.radius_m).y();
 }
 
-std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip) const {
+std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip,
+                                                          bool feels) const {
   const double side = grip.side;
+  const double margin_rad = feels ? config_.hold_margin_rad : config_.unfelt_margin_rad;
   const double open_rad = open_angle_rad(grip.radius_m);
   std::array<double, msg::kMaxJoints> shape{};
   double closed_rad = 0.0;
   for (int i = 0; i < config_.base_joints; ++i) {
     const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
-    shape[k] = joints.position_rad[yaw_joints_[k]] + side * config_.hold_margin_rad;
+    shape[k] = joints.position_rad[yaw_joints_[k]] + side * margin_rad;
     closed_rad += shape[k] - side * open_rad;
   }
   // The joints beside the base keep the angle to which the squeeze has opened them, so that the arms are parallel.
@@ -130,8 +132,16 @@ bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& to
   grip.contact_share += share * (touching - grip.contact_share);
   const bool weak = grip.torque_nm < config_.lost_torque_nm && grip.contact_share < config_.lost_contact_share;
   // A large wave loads the base of an empty U, too: without any touch the torque proves nothing.
-  const bool below = weak || grip.contact_share < config_.untouched_share;
-  grip.below_s = below ? grip.below_s + dt_s : 0.0;
+  return count_weak(weak || grip.contact_share < config_.untouched_share, dt_s, grip);
+}
+
+bool GripSense::lost_by_torque(const msg::JointState& joints, double dt_s, Grip& grip) const {
+  grip.torque_nm += -std::expm1(-dt_s / config_.lost_filter_s) * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
+  return count_weak(grip.torque_nm < config_.lost_torque_nm, dt_s, grip);
+}
+
+bool GripSense::count_weak(bool weak, double dt_s, Grip& grip) const {
+  grip.below_s = weak ? grip.below_s + dt_s : 0.0;
   return grip.below_s >= config_.lost_after_s;
 }
 

@@ -65,17 +65,23 @@ class GripSense {
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<PlanarPose>& body, double radius_m) const;
   /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left.
   [[nodiscard]] double held_aside_m(const Grip& grip) const;
-  /// Posture that holds the object, by yaw joint: the measured angles, with the base closed by the hold margin more.
-  [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip) const;
+  /// Posture that holds the object, by yaw joint: the measured angles, with each joint of the base closed by a margin
+  /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object.
+  [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
+                                                               bool feels) const;
 
   /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while.
   bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const;
+  /// The same for a robot that feels no contacts: the torque alone has been too low for a while.
+  bool lost_by_torque(const msg::JointState& joints, double dt_s, Grip& grip) const;
   /// Resets the loss monitor at the beginning of a grasp.
   void hold_starts(Grip& grip) const;
 
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
 
  private:
+  /// Counts the time of a weak hold. True when it has lasted long enough.
+  bool count_weak(bool weak, double dt_s, Grip& grip) const;
   [[nodiscard]] double side_m() const;  ///< length of a link between two base joints
 
   const RobotModel& robot_;

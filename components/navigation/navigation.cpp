@@ -45,6 +45,8 @@ void Navigation::step(const Tick& tick) {
   }
   if (field_.map && field_.map.fresh()) forget_dropped(config_.object, *field_.map, state_.sightings);
 
+  // A robot whose sensors are silent for a while also reports 0 modules; it is still one that feels.
+  state_.feels = state_.feels || body_.contacts->module_count > 0;
   const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);
   const std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);
   const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->accepted && motion_in_->done;
@@ -61,6 +63,7 @@ void Navigation::step(const Tick& tick) {
                   *body_.joints,
                   body,
                   touches,
+                  state_.feels,
                   done};
   take_commands(input);
   take_direct_motions();
@@ -165,10 +168,11 @@ void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
 
 void Navigation::monitor_grip(const TaskInput& input, TaskOutput& output) {
   Grip& grip = state_.grip;
-  if (!grip.carrying || !grip_sense_.lost(input.joints, input.touches, input.tick.dt_s(), grip)) return;
+  if (!grip.carrying || !object_lost(input, grip)) return;
   grip.carrying = false;
   write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle,
-              "the base touches no object, by its touches and its torque");
+              input.feels ? "the base touches no object, by its touches and its torque"
+                          : "the base holds no object, by its torque");
   if (state_.task) end_goal(msg::kGoalAborted, "object grasp lost");
   stand(grip, output);
 }

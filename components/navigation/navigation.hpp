@@ -39,18 +39,19 @@ struct NavigationState {
   std::string method;  ///< control method of the newest motion
   DirectMotionState direct;
   bool blind = false;  ///< the task waits for percepts
+  bool feels = false;  ///< the robot has contact sensors
   ParameterState parameters;
 
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, sightings, motion_id, method, direct, blind, parameters, task != nullptr, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, blind, feels, parameters, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, sightings, motion_id, method, direct, blind, parameters, has_task, bytes);
+    archive(goal, grip, sightings, motion_id, method, direct, blind, feels, parameters, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }

@@ -34,6 +34,9 @@ struct GripConfig : ParameterSet {
           "Share of the closing by which the joints beside the base open; equal to control's squeeze.opening_share");
   double hold_margin_rad = add(hold_margin_rad, "hold_margin_rad", 0.03, "rad", bounds::kAngle, kWhileRunning,
                                "Angle by which the held base joints are commanded to close further");
+  double unfelt_margin_rad =
+      add(unfelt_margin_rad, "unfelt_margin_rad", 0.2, "rad", bounds::kAngle, kWhileRunning,
+          "The same without contact sensors: an object in the U keeps the base at its torque limit");
   double hold_torque_nm = add(hold_torque_nm, "hold_torque_nm", 1.5, "Nm", bounds::kTorque, kAtStart,
                               "Maximum torque of the base joints while the robot carries an object");
   double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
@@ -191,6 +194,8 @@ struct GraspConfig : NavigationSection {
                            "Duration of this force after which the squeeze begins");
   double seat_timeout_s = add(seat_timeout_s, "seat_timeout_s", 20.0, "s", bounds::kTime, kAtStart,
                               "The grasp is given up if the base does not touch the object within this time");
+  double unfelt_seat_s = add(unfelt_seat_s, "unfelt_seat_s", 5.0, "s", bounds::kTime, kWhileRunning,
+                             "Duration of the seat for a robot without contact sensors");
   double squeeze_max_rad = add(squeeze_max_rad, "squeeze_max_rad", 0.9, "rad", bounds::kAngle, kAtStart,
                                "Largest closing angle, summed over the base joints");
   double squeeze_settle_s = add(squeeze_settle_s, "squeeze_settle_s", 1.0, "s", bounds::kTime, kAtStart,

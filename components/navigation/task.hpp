@@ -35,6 +35,7 @@ struct TaskInput {
   const msg::JointState& joints;
   const std::vector<PlanarPose>& body;  ///< modules in the head's frame, head first
   const std::vector<Touch>& touches;    ///< contacts from the side, without the ground's and the robot's own
+  bool feels;                           ///< the robot has contact sensors; otherwise there are never any touches
   bool motion_done;                     ///< control has finished the newest motion
   const msg::Path* path = nullptr;      ///< of the command; only in refusal() and start()
 };

@@ -30,15 +30,19 @@ struct DroppedObject {
   /// where the robot let it go.
   std::uint16_t newest_handle = 0;
   std::int64_t released_tick = -1;  ///< last tick in which the body held the object
+  /// The robot may have pushed the object away from the place where the map still has it. Of several landmarks that may
+  /// be the object and tell where it is, the one that was seen last counts, and one that is outside of its zone by
+  /// three standard deviations tells it, however imprecise it is.
+  bool may_have_moved = false;
 };
 
 /// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
 /// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
 /// an object at the image's border does not tell where its centre is. Of several landmarks that may be the object, the
-/// most precise one counts; without a handle, every object of the colour may be it. The standard deviations of object
-/// and zone are taken into account: the verdict is kOnZone if the object's centre lies inside the zone by one standard
-/// deviation, kOutside if it lies outside by one. `zone_radius_m`: [m] radius of a zone whose radius the map does not
-/// know.
+/// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.
+/// The standard deviations of object and zone are taken into account: the verdict is kOnZone if the object's centre
+/// lies inside the zone by one standard deviation, kOutside if it lies outside by one. `zone_radius_m`: [m] radius of a
+/// zone whose radius the map does not know.
 [[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                                          double zone_radius_m);
 

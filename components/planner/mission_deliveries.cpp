@@ -90,7 +90,7 @@ void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double el
     for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
     constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
     if (!all && object.handle == 0) return false;
-    const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick};
+    const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick, true};
     const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
     const bool outside = view.verdict == Delivery::kOutside && view.offset_m < kNear_m;
     object.outside_s = outside ? object.outside_s + elapsed_s : 0.0;

@@ -192,6 +192,14 @@ void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& want
   } else if (attempt % 2 == 1) {
     move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
   }
+  if (holding() && inputs.pose) {
+    const auto& pose = *inputs.pose;
+    if (const auto away =
+            memory_.standstill.next(pose.x_m, pose.y_m, memory_.active_s, config_.standstill_m, config_.standstill_s)) {
+      move = *away;
+      memory_.search_by_memory = false;
+    }
+  }
   // After a refusal the same move is pointless.
   const bool again =
       refusals().rejected() && move.task == memory_.refusals.task &&

@@ -82,6 +82,7 @@ void MissionPlanner::enter(MissionState state) {
   if (state != memory_.state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
+    memory_.standstill.begin();
   }
   if (state == kGrasp) memory_.direction_known = true;
   if (row_of(state).holding) {

@@ -16,6 +16,7 @@
 #include "planner/mission_state.hpp"
 #include "planner/planner_config.hpp"
 #include "planner/refusals.hpp"
+#include "planner/standstill.hpp"
 
 namespace constrictor {
 
@@ -39,12 +40,6 @@ struct WantedTask {
   std::uint8_t command = msg::kCommandStart;
   std::uint8_t task = msg::kTaskNone;
   msg::TaskParameters parameters{};
-};
-
-/// One move of a search for the line.
-struct Move {
-  std::uint8_t task = msg::kTaskNone;  ///< kTaskRotate or kTaskExplore
-  std::uint8_t direction = msg::kDirectionNone;
 };
 
 /// An object that was seen on its zone. Something may push it off again.
@@ -94,6 +89,7 @@ struct MissionMemory {
   std::uint16_t line_images = 0;
   std::uint16_t searches = 0;                    ///< requests of the two searches so far; selects the next move
   std::uint8_t search_task = msg::kTaskNone;     ///< task of the present search: explore or rotate
+  Standstill standstill;                         ///< of a search with an object
   bool search_by_memory = false;                 ///< its direction comes from the memory of line, object or zone
   std::uint8_t direction = msg::kDirectionNone;  ///< of the last requested rotate or explore
   LineTrail trail;
@@ -110,8 +106,8 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
-            aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick, placed,
-            displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals);
+            standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
+            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals);
   }
 };
 

@@ -61,6 +61,7 @@ msg::JointState Sensors::joints(const World& world) {
 }
 
 void Sensors::contacts(const World& world, msg::ContactState& felt, msg::TouchedState& touched) {
+  if (!robot_.contact_sensors) return;
   felt.module_count = static_cast<std::uint16_t>(world.module_count());
   for (const ModuleContact& contact : world.contacts()) {
     const Eigen::Vector3d force = noisy(contact.force_n, robot_.contact_force_noise_n, contact_random_);

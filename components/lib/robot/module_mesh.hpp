@@ -20,7 +20,7 @@ using MeshTriangle = std::array<Eigen::Vector3d, 3>;
 
 /// The text with which stl_file() begins.
 inline constexpr std::string_view kStlBegin = "a module, written by `constrictor robot export`";
-/// The bytes of a binary STL file. Source: en.wikipedia.org/wiki/STL_(file_format)#Binary.
+/// The bytes of a binary STL file. Source: en.wikipedia.org/wiki/STL_(file_format), section "Binary".
 [[nodiscard]] std::string stl_file(const std::vector<MeshTriangle>& triangles);
 
 }  // namespace constrictor

@@ -102,6 +102,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   Configuration skin = root.section("skin");
   robot.friction_along = skin.number("friction_along", {0.0, 5.0});
   robot.friction_across = skin.number("friction_across", {0.0, 5.0});
+  robot.contact_sensors = skin.flag("contact_sensors", true);
   skin.finish();
 
   robot.camera = read_camera(root.section("camera"));

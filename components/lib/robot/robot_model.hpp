@@ -62,6 +62,7 @@ struct RobotModel {
   // Standard deviations of the sensor noise; 0: no noise.
   double joint_position_noise_rad = 0.0;
   double joint_torque_noise_nm = 0.0;
+  bool contact_sensors = true;  ///< the skin feels contacts; otherwise ContactState.module_count is 0
   double contact_force_noise_n = 0.0;
   double imu_rate_noise_rad_s = 0.0;
   double imu_acceleration_noise_m_s2 = 0.0;

@@ -1,5 +1,6 @@
 // Grasp (Tables IX, X): the body wraps itself round the object beside it, drives on until the base of the U touches the
-// object, squeezes until the torque in the base shows that the object is held, and checks by touch that it is inside.
+// object, squeezes until the torque in the base shows that the object is held, and checks by touch that it is inside. A
+// robot without contact sensors relies on the torque alone.
 #include <algorithm>
 #include <cereal/types/array.hpp>
 #include <cmath>
@@ -88,7 +89,9 @@ class Grasp : public StatefulTask<GraspState> {
     // A large object wedges between the arms before it reaches the middle of the base. It moves with the body all the
     // same, and the squeeze shows whether it is held.
     constexpr double kLong_s = 8.0;  // twice the usual time
-    const bool wedged = state_.phase_s > kLong_s && state_.touching >= config.touching_modules;
+    const bool wedged = state_.phase_s > kLong_s && enough_touches(input);
+    // Without contact sensors, only the squeeze shows whether the object lies in the base.
+    if (!input.feels && state_.phase_s >= config.unfelt_seat_s) state_.seated_s = config.seat_time_s;
     if (state_.seated_s >= config.seat_time_s || wedged) {
       state_.touched_s.fill(1e9);
       state_.enter(kSqueeze);
@@ -108,6 +111,11 @@ class Grasp : public StatefulTask<GraspState> {
     }
   }
 
+  /// As many modules touch as a held object touches; always true for a robot that feels no touch.
+  [[nodiscard]] bool enough_touches(const TaskInput& input) const {
+    return !input.feels || state_.touching >= input.config.grasp.touching_modules;
+  }
+
   void squeeze(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "squeeze";
@@ -116,7 +124,7 @@ class Grasp : public StatefulTask<GraspState> {
     const double torque_nm = input.grip_sense.largest_closing_nm(input.joints, grip.side);
     count_touching(input);
     const bool settled = state_.phase_s >= config.squeeze_settle_s;  // the wave of the seat loads the joints, too
-    const bool firm = settled && torque_nm >= config.squeeze_torque_nm && state_.touching >= config.touching_modules;
+    const bool firm = settled && torque_nm >= config.squeeze_torque_nm && enough_touches(input);
     const bool closed = input.motion_done && state_.phase_s > 0.5;
     if (!firm && !closed) return;
     if (!firm && ++state_.squeezes < config.squeeze_attempts) {
@@ -124,7 +132,7 @@ class Grasp : public StatefulTask<GraspState> {
       state_.enter(kSeat);
       return;
     }
-    grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip);
+    grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip, input.feels);
     input.grip_sense.hold_starts(grip);
     state_.enter(kCheck);
   }
@@ -137,9 +145,9 @@ class Grasp : public StatefulTask<GraspState> {
                 input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input);
-    const bool lost = input.grip_sense.lost(input.joints, input.touches, input.tick.dt_s(), grip);
+    const bool lost = object_lost(input, grip);
     if (state_.phase_s < config.check_s && !lost) return;
-    if (state_.touching >= config.touching_modules && !lost) {
+    if (enough_touches(input) && !lost) {
       grip.carrying = true;
       output.emit(msg::kEventObjectGrasped, grip.colour, grip.handle);
       output.succeed();

@@ -1,7 +1,7 @@
 // Pregrasp (Tables VII, VIII): the snake bends away until the object leaves the view and passes beside it in forward
 // steps. After each step it bends the joints behind the object, so that the part of the body in front of them swings
 // against the object and touches it. The task ends when the object lies beside the body where the body can be wrapped
-// round it.
+// round it. A robot without contact sensors makes no such movement.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -185,6 +185,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     bend_head(0.0, config.touch_rate_rad_s, grip, output);
     if (state_.phase_s < config.settle_s || !input.motion_done) return;
     state_.rest = input.X_MH;
+    if (!input.feels) return judge_unfelt(input, grip, output);
     state_.bend_joint = first_joint_behind(input, -state_.rest.to_local(state_.p_MO).x());
     state_.felt = false;
     state_.deep = false;
@@ -223,18 +224,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     bend_head(0.0, config.touch_rate_rad_s, grip, output);
     if (!input.motion_done || state_.phase_s < 0.2) return;
     ++state_.attempts;
-    if (state_.deep) {
-      grip.pregrasped = true;
-      grip.side = state_.side;
-      grip.colour = input.parameters.object_colour;
-      grip.handle = object_handle(input);
-      grip.radius_m = state_.radius_m;
-      grip.height_m = state_.height_m;
-      grip.p_MO = state_.p_MO;
-      output.emit(msg::kEventObjectPregrasped, grip.colour, grip.handle);
-      output.succeed();
-      return;
-    }
+    if (state_.deep) return succeed(input, grip, output);
     if (state_.attempts >= config.attempts) {
       lose(input, grip, output, "the object was not touched");
       return;
@@ -247,6 +237,29 @@ class Pregrasp : public StatefulTask<PregraspState> {
         state_.past_m = std::max(state_.past_m, past_m(input)) + kStep_m;
     }
     enter(kAdvance);
+  }
+
+  /// A robot without contact sensors relies on the place at which it has seen the object.
+  void judge_unfelt(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    const PregraspConfig& config = input.config.pregrasp;
+    const double along_m = state_.rest.to_local(state_.p_MO).x();
+    if (along_m >= config.deep_min_m && along_m <= config.deep_max_m) return succeed(input, grip, output);
+    if (along_m < config.deep_min_m || ++state_.attempts >= config.attempts)
+      return lose(input, grip, output, "the object does not lie beside the body");
+    state_.past_m = std::max(state_.past_m, past_m(input)) + kStep_m;
+    enter(kAdvance);
+  }
+
+  void succeed(const TaskInput& input, Grip& grip, TaskOutput& output) {
+    grip.pregrasped = true;
+    grip.side = state_.side;
+    grip.colour = input.parameters.object_colour;
+    grip.handle = object_handle(input);
+    grip.radius_m = state_.radius_m;
+    grip.height_m = state_.height_m;
+    grip.p_MO = state_.p_MO;
+    output.emit(msg::kEventObjectPregrasped, grip.colour, grip.handle);
+    output.succeed();
   }
 
   /// The handle that the goal names, otherwise the handle of the object seen here.

@@ -153,9 +153,14 @@ TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
   joints.joint_count = static_cast<std::uint16_t>(robot.joints.size());
   const std::vector<std::size_t> yaw = robot.yaw_joints();
   for (std::size_t k = first; k < first + 3; ++k) joints.position_rad[yaw[k]] = output.desired.shape_rad[first];
-  const auto shape = grip_sense.hold_shape(joints, grip);
+  const auto shape = grip_sense.hold_shape(joints, grip, true);
   const double closed_rad = 3.0 * config.grip.hold_margin_rad;
   EXPECT_NEAR(shape[first - 1], -0.5 * config.grip.opening_share * closed_rad, 1e-9);
+  // A robot that feels no touches closes further, so that its torque stays at the limit.
+  const auto unfelt = grip_sense.hold_shape(joints, grip, false);
+  const double farther_rad = config.grip.unfelt_margin_rad - config.grip.hold_margin_rad;
+  EXPECT_NEAR(grip.side * (unfelt[first] - shape[first]), farther_rad, 1e-9);
+  EXPECT_GT(farther_rad * robot.joints[yaw[first]].position_gain_nm_rad, config.grip.hold_torque_nm);
 }
 
 }  // namespace

@@ -152,6 +152,24 @@ TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   EXPECT_LT(untouched_s, 6.0);
 }
 
+TEST_F(TouchTest, ARobotWithoutContactSensorsNoticesTheLossByTheTorque) {
+  Grip grip;
+  grip.side = -1.0;
+  grip.carrying = true;
+  grip_sense.hold_starts(grip);
+  msg::JointState u = u_joints(-1.0);
+  const auto load = [&u](double torque_nm) {
+    for (int j : {10, 12, 14}) u.torque_nm[j] = -torque_nm;
+  };
+  load(1.4);
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost_by_torque(u, 0.02, grip));
+  load(0.1);
+  double time_s = 0.0;
+  while (!grip_sense.lost_by_torque(u, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  EXPECT_GT(time_s, config.lost_after_s);
+  EXPECT_LT(time_s, 5.0);
+}
+
 TEST_F(TouchTest, ThePathErrorIsTheLateralPositionOfThePathAhead) {
   const PlanarPose X_MH{{0.0, -0.2}, 0.0};
   EXPECT_NEAR(path_error_m(X_MH, {5.0, 0.0}, 0.0, 0.3), 0.2, 1e-12);       // path to the left

@@ -48,6 +48,11 @@ TEST(RobotModel, MambaHasTheSizesOfTheStudy) {
   EXPECT_EQ(robot.joints[0].stiffness_nm_rad, 0.0);
 }
 
+TEST(RobotModel, ASkinWithoutContactSensorsIsStated) {
+  EXPECT_TRUE(load_robot(kRobots / "mamba.yaml").contact_sensors);
+  EXPECT_FALSE(load_robot(kRobots / "mamba_no_skin.yaml").contact_sensors);
+}
+
 TEST(RobotModel, SerpensIsElastic) { EXPECT_GT(load_robot(kRobots / "serpens.yaml").joints[5].stiffness_nm_rad, 0.0); }
 
 TEST(RobotModel, CameraSeesTheGroundJustAheadAndTheHorizon) {

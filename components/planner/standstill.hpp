@@ -1,0 +1,60 @@
+// A search that gets nowhere, because the robot is caught on something that it does not see.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "constrictor/messages.hpp"
+
+namespace constrictor {
+
+/// One move of a search.
+struct Move {
+  std::uint8_t task = msg::kTaskNone;  ///< kTaskRotate or kTaskExplore
+  std::uint8_t direction = msg::kDirectionNone;
+};
+
+/// Notices that a search has not left its place for a while, and leads the robot away: backwards, round to one side,
+/// and forwards again; the next time round to the other side.
+class Standstill {
+ public:
+  /// A search begins, at whatever place the robot is.
+  void begin() { since_s_ = -1.0; }
+  /// The next move, if it must lead away. Call it once for each move of a search, with the head's place [m] in M and
+  /// the time [s]. `near_m`, `after_s`: the robot stands still if it stays this near to its place for this time.
+  std::optional<Move> next(double x_m, double y_m, double now_s, double near_m, double after_s) {
+    const bool away = std::hypot(x_m - x_m_, y_m - y_m_) > near_m;
+    if (moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s) {
+      moves_left_ = kMoves;
+      ++times_;
+    }
+    if (since_s_ < 0.0 || away || moves_left_ > 0) {
+      x_m_ = x_m;
+      y_m_ = y_m;
+      since_s_ = now_s;
+    }
+    if (moves_left_ == 0) return std::nullopt;
+    switch (moves_left_--) {
+      case 1:
+        return Move{msg::kTaskExplore, msg::kDirectionForwards};
+      case 2:
+        return Move{msg::kTaskRotate, times_ % 2 == 1 ? msg::kDirectionRight : msg::kDirectionLeft};
+      default:
+        return Move{msg::kTaskExplore, msg::kDirectionBackwards};
+    }
+  }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m_, y_m_, since_s_, times_, moves_left_);
+  }
+
+ private:
+  static constexpr std::uint8_t kMoves = 4;  // two backwards, one turn, one forwards
+  double x_m_ = 0.0, y_m_ = 0.0;             // the place that the robot has not left
+  double since_s_ = -1.0;                    // since then; negative: not known
+  std::uint16_t times_ = 0;
+  std::uint8_t moves_left_ = 0;
+};
+
+}  // namespace constrictor

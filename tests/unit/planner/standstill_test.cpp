@@ -1,0 +1,48 @@
+#include "planner/standstill.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace constrictor {
+namespace {
+
+constexpr double kNear_m = 0.3, kAfter_s = 15.0;
+
+class StandstillTest : public ::testing::Test {
+ protected:
+  std::optional<Move> at(double x_m, double now_s) { return standstill_.next(x_m, 0.0, now_s, kNear_m, kAfter_s); }
+  Standstill standstill_;
+};
+
+TEST_F(StandstillTest, ARobotThatGetsOnIsLeftAlone) {
+  standstill_.begin();
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(at(0.31 * i, 10.0 * i)) << i;
+}
+
+TEST_F(StandstillTest, ACaughtRobotIsLedAwayToOneSideAndThenToTheOther) {
+  standstill_.begin();
+  double now_s = 0.0;
+  for (const std::uint8_t side : {msg::kDirectionRight, msg::kDirectionLeft}) {
+    for (; now_s < 14.0 || !at(0.1, now_s); now_s += 2.0) ASSERT_LT(now_s, 200.0);
+    EXPECT_EQ(at(0.0, now_s)->direction, msg::kDirectionBackwards);
+    const auto turn = at(-0.1, now_s += 8.0);
+    ASSERT_TRUE(turn);
+    EXPECT_EQ(turn->task, msg::kTaskRotate);
+    EXPECT_EQ(turn->direction, side);
+    EXPECT_EQ(at(-0.1, now_s += 10.0)->direction, msg::kDirectionForwards);
+    EXPECT_FALSE(at(0.0, now_s += 8.0));
+  }
+}
+
+TEST_F(StandstillTest, AnotherSearchBeginsAnew) {
+  standstill_.begin();
+  EXPECT_FALSE(at(0.0, 0.0));
+  standstill_.begin();
+  EXPECT_FALSE(at(0.0, 100.0));
+  EXPECT_FALSE(at(0.0, 114.0));
+  EXPECT_TRUE(at(0.0, 116.0));
+}
+
+}  // namespace
+}  // namespace constrictor
