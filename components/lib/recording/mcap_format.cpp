@@ -145,8 +145,17 @@ std::string encode(const AttachmentIndex& index) {
 
 std::string encode(const MetadataIndex& index) { return encoded(index.offset, index.length, index.name); }
 
-std::string encode_message_index(std::uint16_t channel, const MessageIndex& index) {
-  return encoded(channel, pairs(index));
+void append_message_index(std::string& bytes, std::uint16_t channel, const MessageIndex& index) {
+  const std::uint32_t size = static_cast<std::uint32_t>(index.size() * 2 * sizeof(std::uint64_t));
+  Encoder encoder(bytes);
+  encoder.number(static_cast<std::uint8_t>(Op::kMessageIndex));
+  encoder.number(static_cast<std::uint64_t>(sizeof channel + sizeof size + size));
+  encoder.number(channel);
+  encoder.number(size);
+  for (const auto& [log_time, offset] : index) {
+    encoder.number(log_time);
+    encoder.number(offset);
+  }
 }
 
 Schema decode_schema(Bytes bytes) {

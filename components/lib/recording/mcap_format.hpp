@@ -1,6 +1,7 @@
 // The file format MCAP (https://mcap.dev/spec): its records as values, and their bytes. All numbers are little-endian.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -151,7 +152,9 @@ class Encoder {
   explicit Encoder(std::string& bytes) : bytes_(bytes) {}
   template <class T>
   void number(T value) {
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes_.push_back(static_cast<char>(value >> (8 * i) & 0xff));
+    std::array<char, sizeof(T)> raw;
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = static_cast<char>(value >> (8 * i) & 0xff);
+    bytes_.append(raw.data(), raw.size());
   }
   void text(std::string_view value) {
     number(static_cast<std::uint32_t>(value.size()));
@@ -200,7 +203,8 @@ void append_record(std::string& bytes, Op op, std::string_view content);
 [[nodiscard]] std::string encode(const Metadata& metadata);
 [[nodiscard]] std::string encode(const AttachmentIndex& index);
 [[nodiscard]] std::string encode(const MetadataIndex& index);
-[[nodiscard]] std::string encode_message_index(std::uint16_t channel, const MessageIndex& index);
+/// Appends a whole MessageIndex record.
+void append_message_index(std::string& bytes, std::uint16_t channel, const MessageIndex& index);
 
 // Each throws Error if the bytes are not such a record.
 [[nodiscard]] Schema decode_schema(Bytes bytes);

@@ -21,6 +21,15 @@ std::uint16_t next_id(const std::map<std::uint16_t, T>& known, const char* what)
   return static_cast<std::uint16_t>(known.empty() ? 1 : known.rbegin()->first + 1);
 }
 
+/// Appends the indexes of messages, which begin at `offset` of the file.
+void append_index(std::string& bytes, std::uint64_t offset, ChunkIndex& index, std::uint16_t channel,
+                  const MessageIndex& messages) {
+  const std::size_t before = bytes.size();
+  index.message_index_offsets[channel] = offset + before;
+  append_message_index(bytes, channel, messages);
+  index.message_index_length += bytes.size() - before;
+}
+
 }  // namespace
 
 Writer::Writer(const std::filesystem::path& path, const std::string& profile, const std::string& library)
@@ -33,7 +42,7 @@ Writer::Writer(const std::filesystem::path& path, const std::string& profile, co
   encoder.text(library);
   std::string bytes(kMagic);
   append_record(bytes, Op::kHeader, header);
-  append(bytes);
+  append({bytes});
 }
 
 Writer::Writer(const Reader& reader)
@@ -58,26 +67,32 @@ Writer::Writer(const Reader& reader)
       const Message message = decode_message(content);
       all[message.channel_id].emplace_back(message.log_time, offset);
     });
-    append_indexes(indexes, end_, last, all);
+    for (const auto& [channel, messages] : all) append_index(indexes, end_, last, channel, messages);
   }
   summary_size_ = encode_end(contents_, end_).size();
   file_.truncate(end_);
-  append(indexes);
+  append({indexes});
 }
 
 Writer::~Writer() = default;
 
-void Writer::append(std::string_view bytes) {
-  if (bytes.empty()) return;
+void Writer::append(std::initializer_list<std::string_view> parts) {
+  std::uint64_t size = 0;
+  for (const auto part : parts) size += part.size();
+  if (size == 0) return;
   try {
-    if (left_free_ > 0) file_.leave_free(left_free_, bytes.size() + summary_size_ + kReserve);
-    file_.reserve(end_, bytes.size() + summary_size_ + kReserve);  // the end of the file must find space, too
-    file_.write(end_, bytes);
+    if (left_free_ > 0) file_.leave_free(left_free_, size + summary_size_ + kReserve);
+    file_.reserve(end_, size + summary_size_ + kReserve);  // the end of the file must find space, too
+    std::uint64_t at = end_;
+    for (const auto part : parts) {
+      file_.write(at, part);
+      at += part.size();
+    }
   } catch (const DiskFull&) {
     file_.truncate(end_);
     throw;
   }
-  end_ += bytes.size();
+  end_ += size;
 }
 
 std::uint16_t Writer::add_schema(const std::string& name, const std::string& encoding, const std::string& data) {
@@ -116,13 +131,17 @@ void Writer::define(std::uint16_t id) {
 }
 
 void Writer::note(const Message& message, std::uint64_t offset) {
+  if (chunk_index_.size() <= message.channel_id) chunk_index_.resize(std::size_t{message.channel_id} + 1);
   chunk_index_[message.channel_id].emplace_back(message.log_time, offset);
-  chunk_contents_.note_message(message.channel_id, message.log_time);
+  chunk_start_ = chunk_messages_ == 0 ? message.log_time : std::min(chunk_start_, message.log_time);
+  chunk_end_ = chunk_messages_ == 0 ? message.log_time : std::max(chunk_end_, message.log_time);
+  ++chunk_messages_;
 }
 
 void Writer::write(const Message& message) {
   if (finished_) throw Error(file_.path().string() + ": is finished; nothing can be added");
-  define(message.channel_id);
+  // A channel that has a message in this chunk is defined.
+  if (message.channel_id >= chunk_index_.size() || chunk_index_[message.channel_id].empty()) define(message.channel_id);
   note(message, chunk_.size());
   Encoder encoder(chunk_);
   encoder.number(static_cast<std::uint8_t>(Op::kMessage));
@@ -156,43 +175,44 @@ void Writer::restore(std::string_view records) {
   chunk_ = records;
 }
 
-void Writer::append_indexes(std::string& bytes, std::uint64_t offset, ChunkIndex& index,
-                            const std::map<std::uint16_t, MessageIndex>& messages) const {
-  for (const auto& [channel, entries] : messages) {
-    const std::size_t before = bytes.size();
-    index.message_index_offsets[channel] = offset + before;
-    append_record(bytes, Op::kMessageIndex, encode_message_index(channel, entries));
-    index.message_index_length += bytes.size() - before;
-  }
-}
-
 void Writer::close_chunk() {
   if (chunk_.empty()) return;
-  compressed_.resize(ZSTD_compressBound(chunk_.size()));
+  const std::size_t bound = ZSTD_compressBound(chunk_.size());
+  if (compressed_.size() < bound) compressed_.resize(bound);
   const std::size_t size = ZSTD_compressCCtx(compressor_.get(), compressed_.data(), compressed_.size(), chunk_.data(),
                                              chunk_.size(), kCompressionLevel);
   if (ZSTD_isError(size) != 0) throw Error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
-  const Statistics& statistics = chunk_contents_.statistics;
-  std::string content;
-  Encoder encoder(content);
-  encoder.number(statistics.start_time);
-  encoder.number(statistics.end_time);
+  std::string fields;
+  Encoder encoder(fields);
+  encoder.number(chunk_start_);
+  encoder.number(chunk_end_);
   encoder.number(static_cast<std::uint64_t>(chunk_.size()));
   encoder.number(crc32(bytes_of(chunk_)));
   encoder.text("zstd");
   encoder.number(static_cast<std::uint64_t>(size));
-  encoder.raw(std::string_view(compressed_).substr(0, size));
-  std::string bytes;
-  append_record(bytes, Op::kChunk, content);
-  ChunkIndex index{statistics.start_time, statistics.end_time, end_, bytes.size(), {}, 0, "zstd", size, chunk_.size()};
-  std::string indexes;
-  append_indexes(indexes, end_ + bytes.size(), index, chunk_index_);
-  append(bytes + indexes);
+  std::string head;
+  Encoder record(head);
+  record.number(static_cast<std::uint8_t>(Op::kChunk));
+  record.number(static_cast<std::uint64_t>(fields.size() + size));
+  record.raw(fields);
+  const std::uint64_t length = head.size() + size;
+  ChunkIndex index{chunk_start_, chunk_end_, end_, length, {}, 0, "zstd", size, chunk_.size()};
+  indexes_.clear();
+  for (std::size_t channel = 0; channel < chunk_index_.size(); ++channel) {
+    if (!chunk_index_[channel].empty())
+      append_index(indexes_, end_ + length, index, static_cast<std::uint16_t>(channel), chunk_index_[channel]);
+  }
+  append({head, std::string_view(compressed_).substr(0, size), indexes_});
   Statistics& all = contents_.statistics;
-  all.start_time = all.message_count == 0 ? statistics.start_time : std::min(all.start_time, statistics.start_time);
-  all.end_time = all.message_count == 0 ? statistics.end_time : std::max(all.end_time, statistics.end_time);
-  all.message_count += statistics.message_count;
-  for (const auto& [channel, count] : statistics.channel_message_counts) all.channel_message_counts[channel] += count;
+  if (chunk_messages_ > 0) {
+    all.start_time = all.message_count == 0 ? chunk_start_ : std::min(all.start_time, chunk_start_);
+    all.end_time = all.message_count == 0 ? chunk_end_ : std::max(all.end_time, chunk_end_);
+  }
+  all.message_count += chunk_messages_;
+  for (std::size_t channel = 0; channel < chunk_index_.size(); ++channel) {
+    if (!chunk_index_[channel].empty())
+      all.channel_message_counts[static_cast<std::uint16_t>(channel)] += chunk_index_[channel].size();
+  }
   summary_size_ += kRecordHeader + encode(index).size();
   contents_.chunks.push_back(std::move(index));
   for (auto* defined : {&defined_schemas_, &defined_channels_}) {
@@ -205,15 +225,15 @@ void Writer::forget_chunk() {
   for (auto* defined : {&defined_schemas_, &defined_channels_})
     std::erase_if(*defined, [](const auto& entry) { return !entry.second; });
   chunk_.clear();
-  chunk_index_.clear();
-  chunk_contents_ = {};
+  for (auto& messages : chunk_index_) messages.clear();
+  chunk_messages_ = chunk_start_ = chunk_end_ = 0;
 }
 
 void Writer::attach(const Attachment& attachment) {
   std::string bytes;
   append_record(bytes, Op::kAttachment, encode(attachment));
   const std::uint64_t offset = end_;
-  append(bytes);
+  append({bytes});
   contents_.attachments.push_back(
       {offset, bytes.size(), attachment.log_time, attachment.data.size(), attachment.name, attachment.media_type});
   summary_size_ += kRecordHeader + encode(contents_.attachments.back()).size();
@@ -223,7 +243,7 @@ void Writer::add_metadata(const Metadata& metadata) {
   std::string bytes;
   append_record(bytes, Op::kMetadata, encode(metadata));
   const std::uint64_t offset = end_;
-  append(bytes);
+  append({bytes});
   contents_.metadata.push_back({offset, bytes.size(), metadata.name});
   summary_size_ += kRecordHeader + encode(contents_.metadata.back()).size();
 }

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "recording/mcap_file.hpp"
 #include "recording/mcap_format.hpp"
@@ -62,9 +65,7 @@ class Writer {
   [[nodiscard]] std::uint64_t size() const { return end_; }
 
  private:
-  void append(std::string_view bytes);
-  void append_indexes(std::string& bytes, std::uint64_t offset, ChunkIndex& index,
-                      const std::map<std::uint16_t, MessageIndex>& messages) const;
+  void append(std::initializer_list<std::string_view> parts);
   void define(std::uint16_t channel);
   void define_schema(std::uint16_t schema);
   void note(const Message& message, std::uint64_t offset);
@@ -78,9 +79,14 @@ class Writer {
   std::uint64_t summary_size_ = 1024;  ///< [byte] about what finish() will write
   bool finished_ = false;
   std::string chunk_;
+  std::vector<MessageIndex> chunk_index_;  ///< by channel; also those of earlier chunks, empty, for their memory
+  std::uint64_t chunk_messages_ = 0;
+  std::uint64_t chunk_start_ = 0;  ///< [ns] log time of the first message
+  std::uint64_t chunk_end_ = 0;
+  // Memory that close_chunk() uses again and again: memory of this size that is freed goes back to the kernel, which
+  // clears it each time.
   std::string compressed_;
-  std::map<std::uint16_t, MessageIndex> chunk_index_;
-  Contents chunk_contents_;                         ///< its statistics are those of the open chunk
+  std::string indexes_;
   std::map<std::uint16_t, bool> defined_schemas_;   ///< value: in the file; else in the open chunk
   std::map<std::uint16_t, bool> defined_channels_;  ///< likewise
 };

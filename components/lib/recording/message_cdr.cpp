@@ -38,6 +38,7 @@ struct ToCdr {
   Bytes in;
   std::string& out;
   std::size_t start;  ///< in `out`: alignment counts from here
+  bool octets;        ///< false: sequences of octets become empty
   bool ok = true;
 
   void move(std::size_t size) {
@@ -46,7 +47,10 @@ struct ToCdr {
     out.append(mcap::text_of(in.first(size)));
     in = in.subspan(size);
   }
-  void align(std::size_t size) { out.append((size - (out.size() - start) % size) % size, '\0'); }
+  void align(std::size_t size) {
+    const std::size_t padding = (size - (out.size() - start) % size) % size;
+    if (padding > 0) out.append(padding, '\0');
+  }
   template <class Length>
   std::size_t length() {
     Length value = 0;
@@ -74,8 +78,10 @@ struct ToCdr {
   }
   void operator()(const FieldInfo&, const dds_sequence_octet&) {
     const std::size_t size = length<std::uint32_t>();
-    put_length(size);
-    move(size);
+    put_length(octets ? size : 0);
+    if (octets) return move(size);
+    if (size > in.size()) ok = false;
+    if (ok) in = in.subspan(size);
   }
 };
 
@@ -218,19 +224,23 @@ std::string make_schema() {
 }
 
 template <class T>
+bool convert_to_cdr(Bytes canonical, std::string& cdr, bool octets) {
+  static const T kBlank{};
+  cdr.append(kLittleEndian);
+  ToCdr visitor{canonical, cdr, cdr.size(), octets};
+  Description<T>::visit(kBlank, visitor);
+  // As DDS sends it: padded to a multiple of 4 bytes, with the number of these bytes in the options.
+  const std::size_t padding = (4 - (cdr.size() - visitor.start) % 4) % 4;
+  cdr.append(padding, '\0');
+  cdr[visitor.start - 1] = static_cast<char>(padding);
+  return visitor.ok && visitor.in.empty();
+}
+
+template <class T>
 constexpr MessageCodec make_codec() {
   return {Description<T>::kName,
-          [](Bytes canonical, std::string& cdr) {
-            static const T kBlank{};
-            cdr.append(kLittleEndian);
-            ToCdr visitor{canonical, cdr, cdr.size()};
-            Description<T>::visit(kBlank, visitor);
-            // As DDS sends it: padded to a multiple of 4 bytes, with the number of these bytes in the options.
-            const std::size_t padding = (4 - (cdr.size() - visitor.start) % 4) % 4;
-            cdr.append(padding, '\0');
-            cdr[visitor.start - 1] = static_cast<char>(padding);
-            return visitor.ok && visitor.in.empty();
-          },
+          [](Bytes canonical, std::string& cdr) { return convert_to_cdr<T>(canonical, cdr, true); },
+          [](Bytes canonical, std::string& cdr) { return convert_to_cdr<T>(canonical, cdr, false); },
           [](Bytes cdr, std::string& canonical) {
             static const T kBlank{};
             // The last two bytes of the header are options, which say how many bytes of padding follow the message.

@@ -16,6 +16,8 @@ struct MessageCodec {
   /// Appends the encapsulation header (little-endian) and the CDR of a message with these canonical bytes. Returns
   /// false if they are not exactly one message.
   bool (*to_cdr)(mcap::Bytes canonical, std::string& cdr);
+  /// The same, but sequences of octets (the pixels of an image) become empty.
+  bool (*to_cdr_without_octets)(mcap::Bytes canonical, std::string& cdr);
   /// Appends the canonical bytes of a message with this CDR, encapsulation header included. Returns false if the CDR is
   /// not exactly one message, or not little-endian.
   bool (*from_cdr)(mcap::Bytes cdr, std::string& canonical);

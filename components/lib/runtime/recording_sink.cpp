@@ -35,7 +35,7 @@ void RecordingSink::close_old_chunk() {
   chunk_began_.reset();
 }
 
-void RecordingSink::write(RecordedMessage message) {
+void RecordingSink::write(const RecordedMessage& message) {
   if (!thread_.joinable()) {
     if (!failure_.empty()) return;
     try {
@@ -52,7 +52,7 @@ void RecordingSink::write(RecordedMessage message) {
     return;
   }
   waiting_bytes_ += message.cdr.size();
-  waiting_.push_back(std::move(message));
+  waiting_.push_back({message, std::string(message.cdr)});
   wake_.notify_one();
 }
 
@@ -70,17 +70,20 @@ void RecordingSink::loop() {
   while (failure_.empty()) {
     wake_.wait_for(lock, kChunkTime / 2, [this] { return stop_ || !waiting_.empty(); });
     if (stop_ && waiting_.empty()) return;
-    const std::deque<RecordedMessage> batch = std::exchange(waiting_, {});
+    std::deque<Waiting> batch = std::exchange(waiting_, {});
     lock.unlock();
     std::string failure;
     try {
-      for (const auto& message : batch) put(message);
+      for (auto& [message, cdr] : batch) {
+        message.cdr = cdr;
+        put(message);
+      }
       close_old_chunk();
     } catch (const mcap::Error& error) {
       failure = error.what();
     }
     lock.lock();
-    for (const auto& message : batch) waiting_bytes_ -= message.cdr.size();
+    for (const auto& [message, cdr] : batch) waiting_bytes_ -= cdr.size();
     failure_ = failure;
   }
 }

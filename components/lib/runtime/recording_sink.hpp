@@ -9,7 +9,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <unordered_map>
 
 #include "recording/mcap_writer.hpp"
 
@@ -29,7 +31,7 @@ struct RecordedMessage {
   std::uint32_t sequence = 0;
   std::uint64_t log_time_ns = 0;
   std::uint64_t publish_time_ns = 0;
-  std::string cdr;
+  std::string_view cdr;  ///< need not outlive the call that takes the message
 };
 
 class RecordingSink {
@@ -45,7 +47,7 @@ class RecordingSink {
   RecordingSink(const RecordingSink&) = delete;
   RecordingSink& operator=(const RecordingSink&) = delete;
 
-  void write(RecordedMessage message);
+  void write(const RecordedMessage& message);
   /// Closes the chunk if it is old enough. To be called at least every 100 ms.
   void poll();
   /// Why nothing more is written; empty if all is well.
@@ -58,16 +60,21 @@ class RecordingSink {
   std::string finish(std::vector<mcap::Metadata> last);
 
  private:
+  /// A message with the memory of its CDR, for the thread.
+  struct Waiting {
+    RecordedMessage message;
+    std::string cdr;
+  };
   void put(const RecordedMessage& message);
   void close_old_chunk();
   void loop();
 
   std::unique_ptr<mcap::Writer> writer_;
-  std::map<const RecordedChannel*, std::uint16_t> ids_;
+  std::unordered_map<const RecordedChannel*, std::uint16_t> ids_;
   std::optional<std::chrono::steady_clock::time_point> chunk_began_;
   mutable std::mutex mutex_;  ///< of all below
   std::condition_variable wake_;
-  std::deque<RecordedMessage> waiting_;
+  std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::map<std::string, std::uint64_t> gaps_;
   std::string failure_;

@@ -85,8 +85,10 @@ RunRecorder::RunRecorder(const HostContext& context, std::optional<RecordingPosi
 RunRecorder::~RunRecorder() { finish(); }
 
 void RunRecorder::make_channels() {
-  for (const auto& topic : topics::kInfos)
+  for (const auto& topic : topics::kInfos) {
     members_[topic.id] = channel_of(topic.name, topic.type, {{"writer", std::string(topic.writer)}});
+    codecs_[topic.id] = find_codec(topic.type);
+  }
   tick_ = channel_of(wire::kTick.name, wire::kTick.type, {{"keyed", "no"}});
   tick_done_ = channel_of(wire::kTickDone.name, wire::kTickDone.type, {{"left_out", "checkpoint"}});
   epoch_start_ = channel_of(wire::kEpochStart.name, wire::kEpochStart.type, {{"keyed", "no"}});
@@ -172,10 +174,10 @@ std::unique_ptr<mcap::Writer> RunRecorder::resume(const RecordingPosition& from)
   return writer;
 }
 
-void RunRecorder::write(RecordedMessage message) {
+void RunRecorder::write(const RecordedMessage& message) {
   if (!sink_) return;
   newest_ns_ = std::max(newest_ns_, static_cast<std::int64_t>(message.log_time_ns));
-  sink_->write(std::move(message));
+  sink_->write(message);
   if (const std::string failure = sink_->failure(); !failure.empty()) give_up(failure);
 }
 
@@ -183,8 +185,13 @@ template <class T>
 void RunRecorder::write(const RecordedChannel& channel, const T& message, std::uint32_t sequence,
                         std::int64_t time_ns) {
   if (!sink_) return;
+  static const MessageCodec* const kCodec = find_codec(Description<T>::kName);
+  canonical_.clear();
+  canonical_bytes(message, canonical_);
+  cdr_.clear();
+  kCodec->to_cdr(mcap::bytes_of(canonical_), cdr_);
   const auto log_time = static_cast<std::uint64_t>(base_ns_ + time_ns);
-  write({&channel, sequence, log_time, log_time, cdr_of(message)});
+  write({&channel, sequence, log_time, log_time, cdr_});
 }
 
 void RunRecorder::add(const msg::EpochStart& start) {
@@ -209,9 +216,9 @@ void RunRecorder::add(const TickDone& done) {
 }
 
 void RunRecorder::add(const TopicInfo& topic, const Sample& sample) {
-  std::string bytes;
-  topic_ops(topic.id).append_bytes(sample.message.get(), bytes);
-  add(topic.id, bytes);
+  canonical_.clear();
+  topic_ops(topic.id).append_bytes(sample.message.get(), canonical_);
+  add(topic.id, canonical_);
 }
 
 void RunRecorder::add(std::uint8_t topic, const std::string& canonical) {
@@ -223,26 +230,19 @@ void RunRecorder::add(std::uint8_t topic, const std::string& canonical) {
   if (!header_at) return;
   const msg::Header header = parse_header(bytes.subspan(*header_at).first<kHeaderSize>());
   const auto log_time = static_cast<std::uint64_t>(base_ns_ + header.time_ns);
-  RecordedMessage message{&members_[topic], static_cast<std::uint32_t>(header.sequence_number), log_time, log_time, {}};
-  if (image && context_.options.recording.images == RecordedImages::kRecompute) {
-    const auto parsed = parse_shared<msg::CameraImage>(bytes);
-    if (!parsed) return;
-    msg::CameraImage without = *parsed;
-    without.data = {};
-    message.cdr = cdr_of(without);
-  } else if (!find_codec(info.type)->to_cdr(mcap::bytes_of(canonical), message.cdr)) {
-    return;
-  }
-  write(std::move(message));
+  const bool without_pixels = image && context_.options.recording.images == RecordedImages::kRecompute;
+  const auto convert = without_pixels ? codecs_[topic]->to_cdr_without_octets : codecs_[topic]->to_cdr;
+  cdr_.clear();
+  if (!convert(mcap::bytes_of(canonical), cdr_)) return;
+  write({&members_[topic], static_cast<std::uint32_t>(header.sequence_number), log_time, log_time, cdr_});
 }
 
 void RunRecorder::poll() {
   if (!sink_) return;
   if (tap_) {
-    for (auto& arrived : tap_->take()) {
+    for (const auto& arrived : tap_->take()) {
       if (known_.contains({arrived.channel->topic, arrived.source_time_ns})) continue;
-      write(
-          {arrived.channel, 0, static_cast<std::uint64_t>(newest_ns_), arrived.source_time_ns, std::move(arrived.cdr)});
+      write({arrived.channel, 0, static_cast<std::uint64_t>(newest_ns_), arrived.source_time_ns, arrived.cdr});
     }
   }
   if (!sink_) return;

@@ -13,6 +13,7 @@
 
 #include "barrier/protocol.hpp"
 #include "component/ports.hpp"
+#include "recording/message_cdr.hpp"
 #include "runtime/host_context.hpp"
 #include "runtime/recording_sink.hpp"
 
@@ -61,13 +62,18 @@ class RunRecorder {
   void make_channels();
   template <class T>
   void write(const RecordedChannel& channel, const T& message, std::uint32_t sequence, std::int64_t time_ns);
-  void write(RecordedMessage message);
+  void write(const RecordedMessage& message);
   void store_open_chunk();
   void give_up(const std::string& reason);
 
   const HostContext& context_;
   const std::filesystem::path file_;
   std::array<RecordedChannel, topics::kCount> members_;
+  std::array<const MessageCodec*, topics::kCount> codecs_{};
+  // Memory for one message, used again and again: an image that is freed gives its pages back to the kernel, which
+  // clears them each time.
+  std::string canonical_;
+  std::string cdr_;
   RecordedChannel tick_;
   RecordedChannel tick_done_;
   RecordedChannel epoch_start_;

@@ -96,7 +96,7 @@ class DomainRecorder {
         sequence = static_cast<std::uint32_t>(header->sequence_number);
     }
     sink_.write({&channel->recorded, sequence, newest_ns_, static_cast<std::uint64_t>(sample.source_time_ns),
-                 std::string(sample.bytes.begin(), sample.bytes.end())});
+                 mcap::text_of(sample.bytes)});
     ++messages_;
   }
   struct Channel {
