@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "barrier/topic_ops.hpp"
 #include "recording/mcap_reader.hpp"
@@ -13,6 +11,7 @@
 #include "runtime/domain_tap.hpp"
 #include "runtime/loaded_libraries.hpp"
 #include "runtime/numeric_profile.hpp"
+#include "runtime/recorded_files.hpp"
 #include "runtime/version.hpp"
 #include "runtime/wire.hpp"
 
@@ -35,13 +34,6 @@ const char* name_of(RecordedImages images) {
 std::string latencies(const std::map<std::string, std::uint16_t>& ticks) {
   std::string text;
   for (const auto& [name, count] : ticks) text += fmt::format("{}{}={}", text.empty() ? "" : ",", name, count);
-  return text;
-}
-
-std::string versions() {
-  std::string text = fmt::format("constrictor: {}\nidl_hash: {}\nnumeric_profile: {}\nlibraries:\n", kVersion,
-                                 std::string(msg::kIdlHash), numeric_profile());
-  for (const auto& [name, version] : loaded_libraries()) text += fmt::format("  {}: {}\n", name, version);
   return text;
 }
 
@@ -114,15 +106,14 @@ std::unique_ptr<mcap::Writer> RunRecorder::begin() const {
         {"scenario", options.setup.scenario_file.filename().string()},
         {"config_hash", context_.config_hash}}});
   const auto attach = [&](const std::string& name, const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return context_.log.warning("{} cannot be attached to the recording: no such file", file.string());
-    writer->attach({0, name, name.ends_with(".yaml") ? "application/yaml" : "text/plain",
-                    std::string(std::istreambuf_iterator<char>(stream), {})});
+    const auto attachment = attached_file(name, file);
+    if (!attachment) return context_.log.warning("{} cannot be attached to the recording: no such file", file.string());
+    writer->attach(*attachment);
   };
   attach("scenario.yaml", options.setup.scenario_file);
   attach("robot.yaml", options.setup.robot_file);
   for (const auto& [name, file] : options.recording.attachments) attach(name, file);
-  writer->attach({0, "versions.yaml", "application/yaml", versions()});
+  writer->attach(attached_versions(numeric_profile(), loaded_libraries()));
   writer->leave_free(kLeftFree);  // from now on a full disk ends the recording, not the run
   return writer;
 }

@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include "cli/recording/run_files.hpp"
+#include "cli/run_record.hpp"
 #include "cli/usage.hpp"
 #include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
@@ -86,26 +88,6 @@ std::vector<std::string> scheduling_arguments(const Scheduling& scheduling) {
   if (scheduling.lock_memory) arguments.emplace_back("--lock-memory");
   if (!scheduling.cpus.empty()) arguments.insert(arguments.end(), {"--cpus", cpus_text(scheduling.cpus)});
   return arguments;
-}
-
-/// The files that a recording contains besides those that every component has, by their names in it.
-std::map<std::string, fs::path> recorded_files(const RunOptions& options, const LaunchManifest& manifest) {
-  std::map<std::string, fs::path> files;
-  files["manifest.yaml"] = find_file(options.manifest, kManifests);
-  if (!manifest.faults_file.empty()) files["faults.yaml"] = manifest.faults_file;
-  for (const auto& line : ask_host("--describe")) {
-    std::istringstream words(line);
-    std::string kind, name, file;
-    if (words >> kind >> name && kind == "default" && std::getline(words >> std::ws, file))
-      files["configuration/" + name + ".yaml"] = file;
-  }
-  for (const auto& [name, file] : manifest.config_files) files["configuration/" + name + ".yaml"] = file;
-  const auto roster = manifest.roster();
-  std::erase_if(files, [&](const auto& entry) {
-    const fs::path path = entry.first;
-    return path.has_parent_path() && std::find(roster.begin(), roster.end(), path.stem()) == roster.end();
-  });
-  return files;
 }
 
 /// What the user may have meant by a name that is not one of `names`: a name of another kind, or a similar one.
@@ -212,7 +194,7 @@ CommandLine make_command_line(const RunOptions& options, const LaunchPlan& plan,
   std::vector<std::string> of_plant = pace_arguments(pace);
   if (options.record) {
     of_plant.insert(of_plant.end(), {"--record", "--images", options.images});
-    for (const auto& [name, file] : recorded_files(options, manifest))
+    for (const auto& [name, file] : recorded_files(absolute_options(options, plan), plan.roster))
       of_plant.insert(of_plant.end(), {"--attach", name + "=" + file.string()});
   }
   if (options.no_checkpoints) of_plant.emplace_back("--no-checkpoints");

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "configuration/closest_name.hpp"
@@ -67,6 +68,15 @@ CLI::Validator number(double min, double max, const std::string& unit) {
             if (value && std::isfinite(*value) && *value >= min && *value <= max) return std::string{};
             return fmt::format("found '{}', accepted a number from {:g} to {:g}{}{}", text, min, max,
                                unit.empty() ? "" : " ", unit);
+          },
+          ""};
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  const std::string accepted = fmt::format("{}", fmt::join(words, ", "));
+  return {[words = std::move(words), accepted](std::string& text) {
+            if (std::find(words.begin(), words.end(), text) != words.end()) return std::string{};
+            return fmt::format("found '{}', accepted {}{}", text, accepted, did_you_mean(text, words));
           },
           ""};
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -29,6 +30,9 @@ CLI::Validator whole_number(std::uint64_t min = 0, std::uint64_t max = std::nume
 
 /// Accepts only finite numbers from `min` to `max`; `unit`, for example "s", is shown in the error message.
 CLI::Validator number(double min, double max, const std::string& unit);
+
+/// Accepts only these words, and suggests the closest one.
+CLI::Validator one_of(std::vector<std::string> words);
 
 /// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN; and --token-file.
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);

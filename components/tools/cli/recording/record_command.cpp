@@ -9,6 +9,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/recording/recording_text.hpp"
+#include "cli/recording/run_files.hpp"
 #include "cli/recording/topic_pattern.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -57,12 +58,27 @@ class Choice {
   TopicPatterns patterns_;
 };
 
+/// Whether the option is accepted. Of recomputed images, `replay --restore` must find all messages from which they are
+/// computed, and in the order of the ticks.
+std::string problem_of_images(std::string& images) {
+  if (images != "recompute") return one_of({"on", "off"})(images);
+  return "found 'recompute', accepted on, off: images can only be computed again from a recording that proves to be "
+         "whole, and this command cannot prove it, because the run does not wait for it; use `constrictor run --record "
+         "--images recompute`";
+}
+
+/// A new file that begins with these attachments.
+std::unique_ptr<mcap::Writer> begin_file(const std::string& file, const std::vector<mcap::Attachment>& attachments) {
+  auto writer = std::make_unique<mcap::Writer>(file, "", fmt::format("constrictor {}", kVersion));
+  for (const auto& attachment : attachments) writer->attach(attachment);
+  return writer;
+}
+
 /// The recording of one domain.
 class DomainRecorder {
  public:
-  DomainRecorder(const RecordOptions& options, const DomainView& view)
-      : tap_(view.participant(), Choice(options)),
-        sink_(std::make_unique<mcap::Writer>(options.file, "", fmt::format("constrictor {}", kVersion)), false) {}
+  DomainRecorder(const RecordOptions& options, const DomainView& view, const std::vector<mcap::Attachment>& attachments)
+      : tap_(view.participant(), Choice(options)), sink_(begin_file(options.file, attachments), false) {}
   void poll(std::chrono::milliseconds bound) {
     tap_.discover();
     tap_.wait(bound);
@@ -121,7 +137,9 @@ int record(const RecordOptions& options) {
     throw UsageError(fmt::format("FILE: found {}, which exists, accepted a new file (or --force)", options.file));
   const DomainView view(options.view);
   view.settle_or_throw();
-  DomainRecorder recorder(options, view);
+  const RunFiles files = files_of_run(view.domain());
+  if (!files.missing.empty()) fmt::print(stderr, "record: {}\n", files.missing);
+  DomainRecorder recorder(options, view, files.attachments);
   fmt::print("recording DDS domain {} in {}; Ctrl-C ends it\n", view.domain(), options.file);
   std::fflush(stdout);
   std::optional<RunMonitor> monitor;
@@ -181,9 +199,11 @@ void add_record(CLI::App& app, Action& action) {
                   "record only these topics; * and ? stand for any characters; may be repeated (default: all but\n"
                   "barrier/tick_done and barrier/resume, which contain the checkpoints of members)")
       ->allow_extra_args(false);
-  sub->add_option("--images", options->images, "on, or off: leave the images of cameras out")
+  sub->add_option("--images", options->images,
+                  "on, or off: leave the images of cameras out. To record them without their pixels, which can be\n"
+                  "computed again: constrictor run --record --images recompute")
       ->capture_default_str()
-      ->check(CLI::IsMember({"on", "off"}));
+      ->check(CLI::Validator(problem_of_images, ""));
   sub->add_option("--for", options->for_s, "[s] end after this time (default: until Ctrl-C, or the end of the run)")
       ->check(number(1e-3, 1e9, "s"));
   sub->add_flag("--force", options->force, "replace FILE if it exists");
@@ -193,7 +213,10 @@ void add_record(CLI::App& app, Action& action) {
       "do not describe their type become bytes without schema. The run does not wait for this recorder: if it is too\n"
       "slow, messages are missing, and they are counted by topic. `constrictor run --record` misses nothing.\n"
       "SIGKILL loses at most the last 0.25 s; `constrictor recover` then finishes the file. The file contains the\n"
-      "run's token if a client sent a command; it is readable by its owner only.",
+      "run's token if a client sent a command; it is readable by its owner only. If the run was started on this host,\n"
+      "scenario, robot, manifest, configuration and versions are attached, as these files are now.\n"
+      "--images recompute exists only for `constrictor run --record`: images are computed again from all other\n"
+      "messages, so that none may be missing.",
       {"constrictor record session.mcap",
        "constrictor record arm.mcap --topic 'joint_*' --topic guidance/pose --for 10"},
       "0 nothing is missing; 1 messages are missing, or no topic matched; 64 wrong usage; 70 no run, or the file "

@@ -1,0 +1,79 @@
+// `constrictor record` beside a run of toys.
+#include "integration/run_command_fixture.hpp"
+#include "recording/mcap_reader.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+class RecordCommand : public RunCommand {
+ protected:
+  RecordCommand() { environment_["XDG_RUNTIME_DIR"] = dir_.string(); }
+  int status_of(const std::vector<std::string>& arguments) {
+    Process process = command(arguments);
+    const int status = process.wait(30s).value_or(-1);
+    output_ = process.output() + process.errors();
+    return status;
+  }
+  static void end(Process& launcher) {
+    launcher.signal(SIGTERM);
+    EXPECT_EQ(launcher.wait(30s), 128 + SIGTERM);
+  }
+  /// The attachments of a recording, by name.
+  static std::map<std::string, std::string> attachments_of(const fs::path& file) {
+    std::map<std::string, std::string> found;
+    mcap::Visitor visitor;
+    visitor.attachment = [&](const mcap::Attachment& one) { found[one.name] = one.data; };
+    mcap::Reader reader(file);
+    reader.read(visitor);
+    return found;
+  }
+  std::string output_;
+};
+
+TEST_F(RecordCommand, AttachesTheFilesOfARunOfThisHost) {
+  const std::string file = (dir_ / "live.mcap").string();
+  write("mine.yaml", "travel: {frequency_hz: 0.5}\n");
+  Process launcher =
+      run(100'000, "r",
+          {"--pace", "2x", "--in-process", "--record", "--config", "navigation=" + (dir_ / "mine.yaml").string()});
+  ASSERT_NE(domain_of(launcher), 0u);
+  ASSERT_EQ(status_of({"record", file, "--for", "1"}), 0) << output_;
+  end(launcher);
+  auto expected = attachments_of(dir_ / "r" / "run.mcap");
+  auto found = attachments_of(file);
+  for (auto* files : {&expected, &found}) {
+    EXPECT_NE((*files)["versions.yaml"].find("numeric_profile: "), std::string::npos) << (*files)["versions.yaml"];
+    files->erase("versions.yaml");  // constrictor_host may have loaded other libraries than the toys
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(found["configuration/navigation.yaml"], "travel: {frequency_hz: 0.5}\n");
+  for (const char* name : {"scenario.yaml", "robot.yaml", "manifest.yaml", "configuration/control.yaml"})
+    EXPECT_TRUE(found.contains(name)) << name;
+}
+
+TEST_F(RecordCommand, SaysThatARunOfAnotherHostHasNoFilesHere) {
+  const std::string file = (dir_ / "live.mcap").string();
+  Process launcher = run(100'000, "r", {"--pace", "2x", "--in-process"});
+  const std::string domain = std::to_string(domain_of(launcher));
+  ASSERT_NE(domain, "0");
+  fs::create_directory(dir_ / "other_host");
+  environment_["XDG_RUNTIME_DIR"] = (dir_ / "other_host").string();
+  Process recorder = command({"record", file, "--domain", domain, "--for", "0.5"});
+  EXPECT_TRUE(recorder.wait(30s));
+  const std::string errors = recorder.errors();
+  EXPECT_NE(errors.find("record: the recording has no attachments"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("started no run in DDS domain " + domain), std::string::npos) << errors;
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+  EXPECT_TRUE(attachments_of(file).empty());
+  end(launcher);
+}
+
+TEST_F(RecordCommand, ExplainsWhichImagesItCanRecord) {
+  EXPECT_EQ(status_of({"record", "live.mcap", "--images", "recompute"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("use `constrictor run --record --images recompute`"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"record", "live.mcap", "--images", "offf"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("found 'offf', accepted on, off, did you mean 'off'?"), std::string::npos) << output_;
+}
+
+}  // namespace
+}  // namespace constrictor::testing
