@@ -140,7 +140,7 @@ function(constrictor_check_layer name)
 endfunction()
 
 # constrictor_git_revision(PROGRAM): the program contains kGitRevision and kGitDate, see runtime/git_revision.hpp.
-# For few programs, because they are linked again after each commit.
+# Only for programs of a run and of people, because they are linked again after each commit.
 set(CONSTRICTOR_GIT_REVISION ${PROJECT_BINARY_DIR}/generated/git_revision.cpp)
 add_custom_target(constrictor_git_revision
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DFILE=${CONSTRICTOR_GIT_REVISION}
@@ -175,6 +175,7 @@ function(constrictor_component name)
   constrictor_library(constrictor_${name} SOURCES ${ARG_SOURCES} LINK constrictor_component ${ARG_LINK})
   add_executable(${name} main.cpp)
   target_link_libraries(${name} PRIVATE constrictor_${name} constrictor_runtime)
+  constrictor_git_revision(${name})
   constrictor_precompile(${name})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REGEX REPLACE "^components/" "" folder ${folder})

@@ -44,6 +44,29 @@ class LogCommand : public Introspection {
   }
 };
 
+TEST_F(LogCommand, TheFirstLineOfAProcessNamesTheRevisionOfItsProgram) {
+  Process about({program("input"), "--version"});
+  ASSERT_EQ(about.wait(20s), 0);
+  const std::string version = about.output();
+  const auto at = version.find("\ngit ");
+  ASSERT_NE(at, std::string::npos) << version;
+  const std::string revision = version.substr(at + 1, version.find('\n', at + 1) - at - 1);  // "git 0a1b2c of ..."
+  EXPECT_TRUE(std::regex_search(revision, std::regex("git [0-9a-f]{12} of \\d{4}-\\d\\d-\\d\\d|git not known")))
+      << revision;
+  // The toys do not contain their revision, although their launcher does: the line must not borrow that one.
+  Process run = toys(std::string(kMembers) + "  - {components: [input]}\n");
+  std::vector<json> all;
+  ASSERT_TRUE(eventually([&] {
+    all = lines({"--grep", "starts: Constrictor"});
+    return !of(all, "physics").empty() && !of(all, "input").empty();
+  })) << output_;
+  EXPECT_NE(of(all, "input").front()["message"].get<std::string>().find(", " + revision + ", IDL "), std::string::npos)
+      << all;
+  EXPECT_NE(of(all, "physics").front()["message"].get<std::string>().find(", git not known"), std::string::npos) << all;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
+}
+
 TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
   Process run = toys();
   std::vector<json> all;
@@ -59,7 +82,7 @@ TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
   EXPECT_EQ(first["foreign"], false);
   EXPECT_TRUE(first["tick"].is_null()) << "no epoch has begun: " << first;
   const std::string banner = first["message"];
-  const std::regex pattern("starts: Constrictor \\d+\\.\\d+\\.\\d+, IDL [0-9a-f]{12}, domain " +
+  const std::regex pattern("starts: Constrictor \\d+\\.\\d+\\.\\d+, git not known: [a-z ]+, IDL [0-9a-f]{12}, domain " +
                            std::to_string(domain()) +
                            ", configuration [0-9a-f]{12}, incarnation 1, pid \\d+ on \\S+, started by constrictor "
                            "\\d+\\.\\d+\\.\\d+ git .*");

@@ -113,7 +113,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
 
   CLI::App app{"Constrictor component " + names + ": takes part in a run on Cyclone DDS."};
-  app.set_version_flag("--version", [&names] { return version_text(names); });
+  app.set_version_flag("--version", [&names] { return version_text(names, own_git_revision()); });
   app.add_option("--domain", options.domain, "DDS domain of the run")
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(CLI::Range(0, 229));

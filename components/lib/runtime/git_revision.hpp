@@ -1,4 +1,5 @@
-// The git revision of the source tree. Only programs made with constrictor_git_revision() (CMake) contain it.
+// The git revision of the source tree. Only programs made with constrictor_git_revision() (CMake) contain it;
+// own_git_revision() of version_text.hpp can be used in all.
 #pragma once
 
 namespace constrictor {

@@ -16,6 +16,7 @@
 #include "runtime/log_publisher.hpp"
 #include "runtime/member_side.hpp"
 #include "runtime/version.hpp"
+#include "runtime/version_text.hpp"
 
 namespace constrictor {
 namespace {
@@ -56,9 +57,9 @@ std::string banner(const HostContext& context) {
   const HostOptions& options = context.options;
   const char* launcher = std::getenv(kLauncherVariable);
   return fmt::format(
-      "starts: Constrictor {}, IDL {:.12}, domain {}, configuration {:.12}, incarnation {}, pid {} on {}{}", kVersion,
-      msg::kIdlHash, options.domain, context.config_hash, options.incarnation, ::getpid(), context.host_name,
-      launcher ? fmt::format(", started by {}", launcher) : "");
+      "starts: Constrictor {}, git {}, IDL {:.12}, domain {}, configuration {:.12}, incarnation {}, pid {} on {}{}",
+      kVersion, own_git_revision(), msg::kIdlHash, options.domain, context.config_hash, options.incarnation, ::getpid(),
+      context.host_name, launcher ? fmt::format(", started by {}", launcher) : "");
 }
 
 }  // namespace

@@ -9,4 +9,8 @@ namespace constrictor {
 /// (processes with different ones refuse each other), and the Cyclone DDS library that this process has loaded.
 [[nodiscard]] std::string version_text(const std::string& program, const std::string& git_revision = {});
 
+/// kGitRevision of this program; "not known: ..." if it was made without constrictor_git_revision() (CMake), as
+/// programs of other projects are.
+[[nodiscard]] std::string own_git_revision();
+
 }  // namespace constrictor
