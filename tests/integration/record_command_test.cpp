@@ -1,6 +1,7 @@
-// `constrictor record` beside a run of toys.
+// `constrictor record` beside a run of toys, and what observers of a run may not change.
 #include "integration/run_command_fixture.hpp"
 #include "recording/mcap_reader.hpp"
+#include "recording/recording_summary.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -73,6 +74,54 @@ TEST_F(RecordCommand, ExplainsWhichImagesItCanRecord) {
   EXPECT_NE(output_.find("use `constrictor run --record --images recompute`"), std::string::npos) << output_;
   EXPECT_EQ(status_of({"record", "live.mcap", "--images", "offf"}), exit_status::kUsage);
   EXPECT_NE(output_.find("found 'offf', accepted on, off, did you mean 'off'?"), std::string::npos) << output_;
+}
+
+TEST_F(RecordCommand, TheRecordingOfARunHasTheTopicOfAnExternalProgram) {
+  Process launcher = run(400, "r", {"--record", "--pace", "2x", "--in-process"});
+  const unsigned domain = domain_of(launcher);
+  ASSERT_NE(domain, 0u);
+  Process talker({program("foreign_talker"), std::to_string(domain), "appendable"}, environment_);
+  EXPECT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
+  const RecordingSummary summary = summarise_recording(dir_ / "r" / "run.mcap");
+  EXPECT_TRUE(summary.proven);
+  const auto foreign = std::find_if(summary.topics.begin(), summary.topics.end(),
+                                    [](const RecordedTopic& topic) { return topic.type.starts_with("foreign::"); });
+  ASSERT_NE(foreign, summary.topics.end());
+  EXPECT_GT(foreign->messages, 10u);
+  EXPECT_EQ(foreign->no_schema, "");
+}
+
+TEST_F(RecordCommand, ObserversThatComeAndGoChangeNothing) {
+  constexpr int kPairs = 4;
+  constexpr int kKilled = 2;  // this pair ends by SIGKILL, the others by SIGINT
+  ASSERT_EQ(run(1500, "alone", {"--in-process"}).wait(30s), exit_status::kOk);
+  Process launcher = run(1500, "watched", {"--record", "--pace", "2x"});
+  ASSERT_NE(domain_of(launcher), 0u);
+  ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
+  std::vector<Process> before;  // of the pair before, so that two pairs overlap
+  const auto end_pair = [&](int pair) {
+    for (Process& one : before) {
+      one.signal(pair == kKilled ? SIGKILL : SIGINT);
+      EXPECT_TRUE(one.wait(20s)) << one.output();
+    }
+    before.clear();
+  };
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const fs::path file = dir_ / ("pair" + std::to_string(pair) + ".mcap");
+    std::vector<Process> now;
+    now.push_back(command({"record", file.string()}));
+    now.push_back(command({"dashboard", "--port", "0"}));
+    ASSERT_TRUE(now[1].wait_for("Ctrl-C ends the dashboard", 20s)) << now[1].errors();
+    ASSERT_TRUE(eventually([&] { return fs::exists(file) && fs::file_size(file) > 20'000; })) << now[0].errors();
+    end_pair(pair - 1);
+    before = std::move(now);
+  }
+  ASSERT_TRUE(launcher.running()) << "the run must be longer than the pairs";
+  end_pair(kPairs - 1);
+  ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();
+  EXPECT_EQ(state_hash("watched"), state_hash("alone"));
+  EXPECT_EQ(report("watched")["recording"]["proven_complete"], true) << report("watched")["recording"];
+  expect_nobody_left();
 }
 
 }  // namespace
