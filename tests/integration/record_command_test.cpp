@@ -1,4 +1,5 @@
 // `constrictor record` beside a run of toys, and what observers of a run may not change.
+#include "constrictor/topics.hpp"
 #include "integration/run_command_fixture.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/recording_summary.hpp"
@@ -27,6 +28,11 @@ class RecordCommand : public RunCommand {
     mcap::Reader reader(file);
     reader.read(visitor);
     return found;
+  }
+  static const RecordedTopic* topic_of(const RecordingSummary& summary, std::string_view name) {
+    const auto found = std::find_if(summary.topics.begin(), summary.topics.end(),
+                                    [&](const RecordedTopic& topic) { return topic.name == name; });
+    return found == summary.topics.end() ? nullptr : &*found;
   }
   std::string output_;
 };
@@ -74,6 +80,28 @@ TEST_F(RecordCommand, ExplainsWhichImagesItCanRecord) {
   EXPECT_NE(output_.find("use `constrictor run --record --images recompute`"), std::string::npos) << output_;
   EXPECT_EQ(status_of({"record", "live.mcap", "--images", "offf"}), exit_status::kUsage);
   EXPECT_NE(output_.find("found 'offf', accepted on, off, did you mean 'off'?"), std::string::npos) << output_;
+}
+
+TEST_F(RecordCommand, KnowsNoRateOfSamplesThatWritersKept) {
+  const std::string file = (dir_ / "live.mcap").string();
+  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  ASSERT_NE(domain_of(launcher), 0u);
+  ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
+  ASSERT_EQ(status_of({"status"}), 0) << output_;  // the run has begun
+  ASSERT_EQ(status_of({"record", file, "--for", "2"}), 0) << output_;
+  end(launcher);
+  const RecordingSummary summary = summarise_recording(file);
+  const RecordedTopic* hello = topic_of(summary, barrier_topics::kHello.name);
+  ASSERT_TRUE(hello);
+  EXPECT_GE(hello->history, 5u) << "each member has introduced itself before";
+  EXPECT_EQ(hello->rate_hz(), 0.0);
+  const RecordedTopic* joints = topic_of(summary, "joint_state");
+  ASSERT_TRUE(joints);
+  EXPECT_NEAR(joints->rate_hz(), 100.0, 15.0) << "50 Hz at twice the speed of the wall clock";
+  ASSERT_EQ(status_of({"info", file}), 0) << output_;
+  const auto line = output_.find(std::string(barrier_topics::kHello.name));
+  ASSERT_NE(line, std::string::npos) << output_;
+  EXPECT_NE(output_.substr(line, output_.find('\n', line) - line).find(" - "), std::string::npos) << output_;
 }
 
 TEST_F(RecordCommand, TheRecordingOfARunHasTheTopicOfAnExternalProgram) {

@@ -13,6 +13,8 @@
 namespace constrictor {
 namespace {
 
+constexpr std::uint64_t kShortestForRate_ns = 100'000'000;  // in less time, two messages by chance make a rate
+
 using EpochKey = std::pair<std::uint64_t, std::uint32_t>;  // run id, epoch
 
 /// The numbers of one topic's messages in one epoch.
@@ -53,7 +55,6 @@ class Summariser {
     RecordedTopic& topic = topics_[channel.topic];
     if (topic.messages++ == 0) {
       topic.name = printable(channel.topic);
-      topic.first_ns = message.log_time;
       const auto type = channel.metadata.find("dds_type");
       // Topics that are not DDS's, such as those of `constrictor foxglove`, have the type that their schema names.
       if (type != channel.metadata.end()) topic.type = printable(type->second);
@@ -62,6 +63,9 @@ class Summariser {
       if (channel.schema_id == 0)
         topic.no_schema = why == channel.metadata.end() ? "not described" : printable(why->second);
     }
+    if (!began_ns_) began_ns_ = message.log_time;
+    if (message.publish_time < *began_ns_) ++topic.history;
+    else if (topic.messages == topic.history + 1) topic.first_ns = message.log_time;
     topic.bytes += message.data.size();
     topic.last_ns = std::max(topic.last_ns, message.log_time);
     const auto info = std::find_if(topics::kInfos.begin(), topics::kInfos.end(),
@@ -174,6 +178,7 @@ class Summariser {
 
   mcap::Reader reader_;
   RecordingSummary summary_;
+  std::optional<std::uint64_t> began_ns_;  ///< log time of the first message
   std::map<std::string, RecordedTopic> topics_;
   std::map<EpochKey, RecordedEpoch> epochs_;
   std::map<EpochKey, msg::Tick> visible_;  ///< the last tick of each epoch
@@ -185,8 +190,9 @@ class Summariser {
 }  // namespace
 
 double RecordedTopic::rate_hz() const {
-  if (messages < 2 || last_ns <= first_ns) return 0.0;
-  return static_cast<double>(messages - 1) * 1e9 / static_cast<double>(last_ns - first_ns);
+  const std::uint64_t live = messages - history;
+  if (live < 2 || last_ns < first_ns + kShortestForRate_ns) return 0.0;
+  return static_cast<double>(live - 1) * 1e9 / static_cast<double>(last_ns - first_ns);
 }
 
 std::uint64_t RecordingSummary::missing() const {

@@ -19,9 +19,11 @@ struct RecordedTopic {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;     ///< of all messages
   std::uint64_t missing = 0;   ///< messages that were written but are not in the recording
-  std::uint64_t first_ns = 0;  ///< log time
+  std::uint64_t history = 0;   ///< messages that were published before the recording began, and kept for late readers
+  std::uint64_t first_ns = 0;  ///< log time of the first message that is not history
   std::uint64_t last_ns = 0;
-  /// [Hz] mean rate; 0: fewer than two messages.
+  /// [Hz] mean rate without history, which arrives at once; 0: not known, because fewer than two messages arrived in
+  /// at least 0.1 s.
   [[nodiscard]] double rate_hz() const;
 };
 

@@ -61,6 +61,7 @@ Json json_of(const RecordingSummary& summary) {
                               {"no_schema", topic.no_schema},
                               {"messages", topic.messages},
                               {"bytes", topic.bytes},
+                              {"history", topic.history},
                               {"rate_hz", topic.rate_hz()},
                               {"missing", topic.missing}});
   }
@@ -76,9 +77,10 @@ void print_topics(const RecordingSummary& summary) {
              "type");
   for (const auto& topic : summary.topics) {
     const std::string type = topic.type.empty() ? "?" : topic.type;
-    fmt::print("{:<28} {:>9} {:>9.2f} {:>10.1f} {:>8}  {}{}\n", topic.name, topic.messages, topic.rate_hz(),
-               static_cast<double>(topic.bytes) * 1e-3, topic.missing, type,
-               topic.no_schema.empty() ? "" : " (bytes without schema: " + topic.no_schema + ")");
+    const double rate_hz = topic.rate_hz();
+    fmt::print("{:<28} {:>9} {:>9} {:>10.1f} {:>8}  {}{}\n", topic.name, topic.messages,
+               rate_hz > 0 ? fmt::format("{:.2f}", rate_hz) : "-", static_cast<double>(topic.bytes) * 1e-3,
+               topic.missing, type, topic.no_schema.empty() ? "" : " (bytes without schema: " + topic.no_schema + ")");
   }
 }
 
@@ -159,7 +161,8 @@ void add_recording_files(CLI::App& app, Action& action) {
   info_app->footer(help_footer(
       "Reads the whole file and checks everything in it. In the recording of a whole run in lock-step, the ticks name\n"
       "the number of messages of each topic, so that `info` knows whether one is missing. Otherwise it counts the\n"
-      "numbers of messages that were left out.",
+      "numbers of messages that were left out. A rate does not count messages of the time before the recording,\n"
+      "which writers keep for late readers; - means that it is not known.",
       {"constrictor info runs/NAME/run.mcap", "constrictor info run.mcap --json"},
       "0 complete; 1 messages are missing, or the file was not finished; 64 wrong usage; 70 damaged, or no MCAP file",
       "none"));
