@@ -75,5 +75,26 @@ TEST_F(RunCommand, ListNamesEverythingThatCanBeChosenByName) {
   EXPECT_EQ(wrong.wait(20s), exit_status::kUsage);
 }
 
+TEST_F(RunCommand, AScriptReadsAsJsonWhyItsTaskWasNotSent) {
+  environment_["XDG_RUNTIME_DIR"] = dir_.string();  // no run of this host is meant
+  const std::vector<std::pair<std::vector<std::string>, int>> refused = {
+      {{"task", "start", "rotate", "--direction", "lft", "--json"}, exit_status::kUsage},
+      {{"task", "start", "rotat", "--json"}, exit_status::kUsage},
+      {{"task", "start", "rotate", "--direction", "left", "--json"}, exit_status::kSoftware},  // no run
+      {{"task", "cancel", "--json"}, exit_status::kSoftware},
+      {{"task", "wait", "--event", "tea", "--json"}, exit_status::kUsage}};
+  for (const auto& [arguments, status] : refused) {
+    Process process = command(arguments);
+    EXPECT_EQ(process.wait(30s), status) << process.errors();
+    const auto json = nlohmann::json::parse(process.output(), nullptr, false);
+    ASSERT_TRUE(json.is_object()) << process.output();
+    const std::string reason = json.value("reason", "");
+    EXPECT_FALSE(reason.empty());
+    EXPECT_NE(process.errors().find(reason), std::string::npos) << process.errors();
+    if (arguments[1] == "start") EXPECT_TRUE(json["started"].is_null()) << json;
+    if (arguments[1] == "cancel") EXPECT_EQ(json["cancelled"], false) << json;
+  }
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,6 +23,8 @@
 #include "client/goal_tracker.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "configuration/closest_name.hpp"
+#include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
@@ -48,11 +52,35 @@ int with_client(const TaskOptions& options, int (*use)(RequestClient&, const Tas
   return use(client, options);
 }
 
+/// What `task NAME --json` prints if nothing was done.
+Json nothing_done(const std::string& name) {
+  if (name == "start") return {{"started", nullptr}};
+  if (name == "cancel") return {{"cancelled", false}};
+  return {{"result", "error"}};
+}
+
+/// Runs `task NAME`. With --json, a script reads from standard output why nothing was done, also after wrong usage and
+/// if there is no run.
+int with_json(const std::string& name, bool json, const std::function<int()>& what) {
+  try {
+    return what();
+  } catch (const std::exception& error) {
+    if (json) {
+      Json nothing = nothing_done(name);
+      nothing["reason"] = error.what();
+      print_json(nothing);
+    }
+    throw;  // main() prints it, and knows the exit status
+  }
+}
+
 /// The task and its parameters as a request. Throws UsageError if they are wrong or incomplete: such a request must not
 /// be sent, because it would end the running mission.
 msg::Request request_of(const TaskOptions& options) {
   const auto task = task_by_name(options.name);
-  if (!task) throw UsageError(fmt::format("TASK: found '{}', accepted {}", options.name, task_words()));
+  if (!task)
+    throw UsageError(fmt::format("TASK: found '{}', accepted {}{}", options.name, task_words(),
+                                 did_you_mean(options.name, names_of(constants::kTask, 1))));
   msg::Request request = task_request(*task);
   for (const auto& [key, value] : options.parameters) {
     if (value.empty()) continue;
@@ -166,7 +194,9 @@ void add_task(CLI::App& app, Action& action) {
                   kRunStatuses)));
   const auto add = [&](const char* name, const char* text, std::function<int()> what) {
     auto* sub = task->add_subcommand(name, text);
-    sub->callback([&action, what = std::move(what)] { action = what; });
+    sub->callback([&action, options, name, what = std::move(what)] {
+      action = [=] { return with_json(name, options->wait.json, what); };
+    });
     sub->add_flag("--json", options->wait.json, "print the result as one JSON object, also a refusal");
     return sub;
   };
