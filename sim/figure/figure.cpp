@@ -14,20 +14,32 @@ constexpr std::array<double, 5> kColumnWidths{150, 320, 240, 240, 362};  // capt
 constexpr double kHeaderHeight = 108.0;
 constexpr double kFailureHeight = 24.0;  // of the line that says why the mission did not succeed
 constexpr double kNumbers = 11.0;        // size of the numbers at the axes
+constexpr std::size_t kStateLines = 3;   // of a state's name, at most
 
 void draw_caption(Canvas& canvas, const Row& row, double left, double top) {
   canvas.fill({left, top, 5.0, kPanelHeight}, display_colour(row.colour));
   const double x = left + 16.0, width = kColumnWidths[0] - 16.0;
   canvas.text(number(row.time_s, 1) + " s", {x, top + 20.0}, {19.0, kInk, true});
+  // The state stands at the bottom. A name of more lines than there is room for ends with a mark.
+  const TextStyle state{12.0, kGreyInk};
+  std::vector<std::string> state_lines = canvas.wrapped(row.state, width, state);
+  if (state_lines.size() > kStateLines) {
+    state_lines.resize(kStateLines);
+    state_lines.back() = canvas.fitted(state_lines.back() + " …", width, state);
+  }
+  const double state_height = 16.0 * static_cast<double>(state_lines.size());
+  double y = top + kPanelHeight + 11.0 - state_height;
+  for (const std::string& line : state_lines) {
+    canvas.text(line, {x, y}, state);
+    y += 16.0;
+  }
   const TextStyle words{14.0};
-  double y = top + 45.0;
+  y = top + 45.0;
   for (const std::string& line : canvas.wrapped(row.caption, width, words)) {
-    if (y > top + kPanelHeight - 30.0) break;
+    if (y > top + kPanelHeight - 14.0 - state_height) break;
     canvas.text(line, {x, y}, words);
     y += 19.0;
   }
-  const TextStyle state{12.0, kGreyInk};
-  if (!row.state.empty()) canvas.text(canvas.fitted(row.state, width, state), {x, top + kPanelHeight - 5.0}, state);
 }
 
 }  // namespace

@@ -55,6 +55,20 @@ TEST(Figure, ParsesTheTorqueJournal) {
   EXPECT_TRUE(parse_torques("").time_s.empty());
 }
 
+TEST(Figure, ShowsTheWholeNameOfAState) {
+  Row row = blue_row();
+  row.state = "follow line to drop zone";
+  const std::string svg = draw({"title", "subtitle", ""}, {row}, Format::kSvg);
+  std::size_t at = 0;  // the words stand one after the other, perhaps in several lines
+  for (const char* word : {"follow", "line", "to", "drop", "zone"}) {
+    at = svg.find(word, at);
+    ASSERT_NE(at, std::string::npos) << word;
+  }
+  EXPECT_EQ(svg.find("…"), std::string::npos);
+  row.state = std::string(300, 'x');
+  EXPECT_NE(draw({"title", "subtitle", ""}, {row}, Format::kSvg).find("…"), std::string::npos);
+}
+
 TEST(Figure, HasARowForEachMomentWithItsPictures) {
   const cv::Mat one = decoded(draw({"title", "subtitle", ""}, {blue_row()}, Format::kPng));
   const cv::Mat three = decoded(draw({"title", "subtitle", ""}, {blue_row(), blue_row(), blue_row()}, Format::kPng));
