@@ -80,6 +80,12 @@ TEST_F(RecordCommand, ExplainsWhichImagesItCanRecord) {
   EXPECT_NE(output_.find("use `constrictor run --record --images recompute`"), std::string::npos) << output_;
   EXPECT_EQ(status_of({"record", "live.mcap", "--images", "offf"}), exit_status::kUsage);
   EXPECT_NE(output_.find("found 'offf', accepted on, off, did you mean 'off'?"), std::string::npos) << output_;
+  EXPECT_EQ(status_of({"log", "--level", "wran"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("found 'wran', accepted info, warning, error, warn, did you mean 'warn'?"), std::string::npos)
+      << output_;
+  write("empty.mcap", "");
+  EXPECT_EQ(status_of({"figure", (dir_ / "empty.mcap").string(), "--event", "object_graspd"}), exit_status::kUsage);
+  EXPECT_NE(output_.find("did you mean 'object_grasped'?"), std::string::npos) << output_;
 }
 
 TEST_F(RecordCommand, KnowsNoRateOfSamplesThatWritersKept) {

@@ -63,7 +63,7 @@ void add_list(CLI::App& app, Action& action) {
                      action, options, list_names);
   sub->add_option("KIND", options->kind, "scenarios, robots, manifests or components")
       ->required()
-      ->check(CLI::IsMember({"scenarios", "robots", "manifests", "components"}));
+      ->check(one_of({"scenarios", "robots", "manifests", "components"}));
   sub->add_flag("--names", options->names, "print the names only, one per line, for scripts");
   sub->footer(help_footer("", {"constrictor list scenarios", "constrictor list components --names"},
                           "0 done; 64 wrong usage; 70 constrictor_host, which knows the components, does not start",

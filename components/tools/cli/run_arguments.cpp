@@ -72,7 +72,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
                   "what --record records of images: on (whole), off (nothing), recompute (without their pixels,\n"
                   "which `constrictor replay --restore` computes again)")
       ->capture_default_str()
-      ->check(CLI::IsMember({"on", "off", "recompute"}))
+      ->check(one_of({"on", "off", "recompute"}))
       ->needs(record);
   run->add_flag("--no-checkpoints", options->no_checkpoints,
                 "keep no checkpoints: if the process of the plant dies, the run is lost");

@@ -16,6 +16,8 @@
 #include "client/polling.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "configuration/closest_name.hpp"
+#include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/text.hpp"
 #include "cyclone/domain.hpp"
@@ -148,7 +150,8 @@ class Waiting {
 
 int task_wait(const TaskWaitOptions& options, std::optional<std::uint32_t> run) {
   if (!options.end && !event_by_name(options.event))
-    throw UsageError(fmt::format("--event: found '{}', accepted {}", options.event, event_words()));
+    throw UsageError(fmt::format("--event: found '{}', accepted {}{}", options.event, event_words(),
+                                 did_you_mean(options.event, names_of(constants::kEvent, 1))));
   if (options.goal == "any" && options.end)
     throw UsageError("--goal: found 'any', accepted a goal's number together with --end");
   const auto bound = parse_duration("--timeout", options.timeout);

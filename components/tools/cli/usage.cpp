@@ -74,11 +74,12 @@ CLI::Validator number(double min, double max, const std::string& unit) {
 
 CLI::Validator one_of(std::vector<std::string> words) {
   const std::string accepted = fmt::format("{}", fmt::join(words, ", "));
+  std::string shown_in_help = fmt::format("{{{}}}", fmt::join(words, ","));
   return {[words = std::move(words), accepted](std::string& text) {
             if (std::find(words.begin(), words.end(), text) != words.end()) return std::string{};
             return fmt::format("found '{}', accepted {}{}", text, accepted, did_you_mean(text, words));
           },
-          ""};
+          std::move(shown_in_help)};
 }
 
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain) {

@@ -130,7 +130,7 @@ void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
       ->check(CLI::ExistingDirectory);
   app.add_option("--keep", options.request.keep, "of which runs figure, journals and logs are kept")
       ->capture_default_str()
-      ->check(CLI::IsMember({"all", "failed", "none"}));
+      ->check(one_of({"all", "failed", "none"}));
   app.add_option("--manifest", run.manifest, "launch manifest: a name (see `constrictor list manifests`) or a file")
       ->capture_default_str();
   app.add_option("--robot", run.robot, "robot: a name (see `constrictor list robots`) or a file");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/subcommands.hpp"
+#include "cli/usage.hpp"
 #include "client/task_names.hpp"
 #include "constrictor/topics.hpp"
 #include "runtime/host.hpp"
@@ -250,7 +251,7 @@ void add_completion(CLI::App& app, Action& action) {
   auto shell = std::make_shared<std::string>();
   auto* sub =
       app.add_subcommand("completion", "print a script that lets a shell complete subcommands, options and names");
-  sub->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  sub->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(one_of({"bash", "zsh", "fish"}));
   sub->footer(
       "EXAMPLES\n  source <(constrictor completion bash)\n  constrictor completion zsh > ~/.constrictor-completion && "
       ". ~/.constrictor-completion\n"

@@ -180,6 +180,8 @@ int log(const LogOptions& given) {
 
 void add_log(CLI::App& app, Action& action) {
   auto options = std::make_shared<LogOptions>();
+  std::vector<std::string> levels = names_of(constants::kLog);
+  levels.emplace_back("warn");  // short for "warning"
   auto* sub = add_subcommand(app, "log", "print the log lines of all processes of a run, in the order of their time",
                              action, options, log);
   sub->add_option("FOLDER", options->folder,
@@ -187,7 +189,7 @@ void add_log(CLI::App& app, Action& action) {
       ->check(CLI::ExistingDirectory);
   sub->add_flag("--follow,-f", options->follow, "print new lines until Ctrl-C or the end of the run");
   sub->add_option("--level", options->level, "only lines of this level and of those above it: info, warning, error")
-      ->check(CLI::IsMember(names_of(constants::kLog)))
+      ->check(one_of(levels))
       ->transform(CLI::Transformer(std::map<std::string, std::string>{{"warn", "warning"}}))
       ->capture_default_str();
   sub->add_option("--component", options->filter.components,

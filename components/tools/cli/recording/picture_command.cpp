@@ -13,6 +13,8 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/task_names.hpp"
+#include "configuration/closest_name.hpp"
+#include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "recording/mcap_format.hpp"
 
@@ -64,7 +66,9 @@ int figure(const FigureOptions& options) {
   std::vector<unsigned> events;
   for (const auto& name : options.events) {
     const auto event = event_by_name(name);
-    if (!event) throw UsageError(fmt::format("--event: found '{}', accepted {}", name, event_words()));
+    if (!event)
+      throw UsageError(fmt::format("--event: found '{}', accepted {}{}", name, event_words(),
+                                   did_you_mean(name, names_of(constants::kEvent, 1))));
     events.push_back(*event);
   }
   return become("pictures", {json_text(nlohmann::json{{"picture", "figure"},
@@ -121,7 +125,7 @@ void add_pictures(CLI::App& app, Action& action) {
   add_file(*sub, drawn->file);
   sub->add_option("-o,--output", drawn->output, "file; an existing one is replaced (default: figure.png)");
   sub->add_option("--format", drawn->format, "png, svg or pdf (default: by the ending of --output)")
-      ->check(CLI::IsMember({"png", "svg", "pdf"}));
+      ->check(one_of({"png", "svg", "pdf"}));
   sub->add_option("--at", drawn->at_s, "[s] moments, for example 12.5,40 (default: those of the figure of the run)")
       ->delimiter(',')
       ->check(number(0, 1e9, "s"));

@@ -203,7 +203,7 @@ void add_record(CLI::App& app, Action& action) {
                   "on, or off: leave the images of cameras out. To record them without their pixels, which can be\n"
                   "computed again: constrictor run --record --images recompute")
       ->capture_default_str()
-      ->check(CLI::Validator(problem_of_images, ""));
+      ->check(CLI::Validator(problem_of_images, "{on,off}"));
   sub->add_option("--for", options->for_s, "[s] end after this time (default: until Ctrl-C, or the end of the run)")
       ->check(number(1e-3, 1e9, "s"));
   sub->add_flag("--force", options->force, "replace FILE if it exists");

@@ -243,7 +243,7 @@ void add_servo(CLI::App& app, Action& action) {
   add(*group, "zero", "print the present positions as zero_steps for the bus file", action, true, options, zero);
   CLI::App* on_off =
       add(*group, "torque", "switch the torque on (the servo stays where it is) or off", action, true, options, torque);
-  on_off->add_option("STATE", options->state, "on or off")->required()->check(CLI::IsMember({"on", "off"}));
+  on_off->add_option("STATE", options->state, "on or off")->required()->check(one_of({"on", "off"}));
   add(*group, "monitor", "show position, current, voltage and temperature twice a second", action, true, options,
       monitor)
       ->add_option("--rounds", options->rounds, "how often; 0: until Ctrl+C")
