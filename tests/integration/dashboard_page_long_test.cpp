@@ -113,6 +113,9 @@ TEST_F(DashboardPage, ShowsARecordingWithATimeLine) {
        "wait=document.querySelector('#place').textContent.startsWith('0:08')",
        "wait=document.documentElement.scrollWidth <= 390"});
   EXPECT_EQ(page.wait(120s), 0) << page.errors();
+  Process wide = browse("1300x1000", {kConnected, "wait=document.querySelector('#operate').hidden",
+                                      "wait=document.querySelector('#events').clientWidth > 1200"});
+  EXPECT_EQ(wide.wait(60s), 0) << wide.errors();
 }
 
 TEST_F(DashboardPage, ShowsALostConnectionAndRecovers) {
