@@ -1,5 +1,7 @@
 #include "servo_bus/bus_ports.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace constrictor {
@@ -17,23 +19,36 @@ BusPorts::BusPorts(std::vector<dynamixel::BusPort> ports, double answer_slack_s,
       before_(ports_.size()),
       waited_(ports_.size()) {}
 
-void BusPorts::open_all() {
+void BusPorts::open(std::size_t index, double patience_s) {
+  masters_[index] = std::make_unique<serial::BusMaster>(open_(ports_[index], patience_s), answer_slack_s_);
+  ++before_[index].openings;
+}
+
+void BusPorts::open_all(double patience_s) {
+  for (std::size_t i = 0; i < ports_.size(); ++i) open(i, patience_s);
+}
+
+void BusPorts::open_present(std::vector<std::string>& news) {
   for (std::size_t i = 0; i < ports_.size(); ++i) {
-    masters_[i] = std::make_unique<serial::BusMaster>(open_(ports_[i]), answer_slack_s_);
-    ++before_[i].openings;
+    try {
+      open(i, 0.0);
+    } catch (const serial::PortError& error) {
+      news.emplace_back(error.what());
+    }
   }
 }
 
-bool BusPorts::reopen(std::size_t index) {
+bool BusPorts::reopen(std::size_t index, std::vector<std::string>& news) {
   if (masters_[index]) return true;
   if (++waited_[index] % kReopenEvery != 0) return false;
   try {
-    masters_[index] = std::make_unique<serial::BusMaster>(open_(ports_[index]), answer_slack_s_);
-    ++before_[index].openings;
+    open(index, 0.0);
   } catch (const serial::PortError&) {
-    // The reason is known since the port was closed.
+    return false;  // the reason is known since the port was closed
   }
-  return masters_[index] != nullptr;
+  masters_[index]->set_return_delay(0.0);  // the devices were set to it before the first tick
+  news.push_back(fmt::format("port {} is back", ports_[index].device));
+  return true;
 }
 
 void BusPorts::close(std::size_t index) {

@@ -12,20 +12,24 @@
 
 namespace constrictor {
 
-/// Opens a port. Throws serial::PortError.
-using OpenPort = std::function<std::unique_ptr<serial::Port>(const dynamixel::BusPort& port)>;
+/// Opens a port; waits for at most `patience_s` until it is there. Throws serial::PortError.
+using OpenPort = std::function<std::unique_ptr<serial::Port>(const dynamixel::BusPort& port, double patience_s)>;
 
 class BusPorts {
  public:
   BusPorts(std::vector<dynamixel::BusPort> ports, double answer_slack_s, OpenPort open);
 
-  /// Opens all ports. Throws serial::PortError.
-  void open_all();
+  /// Opens all ports, and waits for each for at most `patience_s`. Throws serial::PortError.
+  void open_all(double patience_s);
+  /// Opens the ports that are there now, and waits for none. Notes in `news` which ports are not.
+  void open_present(std::vector<std::string>& news);
   [[nodiscard]] std::size_t size() const { return ports_.size(); }
   [[nodiscard]] const dynamixel::BusPort& port(std::size_t index) const { return ports_[index]; }
   [[nodiscard]] bool is_open(std::size_t index) const { return masters_[index] != nullptr; }
-  /// Tries to open a port that is gone, at most at every 25th call. Returns whether it is open now.
-  bool reopen(std::size_t index);
+  /// Tries to open a port that is gone, at most at every 25th call, and never waits for it: a tick must not, because
+  /// the watchdogs of the devices at the other ports run. Returns whether it is open now. Notes in `news` when it is
+  /// back.
+  bool reopen(std::size_t index, std::vector<std::string>& news);
   /// Calls `use(BusMaster&)` if the port is open. If the port disappears meanwhile, closes it, and notes the reason in
   /// `news`.
   template <class Use>
@@ -49,6 +53,7 @@ class BusPorts {
   [[nodiscard]] Counters counters(std::size_t index) const;
 
  private:
+  void open(std::size_t index, double patience_s);
   void close(std::size_t index);
   std::vector<dynamixel::BusPort> ports_;
   double answer_slack_s_;

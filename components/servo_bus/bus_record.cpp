@@ -15,13 +15,16 @@ std::string summary_of(const JointServos& servos, const BusPorts& ports) {
   std::size_t ready = 0;
   for (std::size_t i = 0; i < servos.count(); ++i) ready += servos.state(i) == ServoState::kReady ? 1 : 0;
   BusPorts::Counters sum{};
+  std::string gone;
   for (std::size_t i = 0; i < ports.size(); ++i) {
+    if (!ports.is_open(i))
+      gone += fmt::format("port {} is gone, ", std::filesystem::path(ports.port(i).device).filename().string());
     const BusPorts::Counters counts = ports.counters(i);
     sum.timeouts += counts.timeouts;
     sum.retries += counts.retries;
     sum.crc_errors += counts.crc_errors;
   }
-  return fmt::format("{} of {} servos ready, {} timeouts, {} retries, {} CRC errors", ready, servos.count(),
+  return fmt::format("{}{} of {} servos ready, {} timeouts, {} retries, {} CRC errors", gone, ready, servos.count(),
                      sum.timeouts, sum.retries, sum.crc_errors);
 }
 

@@ -161,7 +161,7 @@ void JointServos::judge(std::size_t index) {
 void JointServos::measure() {
   for (Joint& joint : joints_) joint.seen = false;
   for (std::size_t port = 0; port < ports_.size(); ++port) {
-    if (ports_.reopen(port)) read_port(port);
+    if (ports_.reopen(port, news_)) read_port(port);
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) judge(i);
   look_for_one_lost();

@@ -53,12 +53,13 @@ msg::Quaternion turned_back(const msg::Quaternion& q, double yaw_rad) {
 
 }  // namespace
 
-void SensorBoards::note(const char* what, Watched& board, bool answered) {
+void SensorBoards::note(const char* what, std::size_t port, Watched& board, bool answered) {
   board.misses = answered ? 0 : board.misses + 1;
   const bool missing = board.misses >= (board.missing ? 1 : kMissingAfter);
   if (missing == board.missing) return;
   board.missing = missing;
-  news_.push_back(fmt::format("{} {}", what, missing ? "does not answer (power, cable, id?)" : "answers again"));
+  news_.push_back(fmt::format("{} at {} {}", what, ports_.port(port).device,
+                              missing ? "does not answer (power, cable, id?)" : "answers again"));
 }
 
 bool SensorBoards::skip(const Watched& board) { return board.missing && ++skipped_ % kAskEvery != 0; }
@@ -79,7 +80,7 @@ std::optional<msg::ImuState> SensorBoards::imu() {
     state->angular_velocity_rad_s = board.vector(map::imu::kAngularVelocity, map::kRate_rad_s);
     state->linear_acceleration_m_s2 = board.vector(map::imu::kLinearAcceleration, map::kAcceleration_m_s2);
   });
-  note("the inertial unit", imu_, state.has_value());
+  note("the inertial unit", plan_.imu->port, imu_, state.has_value());
   return state;
 }
 
@@ -113,7 +114,7 @@ msg::ContactState SensorBoards::contacts() {
     if (answered < ids.size() && in_time) bus.sync_read(map::kBegin, kBytes, ByteView(ids).subspan(answered), use);
   });
   const bool all = answered == ids.size();
-  note("one of the contact boards", contacts_, all);
+  note("one of the contact boards", port, contacts_, all);
   if (!all) return {};
   state.module_count = static_cast<std::uint16_t>(ids.size());
   const auto strength = [](const msg::Contact& one) { return std::hypot(one.force_n.x, one.force_n.y, one.force_n.z); };

@@ -35,7 +35,7 @@ class SensorBoards {
     bool missing = false;
   };
   /// Notes when a sensor is lost, and when it is back.
-  void note(const char* what, Watched& board, bool answered);
+  void note(const char* what, std::size_t port, Watched& board, bool answered);
   /// Whether a board that is missing is left out in this tick.
   [[nodiscard]] bool skip(const Watched& board);
 

@@ -26,8 +26,8 @@ dynamixel::BusPlan plan_of(const ServoBusConfig& config, const RobotModel& robot
 }
 
 /// Opens serial ports; relative names belong to the output folder of the run.
-OpenPort serial_ports(const std::filesystem::path& folder, double patience_s) {
-  return [folder, patience_s](const dynamixel::BusPort& port) -> std::unique_ptr<serial::Port> {
+OpenPort serial_ports(const std::filesystem::path& folder) {
+  return [folder](const dynamixel::BusPort& port, double patience_s) -> std::unique_ptr<serial::Port> {
     return serial::wait_for_port(folder / port.device, port.baud, patience_s);
   };
 }
@@ -39,8 +39,7 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       config_(load_parameters<ServoBusConfig>(setup.config_file)),
       robot_(load_robot(robot_file_of(setup))),
       plan_(plan_of(config_, robot_)),
-      ports_(plan_.ports, config_.answer_slack_s,
-             open ? open : serial_ports(setup.output_dir, config_.port_patience_s)),
+      ports_(plan_.ports, config_.answer_slack_s, open ? open : serial_ports(setup.output_dir)),
       servos_(plan_, robot_, config_, ports_),
       boards_(plan_, ports_),
       record_(setup.output_dir),
@@ -57,12 +56,15 @@ ServoBus::~ServoBus() {
 
 void ServoBus::start() {
   try {
-    ports_.open_all();
+  // A successor must not give up the run, and must be quicker than the watchdogs of the servos that do answer: what is
+  // missing now is lost, and may come back.
+  std::vector<std::string> missing;
+    if (continued_) ports_.open_present(missing);
+    else ports_.open_all(config_.port_patience_s);
   } catch (const serial::PortError& error) {
     throw ConfigurationError(error.what());
   }
-  // A successor must not give up the run, and must be quicker than the watchdogs of the servos that do answer: what is
-  // missing now is lost, and may come back.
+  for (const auto& line : missing) report(line);
   const std::vector<std::string> failed = servos_.start(continued_ ? 0.0 : config_.servo_patience_s);
   if (!failed.empty() && !continued_)
     throw ConfigurationError(
@@ -146,7 +148,8 @@ void ServoBus::step(const Tick& tick) {
   const auto& goals = gate_.setpoints(tick, {angles_rad_, rates_rad_s_}, hold);
   servos_.command(goals);
   look_for_stuck_joints(goals);
-  if (bus_time_ns_ > 0) record_.add_duration(bus_time_ns_ + ports_.now_ns() - before_ns);
+  const std::int64_t now_ns = ports_.now_ns();
+  if (bus_time_ns_ > 0 && now_ns > 0) record_.add_duration(bus_time_ns_ + now_ns - before_ns);
   if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
 }
 

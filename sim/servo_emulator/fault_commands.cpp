@@ -26,6 +26,7 @@ void EmulatedRobot::break_line(std::size_t port, std::string_view how, double va
   else if (how == "damage") faults.damaged_bytes = value;
   else if (how == "cut") faults.cut_answers = value;
   else if (how == "noise") faults.noise_answers = value;
+  else if (how == "unplug") faults.unplugged = true;
   else if (how == "mend") faults = {};
 }
 

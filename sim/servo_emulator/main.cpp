@@ -75,6 +75,8 @@ void emulate(const Options& options, const Log& log) {
     const timespec wait = {wait_ns / 1'000'000'000, wait_ns % 1'000'000'000};
     ::ppoll(waits.data(), waits.size(), &wait, nullptr);
     for (std::size_t i = 0; i < terminals.size(); ++i) {
+      terminals[i]->plug(!robot.line(i).faults.unplugged);
+      waits[i].fd = terminals[i]->descriptor();
       received.clear();
       terminals[i]->read(received);
       if (!received.empty()) robot.line(i).receive(received, terminals[i]->baud(), now_ns());

@@ -19,7 +19,16 @@ int checked(int result, const char* what) {
 
 }  // namespace
 
-PseudoTerminal::PseudoTerminal(std::filesystem::path link) : link_(std::move(link)) {
+PseudoTerminal::PseudoTerminal(std::filesystem::path link) : link_(std::move(link)) { open(); }
+
+PseudoTerminal::~PseudoTerminal() { plug(false); }
+
+void PseudoTerminal::plug(bool in) {
+  if (in && master_ < 0) open();
+  if (!in && master_ >= 0) close();
+}
+
+void PseudoTerminal::open() {
   master_ = checked(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), "posix_openpt");
   checked(::grantpt(master_), "grantpt");
   checked(::unlockpt(master_), "unlockpt");
@@ -36,11 +45,12 @@ PseudoTerminal::PseudoTerminal(std::filesystem::path link) : link_(std::move(lin
   std::filesystem::create_symlink(name, link_);
 }
 
-PseudoTerminal::~PseudoTerminal() {
+void PseudoTerminal::close() {
   std::error_code ignored;
   std::filesystem::remove(link_, ignored);
   ::close(held_open_);
   ::close(master_);
+  held_open_ = master_ = -1;
 }
 
 std::uint32_t PseudoTerminal::baud() const {

@@ -18,6 +18,9 @@ class PseudoTerminal {
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
 
+  /// Unplugs the adapter, which takes the port and the link away, or plugs it in again. Throws std::system_error.
+  void plug(bool in);
+  /// -1 while it is unplugged. Then nothing can be read, and bytes that are written are lost.
   [[nodiscard]] int descriptor() const { return master_; }
   [[nodiscard]] const std::filesystem::path& link() const { return link_; }
   /// [bit/s] that the controller has set.
@@ -28,6 +31,8 @@ class PseudoTerminal {
   void write(dynamixel::ByteView bytes) const;
 
  private:
+  void open();
+  void close();
   std::filesystem::path link_;
   int master_ = -1;
   int held_open_ = -1;  ///< the controller's end: without it, reads fail while no controller has opened the port

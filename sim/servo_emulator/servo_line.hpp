@@ -19,6 +19,7 @@ struct LineFaults {
   std::vector<std::size_t> silent;                 ///< places of devices that neither hear nor answer
   double damaged_bytes = 0.0;                      ///< probability that a byte of an answer is damaged
   double cut_answers = 0.0;                        ///< probability that an answer ends somewhere in the middle
+  bool unplugged = false;                          ///< the adapter is gone, and with it the serial port
   double noise_answers = 0.0;                      ///< probability that random bytes precede an answer
 };
 

@@ -16,9 +16,9 @@ class ServoBusProcesses : public CliFixture {
  protected:
   ServoBusProcesses() { write("patient.yaml", "servo: {watchdog_s: 2}\n"); }
   /// The watchdogs have more patience than usual, because a test machine may be busy.
-  [[nodiscard]] Process run(std::vector<std::string> more = {}) const {
+  [[nodiscard]] Process run(std::vector<std::string> more = {}, const std::string& manifest = "emulated_servos") const {
     std::vector<std::string> arguments = {
-        "run",      "--manifest",     "emulated_servos", "--config", "servo_bus=" + (dir_ / "patient.yaml").string(),
+        "run",      "--manifest",     manifest, "--config", "servo_bus=" + (dir_ / "patient.yaml").string(),
         "--report", run_dir_.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start(std::move(arguments));
@@ -44,6 +44,46 @@ class ServoBusProcesses : public CliFixture {
       if (joint["state"] == "lost") --lost;
     }
     return ready == 0 && lost == 0;
+  }
+  /// Whether the driver has a port open. Port 1 is that of the contact boards.
+  [[nodiscard]] bool is_open(std::size_t port) const {
+    const json now = driver();
+    return now.is_object() && now.contains("ports") && now["ports"][port]["open"] == true;
+  }
+  /// Whether a watchdog of a servo has tripped.
+  [[nodiscard]] bool tripped() const {
+    const json now = driver();
+    if (!now.is_object() || !now.contains("joints")) return false;
+    return std::any_of(now["joints"].begin(), now["joints"].end(),
+                       [](const json& one) { return one["watchdog"] == -1; });
+  }
+  /// Splits the emulated robot: the servos are emulated beside the run, and the contact boards by a process of their
+  /// own in the folder `boards`. Writes the bus file of each emulator, that of the driver, and the manifest.
+  void split_robot() const {
+    std::string servos = "servo: {model: xm540_w150}\njoints:\n";
+    for (int id = 1; id <= 23; ++id) servos += "  - {id: " + std::to_string(id) + "}\n";
+    std::string contacts = "contacts: {port: 1, ids: [";
+    for (int id = 101; id <= 124; ++id) contacts += std::to_string(id) + (id < 124 ? ", " : "]}\n");
+    const auto ports = [](const std::string& first, const std::string& second) {
+      return "ports: [{device: " + first + ", baud: 4000000}, {device: " + second + ", baud: 4000000}]\n";
+    };
+    const std::string imu = "imu: {port: 0, id: 100}\n";
+    write("servos.yaml", ports("bus0", "unused") + servos + imu);
+    write("boards.yaml", ports("unused", "bus1") + servos + contacts);
+    write("bus.yaml", ports("bus0", (boards_dir_ / "bus1").string()) + servos + imu + contacts);
+    write("patient.yaml", "servo: {watchdog_s: 2}\nbus_file: " + (dir_ / "bus.yaml").string() + "\n");
+    std::ifstream original(source_path("deploy/emulated_servos.yaml"));
+    std::string manifest{std::istreambuf_iterator<char>(original), {}};
+    const std::string emulator = "{program: servo_emulator";
+    manifest.insert(manifest.find(emulator) + emulator.size(),
+                    ", arguments: [\"--bus\", \"" + (dir_ / "servos.yaml").string() + "\"]");
+    write("split.yaml", manifest);
+  }
+  [[nodiscard]] Process emulate_boards() const {
+    Process boards(
+        {program("servo_emulator"), "--bus", (dir_ / "boards.yaml").string(), "--output", boards_dir_.string()});
+    EXPECT_TRUE(boards.wait_for("servos answer", 20s)) << boards.errors();
+    return boards;
   }
   void order(const std::string& command) const {
     std::ofstream(run_dir_ / "servo_emulator.commands") << command << std::endl;
@@ -76,6 +116,7 @@ class ServoBusProcesses : public CliFixture {
   }
 
   const std::filesystem::path run_dir_ = dir_ / "run";
+  const std::filesystem::path boards_dir_ = dir_ / "boards";
 };
 
 TEST_F(ServoBusProcesses, IsDrivenSurvivesAPulledCableAndAKillAndStops) {
@@ -134,6 +175,45 @@ TEST_F(ServoBusProcesses, AFrozenDriverLeavesTheServosLockedUntilAnOperatorClear
   EXPECT_TRUE(moves()) << again.errors();
   again.signal(SIGINT);
   again.wait(10s);
+  end(launcher);
+}
+
+// An adapter of the contact boards disappears with its pseudo-terminal. The driver tries to open it again within ticks,
+// and those must not wait for it: the servos at the other port would stop.
+TEST_F(ServoBusProcesses, GoesOnWithoutAnAdapterAndTakesItBack) {
+  split_robot();
+  std::optional<Process> boards = emulate_boards();
+  Process launcher = run({}, (dir_ / "split.yaml").string());
+  ASSERT_TRUE(eventually([&] { return joints(23, 0) && is_open(1); }, 30s)) << launcher.output() << launcher.errors();
+  Process teleop = start({"teleop", "--drive", "0.4,0"});
+  ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
+  EXPECT_TRUE(moves());
+
+  // In order, so that the name of the port disappears as that of a real adapter does. A stale name might soon be that
+  // of another program's terminal.
+  boards->signal(SIGTERM);
+  EXPECT_EQ(boards->wait(20s), 0) << boards->errors();
+  ASSERT_TRUE(eventually([&] { return !is_open(1); }));
+  const std::int64_t gone_at = driver()["tick"].get<std::int64_t>();
+  const double gone_at_s = world()["time_s"].get<double>();
+  // Eight attempts to open the port fall into 200 ticks.
+  EXPECT_TRUE(eventually([&] { return driver().value("tick", std::int64_t{0}) >= gone_at + 200; }, 12s));
+  EXPECT_LT(world()["time_s"].get<double>() - gone_at_s, 10.0) << "200 ticks are 4 s";
+  EXPECT_FALSE(tripped());
+  EXPECT_TRUE(joints(23, 0)) << "the servos at the other port";
+  EXPECT_TRUE(moves()) << "the operator still drives";
+  EXPECT_EQ(command({"status"}), exit_status::kOk);
+  EXPECT_NE(output_.find("port bus1 is gone"), std::string::npos) << output_;
+
+  boards = emulate_boards();
+  EXPECT_TRUE(eventually([&] { return is_open(1); }));
+  EXPECT_TRUE(eventually([&] { return driver()["news"].dump().find("answers again") != std::string::npos; }));
+  EXPECT_TRUE(moves());
+  EXPECT_FALSE(tripped());
+  EXPECT_EQ(command({"status"}), exit_status::kOk);
+  EXPECT_EQ(output_.find("is gone,"), std::string::npos) << output_;
+  teleop.signal(SIGINT);
+  teleop.wait(10s);
   end(launcher);
 }
 

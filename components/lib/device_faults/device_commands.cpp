@@ -31,6 +31,7 @@ constexpr std::array kCommands = {
     DeviceCommand{kServos, "reboot", "joint", "", 0, 0, false, ""},
     DeviceCommand{kServos, "silent", "joint", "", 0, 0, false, "heal"},
     DeviceCommand{kServos, "stuck", "joint", "", 0, 0, false, "heal"},
+    DeviceCommand{kServos, "unplug", "port", "", 0, 0, false, "mend"},
     DeviceCommand{kServos, "voltage", "joint", "volt", 0, 60, false, "heal"},
     DeviceCommand{kServos, "weak", "joint", "share", 0.01, 1, false, "heal"},
     DeviceCommand{kCamera, "black", "", "", 0, 0, false, "mend"},

@@ -162,6 +162,9 @@ TEST_F(BusFault, AnUnpluggedAdapterStopsTheServosByTheirWatchdogs) {
   EXPECT_EQ(mode(), GateMode::kStopped) << "an operator must clear the stop";
   EXPECT_STREQ(run_->latest(topics::kStopState)->source, "bus_watchdog");
   EXPECT_EQ(bench_.robot->servo(0).get("bus_watchdog"), -1) << "nothing is unlocked before";
+  ASSERT_GT(patience_s_.size(), 4u);
+  for (std::size_t i = 0; i < patience_s_.size(); ++i)
+    EXPECT_EQ(patience_s_[i], i < 2 ? 10.0 : 0.0) << "attempt " << i << ": only the start may wait for a port";
 }
 
 TEST_F(BusFault, ASuccessorFindsTheServosLockedAndMovesNothing) {

@@ -39,7 +39,8 @@ class DrivenRobot : public ::testing::Test {
     std::ofstream(config_.path() / "servo_bus.yaml") << config << "\n";
     constrictor::Setup setup;
     setup.robot_file = kProject / "components/lib/robot/mamba.yaml";
-    const OpenPort open = [this](const dynamixel::BusPort& port) {
+    const OpenPort open = [this](const dynamixel::BusPort& port, double patience_s) {
+      patience_s_.push_back(patience_s);
       return std::make_unique<EmulatedPort>(bench_, port.device == "bus0" ? 0 : 1, port.baud);
     };
     const ComponentFactory control = commander(
@@ -90,6 +91,7 @@ class DrivenRobot : public ::testing::Test {
   dynamixel::BusPlan plan_;
   Bench bench_;
   CommandAt command_;
+  std::vector<double> patience_s_;  ///< of each attempt to open a port
   std::unique_ptr<LocalRun> run_;
   std::int64_t next_tick_ns_ = 20'000'000;
 };

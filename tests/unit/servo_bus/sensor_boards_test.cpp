@@ -39,7 +39,7 @@ class Boards : public ::testing::Test {
   Boards() {
     plan_.ports = {{"bus0", 4'000'000}};
     plan_.imu = dynamixel::SensorBoard{0, 100};
-    ports_.open_all();
+    ports_.open_all(0.0);
   }
   void turn_to(const Eigen::Quaterniond& q) {
     data_.clear();
@@ -57,8 +57,9 @@ class Boards : public ::testing::Test {
 
   dynamixel::BusPlan plan_;
   Bytes data_;
-  BusPorts ports_{
-      {{"bus0", 4'000'000}}, 0.004, [this](const dynamixel::BusPort&) { return std::make_unique<BoardPort>(data_); }};
+  BusPorts ports_{{{"bus0", 4'000'000}}, 0.004, [this](const dynamixel::BusPort&, double) {
+                    return std::make_unique<BoardPort>(data_);
+                  }};
   SensorBoards boards_{plan_, ports_};
 };
 
@@ -84,7 +85,7 @@ TEST_F(Boards, AnOrientationThatIsNoneIsNotPublished) {
   static_cast<void>(boards_.imu());
   const auto news = boards_.take_news();
   ASSERT_EQ(news.size(), 1u) << "three ticks without a measurement";
-  EXPECT_NE(news[0].find("the inertial unit does not answer"), std::string::npos) << news[0];
+  EXPECT_NE(news[0].find("the inertial unit at bus0 does not answer"), std::string::npos) << news[0];
 }
 
 TEST_F(Boards, ARobotWithoutContactSensorsSaysSo) { EXPECT_EQ(boards_.contacts().module_count, 0); }
