@@ -28,7 +28,12 @@ constexpr std::pair<const char*, std::size_t> kGoalRegisters[] = {
 
 JointServos::JointServos(const dynamixel::BusPlan& plan, const RobotModel& robot, const ServoBusConfig& config,
                          BusPorts& ports)
-    : plan_(plan), config_(config), ports_(ports), joints_(plan.joints.size()), reversed_(ports.size()) {
+    : plan_(plan),
+      config_(config),
+      ports_(ports),
+      joints_(plan.joints.size()),
+      slow_(ports.size()),
+      reversed_(ports.size()) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     joints_[i].limits = robot.joints.at(i);
     joints_[i].servo = plan.joints[i];
@@ -105,7 +110,9 @@ void JointServos::read_port(std::size_t port) {
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
     Bytes ids = ids_at(port, ServoState::kReady);
     if (reversed_[port]) std::reverse(ids.begin(), ids.end());
-    if (bus.fast_sync_read(state_block_, state_bytes_, ids, use) == ids.size()) return;
+    const std::size_t answered = slow_[port] ? bus.sync_read(state_block_, state_bytes_, ids, use)
+                                             : bus.fast_sync_read(state_block_, state_bytes_, ids, use);
+    if (answered == ids.size()) return;
     // The servos behind a missing one are silent. In the next tick they are asked first.
     reversed_[port] = !reversed_[port];
     for (int i = 0; i < kRepetitions && ports_.now_ns() - begin_ns < config_.period_ns() / 4; ++i) {

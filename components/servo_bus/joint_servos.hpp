@@ -61,6 +61,8 @@ class JointServos {
   [[nodiscard]] bool locked() const;
   /// Clears the watchdogs; the present positions become the goals, so that nothing moves.
   void unlock();
+  /// Why the servos at a port are asked with Sync Read, and not with Fast Sync Read; empty: they are not.
+  [[nodiscard]] std::string slow_because(std::size_t port) const;
   /// What happened since the last call, one line each.
   [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
@@ -71,6 +73,7 @@ class JointServos {
     ServoState state = ServoState::kLost;
     JointReading reading;
     std::int64_t current_limit = 0;  ///< largest goal: of the register, and of servo.load_share
+    int firmware = 0;                ///< 0: not known
     int misses = 0;                  ///< rounds without an answer
     int reboots = 0;
     bool seen = false;    ///< in this round
@@ -110,6 +113,7 @@ class JointServos {
   const ServoBusConfig& config_;
   BusPorts& ports_;
   std::vector<Joint> joints_;
+  std::vector<bool> slow_;         ///< by port: the servos are asked with Sync Read
   std::vector<bool> reversed_;     ///< by port: the servos are asked from the tail on
   dynamixel::Bytes pointers_;      ///< values of the registers indirect_address_1 and following
   std::uint16_t goal_block_ = 0;   ///< address of the goals behind indirect registers

@@ -83,6 +83,8 @@ JointServos::StartProblem JointServos::bring_up(BusMaster& bus, Joint& joint) {
     if (number != model.number)
       return {fmt::format("is of model {}, accepted {} ({}): another device has this id", number, model.number,
                           model.name)};
+    joint.firmware = found.data.size() > 2 ? found.data[2] : 0;
+    slow_[joint.servo.port] = !slow_because(joint.servo.port).empty();
     write(bus, id, model.at("status_return_level"), 2);  // without it there may be no answer to this very write
     const bool tripped = read(bus, id, model.at("bus_watchdog")) == dynamixel::kWatchdogTripped;
     configure(bus, joint, tripped);
@@ -110,6 +112,17 @@ JointServos::StartProblem JointServos::bring_up(BusMaster& bus, Joint& joint) {
   }
   joint.state = ServoState::kReady;
   joint.misses = 0;
+  return {};
+}
+
+std::string JointServos::slow_because(std::size_t port) const {
+  if (plan_.fast_sync_read) return *plan_.fast_sync_read ? "" : "fast_sync_read is false in the bus file";
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = joints_[i];
+    if (joint.servo.port == port && joint.firmware != 0 && joint.firmware < plan_.model.fast_sync_read_from)
+      return fmt::format("{} has firmware {}, and Fast Sync Read needs {}", name_of(i), joint.firmware,
+                         plan_.model.fast_sync_read_from);
+  }
   return {};
 }
 

@@ -108,7 +108,8 @@ msg::ContactState SensorBoards::contacts() {
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
     const std::int64_t begin_ns = ports_.now_ns();
     constexpr std::uint16_t kBytes = map::contact::kEnd - map::kBegin;
-    bus.fast_sync_read(map::kBegin, kBytes, ids, use);
+    if (plan_.fast_sync_read.value_or(true)) bus.fast_sync_read(map::kBegin, kBytes, ids, use);
+    else bus.sync_read(map::kBegin, kBytes, ids, use);
     // A damaged answer is known at once, and there is time to ask again; a missing board is not waited for twice.
     const bool in_time = ports_.now_ns() - begin_ns < kTimeToAskAgain_ns;
     if (answered < ids.size() && in_time) bus.sync_read(map::kBegin, kBytes, ByteView(ids).subspan(answered), use);

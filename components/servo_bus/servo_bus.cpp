@@ -36,6 +36,7 @@ OpenPort serial_ports(const std::filesystem::path& folder) {
 
 ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
     : wiring_(wiring),
+      log_(setup.log),
       config_(load_parameters<ServoBusConfig>(setup.config_file)),
       robot_(load_robot(robot_file_of(setup))),
       plan_(plan_of(config_, robot_)),
@@ -55,10 +56,10 @@ ServoBus::~ServoBus() {
 }
 
 void ServoBus::start() {
-  try {
   // A successor must not give up the run, and must be quicker than the watchdogs of the servos that do answer: what is
   // missing now is lost, and may come back.
   std::vector<std::string> missing;
+  try {
     if (continued_) ports_.open_present(missing);
     else ports_.open_all(config_.port_patience_s);
   } catch (const serial::PortError& error) {
@@ -72,6 +73,10 @@ void ServoBus::start() {
                     "answers):\n  {}",
                     failed.size(), servos_.count(), fmt::join(failed, "\n  ")));
   for (const auto& line : failed) wiring_.count_refusal(line);
+  for (std::size_t port = 0; port < ports_.size(); ++port) {
+    if (const std::string why = servos_.slow_because(port); !why.empty())
+      log_.info("port {}: the servos are asked with Sync Read, which takes longer: {}", ports_.port(port).device, why);
+  }
   started_ = true;
 }
 

@@ -44,6 +44,7 @@ class ServoBus final : public Plant, public DeviceOwner {
   void look_for_stuck_joints(std::span<const JointSetpoint> goals);
 
   Wiring& wiring_;
+  Log log_;
   ServoBusConfig config_;
   RobotModel robot_;
   dynamixel::BusPlan plan_;

@@ -21,6 +21,7 @@ class BoardDevice final : public BusDevice {
   [[nodiscard]] bool alert() const override { return false; }
   [[nodiscard]] std::uint16_t model_number() const override { return model_number_; }
   [[nodiscard]] std::uint8_t firmware() const override { return 1; }
+  [[nodiscard]] bool knows_fast_sync_read() const override { return true; }
   dynamixel::StatusError read(std::uint16_t address, std::uint16_t count, dynamixel::Bytes& to) const override;
   /// Id, baud rate and return delay can be written; the measurements cannot.
   dynamixel::StatusError write(std::uint16_t address, dynamixel::ByteView data) override;

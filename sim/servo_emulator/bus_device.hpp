@@ -23,6 +23,8 @@ class BusDevice {
   [[nodiscard]] virtual bool alert() const = 0;
   [[nodiscard]] virtual std::uint16_t model_number() const = 0;
   [[nodiscard]] virtual std::uint8_t firmware() const = 0;
+  /// Older firmware does not hear Fast Sync Read.
+  [[nodiscard]] virtual bool knows_fast_sync_read() const = 0;
 
   /// Appends `count` bytes from `address` on.
   virtual dynamixel::StatusError read(std::uint16_t address, std::uint16_t count, dynamixel::Bytes& to) const = 0;

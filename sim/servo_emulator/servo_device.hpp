@@ -47,6 +47,7 @@ class ServoDevice final : public BusDevice {
   [[nodiscard]] bool alert() const override { return get("hardware_error_status") != 0; }
   [[nodiscard]] std::uint16_t model_number() const override { return model_.number; }
   [[nodiscard]] std::uint8_t firmware() const override { return static_cast<std::uint8_t>(get("firmware_version")); }
+  [[nodiscard]] bool knows_fast_sync_read() const override { return firmware() >= model_.fast_sync_read_from; }
   dynamixel::StatusError read(std::uint16_t address, std::uint16_t count, dynamixel::Bytes& to) const override;
   dynamixel::StatusError write(std::uint16_t address, dynamixel::ByteView data) override;
   dynamixel::StatusError clear_turns() override;

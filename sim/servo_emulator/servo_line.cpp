@@ -171,7 +171,7 @@ void ServoLine::answer_fast_sync_read(const PacketView& packet) {
   std::int64_t delay_ns = 0;
   for (const std::uint8_t id : ids) {
     const BusDevice* device = find(id);
-    if (!device || device->status_return_level() < 1) break;
+    if (!device || device->status_return_level() < 1 || !device->knows_fast_sync_read()) break;
     Bytes data;
     const StatusError error = device->read(word(packet.parameters), count, data);
     data.resize(count);

@@ -112,6 +112,7 @@ BusPlan load_bus_plan(const std::filesystem::path& file, const std::filesystem::
   if (plan.joints.empty() || plan.joints.size() > kMostJoints)
     throw root.error("joints", fmt::format("found {}, accepted 1 to {} joints", plan.joints.size(), kMostJoints));
   read_boards(root, plan, used);
+  if (root.has("fast_sync_read")) plan.fast_sync_read = root.flag("fast_sync_read", true);
   root.finish();
   return plan;
 }

@@ -62,8 +62,10 @@ struct SensorBoard {
 struct BusPlan {
   ServoModel model;
   std::vector<BusPort> ports;
-  std::vector<JointServo> joints;           ///< from head to tail
-  std::optional<SensorBoard> imu;           ///< empty: the robot has no inertial unit on a bus
+  std::vector<JointServo> joints;  ///< from head to tail
+  std::optional<SensorBoard> imu;  ///< empty: the robot has no inertial unit on a bus
+  /// Whether the devices are asked with Fast Sync Read; empty: the servos, if their firmware knows it, and the boards.
+  std::optional<bool> fast_sync_read;
   std::vector<SensorBoard> contact_boards;  ///< one for each module, from the head; empty: no contact sensors
 
   /// The ids of the servos at a port, in the order of their joints.

@@ -109,6 +109,7 @@ ServoModel load_servo_model(const std::filesystem::path& file) {
   model.stall_torque_nm = root.number("stall_torque_nm", {0.01, 1000.0});
   model.stall_current_a = root.number("stall_current_a", {0.01, 1000.0});
   model.no_load_speed_rad_s = root.number("no_load_speed_rad_s", {0.01, 100.0});
+  model.fast_sync_read_from = static_cast<int>(root.integer("fast_sync_read_from", 0, 255, model.fast_sync_read_from));
   model.registers = read_table(file.parent_path() / (root.text("table") + ".yaml"));
   for (Configuration& row : root.list("limits", false)) {
     const std::string name = row.text("register");

@@ -203,6 +203,31 @@ TEST_F(DrivenRobot, AsksServosAgainThatAreSilentAtTheStart) {
   EXPECT_LT(bench_.now_ns, 2'000'000'000) << "no longer than needed";
 }
 
+TEST_F(DrivenRobot, AsksServosWithOlderFirmwareWithSyncRead) {
+  bench_.robot->servo(6).set("firmware_version", 44);  // silent when it is asked with Fast Sync Read
+  command_ = bend(0.3);
+  start();
+  ticks(100);
+  EXPECT_EQ(driver().servos().slow_because(0),
+            "servo 7 of joint 6 at bus0 has firmware 44, and Fast Sync Read needs 46");
+  EXPECT_EQ(driver().servos().slow_because(1), "");
+  EXPECT_EQ(mode(), GateMode::kObeying) << last_refusal();
+  for (std::size_t i = 0; i < 23; i += 2) EXPECT_NEAR(std::abs(driver().servos().reading(i).angle_rad), 0.3, 0.05);
+  EXPECT_EQ(run_->latest(topics::kContactState)->module_count, 24) << "the boards know Fast Sync Read";
+}
+
+TEST_F(DrivenRobot, TheBusFileDecidesOnFastSyncRead) {
+  std::ifstream original(kProject / "deploy/buses/mamba_emulated.yaml");
+  const std::string text{std::istreambuf_iterator<char>(original), {}};
+  std::ofstream(config_.path() / "bus.yaml") << text << "fast_sync_read: false\n";
+  start("bus_file: " + (config_.path() / "bus.yaml").string());
+  ticks(20);
+  EXPECT_EQ(driver().servos().slow_because(0), "fast_sync_read is false in the bus file");
+  EXPECT_EQ(run_->latest(topics::kJointState)->joint_count, 23);
+  EXPECT_EQ(run_->latest(topics::kContactState)->module_count, 24);
+  EXPECT_EQ(run_->member("servo_bus").counters().refused, 0u) << last_refusal();
+}
+
 TEST_F(DrivenRobot, RefusesARobotWhoseServosDoNotFit) {
   const auto error = [this] {
     try {
