@@ -90,7 +90,9 @@ TEST_F(ServoCommand, LimitsAreShownSetAndRefused) {
   EXPECT_EQ(servo({"limits", "--id", "3", "--current", "2.5"}), exit_status::kOk) << output_;
   EXPECT_TRUE(says("servo 3: current 2.50 A, temperature 80 C")) << output_;
   EXPECT_EQ(servo({"limits", "--id", "3", "--current", "9"}), exit_status::kUsage);
-  EXPECT_TRUE(says("current_limit: found 9, accepted 0 to 5.5")) << output_;
+  EXPECT_TRUE(says("--current (register current_limit): found 9 A, accepted 0 to 5.50643 A")) << output_;
+  EXPECT_EQ(servo({"limits", "--id", "3", "--temperature", "900"}), exit_status::kUsage);
+  EXPECT_TRUE(says("--temperature (register temperature_limit): found 900 C, accepted 0 to 100 C")) << output_;
   EXPECT_EQ(servo({"limits", "--id", "100"}), exit_status::kSoftware);
   EXPECT_TRUE(says("found inertial unit")) << output_;
 }

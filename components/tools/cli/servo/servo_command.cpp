@@ -149,19 +149,20 @@ int change_baud(const ServoOptions& options) {
 int limits(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   for (const FoundServo& servo : chosen(access, options)) {
-    const auto set = [&](const char* name, double value, double unit) {
+    const auto set = [&](const char* option, const char* name, double value, double unit, const char* symbol) {
       const auto& reg = servo.model->at(name);
       const std::int64_t units = std::llround(value / unit);
       if (units < reg.min || units > reg.max)
-        throw UsageError(fmt::format("servo limits: {}: found {:g}, accepted {:g} to {:g}", name, value,
-                                     static_cast<double>(reg.min) * unit, static_cast<double>(reg.max) * unit));
+        throw UsageError(fmt::format("servo limits: {} (register {}): found {:g} {}, accepted {:g} to {:g} {}", option,
+                                     name, value, symbol, static_cast<double>(reg.min) * unit,
+                                     static_cast<double>(reg.max) * unit, symbol));
       if (access.read(servo, "torque_enable") != 0)
         throw std::runtime_error(
             fmt::format("servo {}: its torque is on, and its EEPROM is locked; first switch it off", servo.id));
       access.write(servo, name, units);
     };
-    if (options.current_a) set("current_limit", *options.current_a, servo.model->current_unit_a);
-    if (options.temperature_c) set("temperature_limit", *options.temperature_c, 1.0);
+    if (options.current_a) set("--current", "current_limit", *options.current_a, servo.model->current_unit_a, "A");
+    if (options.temperature_c) set("--temperature", "temperature_limit", *options.temperature_c, 1.0, "C");
     fmt::print("servo {}: current {:.2f} A, temperature {} C, velocity {:.2f} rad/s, position {} to {} steps\n",
                servo.id, static_cast<double>(access.read(servo, "current_limit")) * servo.model->current_unit_a,
                access.read(servo, "temperature_limit"),
