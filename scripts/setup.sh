@@ -52,6 +52,8 @@ tests=(
   ros-diagnostic-msgs
   # parsers of the robot's descriptions for ROS and Gazebo
   liburdfdom-dev liburdfdom-tools libsdformat-dev
+  # elements of pipelines of GStreamer, for tests of video_capture (3 MB in all)
+  gstreamer1.0-plugins-base
 )
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)

@@ -137,6 +137,18 @@ TEST_F(VideoCaptureTest, ShowsFilesAtTheTimesOfTheRun) {
   EXPECT_NEAR(infos_[0].X_HC.position_m.x, 0.06, 1e-12);
 }
 
+TEST_F(VideoCaptureTest, ShowsAPipelineOfGStreamer) {
+  start(
+      "source: 'videotestsrc is-live=true pattern=red ! video/x-raw,width=320,height=240,framerate=10/1 ! videoconvert "
+      "! appsink'\nstream: {frame_rate_hz: 10, timeout_s: 5}",
+      false);
+  ASSERT_TRUE(images(3)) << refusals() << " (scripts/setup.sh tests installs the elements of the pipeline)";
+  EXPECT_EQ(images_.back().width, 320);
+  EXPECT_GT(images_.back().red, 200);
+  EXPECT_LT(images_.back().blue, 40);
+  EXPECT_EQ(infos_.size(), 1U);
+}
+
 TEST_F(VideoCaptureTest, BeginsFilesAgainAndIsTheSameInEachRun) {
   pictures(3);
   start(folder_source() + "\nstream: {frame_rate_hz: 10}\nfile: {repeat: true}", false);
