@@ -14,8 +14,9 @@ class StatusMeter {
   void add(std::chrono::nanoseconds step) {
     steps_us_.push_back(std::chrono::duration<double, std::micro>(step).count());
   }
-  /// True when the next ComponentStatus is due after the step of `tick`.
-  [[nodiscard]] bool due(std::int64_t tick) const { return tick >= next_tick_; }
+  /// True when the next ComponentStatus is due after the step of `tick`. A tick before that of the last status belongs
+  /// to a new epoch.
+  [[nodiscard]] bool due(std::int64_t tick) const { return tick >= next_tick_ || tick < next_tick_ - kInterval_ticks; }
   /// Fills the measured fields of `status` and begins a new interval.
   void fill(msg::ComponentStatus& status);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "constrictor/text.hpp"
+#include "runtime/status_meter.hpp"
 
 namespace constrictor {
 namespace {
@@ -22,6 +23,22 @@ msg::ComponentStatus status_of(JitterMeter& meter, const std::vector<double>& at
   msg::ComponentStatus status{};
   meter.fill(status);
   return status;
+}
+
+TEST(StatusMeter, IsDueEveryFiftyTicksAndSoonInANewEpoch) {
+  StatusMeter meter;
+  EXPECT_TRUE(meter.due(0));
+  msg::ComponentStatus status{};
+  status.tick = 500;
+  meter.fill(status);
+  EXPECT_FALSE(meter.due(500));
+  EXPECT_FALSE(meter.due(549));
+  EXPECT_TRUE(meter.due(550));
+  EXPECT_TRUE(meter.due(0)) << "the run was reset";
+  status.tick = 0;
+  meter.fill(status);
+  EXPECT_FALSE(meter.due(1));
+  EXPECT_TRUE(meter.due(50));
 }
 
 TEST(JitterMeter, KnowsNothingBeforeTheSecondTick) {
