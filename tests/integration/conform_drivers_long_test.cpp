@@ -17,9 +17,10 @@ class Drivers : public CliFixture {
     const DomainClaim claim;
     const std::string domain = std::to_string(claim.domain());
     Process driver({program("faulty_driver"), domain, "23", fault});
-    status_ = command({"conform", "plant", "--domain", domain, "--yes", "--profile", (dir_ / "quick.yaml").string(),
-                       "--json", (dir_ / "result.json").string()},
-                      240s);
+    status_ =
+        command({"conform", "plant", "--domain", domain, "--yes", "--profile", (dir_ / "quick.yaml").string(), "--json",
+                 (dir_ / "result.json").string(), "--restart-command", "kill -USR1 " + std::to_string(driver.pid())},
+                240s);
     driver.signal(SIGKILL);
     return nlohmann::json::parse(std::ifstream(dir_ / "result.json"), nullptr, false);
   }
@@ -31,6 +32,7 @@ TEST_F(Drivers, ARightOneConforms) {
   EXPECT_EQ(status_, exit_status::kOk) << output_;
   ASSERT_TRUE(result.is_object()) << output_;
   EXPECT_TRUE(result["conforms"].get<bool>()) << output_;
+  EXPECT_NE(output_.find("pass         restart"), std::string::npos) << output_;
 }
 
 class FaultyDrivers : public Drivers, public ::testing::WithParamInterface<NamedFault> {};

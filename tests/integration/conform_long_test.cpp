@@ -34,6 +34,9 @@ class Conform : public CliFixture {
     int passed = 0;
     for (const auto& check : result["checks"]) {
       passed += check["result"] == "pass";
+      if (check["name"] == "restart") {
+        EXPECT_EQ(check["result"], "pass") << output_;
+      }
       if (check["name"] == "torque_sign") {
         EXPECT_EQ(check["result"], "pass") << "bent pitch joints lift the body\n" << output_;
       }

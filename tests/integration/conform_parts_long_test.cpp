@@ -48,29 +48,30 @@ class ConformParts : public CliFixture {
   }
 };
 
-TEST_F(ConformParts, OurControlConforms) { conforms("control", "case_study", 36); }
+TEST_F(ConformParts, OurControlConforms) { conforms("control", "case_study", 37); }
 
 TEST_F(ConformParts, FaultsOfAControlAreNamed) {
   is_named("control", "sign", "sign");
   is_named("control", "counts_nothing", "wrong_joints");
+  is_named("control", "jumps_after_restart", "restart");
 }
 
-TEST_F(ConformParts, OurPerceptionConforms) { conforms("perception", "case_study", 32); }
+TEST_F(ConformParts, OurPerceptionConforms) { conforms("perception", "case_study", 33); }
 
 TEST_F(ConformParts, FaultsOfAPerceptionAreNamed) {
   is_named("perception", "mirrored", "line_sign");
   is_named("perception", "counts_nothing", "wrong_size");
 }
 
-TEST_F(ConformParts, OurPlannerConforms) { conforms("planner", "case_study", 27); }
+TEST_F(ConformParts, OurPlannerConforms) { conforms("planner", "case_study", 28); }
 
 TEST_F(ConformParts, FaultsOfAPlannerAreNamed) { is_named("planner", "obeys_all_goals", "wrong_goal"); }
 
-TEST_F(ConformParts, TheSimulatedCameraConforms) { conforms("camera", "case_study", 17); }
+TEST_F(ConformParts, TheSimulatedCameraConforms) { conforms("camera", "case_study", 18); }
 
 TEST_F(ConformParts, FaultsOfACameraAreNamed) { is_named("camera", "mirrored", "mirrored"); }
 
-TEST_F(ConformParts, TheEmulatedCameraConforms) { conforms("camera", "emulated_hardware", 16); }
+TEST_F(ConformParts, TheEmulatedCameraConforms) { conforms("camera", "emulated_hardware", 17); }
 
 TEST_F(ConformParts, ACameraThatShowsAFolderConformsWithoutMotion) {
   std::filesystem::create_directory(dir_ / "pictures");

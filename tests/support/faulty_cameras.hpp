@@ -38,7 +38,9 @@ inline std::vector<NamedFault> camera_faults() {
           {"half_a_turn", "upside_down", "lifted by -0.2"},
           {"mirrored", "mirrored", "to the left"},
           {"zoomed", "scale", "times as far"},
-          {"old_pictures", "stamp_of_motion", "behind their stamps"}};
+          {"old_pictures", "stamp_of_motion", "behind their stamps"},
+          {"silent_after_restart", "restart", "no image within"},
+          {"forgets_time", "restart", "after one of tick"}};
 }
 
 /// The fault of this name; empty: none.
@@ -102,6 +104,12 @@ inline PartFault camera_fault(const std::string& name) {
     image([first = std::vector<std::uint8_t>()](msg::CameraImage& i) mutable {
       if (first.empty()) first.assign(i.data._buffer, i.data._buffer + i.data._length);
       std::memcpy(i.data._buffer, first.data(), first.size());
+      return true;
+    });
+  if (is("silent_after_restart")) image([restarted = fault.restarted](msg::CameraImage&) { return !*restarted; });
+  if (is("forgets_time"))
+    image([restarted = fault.restarted](msg::CameraImage& i) {
+      if (*restarted) i.exposure_tick -= 100;
       return true;
     });
   if (is("blue_first"))

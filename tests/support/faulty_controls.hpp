@@ -52,7 +52,9 @@ inline std::vector<NamedFault> control_faults() {
           {"strong", "torque_limit", "2.00 Nm beyond"},
           {"velocity_in_degrees", "velocity", "100 %"},
           {"remembers_motion", "epoch", "goes on"},
-          {"random", "repeatable", "another command"}};
+          {"random", "repeatable", "another command"},
+          {"forgets", "restart", "another command"},
+          {"jumps_after_restart", "restart", "another command"}};
 }
 
 /// The fault of this name; empty: none. `memory` outlives the epochs.
@@ -187,6 +189,12 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
     });
   if (is("remembers_motion"))
     state([memory](msg::MotionStatus& s) { return (s.motion_id = *memory = std::max(*memory, s.motion_id), true); });
+  if (is("forgets")) fault.forgets = true;
+  if (is("jumps_after_restart"))
+    command([restarted = fault.restarted](msg::JointCommand& c) {
+      if (*restarted) std::fill_n(c.position_rad, c.joint_count, 0.0);
+      return true;
+    });
   if (is("random"))
     command([memory](msg::JointCommand& c) {
       c.position_rad[0] += 1e-12 * static_cast<double>(++*memory);

@@ -1,6 +1,7 @@
 // faulty_driver DOMAIN JOINTS FAULT: a driver outside the barrier, on the topics hardware/*, whose joints are numbers
-// (faulty_joints.hpp), with the fault of this name; an empty name means none.
+// (faulty_joints.hpp), with the fault of this name; an empty name means none. SIGUSR1 restarts it.
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kPeriod = std::chrono::milliseconds(10);
 constexpr std::uint16_t kRobot = 1;
+volatile std::sig_atomic_t g_restart = 0;
 
 class FaultyDriver {
  public:
@@ -28,6 +30,8 @@ class FaultyDriver {
     imus_ = {here, barrier_topics::kHardwareImuState};
     contacts_ = {here, barrier_topics::kHardwareContactState};
   }
+  /// As a new process does; the joints stay where they are.
+  void restart() { joints_.restart(); }
   /// One period: obeys, moves, measures.
   void step(double now_s, double passed_s) {
     commands_.take([&](const msg::HardwareJointCommand& message) {
@@ -106,11 +110,14 @@ int main(int argc, char** argv) {
   FaultyDriver driver(static_cast<std::uint32_t>(std::atoi(argv[1])), static_cast<std::size_t>(std::atoi(argv[2])),
                       argv[3]);
   // It ends with the process that started it, by its signal.
+  std::signal(SIGUSR1, [](int) { g_restart = 1; });
   auto before = Clock::now(), next = before;
   for (;;) {
     next = std::max(next + kPeriod, Clock::now());
     std::this_thread::sleep_until(next);
     const auto now = Clock::now();
+    if (g_restart) driver.restart();
+    g_restart = 0;
     driver.step(std::chrono::duration<double>(now.time_since_epoch()).count(),
                 std::chrono::duration<double>(now - before).count());
     before = now;

@@ -90,7 +90,7 @@ class FaultyJoints {
   /// What the driver writes. False: nothing this time.
   bool measure(double now_s, conform::JointSample& sample) {
     ++calls_;
-    if (has("silent") || (has("slow") && calls_ % 10 != 0)) return false;
+    if (never_returns_ || has("silent") || (has("slow") && calls_ % 10 != 0)) return false;
     if (has("ends_with_commands") && holding_ && session_ != 0) return false;
     sample = {};
     sample.session = has("session_0") ? 0 : own_session;
@@ -131,6 +131,18 @@ class FaultyJoints {
   }
 
   [[nodiscard]] bool has(const char* fault) const { return fault_ == fault; }
+  /// The process ends and starts again; the joints stay where they are.
+  void restart() {
+    if (has("never_returns")) never_returns_ = true;
+    if (!has("keeps_session")) ++own_session;
+    forget_session();
+    goal_ = position_;
+    relaxed_ = pushed_ = false;
+    holding_ = was_holding_ = true;
+    if (has("jumps_after_restart")) std::fill(goal_.begin(), goal_.end(), 0.0);
+    for (std::size_t i = 0; i < goal_.size(); ++i)
+      if (has("finishes_after_restart") && feed_[i] != 0.0) goal_[i] += std::copysign(0.1, feed_[i]);
+  }
   void forget_session() { session_ = number_ = written_ = 0; }
   bool stopped = false;
   std::uint64_t own_session = 4711;
@@ -152,7 +164,7 @@ class FaultyJoints {
   std::deque<std::vector<double>> past_;
   std::uint64_t session_ = 0, number_ = 0, written_ = 0, calls_ = 0;
   double heard_s_ = -1.0;
-  bool holding_ = true, was_holding_ = true, relaxed_ = false, pushed_ = false;
+  bool holding_ = true, was_holding_ = true, relaxed_ = false, pushed_ = false, never_returns_ = false;
 };
 
 }  // namespace constrictor::testing

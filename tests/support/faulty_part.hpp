@@ -19,6 +19,8 @@ struct PartFault {
   std::function<bool(const TopicInfo& topic, void* message, std::int64_t tick)> reads;
   int late_ticks = 0;      ///< by which everything that the part writes is late
   bool never_old = false;  ///< what the part has read never seems to become older
+  bool forgets = false;    ///< it begins anew after each start of its process
+  std::shared_ptr<bool> restarted = std::make_shared<bool>(false);  ///< this process continues the run of another one
 };
 
 /// The message if it is one of this topic, otherwise null.
@@ -93,7 +95,10 @@ class FaultyPartWiring final : public Wiring {
 class FaultyPart final : public Component {
  public:
   FaultyPart(Wiring& real, const Setup& setup, const ComponentFactory& inner, PartFault fault)
-      : wiring_(real, std::move(fault)), inner_(inner.create(wiring_, setup)) {}
+      : forgets_(fault.forgets),
+        restarted_(fault.restarted),
+        wiring_(real, std::move(fault)),
+        inner_(inner.create(wiring_, setup)) {}
   [[nodiscard]] Timing timing() const override { return inner_->timing(); }
   void step(const Tick& tick) override {
     wiring_.present(tick);
@@ -101,9 +106,14 @@ class FaultyPart final : public Component {
     wiring_.flush();
   }
   [[nodiscard]] std::string save() const override { return inner_->save(); }
-  void load(const std::string& bytes) override { inner_->load(bytes); }
+  void load(const std::string& bytes) override {
+    *restarted_ = true;
+    if (!forgets_) inner_->load(bytes);
+  }
 
  private:
+  bool forgets_;
+  std::shared_ptr<bool> restarted_;
   FaultyPartWiring wiring_;  // before the component, which points to its ports
   std::unique_ptr<Component> inner_;
 };

@@ -48,7 +48,8 @@ inline std::vector<NamedFault> perception_faults() {
           {"counts_nothing", "wrong_size", "nothing is counted"},
           {"uses_bad_model", "bad_model", "are used"},
           {"never_frozen", "frozen", "are used"},
-          {"random", "repeatable", "another line"}};
+          {"random", "repeatable", "another line"},
+          {"jumps_after_restart", "restart", "another line"}};
 }
 
 /// The fault of this name; empty: none. `memory` outlives the epochs.
@@ -174,6 +175,10 @@ inline PartFault perception_fault(const std::string& name, const std::shared_ptr
     image([n = std::uint8_t{0}](msg::CameraImage& i) mutable {
       i.data._buffer[0] = ++n;
       return true;
+    });
+  if (is("jumps_after_restart"))
+    line([restarted = fault.restarted](msg::LinePercept& l) {
+      if (*restarted) l.offset_m += 0.1;
     });
   if (is("random"))
     line([memory](msg::LinePercept& l) {

@@ -42,7 +42,8 @@ inline std::vector<NamedFault> planner_faults() {
           {"turns_nowhere", "carries", "rotate"},
           {"forgets_recoveries", "status", "recoveries, after"},
           {"remembers", "epoch", "goes on with outcome"},
-          {"random", "repeatable", "differs"}};
+          {"random", "repeatable", "differs"},
+          {"forgets", "restart", "after a restart"}};
 }
 
 /// The fault of this name; empty: none. `memory` outlives the epochs.
@@ -163,6 +164,7 @@ inline PartFault planner_fault(const std::string& name, const std::shared_ptr<st
       *memory = std::max<std::uint64_t>(*memory, m.object_index);
       m.object_index = static_cast<std::uint16_t>(*memory);
     });
+  if (is("forgets")) fault.forgets = true;
   if (is("random"))
     request([other = ++*memory % 2 == 0](msg::Request& r) {
       if (!other || r.task != msg::kTaskExplore) return;

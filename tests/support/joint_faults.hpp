@@ -51,6 +51,10 @@ inline constexpr NamedFault kJointFaults[] = {
     {"loses_session", "new_session", "0.00 times"},
     {"ignores_stop", "stop", "during a stop"},
     {"loses_epoch", "epoch", "no new epoch"},
+    {"jumps_after_restart", "restart", "rad after the restart"},
+    {"finishes_after_restart", "restart", "rad after the restart"},
+    {"keeps_session", "restart", "no other session within 30 s"},
+    {"never_returns", "restart", "no other session within 30 s"},
 };
 
 }  // namespace constrictor::testing

@@ -21,6 +21,12 @@ class LocalPart final : public conform::PartPort, private conform::StandBoard {
       : part_(part), interrupt_at_(interrupt_at), run_(members(part, std::move(factory), std::move(more)), setup) {}
 
   void begin_epoch() override { run_.reset(++seed_ % 2 + 1); }
+  [[nodiscard]] std::string restart() override {
+    run_.restart(part_);
+    ++incarnation_;
+    return {};
+  }
+  [[nodiscard]] std::uint32_t incarnation() override { return incarnation_; }
   [[nodiscard]] std::uint64_t refused() override { return run_.member(part_).counters().refused; }
 
  private:
@@ -54,6 +60,7 @@ class LocalPart final : public conform::PartPort, private conform::StandBoard {
   std::string part_;
   long interrupt_at_, advances_ = 0;
   std::uint64_t seed_ = 0;
+  std::uint32_t incarnation_ = 1;
   std::vector<conform::Letter> outgoing_;
   LocalRun run_;
 };

@@ -42,6 +42,7 @@ std::vector<Check> camera_checks() {
       {"mirrored", "when the head turns left the scene moves to the right", {}, {}, {}},
       {"scale", "it moves as far as the focal length says", {}, {}, {}},
       {"stamp_of_motion", "exposure_tick is the tick at which the head was where the image shows it", {}, {}, {}},
+      {"restart", "a process that is killed comes back, with the same model and images that are new", {}, {}, {}},
   };
 }
 
@@ -57,6 +58,38 @@ void CameraConformance::run() {
   check_pictures();
   check_colour();
   check_motion();
+  check_restart();
+}
+
+void CameraConformance::check_restart() {
+  const std::uint32_t before = port_.incarnation();
+  const std::size_t first = frames_.size();
+  info_changed_ = false;
+  std::string fault;
+  try {
+    const std::string obstacle = before > 1   ? std::string()
+                                 : first == 0 ? std::string("there is no image")
+                                              : port_.restart();
+    if (!obstacle.empty()) return report_.skip("restart", obstacle);
+    const std::int64_t begin = port_.tick();
+    const auto passed_s = [&] { return kTick_s * static_cast<double>(port_.tick() - begin); };
+    while (frames_.size() == first && passed_s() < profile_.patience_s) tick();
+    if (frames_.size() == first) fault = fmt::format("no image within {:.0f} s", profile_.patience_s);
+    for (int i = 0; i < PartPort::kStatusTicks; ++i) tick();
+  } catch (const PartGone& gone) {
+    fault = gone.what();
+  }
+  for (std::size_t i = std::max<std::size_t>(first, 1); i < frames_.size() && fault.empty(); ++i) {
+    if (frames_[i].exposure_tick <= frames_[i - 1].exposure_tick)
+      fault = fmt::format("an image of tick {} after one of tick {}", frames_[i].exposure_tick,
+                          frames_[i - 1].exposure_tick);
+  }
+  if (info_changed_ && fault.empty()) fault = "camera/info changes";
+  if (before > 1) fault = fmt::format("the process has ended by itself, and is now incarnation {}", before);
+  else if (fault.empty() && port_.incarnation() != before + 1) fault = "the process was not started again";
+  report_.judge("restart", !fault.empty(),
+                fault.empty() ? fmt::format("{} images of the new process", frames_.size() - first) : fault,
+                "connect again at the start, write camera/info first, and show nothing that was seen before");
 }
 
 void CameraConformance::tick() {

@@ -58,6 +58,7 @@ class CameraConformance {
   void check_stamps();
   void check_pictures();
   void check_colour();
+  void check_restart();
   // While the head moves (camera_motion_checks.cpp).
   void check_motion();
   void judge_motion(const Motion& yaw, const std::optional<Motion>& pitch);

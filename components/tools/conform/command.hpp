@@ -17,6 +17,7 @@ struct Options {
   std::uint32_t domain = 0;
   std::uint16_t robot_id = 1;
   std::string robot = "mamba", profile, json, manifest;
+  std::string restart_command;            ///< ends the plant's process and starts it again; empty: not given
   std::optional<std::uint32_t> observed;  ///< domain of a run that goes on, of a part that can be observed
   bool yes = false, list = false, show_profile = false;
 };

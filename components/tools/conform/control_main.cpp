@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "client/request_client.hpp"
 #include "client/run_control_client.hpp"
 #include "conform/launched_checks.hpp"
 #include "conform/member_port.hpp"
+#include "conform/member_process.hpp"
 #include "conform/plant_conformance.hpp"
 #include "cyclone/domain.hpp"
 #include "runtime/component_main.hpp"
@@ -22,10 +26,11 @@ namespace {
 using namespace constrictor;
 using namespace constrictor::conform;
 
-/// Stops and resets the run as an operator does. Made at the first use, when the run has begun.
+/// Stops and resets the run as an operator does, and kills the plant's process. It joins the domain at the first use,
+/// when the run has begun.
 class Operator {
  public:
-  explicit Operator(std::uint32_t domain) : domain_(domain) {}
+  Operator(std::uint32_t domain, std::string plant) : domain_(domain), plant_(std::move(plant)) {}
   void stop() {
     client().ask(msg::kRequestEmergencyStop);
     settle();
@@ -36,17 +41,40 @@ class Operator {
   }
   void reset() {
     client();
-    RunControlClient(participant_.get(), domain_, std::chrono::seconds(10)).reset(1);
+    RunControlClient(participant(), domain_, std::chrono::seconds(10)).reset(1);
+  }
+  /// At the first use, waits for the plant's next status.
+  std::uint32_t incarnation() {
+    constexpr int kMost = 300;  // times 10 ms
+    for (int i = 0; i < kMost; ++i) {
+      process().look();
+      if (process().incarnation() != 0) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return process().incarnation();
+  }
+  std::string kill_plant() {
+    // A process that the launcher has started again without being asked for has crashed.
+    if (const std::uint32_t now = incarnation(); now > 1)
+      throw PlantGone(fmt::format("the plant's process has ended by itself, and is now incarnation {}", now));
+    return process().kill();
   }
 
  private:
+  dds_entity_t participant() {
+    if (!participant_) participant_ = dds::create_participant(domain_, dds::Reach::kLoopback, "operator");
+    return participant_.get();
+  }
+  MemberProcess& process() {
+    if (!process_) process_ = std::make_unique<MemberProcess>(participant(), plant_);
+    return *process_;
+  }
   RequestClient& client() {
     if (client_) return *client_;
-    participant_ = dds::create_participant(domain_, dds::Reach::kLoopback, "operator");
     RequestClientOptions options;
     options.source = unique_source("conform");
     options.level = msg::kAuthorityOperator;
-    client_ = std::make_unique<RequestClient>(participant_.get(), domain_, options);
+    client_ = std::make_unique<RequestClient>(participant(), domain_, options);
     client_->connect_or_throw();
     return *client_;
   }
@@ -57,7 +85,9 @@ class Operator {
     }
   }
   std::uint32_t domain_;
+  std::string plant_;
   dds::Entity participant_;
+  std::unique_ptr<MemberProcess> process_;
   std::unique_ptr<RequestClient> client_;
 };
 
@@ -65,8 +95,10 @@ void check(TickExchange& exchange, const LaunchedChecks& launched, Report& repor
   const RobotModel robot = load_robot(launched.robot);
   PlantProfile profile = load_parameters<PlantProfile>(launched.folder / "profile.yaml");
   profile.adapt_to(robot);
-  Operator person(launched.domain);
-  MemberPort port(exchange, {[&] { person.stop(); }, [&] { person.clear(); }, [&] { person.reset(); }});
+  const char* plant = std::getenv("CONSTRICTOR_CONFORM_PLANT");
+  Operator person(launched.domain, plant ? plant : "");
+  MemberPort port(exchange, {[&] { person.stop(); }, [&] { person.clear(); }, [&] { person.reset(); },
+                             [&] { return person.kill_plant(); }, [&] { return person.incarnation(); }});
   PlantConformance(port, robot, profile, report).run();
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "conform/control_conformance.hpp"
+#include "conform/part_restart.hpp"
 
 namespace constrictor::conform {
 
@@ -47,6 +48,7 @@ std::vector<Check> control_checks() {
       {"velocity", "velocity_rad_s is the rate of position_rad, or 0", {}, {}, {}},
       {"epoch", "a new epoch begins at the measured posture, without memory", {}, {}, {}},
       {"repeatable", "the same inputs give the same commands in the next epoch, bit for bit", {}, {}, {}},
+      restart_check(),
   };
 }
 

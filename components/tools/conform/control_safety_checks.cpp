@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "conform/control_conformance.hpp"
+#include "conform/part_restart.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -141,17 +143,19 @@ void ControlConformance::check_wrong_joints() {
 
 void ControlConformance::check_epoch() {
   /// The commands of a short motion from the start of an epoch on.
-  const auto play = [&](const std::vector<double>& posture_rad) {
+  const std::vector<double> posture_rad = hand_.posture(0.25);
+  const auto play = [&](const std::function<void()>& disturb) {
     hand_.begin_epoch();
     hand_.displace(posture_rad);
     previous_rad_.clear();
     Steps steps = go(0.5);
     undulate(profile_.rate_hz, 0.5 * profile_.curvature_1_m);
-    for (auto& step : go(2.0)) steps.push_back(std::move(step));
+    for (auto& step : go(1.0)) steps.push_back(std::move(step));
+    disturb();
+    for (auto& step : go(1.0)) steps.push_back(std::move(step));
     return steps;
   };
-  const std::vector<double> posture_rad = hand_.posture(0.25);
-  const Steps first = play(posture_rad);
+  const Steps first = play([] {});
   const double far_rad = [&] {
     for (const auto& step : first) {
       if (!step.commands.empty()) return strayed_rad({step}, posture_rad);
@@ -166,19 +170,24 @@ void ControlConformance::check_epoch() {
                 : remembers ? fmt::format("motion {} of the last epoch goes on", state->motion_id)
                             : fmt::format("the first command is {:.3f} rad from the measured posture", far_rad),
                 "construct the component anew at each EpochStart");
-  const Steps second = play(posture_rad);
-  const auto compared = std::min(first.size(), second.size());
-  std::string differs;
-  for (std::size_t i = 0; i < compared && differs.empty(); ++i) {
-    if (first[i].commands.size() != second[i].commands.size())
-      differs = fmt::format("another number of commands at tick {}", second[i].tick);
-    else if (!first[i].commands.empty() &&
-             std::memcmp(first[i].commands.back().position_rad, second[i].commands.back().position_rad,
-                         sizeof(double) * robot_.joints.size()) != 0)
-      differs = fmt::format("another command at tick {}", second[i].tick);
-  }
-  report_.judge("repeatable", !differs.empty(), differs.empty() ? fmt::format("{} ticks are equal", compared) : differs,
+  const auto difference = [&](const Steps& second) -> std::string {
+    for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+      if (first[i].commands.size() != second[i].commands.size())
+        return fmt::format("another number of commands at tick {}", second[i].tick);
+      if (!first[i].commands.empty() &&
+          std::memcmp(first[i].commands.back().position_rad, second[i].commands.back().position_rad,
+                      sizeof(double) * robot_.joints.size()) != 0)
+        return fmt::format("another command at tick {}", second[i].tick);
+    }
+    return {};
+  };
+  const std::string equal = fmt::format("{} ticks are equal", first.size());
+  const std::string differs = difference(play([] {}));
+  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
                 "read no clock, and draw random numbers only from a generator with the run's seed");
+  PartRestart restart(port_);
+  restart.judge(
+      report_, [&] { return difference(play([&] { restart.kill(); })); }, equal);
 }
 
 }  // namespace constrictor::conform

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "client/run_control_client.hpp"
+#include "conform/member_process.hpp"
 #include "cyclone/domain.hpp"
-#include "cyclone/endpoint.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -21,15 +21,13 @@ constexpr std::int64_t kStatusEvery_ticks = 50;
 
 /// What an operator does and sees. Made at the first use, when the run has begun.
 struct ExchangePort::Operator {
-  explicit Operator(std::uint32_t domain)
+  Operator(std::uint32_t domain, const std::string& part)
       : participant(dds::create_participant(domain, dds::Reach::kLoopback, "operator")),
-        status(dds::Reader<msg::ComponentStatus>::observer(participant.get(), barrier_topics::kStatus.name, 8)),
+        process(participant.get(), part),
         control(participant.get(), domain, 10s) {}
   dds::Entity participant;
-  dds::Reader<msg::ComponentStatus> status;
+  MemberProcess process;
   RunControlClient control;
-  std::uint64_t refused = 0;
-  std::int64_t status_tick = -1;
 };
 
 ExchangePort::ExchangePort(std::string part, std::uint32_t domain) : part_(std::move(part)), domain_(domain) {}
@@ -37,7 +35,7 @@ ExchangePort::ExchangePort(std::string part, std::uint32_t domain) : part_(std::
 ExchangePort::~ExchangePort() = default;
 
 ExchangePort::Operator& ExchangePort::client() {
-  if (!operator_) operator_ = std::make_unique<Operator>(domain_);
+  if (!operator_) operator_ = std::make_unique<Operator>(domain_, part_);
   return *operator_;
 }
 
@@ -105,24 +103,26 @@ void ExchangePort::begin_epoch() {
     throw;
   }
   asks.join();
-  person.status_tick = -1;
   if (epoch_ == before) throw PartGone("no new epoch begins: " + refusal);
 }
 
-std::uint64_t ExchangePort::refused() {
+ExchangePort::Operator& ExchangePort::fresh_status() {
   Operator& person = client();
   const auto bound = std::chrono::steady_clock::now() + kStatusBound;
   const std::int64_t wanted = tick_ - kStatusEvery_ticks - 2;
   while (true) {
-    person.status.take([&](const msg::ComponentStatus& status) {
-      if (text_of(status.component) != part_ || status.epoch != epoch_) return;
-      person.refused = status.refused_count;
-      person.status_tick = status.tick;
-    });
-    if (person.status_tick >= wanted || std::chrono::steady_clock::now() > bound) return person.refused;
+    person.process.look();
+    const bool fresh = person.process.status_epoch() == epoch_ && person.process.status_tick() >= wanted;
+    if (fresh || std::chrono::steady_clock::now() > bound) return person;
     std::this_thread::sleep_for(10ms);
   }
 }
+
+std::uint64_t ExchangePort::refused() { return fresh_status().process.refused(); }
+
+std::uint32_t ExchangePort::incarnation() { return fresh_status().process.incarnation(); }
+
+std::string ExchangePort::restart() { return client().process.kill(); }
 
 void ExchangePort::end() {
   const std::lock_guard lock(mutex_);

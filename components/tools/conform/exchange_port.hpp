@@ -23,6 +23,8 @@ class ExchangePort final : public PartPort, public StandBoard {
 
   void begin_epoch() override;
   [[nodiscard]] std::uint64_t refused() override;
+  [[nodiscard]] std::string restart() override;
+  [[nodiscard]] std::uint32_t incarnation() override;
 
   // The components. begin_tick() waits until the checks have decided what is written in the tick.
   void begin_tick(const Tick& tick) override;
@@ -39,6 +41,8 @@ class ExchangePort final : public PartPort, public StandBoard {
   void exchange(std::vector<Letter> outgoing) override;
   struct Operator;
   Operator& client();
+  /// The newest status of the part; waits for one that is not too old.
+  Operator& fresh_status();
 
   std::string part_;
   std::uint32_t domain_;

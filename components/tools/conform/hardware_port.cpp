@@ -27,11 +27,12 @@ std::uint64_t random_session() {
 }  // namespace
 
 HardwarePort::HardwarePort(std::uint32_t domain, double period_s, std::uint16_t robot_id,
-                           std::function<bool()> interrupted)
+                           std::function<bool()> interrupted, std::function<std::string()> restart)
     : domain_(domain),
       robot_id_(robot_id),
       period_ns_(std::llround(period_s * 1e9)),
       interrupted_(std::move(interrupted)),
+      restart_(std::move(restart)),
       wait_set_(domain_.participant()),
       next_ns_(now_ns()),
       session_(random_session()) {
@@ -103,6 +104,7 @@ void HardwarePort::take() {
     sample.velocity_rad_s.assign(state.velocity_rad_s, state.velocity_rad_s + count);
     sample.torque_nm.assign(state.torque_nm, state.torque_nm + count);
     posture_rad_ = sample.position_rad;
+    incarnation_ = sample.session;
     joints_.push_back(std::move(sample));
   });
   inertial_.take([&](const msg::HardwareImuState& imu) {

@@ -13,8 +13,10 @@ namespace constrictor::conform {
 
 class HardwarePort final : public PlantPort {
  public:
-  /// Joins the domain. `interrupted` is called in each period; true makes advance() throw Interrupted.
-  HardwarePort(std::uint32_t domain, double period_s, std::uint16_t robot_id, std::function<bool()> interrupted);
+  /// Joins the domain. `interrupted` is called in each period; true makes advance() throw Interrupted. `restart` does
+  /// what PlantPort::restart() promises.
+  HardwarePort(std::uint32_t domain, double period_s, std::uint16_t robot_id, std::function<bool()> interrupted,
+               std::function<std::string()> restart);
   /// Leaves the joints holding where they were measured last.
   ~HardwarePort() override;
 
@@ -24,6 +26,8 @@ class HardwarePort final : public PlantPort {
   [[nodiscard]] std::uint64_t session() const override { return session_; }
   [[nodiscard]] std::uint64_t number() const override { return number_; }
   void begin_session() override;
+  [[nodiscard]] std::string restart() override { return restart_(); }
+  [[nodiscard]] std::uint64_t incarnation() const override { return incarnation_; }
   /// Whether another process commands the joints: nothing must be moved then.
   [[nodiscard]] bool commanded_by_others() const { return others_.writers() > 1; }
 
@@ -36,6 +40,7 @@ class HardwarePort final : public PlantPort {
   std::uint16_t robot_id_;
   std::int64_t period_ns_;
   std::function<bool()> interrupted_;
+  std::function<std::string()> restart_;
   dds::Reader<msg::HardwareJointState> states_;
   dds::Reader<msg::HardwareImuState> inertial_;
   dds::Reader<msg::HardwareContactState> felt_;
@@ -44,6 +49,7 @@ class HardwarePort final : public PlantPort {
   dds::WaitSet wait_set_;
   std::int64_t next_ns_;
   std::uint64_t session_ = 0, number_ = 0;
+  std::uint64_t incarnation_ = 0;                ///< session of the newest joint state
   std::vector<double> posture_rad_, limits_nm_;  ///< measured last; torque limits of the last command
 };
 

@@ -43,6 +43,9 @@ void add_plant(CLI::App& app, Options& options) {
   sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`")->capture_default_str();
   sub->add_option("--robot-id", options.robot_id, "number of the robot: the robot_id in the samples of the process")
       ->capture_default_str();
+  sub->add_option("--restart-command", options.restart_command,
+                  "shell command that ends the process and starts it again, for the check `restart` with --domain; "
+                  "without it\nyou are asked to do so, if this is a terminal and without --yes");
   add_options(*sub, options);
   sub->footer(
       std::string("Holds the joints where they are, then moves them one after the other, slowly and by a small angle, "
@@ -52,6 +55,7 @@ void add_plant(CLI::App& app, Options& options) {
                   "and what to do. Ctrl-C leaves the joints holding and names what was not checked.\n\n"
                   "EXAMPLES\n"
                   "  constrictor conform plant --domain 5 --yes\n"
+                  "  constrictor conform plant --domain 5 --yes --restart-command 'systemctl restart my_plant'\n"
                   "  constrictor conform plant --manifest emulated_servos --yes\n"
                   "  constrictor conform plant --domain 5 --profile slow.yaml --json result.json\n\n") +
       kStatuses);

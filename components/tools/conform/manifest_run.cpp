@@ -61,12 +61,13 @@ bool ended(pid_t pid) { return ::waitpid(pid, nullptr, WNOHANG) == pid; }
 
 namespace {
 
-/// The process of `component` in a manifest, hosting this component only.
-std::string process_of(Configuration& root, const std::string& component, const std::string& why) {
+/// The process of `component` in a manifest, hosting this component only. `is_checked`: it is restarted once, because
+/// the check `restart` kills it.
+std::string process_of(Configuration& root, const std::string& component, const std::string& why, bool is_checked) {
   for (Configuration& entry : root.list("processes")) {
     const auto components = entry.texts("components");
     if (std::find(components.begin(), components.end(), component) == components.end()) continue;
-    std::string process = fmt::format("  - {{components: [{}], restarts: 0", component);
+    std::string process = fmt::format("  - {{components: [{}], restarts: {}", component, is_checked ? 1 : 0);
     if (entry.has("program")) process += ", program: " + entry.one_line("program");
     if (entry.has("environment")) process += ", environment: " + entry.one_line("environment");
     Configuration configs = entry.section("config", false);
@@ -88,11 +89,11 @@ std::string plant_manifest(const fs::path& manifest, const fs::path& folder) {
   const std::string plant = root.text("plant");
   std::string text = head_of(root, plant, true);
   if (root.has("beside")) text += "beside: " + root.one_line("beside") + "\n";
-  return text + "processes:\n" + process_of(root, plant, "plant") + "  - {components: [input]}\n" +
+  return text + "processes:\n" + process_of(root, plant, "plant", true) + "  - {components: [input]}\n" +
          fmt::format(
              "  - {{components: [control], program: conform_control, restarts: 0, environment: "
-             "['CONSTRICTOR_CONFORM={}']}}\n",
-             folder.string());
+             "['CONSTRICTOR_CONFORM={}', 'CONSTRICTOR_CONFORM_PLANT={}']}}\n",
+             folder.string(), plant);
 }
 
 std::string part_manifest(const PartPlace& place, const fs::path& manifest, const fs::path& folder) {
@@ -104,12 +105,13 @@ std::string part_manifest(const PartPlace& place, const fs::path& manifest, cons
       "  - {{components: [{}], program: conform_part, restarts: 0, environment: ['CONSTRICTOR_CONFORM={}', "
       "'CONSTRICTOR_CONFORM_PART={}']}}\n",
       stands, folder.string(), place.part);
-  const std::string part = process_of(root, place.part, "processes");
+  const std::string part = process_of(root, place.part, "processes", true);
   if (place.own_plant) return head_of(root, kStandPlant, false) + "processes:\n" + surroundings + part;
   const std::string plant = root.text("plant");
   std::string text = head_of(root, plant, root.flag("real_time", false));
   if (root.has("beside")) text += "beside: " + root.one_line("beside") + "\n";
-  return text + "processes:\n" + process_of(root, plant, "plant") + part + "  - {components: [input]}\n" + surroundings;
+  return text + "processes:\n" + process_of(root, plant, "plant", false) + part + "  - {components: [input]}\n" +
+         surroundings;
 }
 
 bool run_manifest(const std::string& manifest, const fs::path& folder, const std::function<bool()>& interrupted,

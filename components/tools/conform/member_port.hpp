@@ -46,9 +46,11 @@ class TickExchange {
   std::atomic<bool> finished_{false};
 };
 
-/// What a client does for the checks: emergency stops and new epochs.
+/// What a client does and sees for the checks: emergency stops, new epochs, and the plant's process.
 struct RunClient {
   std::function<void()> stop, clear_stop, begin_epoch;
+  std::function<std::string()> restart;        ///< as PlantPort::restart()
+  std::function<std::uint32_t()> incarnation;  ///< of the plant; 0: it is not known
 };
 
 class MemberPort final : public PlantPort {
@@ -62,6 +64,8 @@ class MemberPort final : public PlantPort {
   [[nodiscard]] bool stopped() const override { return stopped_; }
   void begin_epoch() override { client_.begin_epoch(); }
   [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
+  [[nodiscard]] std::string restart() override { return client_.restart(); }
+  [[nodiscard]] std::uint64_t incarnation() const override { return client_.incarnation(); }
 
  private:
   TickExchange& exchange_;

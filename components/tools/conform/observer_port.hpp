@@ -17,6 +17,8 @@ class ObserverPort final : public PartPort {
   ObserverPort(std::uint32_t domain, std::function<bool()> interrupted);
   void begin_epoch() override { throw PartGone("an observer begins no epoch"); }
   [[nodiscard]] std::uint64_t refused() override { return 0; }
+  [[nodiscard]] std::string restart() override { return "an observer kills no process of a run"; }
+  [[nodiscard]] std::uint32_t incarnation() override { return 1; }
 
  private:
   void exchange(std::vector<Letter> outgoing) override;

@@ -61,6 +61,11 @@ class PartPort {
   /// Number of messages that the part has refused so far (ComponentStatus.refused_count). The number may be some ticks
   /// old: call this kStatusTicks after the messages whose refusal is counted.
   [[nodiscard]] virtual std::uint64_t refused() = 0;
+  /// Kills the part's process, and has it started again; the next tick waits for it. Returns why that cannot be done;
+  /// empty: it is being done.
+  [[nodiscard]] virtual std::string restart() = 0;
+  /// How often the part's process has been started, from 1. The number may be old, as that of refused().
+  [[nodiscard]] virtual std::uint32_t incarnation() = 0;
   static constexpr int kStatusTicks = 120;  ///< a member reports its status every 50 ticks
 
  protected:

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
+#include "conform/part_restart.hpp"
 #include "conform/perception_conformance.hpp"
 
 namespace constrictor::conform {
@@ -43,6 +45,7 @@ std::vector<Check> perception_checks() {
       {"frozen", "images that are equal for long are refused, and the next other one is used", {}, {}, {}},
       {"epoch", "a new epoch begins without memory", {}, {}, {}},
       {"repeatable", "the same images give the same percepts in the next epoch, bit for bit", {}, {}, {}},
+      restart_check(),
   };
 }
 
@@ -203,40 +206,53 @@ void PerceptionConformance::check_refusals() {
       "compare images: the noise of any camera makes them different. Count those that are equal as refused");
 }
 
+namespace {
+
+/// How the answers to the same images differ; empty: they do not.
+std::string difference(const std::vector<Seen>& first, const std::vector<Seen>& second) {
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+    const Seen &a = first[i], &b = second[i];
+    if (a.lines.size() != b.lines.size() || a.objects.size() != b.objects.size())
+      return fmt::format("another number of answers to image {}", i);
+    for (std::size_t k = 0; k < a.lines.size(); ++k) {
+      if (std::memcmp(&a.lines[k].offset_m, &b.lines[k].offset_m, sizeof(double)) != 0 ||
+          std::memcmp(a.lines[k].y_m, b.lines[k].y_m, sizeof a.lines[k].y_m) != 0)
+        return fmt::format("another line in image {}", i);
+    }
+    for (std::size_t k = 0; k < a.objects.size(); ++k) {
+      const auto &one = a.objects[k], &other = b.objects[k];
+      if (one.blob_count != other.blob_count || std::memcmp(&one.blobs[0].range_m, &other.blobs[0].range_m, 8) != 0)
+        return fmt::format("other objects in image {}", i);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 void PerceptionConformance::check_epoch() {
-  const auto play = [&] {
+  const auto play = [&](const std::function<void()>& disturb) {
     hand_.begin_epoch();
     SyntheticScene scene;
     scene.line = PaintedLine{};
     scene.line->begin_y_m = 0.05;
     scene.standing = {{msg::kColourRed, 1.0, -0.3, 0.08, 0.15}};
-    return hand_.show(scene, 4);
+    std::vector<Seen> all = hand_.show(scene, 2);
+    disturb();
+    for (Seen& seen : hand_.show(scene, 2)) all.push_back(std::move(seen));
+    return all;
   };
-  const std::vector<Seen> first = play(), second = play();
+  const std::vector<Seen> first = play([] {}), second = play([] {});
   const bool answered = first.back().answered() && second.back().answered();
   report_.judge("epoch", !answered, answered ? "images are answered" : "no answer in the new epoch",
                 "construct the component anew at each EpochStart");
-  std::string differs;
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()) && differs.empty(); ++i) {
-    const Seen &a = first[i], &b = second[i];
-    if (a.lines.size() != b.lines.size() || a.objects.size() != b.objects.size()) {
-      differs = fmt::format("another number of answers to image {}", i);
-      continue;
-    }
-    for (std::size_t k = 0; k < a.lines.size(); ++k) {
-      if (std::memcmp(&a.lines[k].offset_m, &b.lines[k].offset_m, sizeof(double)) != 0 ||
-          std::memcmp(a.lines[k].y_m, b.lines[k].y_m, sizeof a.lines[k].y_m) != 0)
-        differs = fmt::format("another line in image {}", i);
-    }
-    for (std::size_t k = 0; k < a.objects.size(); ++k) {
-      const auto &one = a.objects[k], &other = b.objects[k];
-      if (one.blob_count != other.blob_count || std::memcmp(&one.blobs[0].range_m, &other.blobs[0].range_m, 8) != 0)
-        differs = fmt::format("other objects in image {}", i);
-    }
-  }
-  report_.judge("repeatable", !differs.empty(),
-                differs.empty() ? fmt::format("{} images give the same", first.size()) : differs,
+  const std::string equal = fmt::format("{} images give the same", first.size());
+  const std::string differs = difference(first, second);
+  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
                 "read no clock, use one thread, and draw random numbers only from a generator with the run's seed");
+  PartRestart restart(port_);
+  restart.judge(
+      report_, [&] { return difference(first, play([&] { restart.kill(); })); }, equal);
 }
 
 }  // namespace constrictor::conform

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "component/task_parameters.hpp"
+#include "conform/part_restart.hpp"
 #include "conform/planner_conformance.hpp"
 
 namespace constrictor::conform {
@@ -202,17 +204,19 @@ void PlannerConformance::check_form() {
 
 void PlannerConformance::check_epoch() {
   /// The requests of the first seconds of an epoch.
-  const auto play = [&] {
+  const auto play = [&](const std::function<void()>& disturb) {
     port_.begin_epoch();
     hand_.emplace(port_);
     hand_->run(4.0);
     hand_->see_line(true);
-    hand_->run(8.0);
+    hand_->run(4.0);
+    disturb();
+    hand_->run(4.0);
     hand_->report(msg::kEventLineLost, msg::kGoalAborted);
     hand_->run(4.0);
     return hand_->requests();
   };
-  const std::vector<msg::Request> first = play();
+  const std::vector<msg::Request> first = play([] {});
   const std::vector<msg::MissionStatus> missions = hand_->missions();
   const bool fresh = !missions.empty() && missions.front().outcome == msg::kMissionRunning &&
                      missions.front().object_index == 0 && missions.front().recoveries == 0;
@@ -224,18 +228,23 @@ void PlannerConformance::check_epoch() {
                                        missions.empty() ? 0 : missions.front().object_index)
                               : fmt::format("begins with goal {}", goal),
                 "construct the component anew at each EpochStart");
-  const std::vector<msg::Request> second = play();
-  std::string differs;
-  if (first.size() != second.size()) differs = fmt::format("{} requests, then {}", first.size(), second.size());
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()) && differs.empty(); ++i) {
-    const msg::Request &a = first[i], &b = second[i];
-    if (a.task != b.task || a.goal_id != b.goal_id || a.parameters.direction != b.parameters.direction ||
-        a.header.tick != b.header.tick)
-      differs = fmt::format("request {} differs", i);
-  }
-  report_.judge("repeatable", !differs.empty(),
-                differs.empty() ? fmt::format("{} requests are equal", first.size()) : differs,
+  const auto difference = [&](const std::vector<msg::Request>& second) -> std::string {
+    if (first.size() != second.size()) return fmt::format("{} requests, then {}", first.size(), second.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const msg::Request &a = first[i], &b = second[i];
+      if (a.task != b.task || a.goal_id != b.goal_id || a.parameters.direction != b.parameters.direction ||
+          a.header.tick != b.header.tick)
+        return fmt::format("request {} differs", i);
+    }
+    return {};
+  };
+  const std::string equal = fmt::format("{} requests are equal", first.size());
+  const std::string differs = difference(play([] {}));
+  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
                 "read no clock, and draw random numbers only from a generator with the run's seed");
+  PartRestart restart(port_);
+  restart.judge(
+      report_, [&] { return difference(play([&] { restart.kill(); })); }, equal);
 }
 
 }  // namespace constrictor::conform

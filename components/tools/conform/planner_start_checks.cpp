@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "configuration/configuration.hpp"
+#include "conform/part_restart.hpp"
 #include "conform/planner_conformance.hpp"
 
 namespace constrictor::conform {
@@ -37,6 +38,7 @@ std::vector<Check> planner_checks() {
       {"status", "one mission_status in each tick, which agrees with the mission and never goes back", {}, {}, {}},
       {"epoch", "a new epoch begins without memory", {}, {}, {}},
       {"repeatable", "the same messages give the same requests in the next epoch", {}, {}, {}},
+      restart_check(),
   };
 }
 

@@ -93,6 +93,7 @@ void PlantConformance::check_commands() {
   check_relaxed();
   check_stop(joint);
   check_epoch(joint);
+  check_restart(joint);
 }
 
 void PlantConformance::check_torque_limit(std::size_t joint) {
@@ -125,8 +126,7 @@ void PlantConformance::check_relaxed() {
                 "switch the torque off in the mode relaxed");
 }
 
-void PlantConformance::check_silence(std::size_t joint) {
-  // The commands end in the middle of a motion.
+void PlantConformance::break_motion_off(std::size_t joint) {
   const double start_rad = hand_.setpoint_rad(joint);
   const double half_rad = 0.5 * (start_rad + hand_.goal_rad(joint));
   const double way = std::copysign(1.0, half_rad - start_rad);
@@ -138,6 +138,10 @@ void PlantConformance::check_silence(std::size_t joint) {
     hand_.send({command}, profile_.period_s);
   }
   hand_.watch(profile_.stop_within_s);
+}
+
+void PlantConformance::check_silence(std::size_t joint) {
+  break_motion_off(joint);
   const std::vector<double> rest_rad = hand_.mean_rad(hand_.watch(5 * profile_.period_s));
   const std::vector<JointSample> later = hand_.watch(0.5);
   std::string wrong;

@@ -64,6 +64,11 @@ class PlantConformance {
   void check_return(std::size_t joint, const char* name, const char* todo);
   void check_stop(std::size_t joint);
   void check_epoch(std::size_t joint);
+  /// Ends the commands in the middle of a motion, and waits until the joints must rest.
+  void break_motion_off(std::size_t joint);
+  // The end and the next start of the plant's process (plant_restart_check.cpp).
+  void check_restart(std::size_t joint);
+  [[nodiscard]] std::string restart_fault(const std::vector<double>& rest_rad, std::uint64_t before);
   void skip_all(const std::vector<const char*>& names, const std::string& reason);
   /// [rad] how far the joint that moved most was from its setpoint in any of the samples.
   [[nodiscard]] double strayed_rad(const std::vector<JointSample>& samples) const;

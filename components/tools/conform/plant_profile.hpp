@@ -53,6 +53,9 @@ struct PlantProfile : ParameterSet {
   double stop_within_s = add(stop_within_s, "stop_within_s", 0.4, "s", {0.05, 5.0}, kAtStart,
                              "Time after which a joint rests when commands end or a stop is ordered");
 
+  double restart_within_s = add(restart_within_s, "restart_within_s", 30.0, "s", {1.0, 600.0}, kAtStart,
+                                "Time within which the plant is back after its process was ended");
+
   /// Fills in what follows from the robot. Throws ConfigurationError if both do not agree.
   void adapt_to(const RobotModel& robot) {
     if (joint_count == 0) joint_count = static_cast<int>(robot.joints.size());

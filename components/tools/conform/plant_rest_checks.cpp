@@ -55,7 +55,8 @@ std::vector<Check> plant_checks() {
       one("new_session", "a new session, whose numbers begin at 1, is obeyed after a silence"),
       one("relaxed", "relaxed joints have no torque"),
       one("stop", "an emergency stop holds the posture until it is cleared"),
-      one("epoch", "a new epoch begins with its own numbers, and is obeyed")};
+      one("epoch", "a new epoch begins with its own numbers, and is obeyed"),
+      one("restart", "a process that was killed and started again reports its posture, moves nothing, and is obeyed")};
 }
 
 void PlantConformance::skip_all(const std::vector<const char*>& names, const std::string& reason) {

@@ -44,6 +44,7 @@ class Doubled final : public PlantPort {
       if (joints_of_plant_.measure(now_s_, sample)) {
         sample.arrival_s = now_s_;
         joints_.push_back(sample);
+        incarnation_ = sample.session;
       }
     }
     ImuSample imu;
@@ -70,6 +71,13 @@ class Doubled final : public PlantPort {
     begin_session();
   }
   [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
+  [[nodiscard]] std::string restart() override {
+    if (!obstacle.empty()) return obstacle;
+    joints_of_plant_.restart();
+    return {};
+  }
+  [[nodiscard]] std::uint64_t incarnation() const override { return incarnation_; }
+  std::string obstacle;  ///< why it cannot be restarted
   long interrupt_at = 0;
   bool busy = false;
 
@@ -80,6 +88,7 @@ class Doubled final : public PlantPort {
   std::uint64_t session_ = 1, number_ = 0;
   std::uint32_t epoch_ = 1;
   long advances_ = 0;
+  std::uint64_t incarnation_ = 0;
 };
 
 Report examine_plant(const std::string& fault, long interrupt_at = 0, bool busy = false) {
@@ -111,6 +120,19 @@ TEST(PlantConformance, ARightPlantPassesEveryCheck) {
 TEST(PlantConformance, ARightPlantOnABusyMachinePasses) {
   const Report report = examine_plant("", 0, /*busy=*/true);
   EXPECT_TRUE(report.conforms()) << text_of(report);
+}
+
+TEST(PlantConformance, APlantThatNobodyCanRestartIsNotRestarted) {
+  const RobotModel robot = load_robot(testing::robot_path("mamba"));
+  PlantProfile profile;
+  profile.adapt_to(robot);
+  Doubled plant(robot.joints.size(), "");
+  plant.obstacle = "nobody can restart it";
+  Report report(plant_checks());
+  PlantConformance(plant, robot, profile, report).run();
+  EXPECT_TRUE(report.conforms()) << text_of(report);
+  EXPECT_EQ(report.check("restart").verdict, Verdict::kSkipped);
+  EXPECT_EQ(report.check("restart").found, "nobody can restart it");
 }
 
 class FindsTheFault : public ::testing::TestWithParam<testing::NamedFault> {};
