@@ -174,6 +174,8 @@ def rows() -> List[Row]:
     return [
         Row("emergency stop", emergency_stop),
         Row("cable pulled behind the tenth servo", servo("cable 0 9")),
+        Row("adapter of the servos unplugged", servo("unplug 0")),
+        Row("adapter of the contact sensors unplugged", servo("unplug 1")),
         Row("a servo is silent", servo("silent 6")),
         Row("a servo reports overload", servo("error 6 32")),
         Row("a servo is overheated", servo("hot 6 95")),
