@@ -91,8 +91,12 @@ TEST_F(RunCommand, AScriptReadsAsJsonWhyItsTaskWasNotSent) {
     const std::string reason = json.value("reason", "");
     EXPECT_FALSE(reason.empty());
     EXPECT_NE(process.errors().find(reason), std::string::npos) << process.errors();
-    if (arguments[1] == "start") EXPECT_TRUE(json["started"].is_null()) << json;
-    if (arguments[1] == "cancel") EXPECT_EQ(json["cancelled"], false) << json;
+    if (arguments[1] == "start") {
+      EXPECT_TRUE(json["started"].is_null()) << json;
+    }
+    if (arguments[1] == "cancel") {
+      EXPECT_EQ(json["cancelled"], false) << json;
+    }
   }
 }
 
