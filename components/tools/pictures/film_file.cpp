@@ -45,7 +45,10 @@ bool FilmFile::add(const std::uint8_t* bgra) {
   }
   // OpenCV's matrix does not change the pixels.
   const cv::Mat pixels(height_, width_, CV_8UC4, const_cast<std::uint8_t*>(bgra));
-  cv::Mat bgr;
+  // FFmpeg reads a little beyond the end of a row. What it reads there changes the film, so it is always black.
+  constexpr int kBeyond = 32;
+  cv::Mat rows = cv::Mat::zeros(height_ + kBeyond, width_ + kBeyond, CV_8UC3);
+  cv::Mat bgr = rows(cv::Rect(0, 0, width_, height_));
   cv::cvtColor(pixels, bgr, cv::COLOR_BGRA2BGR);
   writer_.write(bgr);
   ++frames_;
