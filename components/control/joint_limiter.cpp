@@ -22,9 +22,8 @@ std::optional<double> JointLimiter::before_rise(std::size_t j, double limit_nm, 
                                                 const LimiterState& state) const {
   const double before_nm = state.torque_limit_nm[j];
   const double apart_rad = state.position_rad[j] - measured_rad;
-  if (!(limit_nm > before_nm && std::abs(apart_rad) > kAgreement_rad)) return std::nullopt;
   const double reach_rad = before_nm / robot_.joints[j].position_gain_nm_rad;
-  if (std::abs(apart_rad) <= reach_rad) return std::nullopt;
+  if (!(limit_nm > before_nm && std::abs(apart_rad) > std::max(kAgreement_rad, reach_rad))) return std::nullopt;
   return clamp_position(robot_.joints[j], measured_rad + std::copysign(reach_rad, apart_rad));
 }
 

@@ -125,23 +125,17 @@ void GripSense::hold_starts(Grip& grip) const {
   grip.below_s = 0.0;
 }
 
-bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const {
+bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
+                     Grip& grip) const {
   const double share = -std::expm1(-dt_s / config_.lost_filter_s);
   grip.torque_nm += share * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
   const double touching = base_force_n(touches) >= config_.touch_force_n ? 1.0 : 0.0;
   grip.contact_share += share * (touching - grip.contact_share);
-  const bool weak = grip.torque_nm < config_.lost_torque_nm && grip.contact_share < config_.lost_contact_share;
+  const bool few_touches = !feels || grip.contact_share < config_.lost_contact_share;
+  const bool weak = grip.torque_nm < config_.lost_torque_nm && few_touches;
   // A large wave loads the base of an empty U, too: without any touch the torque proves nothing.
-  return count_weak(weak || grip.contact_share < config_.untouched_share, dt_s, grip);
-}
-
-bool GripSense::lost_by_torque(const msg::JointState& joints, double dt_s, Grip& grip) const {
-  grip.torque_nm += -std::expm1(-dt_s / config_.lost_filter_s) * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
-  return count_weak(grip.torque_nm < config_.lost_torque_nm, dt_s, grip);
-}
-
-bool GripSense::count_weak(bool weak, double dt_s, Grip& grip) const {
-  grip.below_s = weak ? grip.below_s + dt_s : 0.0;
+  const bool below = weak || (feels && grip.contact_share < config_.untouched_share);
+  grip.below_s = below ? grip.below_s + dt_s : 0.0;
   return grip.below_s >= config_.lost_after_s;
 }
 

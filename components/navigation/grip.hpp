@@ -70,18 +70,16 @@ class GripSense {
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
                                                                bool feels) const;
 
-  /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while.
-  bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, double dt_s, Grip& grip) const;
-  /// The same for a robot that feels no contacts: the torque alone has been too low for a while.
-  bool lost_by_torque(const msg::JointState& joints, double dt_s, Grip& grip) const;
+  /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while,
+  /// or the torque alone if the robot feels no touches.
+  bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
+            Grip& grip) const;
   /// Resets the loss monitor at the beginning of a grasp.
   void hold_starts(Grip& grip) const;
 
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
 
  private:
-  /// Counts the time of a weak hold. True when it has lasted long enough.
-  bool count_weak(bool weak, double dt_s, Grip& grip) const;
   [[nodiscard]] double side_m() const;  ///< length of a link between two base joints
 
   const RobotModel& robot_;

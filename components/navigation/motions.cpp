@@ -93,12 +93,6 @@ void squeeze_u(const NavigationConfig& config, const GripSense& sense, double si
   output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
 }
 
-bool object_lost(const TaskInput& input, Grip& grip) {
-  const double dt_s = input.tick.dt_s();
-  return input.feels ? input.grip_sense.lost(input.joints, input.touches, dt_s, grip)
-                     : input.grip_sense.lost_by_torque(input.joints, dt_s, grip);
-}
-
 double tipping_acceleration_m_s2(const Grip& grip) {
   constexpr double kGravity_m_s2 = 9.81;
   if (grip.height_m <= 0.0) return std::numeric_limits<double>::infinity();

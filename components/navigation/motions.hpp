@@ -25,10 +25,6 @@ void wrap_round(const GripSense& sense, const Gait& gait, double side, double sp
 void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
                TaskOutput& output);
 
-/// Advances the loss monitor of the grip. True when the object is lost, as the touches and the torque of the base show,
-/// or the torque alone if the robot feels no touches.
-bool object_lost(const TaskInput& input, Grip& grip);
-
 /// [m/s2] horizontal acceleration at which an upright object tips over its edge, like a block on a cart: gravity times
 /// its radius through half of its height. Infinite if its height is unknown.
 double tipping_acceleration_m_s2(const Grip& grip);

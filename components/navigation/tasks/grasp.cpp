@@ -89,10 +89,10 @@ class Grasp : public StatefulTask<GraspState> {
     // A large object wedges between the arms before it reaches the middle of the base. It moves with the body all the
     // same, and the squeeze shows whether it is held.
     constexpr double kLong_s = 8.0;  // twice the usual time
-    const bool wedged = state_.phase_s > kLong_s && enough_touches(input);
+    const bool wedged = state_.phase_s > kLong_s && state_.touching >= config.touching_modules;
+    const bool felt = state_.seated_s >= config.seat_time_s || wedged;
     // Without contact sensors, only the squeeze shows whether the object lies in the base.
-    if (!input.feels && state_.phase_s >= config.unfelt_seat_s) state_.seated_s = config.seat_time_s;
-    if (state_.seated_s >= config.seat_time_s || wedged) {
+    if (input.feels ? felt : state_.phase_s >= config.unfelt_seat_s) {
       state_.touched_s.fill(1e9);
       state_.enter(kSqueeze);
     } else if (state_.phase_s > config.seat_timeout_s) {
@@ -145,7 +145,7 @@ class Grasp : public StatefulTask<GraspState> {
                 input.grip_sense.yaw_joint_count(), output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input);
-    const bool lost = object_lost(input, grip);
+    const bool lost = input.grip_sense.lost(input.joints, input.touches, input.feels, input.tick.dt_s(), grip);
     if (state_.phase_s < config.check_s && !lost) return;
     if (enough_touches(input) && !lost) {
       grip.carrying = true;

@@ -13,11 +13,16 @@ namespace fs = std::filesystem;
 
 // OpenCV does not say that FFmpeg could not write. The end of the file, its index, needs some room, too.
 constexpr std::uintmax_t kLeastSpace_bytes = 16 << 20;
+constexpr int kBeyond = 32;  // pixels: FFmpeg reads a little beyond the end of a row
 
 }  // namespace
 
 FilmFile::FilmFile(const fs::path& file, double rate_hz, int width, int height)
-    : file_(file), part_(file), width_(width), height_(height) {
+    : file_(file),
+      part_(file),
+      width_(width),
+      height_(height),
+      rows_(cv::Mat::zeros(height + kBeyond, width + kBeyond, CV_8UC3)) {
   part_.replace_extension(".part" + file.extension().string());
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "8", 0);  // only what is fatal: FFmpeg's notes are not for users
   ::setenv("OPENCV_FFMPEG_WRITER_LOGLEVEL", "8", 0);
@@ -45,10 +50,7 @@ bool FilmFile::add(const std::uint8_t* bgra) {
   }
   // OpenCV's matrix does not change the pixels.
   const cv::Mat pixels(height_, width_, CV_8UC4, const_cast<std::uint8_t*>(bgra));
-  // FFmpeg reads a little beyond the end of a row. What it reads there changes the film, so it is always black.
-  constexpr int kBeyond = 32;
-  cv::Mat rows = cv::Mat::zeros(height_ + kBeyond, width_ + kBeyond, CV_8UC3);
-  cv::Mat bgr = rows(cv::Rect(0, 0, width_, height_));
+  cv::Mat bgr = rows_(cv::Rect(0, 0, width_, height_));
   cv::cvtColor(pixels, bgr, cv::COLOR_BGRA2BGR);
   writer_.write(bgr);
   ++frames_;

@@ -31,6 +31,7 @@ class FilmFile {
  private:
   std::filesystem::path file_, part_;
   int width_, height_;
+  cv::Mat rows_;  ///< a frame, with black pixels beyond the end of its rows
   std::string codec_;
   cv::VideoWriter writer_;
   std::uint64_t frames_ = 0;

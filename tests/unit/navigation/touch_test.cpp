@@ -116,21 +116,28 @@ TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
   }
 }
 
-TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
-  Grip grip;
-  grip.side = -1.0;
-  grip.carrying = true;
-  grip_sense.hold_starts(grip);
-  msg::JointState u = u_joints(-1.0);
-  const auto load = [&u](double torque_nm) {
+/// A U to the right that holds an object, and the torque of its base.
+class HoldTest : public TouchTest {
+ protected:
+  HoldTest() {
+    grip.side = -1.0;
+    grip.carrying = true;
+    grip_sense.hold_starts(grip);
+  }
+  void load(double torque_nm) {
     for (int j : {10, 12, 14}) u.torque_nm[j] = -torque_nm;
-  };
+  }
+  Grip grip;
+  msg::JointState u = u_joints(-1.0);
+};
+
+TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   std::vector<Touch> touch(1);
   touch[0].module = 12;
   touch[0].force_n = 2.0;
   const auto lost_after_s = [&] {
     double time_s = 0.0;
-    while (!grip_sense.lost(u, {}, 0.02, grip)) {
+    while (!grip_sense.lost(u, {}, true, 0.02, grip)) {
       time_s += 0.02;
       if (time_s > 10.0) break;
     }
@@ -138,9 +145,9 @@ TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   };
   load(1.2);  // torque, and a touch in every tenth tick
   for (int i = 0; i < 1000; ++i)
-    ASSERT_FALSE(grip_sense.lost(u, i % 10 == 0 ? touch : std::vector<Touch>{}, 0.02, grip));
+    ASSERT_FALSE(grip_sense.lost(u, i % 10 == 0 ? touch : std::vector<Touch>{}, true, 0.02, grip));
   load(0.1);  // touch without torque
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, 0.02, grip));
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, true, 0.02, grip));
   const double neither_s = lost_after_s();
   EXPECT_GT(neither_s, config.lost_after_s);
   EXPECT_LT(neither_s, 5.0);
@@ -152,20 +159,12 @@ TEST_F(TouchTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   EXPECT_LT(untouched_s, 6.0);
 }
 
-TEST_F(TouchTest, ARobotWithoutContactSensorsNoticesTheLossByTheTorque) {
-  Grip grip;
-  grip.side = -1.0;
-  grip.carrying = true;
-  grip_sense.hold_starts(grip);
-  msg::JointState u = u_joints(-1.0);
-  const auto load = [&u](double torque_nm) {
-    for (int j : {10, 12, 14}) u.torque_nm[j] = -torque_nm;
-  };
+TEST_F(HoldTest, ARobotWithoutContactSensorsNoticesTheLossByTheTorque) {
   load(1.4);
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost_by_torque(u, 0.02, grip));
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, {}, false, 0.02, grip));
   load(0.1);
   double time_s = 0.0;
-  while (!grip_sense.lost_by_torque(u, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  while (!grip_sense.lost(u, {}, false, 0.02, grip) && time_s < 10.0) time_s += 0.02;
   EXPECT_GT(time_s, config.lost_after_s);
   EXPECT_LT(time_s, 5.0);
 }
