@@ -8,8 +8,6 @@
 namespace constrictor {
 namespace {
 
-constexpr double kAgreement_rad = 0.1;  // a joint this close to its setpoint follows it: it does not jump
-
 double limit_nm(const JointModel& joint, double wanted_nm) {
   return std::isfinite(wanted_nm) ? std::clamp(wanted_nm, 0.0, joint.max_torque_nm) : joint.max_torque_nm;
 }

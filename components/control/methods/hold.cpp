@@ -1,6 +1,7 @@
 // "hold" keeps the posture that was measured when the motion began. If the trajectory names the posture of a U and a
 // torque limit, this limit applies to the base of the U.
 #include "control/wave_motion.hpp"
+#include "robot/joint_limits.hpp"
 
 namespace constrictor {
 namespace {
@@ -11,7 +12,6 @@ class Hold : public ControlMethod {
   void start(const MethodInput& input, BodyState& body) const override {
     // If setpoint and measured angle agree, the setpoint is held: otherwise a loaded servo would creep by its own
     // error with each new hold.
-    constexpr double kAgreement_rad = 0.1;
     for (std::size_t j = 0; j < input.robot.joints.size(); ++j) {
       const double deviation_rad = input.commanded_rad[j] - input.measured_rad[j];
       const bool agrees = deviation_rad < kAgreement_rad && deviation_rad > -kAgreement_rad;

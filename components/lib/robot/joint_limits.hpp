@@ -5,6 +5,10 @@
 
 namespace constrictor {
 
+/// [rad] A joint nearer than this to its setpoint follows it. A hold then keeps the setpoint, because otherwise a
+/// loaded servo would creep by its own error with each new hold.
+inline constexpr double kAgreement_rad = 0.1;
+
 /// The setpoint of one joint. An entry that is not finite makes it unacceptable.
 struct JointSetpoint {
   double position_rad = 0.0;     ///< in torque mode: the angle at which a hold would begin

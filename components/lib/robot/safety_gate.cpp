@@ -13,7 +13,6 @@ namespace {
 constexpr std::uint8_t kFollow = 0;   // kServoFollow
 constexpr std::uint8_t kRelaxed = 1;  // kServoRelaxed
 constexpr std::uint8_t kTorque = 2;   // kServoTorque
-constexpr double kAgreement_rad = 0.1;
 constexpr double kRounding_rad = 1e-9;
 
 bool finite(std::span<const double> values) {
