@@ -183,7 +183,8 @@ TEST_F(RunResume, ARunWhoseTerminalIsClosedIsLeftAndContinues) {
   EXPECT_EQ(launcher.wait(20s), 128 + SIGHUP) << launcher.output();
   EXPECT_NE(launcher.output().find("to continue this run: constrictor run --resume "), std::string::npos);
   expect_nobody_left();
-  EXPECT_EQ(command({"run", "--resume", (dir_ / "r").string()}).wait(60s), exit_status::kOk);
+  Process resume = command({"run", "--resume", (dir_ / "r").string()});
+  ASSERT_EQ(resume.wait(60s), exit_status::kOk) << resume.output() << resume.errors();
   expect_equal_runs("r", "undisturbed");
 }
 
