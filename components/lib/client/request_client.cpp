@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kRepeat = 200ms;
 constexpr auto kAnswerBound = 5s;
+constexpr auto kQuiet = 50ms;              // after this time without a message, the history of a topic has arrived
+constexpr auto kSettleBound = 1s;          // a run that is faster than real time may never be quiet
 constexpr auto kEventBound = 1s;           // after this time, a TaskStatus also proves the end of a goal
 constexpr std::size_t kMostAnswers = 256;  // kept for callers that ask late
 
@@ -76,6 +79,14 @@ bool RequestClient::connect(std::chrono::milliseconds bound) {
     if (WaitClock::now() > end || interrupted()) return false;
     std::this_thread::sleep_for(kPoll);
     poll();
+  }
+  // The oldest of the messages that the topic keeps arrives first: its source may have no authority any more.
+  const auto settled = WaitClock::now() + kSettleBound;
+  for (auto last = WaitClock::now(); WaitClock::now() < std::min(settled, last + kQuiet) && !interrupted();) {
+    const auto before = authority()->header.sequence_number;
+    std::this_thread::sleep_for(kPoll);
+    poll();
+    if (authority()->header.sequence_number != before) last = WaitClock::now();
   }
   return true;
 }
@@ -215,7 +226,6 @@ void RequestClient::assert_alive() const {
 void RequestClient::flush() const { endpoints_->request.flush(std::chrono::nanoseconds(1s).count()); }
 
 std::uint32_t RequestClient::domain() const { return endpoints_->domain_number; }
-
 std::int32_t RequestClient::participant() const { return endpoints_->participant; }
 
 void RequestClient::take_authority() {
@@ -275,7 +285,7 @@ const msg::RequestAnswer* RequestClient::answer(std::uint64_t number) const {
 
 RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::chrono::milliseconds bound) {
   const auto end = WaitClock::now() + bound;
-  for (;;) {
+  for (;; std::this_thread::sleep_for(kPoll)) {
     poll();
     if (const msg::RequestAnswer* found = answer(number)) {
       if (found->granted) goal_ = found->goal_id;
@@ -284,7 +294,6 @@ RequestClient::Answer RequestClient::wait_for_answer(std::uint64_t number, std::
     }
     if (interrupted()) return Answer::kInterrupted;
     if (WaitClock::now() > end) return Answer::kNone;
-    std::this_thread::sleep_for(kPoll);
   }
 }
 

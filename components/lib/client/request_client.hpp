@@ -49,8 +49,8 @@ class RequestClient {
   RequestClient(std::int32_t participant, std::uint32_t domain, RequestClientOptions options);
   ~RequestClient();
 
-  /// Waits until `input` reads requests and its first Authority message has arrived. Returns false if that does not
-  /// happen within `bound`, or if `interrupted` returned true.
+  /// Waits until `input` reads requests and its Authority messages have arrived, also those that it keeps for programs
+  /// that join late. Returns false if none arrives within `bound`, or if `interrupted` returned true.
   bool connect(std::chrono::milliseconds bound);
   /// The same, but throws CommandError (kNoAnswer, kInterrupted) instead of returning false.
   void connect_or_throw(std::chrono::milliseconds bound = std::chrono::seconds(10));

@@ -75,6 +75,7 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
     auto& header = *reinterpret_cast<Header*>(data_);
     if (fresh) {
       boot_id().copy(header.boot, sizeof header.boot - 1);
+      std::atomic_signal_fence(std::memory_order_seq_cst);
       std::memcpy(header.magic, kMagic, sizeof kMagic);
     } else if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
       throw failure(path_, "found a file that is no checkpoint of this release");
@@ -195,9 +196,14 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
 
 void CheckpointFile::clear() {
   std::memset(data_ + kPage, 0, 2 * kPage);
-  auto& header = *reinterpret_cast<Header*>(data_);
-  std::memset(header.boot, 0, sizeof header.boot);
-  boot_id().copy(header.boot, sizeof header.boot - 1);
+  // A process that is killed here must not leave a file that seems to be of another boot: reading the boot's number
+  // takes long enough for that, so it is read first, and the number of this boot is not written again.
+  if (!of_this_boot()) {
+    auto& header = *reinterpret_cast<Header*>(data_);
+    const std::string id = boot_id();
+    std::memset(header.boot, 0, sizeof header.boot);
+    id.copy(header.boot, sizeof header.boot - 1);
+  }
   number_ = 0;
   stored_.clear();
   table_of_last_ = table_of_last_but_one_ = {};

@@ -178,6 +178,22 @@ TEST_F(CheckpointFileTest, AWriterKilledAtAnyMomentLeavesACompleteCheckpoint) {
   EXPECT_GT(newest, 20) << "the writers must have come beyond the first checkpoints";
 }
 
+TEST_F(CheckpointFileTest, AWriterKilledWhileItBeginsAnewLeavesAFileOfThisBoot) {
+  std::mt19937 random(20261125);
+  for (int round = 0; round < 20; ++round) {
+    const pid_t pid = ::fork();
+    ASSERT_GE(pid, 0);
+    if (pid == 0) {
+      CheckpointFile file(path_);
+      for (;;) file.clear();
+    }
+    ::usleep(static_cast<useconds_t>(5'000 + random() % 5'000));
+    ::kill(pid, SIGKILL);
+    ASSERT_EQ(::waitpid(pid, nullptr, 0), pid);
+    EXPECT_TRUE(CheckpointFile(path_).of_this_boot());
+  }
+}
+
 TEST_F(CheckpointFileTest, ASecondPlantCannotWriteToTheSameFile) {
   CheckpointFile file(path_);
   EXPECT_NE(error_of_opening().find("another process of the plant has this file open"), std::string::npos)
