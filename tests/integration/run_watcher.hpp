@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -114,11 +115,13 @@ inline double fastest_setpoint(const Watcher& watcher, const std::set<std::int64
   return fastest_rad_s;
 }
 
-/// The greatest measured speed of any joint [rad/s] from tick `from` on.
-inline double fastest_joint(const Watcher& watcher, std::int64_t from) {
+/// The greatest measured speed of any joint [rad/s] from tick `from` on, before tick `to`.
+inline double fastest_joint(const Watcher& watcher, std::int64_t from,
+                            std::int64_t to = std::numeric_limits<std::int64_t>::max()) {
   double fastest_rad_s = 0.0;
   for (const auto& state : watcher.joints) {
-    for (int j = 0; state.header.tick >= from && j < state.joint_count; ++j) {
+    const bool counts = state.header.tick >= from && state.header.tick < to;
+    for (int j = 0; counts && j < state.joint_count; ++j) {
       fastest_rad_s = std::max(fastest_rad_s, std::abs(state.velocity_rad_s[j]));
     }
   }
