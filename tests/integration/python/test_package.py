@@ -43,6 +43,21 @@ def test_errors_without_a_run_are_those_of_the_command(tmp_path, monkeypatch):
         constrictor.join(level="boss")
 
 
+def test_images_are_arrays_of_pixels(run):
+    image = run.latest("camera/image", timeout=20)
+    pixels = image["data"]
+    assert pixels.dtype == np.uint8 and pixels.shape == (image["height"], image["width"], 3)
+
+    # The painted line is blue, so in the lower half of an image of it some pixels are much more blue than red. This
+    # test is an early one: later, the robot turns away from the line.
+    def shows_the_line():
+        seen = run.latest("camera/image", timeout=20)["data"]
+        lower = seen[seen.shape[0] // 2 :].astype(int)
+        return ((lower[:, :, 2] - lower[:, :, 0]) > 60).sum() > 50
+
+    assert eventually(shows_the_line)
+
+
 def test_a_run_is_found_by_itself_by_number_and_by_directory(launched):
     (note,) = constrictor.runs()
     assert note.scenario == "case_study" and note.plant == "physics" and note.pid == launched.process.pid
@@ -86,15 +101,6 @@ def test_samples_are_dictionaries_with_arrays(run):
     assert eventually(lambda: run.latest("task/status")["task"] == "follow_line")
     assert isinstance(run.latest("task/status", names=False)["task"], int)
     assert np.isnan(run.latest("task/status")["cross_track_m"])
-
-
-def test_images_are_arrays_of_pixels(run):
-    image = run.latest("camera/image", timeout=20)
-    pixels = image["data"]
-    assert pixels.dtype == np.uint8 and pixels.shape == (image["height"], image["width"], 3)
-    # The painted line ahead is blue, so in the lower half of the image some pixels are much more blue than red.
-    lower = pixels[pixels.shape[0] // 2 :].astype(int)
-    assert ((lower[:, :, 2] - lower[:, :, 0]) > 60).sum() > 50
 
 
 def test_iterations_have_bounds_and_miss_nothing(run):
