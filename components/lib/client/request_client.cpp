@@ -12,6 +12,7 @@
 #include "client/run_attachment.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
+#include "cyclone/kept_samples.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,7 +20,6 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kRepeat = 200ms;
 constexpr auto kAnswerBound = 5s;
-constexpr auto kQuiet = 50ms;              // after this time without a message, the history of a topic has arrived
 constexpr auto kSettleBound = 1s;          // a run that is faster than real time may never be quiet
 constexpr auto kEventBound = 1s;           // after this time, a TaskStatus also proves the end of a goal
 constexpr std::size_t kMostAnswers = 256;  // kept for callers that ask late
@@ -81,8 +81,8 @@ bool RequestClient::connect(std::chrono::milliseconds bound) {
     poll();
   }
   // The oldest of the messages that the topic keeps arrives first: its source may have no authority any more.
-  const auto settled = WaitClock::now() + kSettleBound;
-  for (auto last = WaitClock::now(); WaitClock::now() < std::min(settled, last + kQuiet) && !interrupted();) {
+  for (auto last = WaitClock::now(), settled = last + kSettleBound;
+       WaitClock::now() < std::min(settled, last + dds::KeptSamples::kQuiet) && !interrupted();) {
     const auto before = authority()->header.sequence_number;
     std::this_thread::sleep_for(kPoll);
     poll();

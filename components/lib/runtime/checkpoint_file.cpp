@@ -24,12 +24,8 @@ constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'C', 'K', 'P', '1'};
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kFirstPart = 3 * kPage;  // after the header and the two slots, each on a page of its own
 constexpr std::size_t kFirstSize = 256 * kPage;
-constexpr std::size_t kUnit = 64;  // [byte] parts begin at multiples of it
-
-struct Header {
-  char magic[sizeof kMagic];
-  char boot[64];  // the boot of the computer in which the file was made
-};
+constexpr std::size_t kLongestBoot = 63;  // [byte] of the name of a boot
+constexpr std::size_t kUnit = 64;         // [byte] parts begin at multiples of it
 
 std::uint64_t checksum_of(const void* bytes, std::size_t size) { return XXH3_64bits(bytes, size); }
 
@@ -39,8 +35,20 @@ std::string boot_id() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string id;
   std::getline(file, id);
-  return id.substr(0, sizeof(Header::boot) - 1);
+  return id.substr(0, kLongestBoot);
 }
+
+struct Header {
+  char magic[sizeof kMagic];
+  char boot[kLongestBoot + 1];  // the boot of the computer in which the file was made
+
+  /// Bytes that are right already stay as they are: a process that is killed here leaves a file of this boot.
+  void note_boot() {
+    std::string id = boot_id();
+    id.resize(sizeof boot);
+    std::memcpy(boot, id.data(), sizeof boot);
+  }
+};
 
 std::runtime_error failure(const std::filesystem::path& path, const std::string& what) {
   return std::runtime_error(fmt::format("{}: {}", path.string(), what));
@@ -74,7 +82,7 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
     grow(fresh ? kFirstSize : size_);
     auto& header = *reinterpret_cast<Header*>(data_);
     if (fresh) {
-      boot_id().copy(header.boot, sizeof header.boot - 1);
+      header.note_boot();
       std::atomic_signal_fence(std::memory_order_seq_cst);
       std::memcpy(header.magic, kMagic, sizeof kMagic);
     } else if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
@@ -196,14 +204,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
 
 void CheckpointFile::clear() {
   std::memset(data_ + kPage, 0, 2 * kPage);
-  // A process that is killed here must not leave a file that seems to be of another boot: reading the boot's number
-  // takes long enough for that, so it is read first, and the number of this boot is not written again.
-  if (!of_this_boot()) {
-    auto& header = *reinterpret_cast<Header*>(data_);
-    const std::string id = boot_id();
-    std::memset(header.boot, 0, sizeof header.boot);
-    id.copy(header.boot, sizeof header.boot - 1);
-  }
+  reinterpret_cast<Header*>(data_)->note_boot();
   number_ = 0;
   stored_.clear();
   table_of_last_ = table_of_last_but_one_ = {};
