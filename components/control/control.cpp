@@ -20,7 +20,7 @@ Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
     : TunableComponent(wiring, setup, topics::kControlParameters),
       robot_(load_robot(setup.robot_file)),
       chain_(robot_),
-      limiter_(robot_, config_.speed_share),
+      limiter_(robot_, config_.speed_share, config_.lead_s),
       gate_(robot_, {0, config_.relax_after_ticks}),
       registry_(std::move(methods)) {}
 

@@ -14,7 +14,13 @@ double limit_nm(const JointModel& joint, double wanted_nm) {
 
 }  // namespace
 
-JointLimiter::JointLimiter(const RobotModel& robot, double speed_share) : robot_(robot), speed_share_(speed_share) {}
+JointLimiter::JointLimiter(const RobotModel& robot, double speed_share, double lead_s)
+    : robot_(robot), speed_share_(speed_share), lead_s_(lead_s) {}
+
+double JointLimiter::lead_rad(const JointModel& joint, double torque_limit_nm) const {
+  const double spring_rad = joint.stiffness_nm_rad > 0.0 ? torque_limit_nm / joint.stiffness_nm_rad : 0.0;
+  return torque_limit_nm / joint.position_gain_nm_rad + spring_rad + joint.max_speed_rad_s * lead_s_;
+}
 
 std::optional<double> JointLimiter::before_rise(std::size_t j, double limit_nm, double measured_rad,
                                                 const LimiterState& state) const {
@@ -43,6 +49,8 @@ msg::JointCommand JointLimiter::limit(const Setpoints& wanted, const JointArray&
       target_rad = *back_rad;
       torque_limit_nm = state.torque_limit_nm[j];
     }
+    if (const double lead = lead_rad(joint, torque_limit_nm); std::isfinite(measured_rad[j]))
+      target_rad = clamp_position(joint, std::clamp(target_rad, measured_rad[j] - lead, measured_rad[j] + lead));
     const double step_rad = speed_share_ * joint.max_speed_rad_s * dt_s;
     const double position_rad = std::clamp(target_rad, previous_rad - step_rad, previous_rad + step_rad);
     command.position_rad[j] = position_rad;

@@ -41,12 +41,16 @@ struct LimiterState {
 /// A low torque limit can keep a joint away from its setpoint. The joint would jump there when the limit rises, faster
 /// than the robot's limit. Its setpoint therefore first returns to the angle at which the servo exerts the old limit,
 /// and the limit rises when the setpoint has arrived, or is within 0.1 rad of the joint.
+///
+/// A joint that is pressed against something does not follow at all. Its setpoint waits for it at the lead at which the
+/// servo exerts the whole torque limit, plus the distance that the joint covers at full speed in `lead_s`. A farther
+/// setpoint would add no torque, and the joint would catch up with it too fast when it comes free.
 class JointLimiter {
  public:
-  /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1.
-  JointLimiter(const RobotModel& robot, double speed_share);
+  /// `speed_share`: share of the servos' maximum speed that the setpoints may use, 0 to 1. `lead_s` [s] >= 0.
+  JointLimiter(const RobotModel& robot, double speed_share, double lead_s);
 
-  /// `measured_rad`: joint positions, used in the first call, in torque mode and when a torque limit rises. `dt_s` > 0.
+  /// `measured_rad`: joint positions; one that is not finite bounds no setpoint. `dt_s` > 0.
   msg::JointCommand limit(const Setpoints& wanted, const JointArray& measured_rad, double dt_s,
                           LimiterState& state) const;
   /// The command that exerts torques; the setpoints follow the measured posture.
@@ -59,8 +63,12 @@ class JointLimiter {
   [[nodiscard]] std::optional<double> before_rise(std::size_t j, double limit_nm, double measured_rad,
                                                   const LimiterState& state) const;
 
+  /// [rad] How far the setpoint of a joint may be ahead of it at this torque limit.
+  [[nodiscard]] double lead_rad(const JointModel& joint, double torque_limit_nm) const;
+
   const RobotModel& robot_;
   double speed_share_;
+  double lead_s_;
 };
 
 }  // namespace constrictor

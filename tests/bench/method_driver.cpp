@@ -7,7 +7,11 @@
 namespace constrictor {
 
 MethodDriver::MethodDriver(const RobotModel& robot, const MethodTrial& trial)
-    : robot_(robot), trial_(trial), chain_(robot), limiter_(robot, 1.0), method_(registry_.find(trial.method)) {
+    : robot_(robot),
+      trial_(trial),
+      chain_(robot),
+      limiter_(robot, 1.0, trial.config.lead_s),
+      method_(registry_.find(trial.method)) {
   if (!method_) throw std::invalid_argument("control has no method '" + trial.method + "'");
   set_text(desired_.method, trial.method);
   desired_.frequency_hz = trial.frequency_hz;

@@ -14,7 +14,13 @@ namespace {
 class JointLimiterTest : public ::testing::Test {
  protected:
   RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
-  JointLimiter limiter{robot, 1.0};
+  static constexpr double kLead_s = 0.04;
+  JointLimiter limiter{robot, 1.0, kLead_s};
+
+  /// [rad] The farthest setpoint ahead of a joint that does not move.
+  static double lead_rad(const JointModel& joint, double torque_limit_nm) {
+    return torque_limit_nm / joint.position_gain_nm_rad + joint.max_speed_rad_s * kLead_s;
+  }
 };
 
 TEST_F(JointLimiterTest, FirstSetpointStartsAtTheMeasuredPosture) {
@@ -33,7 +39,7 @@ TEST_F(JointLimiterTest, RandomSetpointsNeverExceedTheLimitsOfTheRobot) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> wild(-20.0, 20.0);
   LimiterState state;
-  JointArray previous{};
+  JointArray previous{};  // the joints follow at once
   for (int step = 0; step < 2000; ++step) {
     Setpoints wanted;
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
@@ -42,7 +48,7 @@ TEST_F(JointLimiterTest, RandomSetpointsNeverExceedTheLimitsOfTheRobot) {
       if (step % 7 == 0 && j % 5 == 0) wanted.position_rad[j] = std::numeric_limits<double>::quiet_NaN();
       if (step % 11 == 0 && j % 3 == 0) wanted.torque_limit_nm[j] = std::numeric_limits<double>::infinity();
     }
-    const auto command = limiter.limit(wanted, {}, 0.02, state);
+    const auto command = limiter.limit(wanted, previous, 0.02, state);
     ASSERT_EQ(command.joint_count, robot.joints.size());
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const JointModel& joint = robot.joints[j];
@@ -65,10 +71,10 @@ TEST_F(JointLimiterTest, AJointKeptAwayFromItsSetpointDoesNotJumpWhenItsTorqueLi
   wanted.position_rad[4] = 0.8;  // an object keeps the joint at 0
   wanted.torque_limit_nm[4] = kWeak_nm;
   for (int tick = 0; tick < 50; ++tick) limiter.limit(wanted, {}, 0.02, state);
-  ASSERT_NEAR(state.position_rad[4], 0.8, 1e-12);
   const JointModel& joint = robot.joints[4];
+  ASSERT_NEAR(state.position_rad[4], lead_rad(joint, kWeak_nm), 1e-12);
   wanted.torque_limit_nm[4] = joint.max_torque_nm;
-  double previous_rad = 0.8;
+  double previous_rad = state.position_rad[4];
   for (int tick = 0; tick < 50; ++tick) {
     const auto command = limiter.limit(wanted, {}, 0.02, state);
     ASSERT_LE(std::abs(command.position_rad[4] - previous_rad), joint.max_speed_rad_s * 0.02 + 1e-12);
@@ -80,6 +86,50 @@ TEST_F(JointLimiterTest, AJointKeptAwayFromItsSetpointDoesNotJumpWhenItsTorqueLi
     }
   }
   ADD_FAILURE() << "the limit did not rise";
+}
+
+TEST_F(JointLimiterTest, TheSetpointOfABlockedJointWaitsForItAndTheTorqueIsComplete) {
+  const JointModel& joint = robot.joints[4];
+  LimiterState state;
+  Setpoints wanted;
+  JointArray measured{};
+  wanted.position_rad[4] = -1.2;  // something keeps the joint at 0
+  wanted.torque_limit_nm[4] = joint.max_torque_nm;
+  for (int tick = 0; tick < 100; ++tick) limiter.limit(wanted, measured, 0.02, state);
+  EXPECT_NEAR(state.position_rad[4], -lead_rad(joint, joint.max_torque_nm), 1e-12);
+  EXPECT_GE(joint.position_gain_nm_rad * -state.position_rad[4], joint.max_torque_nm);
+
+  // It comes free, and follows its setpoint within the tick: both arrive, and no setpoint jumps.
+  for (int tick = 0; tick < 100; ++tick) {
+    const double before_rad = measured[4] = state.position_rad[4];
+    limiter.limit(wanted, measured, 0.02, state);
+    ASSERT_LE(std::abs(state.position_rad[4] - before_rad), joint.max_speed_rad_s * 0.02 + 1e-12);
+  }
+  EXPECT_NEAR(state.position_rad[4], -1.2, 1e-12);
+}
+
+TEST_F(JointLimiterTest, TheSetpointOfABlockedElasticJointStretchesItsSpring) {
+  robot = load_robot(data_path("components/lib/robot/serpens.yaml"));
+  const JointModel& joint = robot.joints[4];
+  ASSERT_GT(joint.stiffness_nm_rad, 0.0);
+  LimiterState state;
+  Setpoints wanted;
+  wanted.position_rad[4] = 1.2;
+  wanted.torque_limit_nm[4] = joint.max_torque_nm;
+  for (int tick = 0; tick < 100; ++tick) limiter.limit(wanted, {}, 0.02, state);
+  EXPECT_NEAR(state.position_rad[4], lead_rad(joint, joint.max_torque_nm) + joint.max_torque_nm / joint.stiffness_nm_rad,
+              1e-12);
+}
+
+TEST_F(JointLimiterTest, AMeasurementThatIsNotFiniteBoundsNoSetpoint) {
+  LimiterState state;
+  Setpoints wanted;
+  JointArray measured{};
+  limiter.limit(wanted, measured, 0.02, state);
+  measured[4] = std::numeric_limits<double>::quiet_NaN();
+  wanted.position_rad[4] = 0.8;
+  for (int tick = 0; tick < 50; ++tick) limiter.limit(wanted, measured, 0.02, state);
+  EXPECT_NEAR(state.position_rad[4], 0.8, 1e-12);
 }
 
 TEST_F(JointLimiterTest, AJointThatFollowsItsSetpointGetsItsTorqueAtOnce) {
