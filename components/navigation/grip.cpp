@@ -91,22 +91,22 @@ Eigen::Vector2d GripSense::held_object_H(const std::vector<PlanarPose>& body, do
   return p_HA + (radius_m + robot_.module_radius_m) * mouth.normalized();
 }
 
-double GripSense::held_aside_m(const Grip& grip) const {
+double GripSense::held_aside_m(const Grip& grip, bool feels) const {
   msg::JointState posture{};
   for (std::size_t k = 0; k < yaw_joints_.size(); ++k) posture.position_rad[yaw_joints_[k]] = grip.shape_rad[k];
+  for (const std::size_t j : base_joints_) posture.position_rad[j] -= grip.side * margin_rad(feels);
   return held_object_H(planar_body(robot_, posture), grip.radius_m).y();
 }
 
 std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip,
                                                           bool feels) const {
   const double side = grip.side;
-  const double margin_rad = feels ? config_.hold_margin_rad : config_.unfelt_margin_rad;
   const double open_rad = open_angle_rad(grip.radius_m);
   std::array<double, msg::kMaxJoints> shape{};
   double closed_rad = 0.0;
   for (int i = 0; i < config_.base_joints; ++i) {
     const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
-    shape[k] = joints.position_rad[yaw_joints_[k]] + side * margin_rad;
+    shape[k] = joints.position_rad[yaw_joints_[k]] + side * margin_rad(feels);
     closed_rad += shape[k] - side * open_rad;
   }
   // The joints beside the base keep the angle to which the squeeze has opened them, so that the arms are parallel.

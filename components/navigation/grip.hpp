@@ -63,8 +63,9 @@ class GripSense {
   [[nodiscard]] int touching_modules(const std::vector<Touch>& touches) const;
   /// Centre of an object of this radius that touches the base, in the head's frame.
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<PlanarPose>& body, double radius_m) const;
-  /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left.
-  [[nodiscard]] double held_aside_m(const Grip& grip) const;
+  /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left. The
+  /// object keeps the base from closing by the margin of hold_shape.
+  [[nodiscard]] double held_aside_m(const Grip& grip, bool feels) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with each joint of the base closed by a margin
   /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object.
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
@@ -80,6 +81,10 @@ class GripSense {
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
 
  private:
+  /// [rad] by which each joint of the base is commanded to close further than the object lets it.
+  [[nodiscard]] double margin_rad(bool feels) const {
+    return feels ? config_.hold_margin_rad : config_.unfelt_margin_rad;
+  }
   [[nodiscard]] double side_m() const;  ///< length of a link between two base joints
 
   const RobotModel& robot_;

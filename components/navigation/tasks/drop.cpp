@@ -117,7 +117,7 @@ class Drop : public StatefulTask<DropState> {
       state_.course_fixed = true;
     }
     const PlanarPose X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
-    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -input.grip_sense.held_aside_m(grip)});
+    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -input.grip_sense.held_aside_m(grip, input.feels)});
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
