@@ -1,6 +1,5 @@
 #include "ros_bridge/bridge.hpp"
 
-#include <cstdio>
 #include <utility>
 
 #include "cyclone/create_domain.hpp"
@@ -39,8 +38,9 @@ dds::Entity create_ros_participant(const BridgeOptions& options) {
 
 }  // namespace
 
-Bridge::Bridge(const BridgeOptions& options, RobotModel robot)
+Bridge::Bridge(const BridgeOptions& options, RobotModel robot, constrictor::Log log)
     : options_(options),
+      own_log_(std::move(log)),
       joint_count_(robot.joints.size()),
       translator_(robot),
       drawing_(robot.module_radius_m),
@@ -124,8 +124,7 @@ void Bridge::serve(SteadyClock::time_point now) {
 }
 
 void Bridge::drop(const std::string& reason) {
-  if (counts_.dropped == 0)
-    std::fprintf(stderr, "ros_bridge: dropped %s (/diagnostics counts later ones)\n", reason.c_str());
+  if (counts_.dropped == 0) own_log_.warning("dropped {} (/diagnostics counts later ones)", reason);
   ++counts_.dropped;
   counts_.last_reason = "dropped " + reason;
 }

@@ -12,6 +12,7 @@
 #include "cyclone/endpoint.hpp"
 #include "cyclone/entity.hpp"
 #include "cyclone/wait_set.hpp"
+#include "log/log.hpp"
 #include "ros_bridge/ros_diagnostics.hpp"
 #include "ros_bridge/ros_drawing.hpp"
 #include "ros_bridge/ros_node.hpp"
@@ -37,7 +38,8 @@ struct BridgeOptions {
 class Bridge {
  public:
   using SteadyClock = std::chrono::steady_clock;
-  Bridge(const BridgeOptions& options, RobotModel robot);
+  /// `log`: of the program, for what happens while it serves.
+  Bridge(const BridgeOptions& options, RobotModel robot, constrictor::Log log);
   /// Waits for messages, at most 20 ms, and forwards those that have arrived.
   void serve(SteadyClock::time_point now);
   /// Why the bridge must end, as text for people; empty while the run goes on.
@@ -69,6 +71,7 @@ class Bridge {
   using Empty = std_msgs_msg_dds__Empty_;
 
   BridgeOptions options_;
+  constrictor::Log own_log_;  ///< lines of this program
   std::size_t joint_count_;  ///< of the robot file
   Translator translator_;
   Drawing drawing_;

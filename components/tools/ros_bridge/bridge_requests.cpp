@@ -1,6 +1,4 @@
 // What ROS programs ask of the robot: velocities, tasks, emergency stops. And what they are told about tasks.
-#include <cstdio>
-
 #include "constrictor/text.hpp"
 #include "ros_bridge/bridge.hpp"
 #include "ros_bridge/ros_values.hpp"
@@ -23,7 +21,7 @@ void Bridge::take_stops(SteadyClock::time_point now) {
   if (stop && !stopped && (stop_number_ == 0 || now - stop_asked_ > 500ms)) {
     stop_number_ = client_.ask(msg::kRequestEmergencyStop);
     stop_asked_ = now;
-    std::fprintf(stderr, "ros_bridge: emergency stop from ROS 2\n");
+    own_log_.warning("emergency stop from ROS 2");
   }
   if (clear && !stop) clear_number_ = client_.ask(msg::kRequestClearStop);
   if (const msg::RequestAnswer* answer = client_.answer(clear_number_)) {
@@ -45,7 +43,7 @@ void Bridge::take_velocities(SteadyClock::time_point now) {
     pilot_.answered(answer->granted);
     if (answer->granted) refusal_.clear();
     else if (refusal_ != answer->reason)
-      std::fprintf(stderr, "ros_bridge: cmd_vel is refused: %s\n", (refusal_ = answer->reason).c_str());
+      own_log_.warning("cmd_vel is refused: {}", refusal_ = answer->reason);
   }
   if (client_.authority()) pilot_.authority(client_.holds_authority(), client_.authority()->emergency_stop, now_s);
   const bool steered = velocity_.writers() > 0 || task_.writers() > 0 || desk_.busy() || desk_.keeps_authority();

@@ -13,6 +13,7 @@
 #include "client/run_registry.hpp"
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
+#include "log/log.hpp"
 #include "ros_bridge/bridge.hpp"
 #include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
@@ -51,12 +52,12 @@ int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, 
   options.run = join_run(domain);
   if (robot.empty()) robot = robot_of(options.run);
   const RobotModel model = load_robot(robot);
-  ros::Bridge bridge(options, model);
+  const constrictor::Log log("ros_bridge");
+  ros::Bridge bridge(options, model, log);
   print_bridge(options, model.name, bridge.node());
   while (!g_stop && bridge.over().empty()) bridge.serve(ros::Bridge::SteadyClock::now());
   if (!bridge.over().empty()) fmt::print("{}\n", bridge.over());
-  else if (!bridge.leave())
-    std::fprintf(stderr, "ros_bridge: no answer from `input`; authority ends with this process\n");
+  else if (!bridge.leave()) log.warning("no answer from `input`; authority ends with this process");
   return exit_status::kOk;
 }
 
