@@ -4,6 +4,7 @@
 #include <random>
 
 #include "integration/determinism_run.hpp"
+#include "integration/run_ticks.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -50,10 +51,11 @@ TEST_F(Determinism, LatenciesOfAManifestBelongToTheRunAndNotToItsProcesses) {
   const std::string expected = run("one", with({"--in-process"}));
   EXPECT_NE(run("near", {"--in-process"}), expected) << "percepts that come later must change the run";
   Process process = start("many", with({"--pace", "2x"}));
+  RunTicks ticks(process);
   for (const std::string victim : {"perception", "planner", "report", "guidance"}) {
     const pid_t pid = running(victim);
     ASSERT_GT(pid, 0) << process.output();
-    std::this_thread::sleep_for(300ms);
+    ASSERT_TRUE(ticks.pass(30)) << process.output();
     ::kill(pid, SIGKILL);
   }
   EXPECT_EQ(hash_of("many", process), expected);

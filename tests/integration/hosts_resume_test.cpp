@@ -1,5 +1,6 @@
 // Runs whose plant is on another host are continued by another launcher: what the host has kept of them is enough.
 #include "integration/hosts_fixture.hpp"
+#include "integration/run_ticks.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -23,7 +24,7 @@ class HostsResume : public Hosts {
     Process launcher = run_there(kTicks, "r", {"--pace", pace});
     EXPECT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output() << launcher.errors();
     EXPECT_TRUE(eventually([&] { return !kept().empty() && fs::exists(kept() / "checkpoint.bin"); }));
-    std::this_thread::sleep_for(400ms);  // somewhere in the run
+    EXPECT_TRUE(RunTicks(launcher).pass(20)) << launcher.output();  // somewhere in the run
     return launcher;
   }
   /// The folder in which the other host keeps the plant's files; empty: there is none.
@@ -67,7 +68,7 @@ TEST_F(HostsResume, ALauncherThatComesBackAtOnceEndsWhatIsLeftOfItsPredecessorAn
     ASSERT_GT(agent(), 0) << "it waits for its launcher";
     first = resume();
     ASSERT_TRUE(eventually([&] { return members().size() == 5; })) << first.output() << first.errors();
-    std::this_thread::sleep_for(300ms);
+    ASSERT_TRUE(RunTicks(first).pass(20)) << first.output() << first.errors();
   }
   ASSERT_EQ(first.wait(60s), exit_status::kOk) << first.output() << first.errors();
   expect_result_of_an_undisturbed_run();

@@ -2,6 +2,7 @@
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "integration/run_command_fixture.hpp"
+#include "integration/run_ticks.hpp"
 #include "runtime/wire.hpp"
 
 namespace constrictor::testing {
@@ -51,8 +52,9 @@ TEST_F(RunCommand, RestartsKilledMembersAndTheStateHashStays) {
   ASSERT_EQ(run(400, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run(400, "r", {"--pace", "2x"});
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
+  RunTicks ticks(launcher);
   for (const char* victim : {"control", "navigation", "planner", "report"}) {
-    std::this_thread::sleep_for(400ms);
+    ASSERT_TRUE(ticks.pass(40)) << launcher.output();
     const pid_t pid = members()[victim];
     ASSERT_GT(pid, 0) << victim;
     ::kill(pid, SIGKILL);
@@ -71,9 +73,8 @@ TEST_F(RunCommand, RestartsKilledMembersAndTheStateHashStays) {
 TEST_F(RunCommand, AMemberKilledTenTimesDoesNotEndTheRunWhileTicksAdvance) {
   ASSERT_EQ(run(600, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run(600, "r", {"--pace", "2x"});
-  ASSERT_TRUE(launcher.wait_for("run ", 15s));
-  const dds::Domain domain(static_cast<std::uint32_t>(std::stoul(launcher.output().substr(4))));
-  const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
+  RunTicks ticks(launcher);
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(ticks.participant(), dds::barrier_topics::kStatus);
   for (std::uint32_t incarnation = 1; incarnation <= 10; ++incarnation) {
     bool steps = false;
     ASSERT_TRUE(eventually([&] {
@@ -83,7 +84,7 @@ TEST_F(RunCommand, AMemberKilledTenTimesDoesNotEndTheRunWhileTicksAdvance) {
       return steps;
     })) << incarnation
         << ": " << launcher.output();
-    std::this_thread::sleep_for(100ms);  // ten ticks, if it lets them pass
+    ASSERT_TRUE(ticks.pass(10)) << launcher.output();
     kill_member("control", SIGKILL);
   }
   ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output();

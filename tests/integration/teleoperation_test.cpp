@@ -7,6 +7,7 @@
 
 #include "integration/run_watcher.hpp"
 #include "runtime/host.hpp"
+#include "runtime/wire.hpp"
 
 namespace constrictor::testing {
 namespace {
@@ -234,8 +235,13 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
   ASSERT_EQ(command({"release"}), exit_status::kOk) << output_;
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
   ASSERT_EQ(command({"pause"}), exit_status::kOk) << output_;
+  const auto requests = dds::Reader<msg::Request>::observer(watcher.participant(), dds::barrier_topics::kRequest, 16);
   Process starting = start({"task", "start", "rotate", "--direction", "left"});
-  std::this_thread::sleep_for(1s);  // the request is written; a paused run answers nothing that could be waited for
+  bool asked = false;  // a paused run answers nothing that could be waited for
+  ASSERT_TRUE(eventually([&] {
+    requests.take([&](const msg::Request& request) { asked |= request.kind == msg::kRequestTask; });
+    return asked;
+  }));
   starting.signal(SIGINT);
   EXPECT_EQ(starting.wait(10s), 128 + SIGINT) << starting.errors();
   EXPECT_NE(starting.errors().find("releases authority as soon as it resumes"), std::string::npos) << starting.errors();
@@ -277,9 +283,7 @@ TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
   }
   EXPECT_GE(begun.size(), 2u);
   EXPECT_LE(fastest_setpoint(watcher, begun), kMaxSpeed_rad_s * 1.001);
-  // The setpoints of the new source begin where the joints are, so that none jumps. Later, a joint that the drive has
-  // pressed against an object may slip off it and catch up with its setpoint faster than the setpoint moves.
-  for (const std::int64_t tick : begun) EXPECT_LE(fastest_joint(watcher, tick, tick + 25), kMaxSpeed_rad_s) << tick;
+  EXPECT_LE(fastest_joint(watcher, 0), kMaxSpeed_rad_s);
   EXPECT_EQ(watcher.mission.outcome, msg::kMissionRunning);
   end(launcher);
 }

@@ -72,7 +72,7 @@ class Bridge {
 
   BridgeOptions options_;
   constrictor::Log own_log_;  ///< lines of this program
-  std::size_t joint_count_;  ///< of the robot file
+  std::size_t joint_count_;   ///< of the robot file
   Translator translator_;
   Drawing drawing_;
   Health health_;

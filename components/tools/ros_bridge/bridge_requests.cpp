@@ -42,8 +42,7 @@ void Bridge::take_velocities(SteadyClock::time_point now) {
     number_ = 0;
     pilot_.answered(answer->granted);
     if (answer->granted) refusal_.clear();
-    else if (refusal_ != answer->reason)
-      own_log_.warning("cmd_vel is refused: {}", refusal_ = answer->reason);
+    else if (refusal_ != answer->reason) own_log_.warning("cmd_vel is refused: {}", refusal_ = answer->reason);
   }
   if (client_.authority()) pilot_.authority(client_.holds_authority(), client_.authority()->emergency_stop, now_s);
   const bool steered = velocity_.writers() > 0 || task_.writers() > 0 || desk_.busy() || desk_.keeps_authority();

@@ -25,8 +25,8 @@ class FastDdsTopics : public ExampleRun {
   static constexpr int kJoints = 22;
   const DomainClaim claim_;
   // It writes 100 samples in a second of each of its two topics.
-  Process plant_{{example("fastdds_plant"), "--domain", std::to_string(claim_.domain()), "--joints",
-                  std::to_string(kJoints)}};
+  Process plant_{
+      {example("fastdds_plant"), "--domain", std::to_string(claim_.domain()), "--joints", std::to_string(kJoints)}};
   std::string output_;
 };
 

@@ -117,8 +117,8 @@ TEST_F(JointLimiterTest, TheSetpointOfABlockedElasticJointStretchesItsSpring) {
   wanted.position_rad[4] = 1.2;
   wanted.torque_limit_nm[4] = joint.max_torque_nm;
   for (int tick = 0; tick < 100; ++tick) limiter.limit(wanted, {}, 0.02, state);
-  EXPECT_NEAR(state.position_rad[4], lead_rad(joint, joint.max_torque_nm) + joint.max_torque_nm / joint.stiffness_nm_rad,
-              1e-12);
+  EXPECT_NEAR(state.position_rad[4],
+              lead_rad(joint, joint.max_torque_nm) + joint.max_torque_nm / joint.stiffness_nm_rad, 1e-12);
 }
 
 TEST_F(JointLimiterTest, AMeasurementThatIsNotFiniteBoundsNoSetpoint) {
