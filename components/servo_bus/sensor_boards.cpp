@@ -16,7 +16,7 @@ namespace map = dynamixel::sensor_board;
 
 namespace {
 
-constexpr std::int64_t kTimeToAskAgain_ns = 6'000'000;
+constexpr std::int64_t kTimeToAskAgain_ns = 8'000'000;
 constexpr int kMissingAfter = 3;  // ticks without an answer
 constexpr int kAskEvery = 10;     // ticks, of a board that is missing: waiting for it must not delay the ticks
 
@@ -91,6 +91,7 @@ msg::ContactState SensorBoards::contacts() {
   Bytes ids;
   for (const auto& board : plan_.contact_boards) ids.push_back(board.id);
   std::size_t answered = 0;
+  std::vector<msg::Contact> contacts;
   const auto use = [&](std::uint8_t, const serial::Answer& answer) {
     const auto module = static_cast<std::uint8_t>(answered++);
     if (!answer.good()) return;
@@ -98,11 +99,10 @@ msg::ContactState SensorBoards::contacts() {
     state.force_n[module] = board.vector(map::contact::kForce, map::kForce_n);
     state.torque_nm[module] = board.vector(map::contact::kMoment, map::kMoment_nm);
     const std::size_t count = std::min<std::size_t>(board.byte(map::contact::kContacts), map::contact::kMost);
-    for (std::size_t i = 0; i < count && state.contact_count < msg::kMaxContacts; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const std::size_t at = map::contact::kFirst + i * map::contact::kBytesOfOne;
-      state.contacts[state.contact_count++] = {module, board.vector(at, map::kPosition_m),
-                                               board.vector(at + 6, map::kUnitVector),
-                                               board.vector(at + 12, map::kForce_n)};
+      contacts.push_back({module, board.vector(at, map::kPosition_m), board.vector(at + 6, map::kUnitVector),
+                          board.vector(at + 12, map::kForce_n)});
     }
   };
   ports_.with(port, news_, [&](serial::BusMaster& bus) {
@@ -119,8 +119,10 @@ msg::ContactState SensorBoards::contacts() {
   if (!all) return {};
   state.module_count = static_cast<std::uint16_t>(ids.size());
   const auto strength = [](const msg::Contact& one) { return std::hypot(one.force_n.x, one.force_n.y, one.force_n.z); };
-  std::stable_sort(state.contacts, state.contacts + state.contact_count,
+  std::stable_sort(contacts.begin(), contacts.end(),
                    [&](const msg::Contact& a, const msg::Contact& b) { return strength(a) > strength(b); });
+  state.contact_count = static_cast<std::uint16_t>(std::min<std::size_t>(contacts.size(), msg::kMaxContacts));
+  std::copy_n(contacts.begin(), state.contact_count, state.contacts);
   return state;
 }
 

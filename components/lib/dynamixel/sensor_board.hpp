@@ -21,14 +21,15 @@ inline constexpr std::uint16_t kLinearAcceleration = 80;  ///< vector [0.005 m/s
 inline constexpr std::uint16_t kEnd = 86;
 }  // namespace imu
 
-/// A contact board has room for two contacts of its module, the strongest first.
+/// A contact board has room for four contacts of its module, the strongest first. The flat belly alone has two contacts
+/// with the ground, which are stronger than a light touch of an object.
 namespace contact {
 inline constexpr std::uint16_t kCount = 64;     ///< 2 bytes, one more after each measurement
 inline constexpr std::uint16_t kForce = 66;     ///< vector [0.01 N]: sum of the forces on the module, in its frame
 inline constexpr std::uint16_t kMoment = 72;    ///< vector [0.001 Nm]: sum of their moments about the module's centre
-inline constexpr std::uint16_t kContacts = 78;  ///< 1 byte: number of contacts below, 0 to 2
+inline constexpr std::uint16_t kContacts = 78;  ///< 1 byte: number of contacts below, 0 to 4
 inline constexpr std::uint16_t kFirst = 79;     ///< position [0.1 mm], normal [1/32767], force [0.01 N]: three vectors
-inline constexpr std::size_t kMost = 2;
+inline constexpr std::size_t kMost = 4;
 inline constexpr std::uint16_t kBytesOfOne = 18;
 inline constexpr std::uint16_t kEnd = kFirst + kMost * kBytesOfOne;
 }  // namespace contact

@@ -140,7 +140,18 @@ std::size_t BusMaster::take_fast_answer(std::uint16_t count, ByteView ids, const
 }
 
 std::size_t BusMaster::fast_sync_read(std::uint16_t address, std::uint16_t count, ByteView ids, const Use& use) {
-  if (ids.empty()) return 0;
+  const std::size_t most = (dynamixel::kLargestLength - 1) / (std::size_t{count} + 4);  // in one answer
+  for (std::size_t answered = 0; most > 0;) {
+    const ByteView part = ids.subspan(answered, std::min(most, ids.size() - answered));
+    if (part.empty()) return answered;
+    const std::size_t more = ask_fast(address, count, part, use);
+    answered += more;
+    if (more < part.size()) return answered;
+  }
+  return 0;
+}
+
+std::size_t BusMaster::ask_fast(std::uint16_t address, std::uint16_t count, ByteView ids, const Use& use) {
   question_.clear();
   dynamixel::put_fast_sync_read(question_, address, count, ids);
   const std::size_t bytes = dynamixel::fast_answer_end(ids.size() - 1, count);

@@ -60,6 +60,7 @@ class BusMaster {
   /// after one that does not answer are silent, too.
   using Use = std::function<void(std::uint8_t id, const Answer& answer)>;
   std::size_t sync_read(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, const Use& use);
+  /// In as many questions as the length of an answer demands.
   std::size_t fast_sync_read(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, const Use& use);
 
   void set_slack(double seconds) { slack_s_ = seconds; }
@@ -77,6 +78,8 @@ class BusMaster {
   /// Sends question_, and returns when the answer must be there.
   std::int64_t send(double answer_s);
   [[nodiscard]] bool receive(std::int64_t deadline_ns);
+  /// One Fast Sync Read.
+  std::size_t ask_fast(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, const Use& use);
   /// Looks for the answer to a Fast Sync Read in whole_, and calls `use` for its devices. Returns their number.
   std::size_t take_fast_answer(std::uint16_t count, dynamixel::ByteView ids, const Use& use);
 

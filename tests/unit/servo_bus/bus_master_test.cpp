@@ -48,6 +48,28 @@ TEST_F(Master, AnIncompleteFastAnswerGivesTheDevicesBeforeTheGap) {
   EXPECT_EQ(bus_.fast_sync_read(132, 4, {}, use), 0u);
 }
 
+TEST_F(Master, AFastAnswerThatWouldBeTooLongIsAskedForInParts) {
+  constexpr std::uint16_t kBytes = 200;
+  dynamixel::Bytes ids;
+  for (std::uint8_t id = 1; id <= 23; ++id) ids.push_back(id);
+  ASSERT_GT(ids.size() * kBytes, dynamixel::kLargestLength);
+  dynamixel::Bytes seen;
+  const auto use = [&](std::uint8_t id, const serial::Answer& answer) {
+    EXPECT_EQ(answer.data.size(), kBytes);
+    EXPECT_EQ(answer.data.at(7), id) << "the register with the id";
+    seen.push_back(id);
+  };
+  EXPECT_EQ(bus_.fast_sync_read(0, kBytes, ids, use), ids.size());
+  EXPECT_EQ(seen, ids);
+  EXPECT_EQ(bus_.counters().questions, 2u);
+
+  // A gap in the first part: nobody behind it is asked.
+  ASSERT_EQ(bench_.robot->command("silent 2"), "");
+  seen.clear();
+  EXPECT_EQ(bus_.fast_sync_read(0, kBytes, ids, use), 2u);
+  EXPECT_EQ(seen, (dynamixel::Bytes{1, 2}));
+}
+
 TEST_F(Master, ALateAnswerIsNotTakenForThatOfTheNextQuestion) {
   dynamixel::Bytes question;
   dynamixel::put_read(question, 1, 132, 4);

@@ -185,8 +185,8 @@ TEST_F(DrivenRobot, OneRoundTakesTheTimeOfItsBytes) {
   ticks(1);
   const double round_s = static_cast<double>(bench_.now_ns - before_ns) * 1e-9;
   // Question and answer, ten bits a byte at 4 Mbit/s: servos (14 + 23; 8 + 23 * 20), inertial unit (14; 33) and contact
-  // boards (14 + 24; 8 + 24 * 55). The Sync Write to the servos (14 + 23 * 7) is on the line when the round is over.
-  const double bytes = 37 + 468 + 14 + 33 + 38 + 1328;
+  // boards (14 + 24; 8 + 24 * 91). The Sync Write to the servos (14 + 23 * 7) is on the line when the round is over.
+  const double bytes = 37 + 468 + 14 + 33 + 38 + 2192;
   EXPECT_NEAR(round_s, bytes * 10 / 4e6, 0.0002);
 }
 
