@@ -10,6 +10,7 @@
 
 #include "cli/child_process.hpp"
 #include "cli/launch_plan.hpp"
+#include "cli/program_groups.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 
@@ -115,9 +116,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
 
 void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,
                    const std::string& program, const std::filesystem::path& config) {
-  if (::access((program_folder() / program).c_str(), X_OK) != 0)
-    throw ConfigurationError(
-        fmt::format("--program: found {}, accepted an executable file", (program_folder() / program).string()));
+  require_program(program, "--program");
   const std::string component = process.components.front();
   std::vector<std::string> arguments = {component,    "--check",
                                         "--robot",    plan.manifest.robot_file.string(),
