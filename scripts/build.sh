@@ -19,7 +19,8 @@ groups=(hardware web pictures ros python)
 options=()
 targets=()
 tests=false
-choose() { options+=("-DCONSTRICTOR_${1^^}=ON"); }
+chosen=(core)
+choose() { options+=("-DCONSTRICTOR_${1^^}=ON"); chosen+=("$1"); }
 for argument in "$@"; do
   case "$argument" in
     --help) sed -n '2,14s/^# //p' "$0"; exit 0 ;;
@@ -39,11 +40,15 @@ fi
 if [ "${CI:-}" = true ]; then options+=(-DCONSTRICTOR_WERROR=ON); fi  # otherwise as the build tree was configured
 
 log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+cache=build/release/CMakeCache.txt
+trap 'rm -f "$log" "$log.cache"' EXIT
 echo "build: configuring"
+if [ -f "$cache" ]; then cp "$cache" "$log.cache"; fi
 if ! cmake --preset release "${options[@]}" >"$log" 2>&1; then
   cat "$log" >&2
-  echo "build: configuring failed; scripts/setup.sh installs what is missing (scripts/setup.sh --help)" >&2
+  # A group whose packages are missing does not stay chosen.
+  if [ -f "$log.cache" ]; then cp "$log.cache" "$cache"; else rm -f "$cache"; fi
+  echo "build: configuring failed; if packages are missing, run: ./scripts/setup.sh ${chosen[*]}" >&2
   exit 1
 fi
 
