@@ -44,8 +44,7 @@ int end_over_dds(const RunNote& run) {
 
 int become(const char* name, std::vector<std::string> arguments) {
   const std::filesystem::path program = program_folder() / name;
-  if (::access(program.c_str(), X_OK) != 0)
-    throw CommandError(fmt::format("found no program {}{}", program.string(), how_to_build(name)));
+  if (::access(program.c_str(), X_OK) != 0) throw CommandError(missing_program(name));
   arguments.insert(arguments.begin(), program.string());
   std::vector<char*> pointers;
   for (auto& argument : arguments) pointers.push_back(argument.data());

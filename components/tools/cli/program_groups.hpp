@@ -9,12 +9,12 @@ namespace constrictor::cli {
 /// The group of each program that does not belong to the core, whether it was built or not.
 [[nodiscard]] const std::map<std::string, std::string>& program_groups();
 
-/// For the end of an error message about a missing program: the program's group, and the command that installs and
-/// builds it. Empty for a program of the core and for one that is not of this project.
-[[nodiscard]] std::string how_to_build(const std::string& program);
+/// The error message for a program that does not exist: its group, and the command that installs and builds the group;
+/// for a program of the core, and for one that is not of this project, what was found and what is accepted.
+[[nodiscard]] std::string missing_program(const std::string& program);
 
 /// Throws ConfigurationError if `program`, a name or a path, is no executable file in program_folder(). The message
-/// begins with `where` and ends with how_to_build().
+/// begins with `where`, followed by missing_program().
 void require_program(const std::string& program, const std::string& where);
 
 /// The same for a component with the program of its own name, but only if it does not belong to the core:
