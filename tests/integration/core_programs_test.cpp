@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "cli/program_groups.hpp"
@@ -67,8 +68,13 @@ class MissingGroups : public ::testing::Test {
 TEST_F(MissingGroups, ARunNamesTheCommandsThatBuildItsPrograms) {
   const std::string report = (dir_ / "report").string();
   const int refused = exit_status::kConfiguration;
+  const std::string served = (dir_ / "real_servos.yaml").string();
+  std::ofstream(served) << "plant: servo_bus\nreal_time: true\nrobot: components/lib/robot/mamba.yaml\n"
+                           "scenario: sim/scenarios/line.yaml\nprocesses:\n"
+                           "  - components: [servo_bus]\n  - components: [guidance]\n";
   expect_refused({"run", "--manifest", "emulated_hardware", "--report", report}, refused, "servo_emulator", "hardware");
   expect_refused({"check", "--manifest", "outside_plant"}, refused, "plant_relay", "hardware");
+  expect_refused({"serve", "servo_bus", "--domain", "9", "--manifest", served}, refused, "servo_bus", "hardware");
   expect_refused({"run", "--view", "--report", report}, refused, "dashboard", "web");
   expect_refused({"host", "guidance,servo_bus"}, refused, "servo_bus", "hardware");
 }

@@ -71,6 +71,9 @@ void expect_clean(const HostOutput& output) {
 
 std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process) {
   const std::string program = process.program.empty() ? "constrictor_host" : process.program;
+  for (const auto& component : process.components) {
+    if (process.program.empty()) require_component(component);
+  }
   const HostOutput output = run_host(
       {fmt::format("{}", fmt::join(process.components, ",")), "--topics", "--robot", plan.manifest.robot_file.string(),
        "--scenario", plan.manifest.scenario_file.string(), "--seed", std::to_string(options.seed)},
@@ -92,7 +95,11 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   std::vector<std::string> components;
   for (const auto& process : plan.manifest.processes) {
     if (!process.program.empty()) continue;
-    components.insert(components.end(), process.components.begin(), process.components.end());
+    for (const auto& component : process.components) {
+      if (!process.host.empty() && !is_built(component)) continue;  // checked when it starts on its host
+      require_component(component);
+      components.push_back(component);
+    }
   }
   if (components.empty()) return;
   std::vector<std::string> arguments = {fmt::format("{}", fmt::join(components, ",")),

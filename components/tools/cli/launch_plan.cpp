@@ -32,10 +32,9 @@ void require_file(const std::string& what, const fs::path& file) {
   throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
 }
 
-void require_programs(const ProcessPlan& process) {
-  if (!process.host.empty()) return;  // another host checks its programs itself
-  if (!process.program.empty()) return require_program(process.program, "process " + process.name());
-  for (const auto& component : process.components) require_component(component);
+void require_program_of(const ProcessPlan& process) {
+  if (process.program.empty() || !process.host.empty()) return;  // another host checks its programs itself
+  require_program(process.program, "process " + process.name());
 }
 
 /// The faults that the run is to suffer; what they name must exist in this run.
@@ -141,7 +140,7 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   require_file("scenario", manifest.scenario_file);
   require_file("robot", manifest.robot_file);
   add_config_files(manifest, plan.roster, options.config_files);
-  for (const auto& process : manifest.processes) require_programs(process);
+  for (const auto& process : manifest.processes) require_program_of(process);
   if (options.view) require_program("dashboard", "--view");
   plan.faults = load_faults(options.faults_file, plan);
   if (!options.faults_file.empty()) manifest.faults_file = fs::absolute(options.faults_file);

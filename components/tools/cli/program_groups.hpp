@@ -17,8 +17,10 @@ namespace constrictor::cli {
 /// begins with `where`, followed by missing_program().
 void require_program(const std::string& program, const std::string& where);
 
-/// The same for a component with the program of its own name, but only if it does not belong to the core:
-/// constrictor_host names the components that do not exist.
+/// Whether this build contains a component of the project: the group of its program was built, or it is of the core.
+[[nodiscard]] bool is_built(const std::string& component);
+
+/// Throws ConfigurationError with missing_program() if the component belongs to a group that was not built.
 void require_component(const std::string& component);
 
 }  // namespace constrictor::cli
