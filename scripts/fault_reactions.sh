@@ -10,7 +10,7 @@ if [ "${1:-}" = --help ]; then sed -n '2,/^[^#]/s/^# //p' "$0"; exit 0; fi
 cd "$(dirname "$0")/.."
 root=$PWD
 cd - > /dev/null
-"$root/scripts/setup.sh" core tests
-"$root/scripts/build.sh"
+"$root/scripts/setup.sh" hardware python
+"$root/scripts/build.sh" --hardware --python
 PYTHONPATH=$root/build/release/python exec /usr/bin/python3 "$root/tests/bench/fault_reactions/measure.py" \
   --constrictor "$root/build/release/bin/constrictor" --output "$root/build/fault_reactions/table.md" "$@"

@@ -8,8 +8,8 @@ cd "$(dirname "$0")/.."
 if [ "${1:-}" = --help ]; then sed -n '2,5s/^# //p' "$0"; exit 0; fi
 if [ $# -gt 0 ]; then echo "package: there is no option \"$1\"; accepted: --help" >&2; exit 2; fi
 
-scripts/setup.sh core
-scripts/build.sh programs
+scripts/setup.sh all
+scripts/build.sh --all
 rm -rf build/packages
 echo "package: packing"
 cpack --config build/release/CPackConfig.cmake -B build/packages >build/release/cpack.log || {

@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Constrictor needs. Does nothing if they are all installed already.
 # Usage: scripts/setup.sh [GROUP...]
-#   core    (the default) what is needed to build and run the programs
-#   tests   what the tests and benchmarks need in addition, Fast DDS with its Java runtime included
-#   tools   what formatting, static analysis and the documentation need in addition
-#   bench   MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
-#   browser Chromium, for the long test of the dashboard's page
-#   cluster GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
+#   core      (the default) what is needed to build and run the case study
+#   hardware, web, pictures, ros, python
+#             core, and what the programs of this group need (scripts/build.sh --help)
+#   all       all of these: what all programs need
+#   tests     what the tests and benchmarks need in addition to core, which is all, and Fast DDS with its Java runtime
+#   tools     what formatting, static analysis and the documentation need in addition
+#   bench     MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
+#   browser   Chromium, for the long test of the dashboard's page
+#   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
 # Example: scripts/setup.sh core tests
 set -euo pipefail
 
@@ -17,9 +20,7 @@ core=(
   cyclonedds-dev cyclonedds-tools libssl-dev libcereal-dev nlohmann-json3-dev
   # physics, rendering, vision, mathematics
   libode-dev libosmesa6-dev libopencv-core-dev libopencv-imgproc-dev libpng-dev libeigen3-dev
-  # real cameras: their streams, their pictures, their calibration
-  libopencv-videoio-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
-  # figures and films
+  # the figure of a run
   libcairo2-dev libpango1.0-dev fonts-dejavu-core
   # configuration, command line, text, logs
   libyaml-cpp-dev libcli11-dev libfmt-dev libspdlog-dev
@@ -27,16 +28,21 @@ core=(
   libxxhash-dev
   # recordings
   libzstd-dev zlib1g-dev
-  # the web server of the dashboard
-  libboost-dev
   # gamepads
   libevdev-dev
-  # processes on other hosts
-  openssh-client
-  # the Python package
-  python3-dev pybind11-dev python3-numpy
 )
+# real cameras: their streams, their pictures, their calibration; the web server of an emulated one
+hardware=(libopencv-videoio-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libboost-dev)
+# the web server of the dashboard
+web=(libboost-dev)
+# films
+pictures=(libopencv-videoio-dev)
+ros=()  # the bridge contains the definitions of its messages
+python=(python3-dev pybind11-dev python3-numpy)
+all=("${hardware[@]}" "${web[@]}" "${pictures[@]}" "${ros[@]}" "${python[@]}")
 tests=(
+  # the tests start the programs of all groups
+  "${all[@]}"
   # GoogleTest and Google Benchmark
   libgtest-dev libbenchmark-dev
   # tests of the Python package, and of the manual pages
@@ -44,7 +50,7 @@ tests=(
   # a terminal for `constrictor teleop`, shells for the completion of `constrictor`
   tmux zsh fish
   # runs on several hosts, made of network namespaces
-  openssh-server iproute2
+  openssh-server openssh-client iproute2
   # another vendor's DDS
   libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
   # definitions of ROS messages, with which those of the bridge to ROS 2 are compared (0.4 MB in all)
@@ -64,22 +70,27 @@ browser=(chromium)
 # evaluations on several machines
 cluster=(parallel slurm-wlm munge)
 
+accepted="core, hardware, web, pictures, ros, python, all, tests, tools, bench, browser, cluster"
 packages=()
 for group in "${@:-core}"; do
   case "$group" in
     core) packages+=("${core[@]}") ;;
+    hardware) packages+=("${core[@]}" "${hardware[@]}") ;;
+    web) packages+=("${core[@]}" "${web[@]}") ;;
+    pictures) packages+=("${core[@]}" "${pictures[@]}") ;;
+    ros) packages+=("${core[@]}" "${ros[@]}") ;;
+    python) packages+=("${core[@]}" "${python[@]}") ;;
+    all) packages+=("${core[@]}" "${all[@]}") ;;
     tests) packages+=("${tests[@]}") ;;
     tools) packages+=("${tools[@]}") ;;
     bench) packages+=("${bench[@]}") ;;
     browser) packages+=("${browser[@]}") ;;
     cluster) packages+=("${cluster[@]}") ;;
-    --help) sed -n '2,10s/^# //p' "$0"; exit 0 ;;
-    *)
-      echo "setup: there is no package group \"$group\"; accepted: core, tests, tools, bench, browser, cluster" >&2
-      exit 2
-      ;;
+    --help) sed -n '2,14s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 2 ;;
   esac
 done
+mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)
 
 # dpkg-query fails if a package is unknown; its list of the installed ones is complete all the same.
 installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null |

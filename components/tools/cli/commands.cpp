@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/launch_plan.hpp"
+#include "cli/program_groups.hpp"
 #include "cli/run_difference.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -43,6 +44,7 @@ int end_over_dds(const RunNote& run) {
 
 int become(const char* name, std::vector<std::string> arguments) {
   const std::filesystem::path program = program_folder() / name;
+  if (::access(program.c_str(), X_OK) != 0) throw CommandError(missing_program(name));
   arguments.insert(arguments.begin(), program.string());
   std::vector<char*> pointers;
   for (auto& argument : arguments) pointers.push_back(argument.data());
@@ -96,6 +98,7 @@ int host_command(int argc, char** argv) {
   std::string names;
   int next = 0;
   for (; next < argc && argv[next][0] != '-'; ++next) names += (names.empty() ? "" : ",") + std::string(argv[next]);
+  for (const auto& name : CLI::detail::split(names, ',')) require_component(name);
   std::vector<std::string> arguments;
   if (!names.empty()) arguments.push_back(names);
   arguments.insert(arguments.end(), argv + next, argv + argc);

@@ -10,7 +10,8 @@
 
 namespace constrictor::cli {
 
-/// Replaces this process by another program of this build. Returns only if that fails.
+/// Replaces this process by another program of this build. Returns only if that fails; throws CommandError if there is
+/// no such program.
 int become(const char* name, std::vector<std::string> arguments);
 
 /// Asks a run's launcher to end the run and waits until the launcher has ended. Throws CommandError if there is no such

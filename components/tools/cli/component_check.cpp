@@ -10,6 +10,7 @@
 
 #include "cli/child_process.hpp"
 #include "cli/launch_plan.hpp"
+#include "cli/program_groups.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 
@@ -70,6 +71,9 @@ void expect_clean(const HostOutput& output) {
 
 std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process) {
   const std::string program = process.program.empty() ? "constrictor_host" : process.program;
+  for (const auto& component : process.components) {
+    if (process.program.empty()) require_component(component);
+  }
   const HostOutput output = run_host(
       {fmt::format("{}", fmt::join(process.components, ",")), "--topics", "--robot", plan.manifest.robot_file.string(),
        "--scenario", plan.manifest.scenario_file.string(), "--seed", std::to_string(options.seed)},
@@ -91,7 +95,11 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   std::vector<std::string> components;
   for (const auto& process : plan.manifest.processes) {
     if (!process.program.empty()) continue;
-    components.insert(components.end(), process.components.begin(), process.components.end());
+    for (const auto& component : process.components) {
+      if (!process.host.empty() && !is_built(component)) continue;  // checked when it starts on its host
+      require_component(component);
+      components.push_back(component);
+    }
   }
   if (components.empty()) return;
   std::vector<std::string> arguments = {fmt::format("{}", fmt::join(components, ",")),
@@ -115,9 +123,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
 
 void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,
                    const std::string& program, const std::filesystem::path& config) {
-  if (::access((program_folder() / program).c_str(), X_OK) != 0)
-    throw ConfigurationError(
-        fmt::format("--program: found {}, accepted an executable file", (program_folder() / program).string()));
+  require_program(program, "--program");
   const std::string component = process.components.front();
   std::vector<std::string> arguments = {component,    "--check",
                                         "--robot",    plan.manifest.robot_file.string(),

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/program_groups.hpp"
 #include "cli/recording/run_files.hpp"
 #include "cli/run_record.hpp"
 #include "cli/usage.hpp"
@@ -31,13 +32,7 @@ void require_file(const std::string& what, const fs::path& file) {
   throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
 }
 
-void require_program(const std::string& name, const std::string& where) {
-  const fs::path program = program_folder() / name;
-  if (::access(program.c_str(), X_OK) == 0 && !fs::is_directory(program)) return;
-  throw ConfigurationError(fmt::format("{}: found program {}, accepted an executable file", where, program.string()));
-}
-
-void require_program(const ProcessPlan& process) {
+void require_program_of(const ProcessPlan& process) {
   if (process.program.empty() || !process.host.empty()) return;  // another host checks its programs itself
   require_program(process.program, "process " + process.name());
 }
@@ -145,7 +140,8 @@ LaunchPlan make_launch_plan(const RunOptions& options) {
   require_file("scenario", manifest.scenario_file);
   require_file("robot", manifest.robot_file);
   add_config_files(manifest, plan.roster, options.config_files);
-  for (const auto& process : manifest.processes) require_program(process);
+  for (const auto& process : manifest.processes) require_program_of(process);
+  if (options.view) require_program("dashboard", "--view");
   plan.faults = load_faults(options.faults_file, plan);
   if (!options.faults_file.empty()) manifest.faults_file = fs::absolute(options.faults_file);
   std::vector<std::vector<std::string>> groups;

@@ -24,7 +24,7 @@ except ModuleNotFoundError as error:
     _built = [file.name for file in _pathlib.Path(__file__).parent.glob("_native.*.so")]
     raise ImportError(
         f"constrictor: this is Python {_sys.version_info.major}.{_sys.version_info.minor} ({_sys.executable}), but the "
-        f"package was built for {', '.join(_built) or 'no Python yet (build it: scripts/build.sh)'}; "
+        f"package was built for {', '.join(_built) or 'no Python yet (build it: scripts/build.sh --python)'}; "
         "use Debian's Python, /usr/bin/python3"
     ) from None
 from .domain import Domain, Message, Publisher, Subscription, observe
