@@ -47,7 +47,7 @@ TEST_F(ServoCommand, ScanListsWhoAnswersAtWhichBaudRate) {
   EXPECT_TRUE(says("id 100  inertial unit")) << output_;
   const std::string port = (dir_ / "bus0").string();
   EXPECT_EQ(command({"servo", "scan", "--port", port, "--baud", "57600"}), exit_status::kFailed);
-  EXPECT_TRUE(says("nobody answers")) << output_;
+  EXPECT_TRUE(says("no servo answers")) << output_;
   EXPECT_EQ(command({"servo", "scan", "--port", port, "--baud", "12345"}), exit_status::kUsage);
   EXPECT_EQ(command({"servo", "scan", "--port", "/dev/no_such_port"}), exit_status::kSoftware);
   EXPECT_TRUE(says("is the adapter plugged in")) << output_;
@@ -83,7 +83,8 @@ TEST_F(ServoCommand, ABaudRateIsChanged) {
   EXPECT_EQ(servo({"baud", "--id", "4", "--to", "12"}), exit_status::kUsage);
   EXPECT_EQ(servo({"baud", "--id", "4", "--to", "57600"}), exit_status::kOk) << output_;
   EXPECT_TRUE(says("servo 4 now has 57600 bit/s")) << output_;
-  EXPECT_EQ(servo({"baud", "--id", "4", "--to", "57600"}), exit_status::kSoftware) << "it no longer hears this rate";
+  EXPECT_EQ(servo({"baud", "--id", "4", "--to", "57600"}), exit_status::kSoftware)
+      << "it no longer receives at this rate";
 }
 
 TEST_F(ServoCommand, LimitsAreShownSetAndRefused) {

@@ -29,14 +29,14 @@ class ColourSample {
   std::vector<cv::Vec3b> pixels_;
 };
 
-/// What perception needs to tell the colours apart: lines of its configuration file, and warnings.
+/// What perception needs to distinguish the colours: lines of its configuration file, and warnings.
 struct ColourResult {
   std::string yaml;
   std::vector<std::string> warnings;
 };
 
 /// `samples`: by the name of the colour (green, red, blue, yellow); the name `ground` stands for everything that has
-/// none. Throws std::invalid_argument if two colours cannot be told apart, or a colour not from the ground.
+/// none. Throws std::invalid_argument if two colours, or a colour and the ground, cannot be distinguished.
 [[nodiscard]] ColourResult teach_colours(const std::map<std::string, ColourSample>& samples);
 
 }  // namespace constrictor::camera_setup

@@ -60,10 +60,11 @@ void Companions::obey(const std::vector<FaultDirector::Command>& commands) {
   for (const auto& [device, line] : commands) {
     const auto pipe = report_dir_ / (device + ".commands");
     const std::string text = line + "\n";
-    // Without a reader the device has ended, and nobody is to wait for it.
+    // A pipe without a reader belongs to a device that has ended: do not wait for it.
     const int file = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0 || ::write(file, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-      print_(fmt::format("fault: {} was not told '{}': {}: {}", device, line, pipe.string(), ::strerrordesc_np(errno)));
+      print_(
+          fmt::format("fault: '{}' was not sent to {}: {}: {}", line, device, pipe.string(), ::strerrordesc_np(errno)));
     if (file >= 0) ::close(file);
   }
 }

@@ -32,7 +32,7 @@ struct RunOptions {
   std::optional<std::uint32_t> domain;    ///< empty: the first free domain
   std::vector<std::string> config_files;  ///< "NAME=FILE"
   std::filesystem::path secure;           ///< folder that `constrictor keys` has made; empty: without DDS Security
-  std::filesystem::path faults_file;      ///< faults that the run suffers on purpose; empty: none
+  std::filesystem::path faults_file;      ///< faults to inject into the run; empty: none
 };
 
 /// A folder of the project with YAML files that users choose by name.

@@ -31,7 +31,7 @@ struct RobotOptions {
   std::string mesh_uri;          ///< of that folder, for the reader of the description; empty: file://FOLDER
 };
 
-/// Whether somebody has put a mesh of their own there, which is not to be lost.
+/// Whether the file is a mesh that the user has put there, which must not be overwritten.
 bool is_foreign_mesh(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string begin(kStlBegin.size(), '\0');

@@ -169,7 +169,7 @@ class Launcher {
   bool must_kill(std::chrono::milliseconds bound) {
     const int signal = signals_.wait(bound);
     if (signal == SIGHUP && !options_.no_checkpoints && !ending_.requested()) {
-      // The terminal is gone, but nobody asked to end the mission.
+      // The terminal is gone, but the user did not ask to end the mission.
       killed_ = left_ = "its terminal was closed";
     } else if (signal != 0) {
       note_signal(signal);

@@ -128,7 +128,7 @@ void Supervisor::handle_exit(Supervised& process, const ChildExit& exit) {
   if (exit.clean()) {
     if (!is_plant(process)) return;
     plant_gone_ = true;
-    // A member that died after its own end, and was restarted, would wait for the plant in vain. A report that draws
+    // A member that died after its own end, and was restarted, would wait for the plant for ever. A report that draws
     // finishes its files before it heeds the signal.
     for (const auto& other : processes_) {
       if (other.started_at_end && other.running()) other.child->signal(SIGTERM);
@@ -180,7 +180,7 @@ Supervisor::State Supervisor::poll() {
                              Clock::now() - process.ended > kEndTogether;
     if (!ended_alone) continue;
     restart(process, "ended before the run did", true);
-    process.started_at_end = true;  // it may have heard of an end of which the launcher has not
+    process.started_at_end = true;  // it may have received the end before the launcher
   }
   return state_;
 }

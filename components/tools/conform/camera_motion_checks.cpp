@@ -110,7 +110,7 @@ void CameraConformance::judge_motion(const Motion& yaw, const std::optional<Moti
   const bool mirrored = ratio < 0.0 && !inverted;
   report_.judge("mirrored", mirrored,
                 fmt::format("the scene moves to the {}", ratio > 0.0 || inverted ? "right" : "left"),
-                "write the columns from the left, as seen by somebody who looks ahead");
+                "write the columns from left to right, as a viewer who looks ahead sees them");
   report_.judge("scale", std::abs(std::abs(ratio) - 1.0) > profile_.scale_share,
                 fmt::format("{:.2f} times as far as the focal length says", std::abs(ratio)),
                 "calibrate the camera: fx and fy [pixel] belong to the size in which images are written");

@@ -38,7 +38,7 @@ class ControlHand {
   /// Begins a new motion. The trajectory has no posture and stands still.
   msg::DesiredTrajectory& begin(const std::string& method);
   [[nodiscard]] const std::vector<double>& measured_rad() const { return measured_rad_; }
-  /// The joints jump to another posture, as a relaxed body does when somebody takes it up.
+  /// The joints jump to another posture, as a relaxed body does when a person picks it up.
   void displace(const std::vector<double>& posture_rad) { measured_rad_ = posture_rad; }
   /// A posture that is not straight and in which no two joints are equal. `scale`: at most this angle [rad].
   [[nodiscard]] std::vector<double> posture(double scale_rad) const;

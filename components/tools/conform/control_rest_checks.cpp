@@ -1,5 +1,5 @@
-// What a control does before it is told to move: commands in every tick, the measured posture, and trajectories that it
-// must refuse.
+// What a control does before it receives a trajectory that it must follow: commands in every tick, the measured
+// posture, and trajectories that it must refuse.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -26,7 +26,7 @@ void ControlConformance::check_relax() {
   const Steps steps = go(0.5);
   const msg::MotionStatus* state = last_state(steps);
   const bool relaxed = is_relaxed(*last_command(steps));
-  // Somebody takes the relaxed body up and bends it.
+  // A person picks the relaxed body up and bends it.
   const std::vector<double> posture_rad = hand_.posture(0.3);
   hand_.displace(posture_rad);
   previous_rad_.clear();

@@ -15,7 +15,7 @@ struct ImageMotion {
 };
 
 /// The rotation of the head about `axis_H`, up to `most_rad` in both directions, that explains `after` best. Grey
-/// images (CV_32FC1) of the size in `info`. The upper half of the image counts twice: near things, which are in the
+/// images (CV_32FC1) of the size in `info`. The upper half of the image counts twice: near objects, which are in the
 /// lower half, move differently because the camera also changes its position.
 [[nodiscard]] ImageMotion image_motion(const cv::Mat& before, const cv::Mat& after, const msg::CameraInfo& info,
                                        const Eigen::Vector3d& axis_H, double most_rad);

@@ -1,5 +1,5 @@
-// The surroundings of a part that is checked: components that write what the checks tell them. They take the places of
-// all members that write what the part reads.
+// The surroundings of a part that is checked: components that write the messages that the checks give them. They take
+// the places of all members that write what the part reads.
 #pragma once
 
 #include <functional>

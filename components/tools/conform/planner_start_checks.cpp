@@ -17,7 +17,7 @@ std::vector<Check> planner_checks() {
       {"line_colour", "the line has the colour of the mission", {}, {}, {}},
       {"line_lost", "a search begins when the line was lost", {}, {}, {}},
       {"refused", "the planner goes on when a request was refused", {}, {}, {}},
-      {"lost_request", "a request that nobody takes is made again", {}, {}, {}},
+      {"lost_request", "a request that was lost is made again", {}, {}, {}},
       {"authority", "nothing is requested while an operator has authority", {}, {}, {}},
       {"returns", "the mission goes on when authority returns", {}, {}, {}},
       {"stop", "nothing is requested during an emergency stop", {}, {}, {}},

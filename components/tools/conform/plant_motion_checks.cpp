@@ -184,7 +184,7 @@ void PlantConformance::check_motions() {
   report_.judge("moves", !still.empty(), list(still, " did not move", moved_joints),
                 "check power, wiring, torque limit and the servo's number; a frozen measurement looks the same");
   // What moves 57 times too far may still move when the next joint is commanded.
-  if (!degrees.empty() && !order.empty()) report_.skip("order", "cannot be told before the unit is right");
+  if (!degrees.empty() && !order.empty()) report_.skip("order", "cannot be judged before the unit is right");
   else
     report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,
                   "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");

@@ -28,7 +28,7 @@ class Dashboard {
   void serve();
   /// Why the run or the replay is over; empty while it goes on.
   [[nodiscard]] std::string over() const { return controls_->over(); }
-  /// Tells the viewers that it is over, and gives them time to receive it.
+  /// Informs the viewers that the run or the replay is over, and gives them time to receive this message.
   void say_farewell();
   [[nodiscard]] const WebServer& server() const { return server_; }
 

@@ -48,7 +48,7 @@ class Driver {
   void check_authority();
 
   RequestClient client_;
-  std::optional<Drive> drive_;  ///< empty: nobody drives
+  std::optional<Drive> drive_;  ///< empty: no viewer drives
   std::chrono::steady_clock::time_point until_{};
 };
 

@@ -35,8 +35,8 @@ class WebServer {
     std::function<void(const std::string& reason)> fail;
   };
   using OnCall = std::function<void(Call)>;
-  /// A wish to change parameters: `done(results)` is to be called once, in the thread of poll(), with a result for each
-  /// value, in the same order.
+  /// A viewer asks for a change of parameters: `done(results)` is to be called once, in the thread of poll(), with a
+  /// result for each value, in the same order.
   struct Change {
     struct Result {
       nlohmann::json value;  ///< the accepted one
@@ -65,7 +65,7 @@ class WebServer {
   void set_parameters(const std::vector<ParameterValue>& values);
   /// Does what sockets are ready for. Never waits.
   void poll();
-  /// Tells all viewers why this server is about to end.
+  /// Sends all viewers the reason why this server is about to end.
   void tell_end(const std::string& why);
 
   [[nodiscard]] std::uint16_t port() const;

@@ -219,7 +219,8 @@ void Session::answer(const SetParameters& wish, const std::vector<WebServer::Cha
     refused = true;
     send_text(status(2, fmt::format("{}: {}", name, results[i].refusal)));
   }
-  // Viewers show the wish at once. After a refusal they need the true value, whether they have asked for it or not.
+  // Viewers show the wanted value at once. After a refusal they need the true value, also if they have not asked for
+  // it.
   if (refused || !wish.id.empty()) send_values(values, wish.id);
 }
 

@@ -14,8 +14,8 @@ namespace constrictor::python {
 
 class Publisher {
  public:
-  /// `type`: of a topic that nobody reads or writes yet; empty: found. Throws CommandError if the topic must not be
-  /// written (publishing_refusal()), or if its type is not known.
+  /// `type`: of a topic that has no reader or writer yet; empty: the type is discovered. Throws CommandError if the
+  /// topic must not be written (publishing_refusal()), or if its type is not known.
   Publisher(const std::shared_ptr<Session>& session, const std::string& topic, const std::string& type);
 
   /// Publishes a dictionary. Throws std::invalid_argument if it does not fit the type.

@@ -123,7 +123,7 @@ class Bridge {
   std::string last_task_status_;
   std::int64_t period_ns_ = 0;   ///< of a tick
   std::uint64_t plan_goal_ = 0;  ///< the goal whose path /plan shows; 0: none
-  std::optional<bool> stopped_;  ///< as ROS 2 was told
+  std::optional<bool> stopped_;  ///< as published to ROS 2
   std::uint64_t number_ = 0;     ///< of the pilot's request that is not answered yet; 0: none
   std::uint64_t stop_number_ = 0, clear_number_ = 0;
   SteadyClock::time_point stop_asked_{}, health_told_{};

@@ -1,4 +1,4 @@
-// What ROS programs ask of the robot: velocities, tasks, emergency stops. And what they are told about tasks.
+// Requests of ROS programs (velocities, tasks, emergency stops), and the reports on tasks that they receive.
 #include "constrictor/text.hpp"
 #include "ros_bridge/bridge.hpp"
 #include "ros_bridge/ros_values.hpp"

@@ -71,8 +71,8 @@ class Node {
     add(made.get(), topic, dds::descriptor<T>(), false);
     return made;
   }
-  /// Tells ROS 2 which of the readers and writers that were made until now belong to this node. To be called once all
-  /// of them exist.
+  /// Announces to ROS 2 that the readers and writers created until now belong to this node. Call this function after
+  /// all of them have been created.
   void announce();
 
   [[nodiscard]] const std::vector<Topic>& topics() const { return topics_; }

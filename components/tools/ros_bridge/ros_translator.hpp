@@ -30,7 +30,7 @@ using Log = rcl_interfaces_msg_dds__Log_;
 
 /// Why ROS 2 cannot represent a message of the robot; empty if it can. Reasons: a value outside the range in the IDL, a
 /// time that ROS 2 cannot express, a quaternion that is not a rotation, an image with missing pixels. ROS 2 tools do
-/// not check these things.
+/// not check for these errors.
 [[nodiscard]] std::string unfit(const msg::Tick& tick);
 [[nodiscard]] std::string unfit(const msg::JointState& joints);
 [[nodiscard]] std::string unfit(const msg::ImuState& imu);

@@ -137,7 +137,7 @@ void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("--config", run.config_files,
                  "NAME=FILE: configuration file of a component, instead of its default; may be repeated")
       ->allow_extra_args(false);
-  app.add_option("--faults", run.faults_file, "file of faults (YAML) that every run suffers");
+  app.add_option("--faults", run.faults_file, "file of faults (YAML) to inject into every run");
   app.add_option("--max-sim-time", run.max_sim_time_s, "[s] end each run at this simulated time")
       ->check(number(0.0, 1e6, "s"));
 }

@@ -8,7 +8,7 @@
 
 namespace constrictor::cli {
 
-/// Colours of series that colour-blind readers can tell apart. Source: M. Okabe and K. Ito, Color Universal Design.
+/// Colours of series that colour-blind readers can distinguish. Source: M. Okabe and K. Ito, Color Universal Design.
 [[nodiscard]] const char* series_colour(std::size_t index);
 
 /// Text for HTML and SVG.

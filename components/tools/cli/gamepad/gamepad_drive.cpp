@@ -122,7 +122,7 @@ class GamepadTeleop {
       blocked_ = true;
       say("authority was lost: " + no_authority_text(client_.authority(), client_.source()));
     }
-    // After a stop or a refusal the robot must not move because somebody still holds the button.
+    // After a stop or a refusal the robot must not move because the user still holds the button.
     if (gamepad_.take_released() || !gamepad_.held()) blocked_ = false;
     const bool moves = !blocked_ && (drive_m_s != 0.0 || turn_rad_s != 0.0);
     if (!moves) {

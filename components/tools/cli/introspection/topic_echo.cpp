@@ -62,7 +62,7 @@ class Echo {
       }
     }
     if (json.is_null()) {
-      if (filter_) return true;  // nobody knows whether it fulfils the expression
+      if (filter_) return true;  // without fields, the expression cannot be evaluated
       if (json_) fmt::print("{}\n", json_text(Json{{"size", sample.bytes.size()}, {"cdr", hex(sample.bytes)}}));
       else print_raw(sample, why);
     } else if (!print(std::move(json))) {

@@ -104,7 +104,7 @@ bool wait_for_reader(TopicPublisher& publisher, const DomainView& view, const Pu
       std::this_thread::sleep_for(10ms);
       continue;
     }
-    std::fprintf(stderr, "topic: nobody reads '%s' in DDS domain %u; nothing was published (--wait 0 does not wait)\n",
+    std::fprintf(stderr, "topic: no reader of '%s' in DDS domain %u; nothing was published (--wait 0 does not wait)\n",
                  options.topic.c_str(), view.domain());
     for (const auto& reader : publisher.deaf_readers())
       std::fprintf(stderr, "  a reader cannot receive from this command: %s\n", reader.c_str());
@@ -169,7 +169,7 @@ void add_pub_options(CLI::App& app, ViewOptions& view, PubOptions& pub) {
   app.add_option("MESSAGE", pub.message, "the fields that are not zero, as JSON or YAML (default: none)");
   app.add_option("--file", pub.file, "read the message from this file; -: from the standard input")
       ->excludes("MESSAGE");
-  app.add_option("--type", pub.type, "type of a topic that nobody reads or writes yet, for example JointState");
+  app.add_option("--type", pub.type, "type of a topic that has no reader or writer yet, for example JointState");
   app.add_option("--rate", pub.rate_hz, "[Hz] publish again and again (default: once)")->check(number(1e-3, 1e4, "Hz"));
   app.add_option("--count,-n", pub.count, "with --rate, end after this many messages")->check(whole_number(1));
   app.add_option("--for", pub.for_s, "[s] with --rate, end after this time")->check(number(1e-3, 1e6, "s"));
@@ -191,7 +191,7 @@ void add_pub_options(CLI::App& app, ViewOptions& view, PubOptions& pub) {
        "constrictor topic pub run_control/v2 '{\"command\": \"pause\"}'",
        "constrictor topic pub rt/cmd_vel '{linear: {x: 0.3}}' --rate 10 --for 2",
        "constrictor topic pub joint_state '{joint_count: 2}' --check --run 9"},
-      "0 published, or --check found no fault; 1 nobody reads the topic; 64 the message does not fit the type;\n"
+      "0 published, or --check found no fault; 1 the topic has no reader; 64 the message does not fit the type;\n"
       "  70 no such topic, or it belongs to a run",
       kDomainEnvironment));
 }

@@ -13,7 +13,7 @@ struct PubOptions {
   std::string topic;
   std::string message;      ///< JSON or YAML; empty: that of `file`, or no field is given
   std::string file;         ///< "-": standard input
-  std::string type;         ///< of a topic that nobody reads or writes yet
+  std::string type;         ///< of a topic that has no reader or writer yet
   double rate_hz = 0.0;     ///< 0: once
   std::uint64_t count = 0;  ///< with a rate: number of messages; 0: until interrupted
   double for_s = 0.0;       ///< [s] with a rate; 0: until interrupted
@@ -24,8 +24,8 @@ struct PubOptions {
 /// The text as JSON; text that is not JSON is read as YAML. Throws UsageError with line and column.
 nlohmann::ordered_json parse_message(const std::string& text);
 
-/// Returns the exit status: 0; 1 if nobody reads the topic. Throws UsageError if the message does not fit the type, and
-/// CommandError if the topic must not be written.
+/// Returns the exit status: 0; 1 if the topic has no reader. Throws UsageError if the message does not fit the type,
+/// and CommandError if the topic must not be written.
 int pub_command(const ViewOptions& view, const PubOptions& options);
 
 /// Adds the arguments and the help.

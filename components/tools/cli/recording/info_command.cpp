@@ -113,7 +113,7 @@ int show_info(const InfoOptions& options) {
   return whole ? exit_status::kOk : kMissing;
 }
 
-/// A damaged recording stays as it is, under another name: what is left out may be of use to somebody.
+/// Keeps the damaged recording unchanged, under another name: the user may need the parts that the copy leaves out.
 int recover_damaged(const fs::path& file) {
   fs::path kept = file.string() + ".damaged";
   for (int number = 2; fs::exists(kept); ++number) kept = fmt::format("{}.damaged-{}", file.string(), number);

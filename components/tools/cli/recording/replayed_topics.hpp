@@ -9,11 +9,12 @@
 
 namespace constrictor::cli {
 
-/// Commands to a run and what proves membership: nobody should obey them again.
+/// Commands to a run and proofs of membership: no process may obey them again.
 [[nodiscard]] bool is_command(const std::string& topic);
 /// The depth of the writer's history.
 [[nodiscard]] int depth_of(const std::string& topic);
-/// How many of the last messages before the beginning are published: more than one where each tells something else.
+/// How many of the last messages before the beginning are published: more than one if a later message of the topic does
+/// not replace the earlier ones.
 [[nodiscard]] std::size_t kept_before(const std::string& topic);
 
 /// Throws UsageError if nothing of a recording with these contents would be replayed.

@@ -1,4 +1,4 @@
-// The files of a run that its recording contains, whoever makes the recording.
+// The files of a run that its recording contains, whichever program makes the recording.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ namespace constrictor::cli {
 /// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder
 /// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run:
 /// the killed agent was its predecessor. In this one, the output of the processes is kept. Also removes output that was
-/// kept for a run that nobody has continued for a week.
+/// kept for a run that was not continued for a week.
 void remove_stale_agents(const std::filesystem::path& own);
 
 /// Starts processes, reports how they end, forwards their logs and the files that they write. It outlives a broken

@@ -43,7 +43,7 @@ fs::path kept_output(const fs::path& agent) {
   return state.empty() ? state : state / (kKept + agent.filename().string().substr(std::string(kAgent).size()));
 }
 
-/// Removes what was kept of runs that nobody has continued.
+/// Removes the output that was kept of runs that were not continued.
 void remove_stale_output(const fs::path& own) {
   const fs::path state = state_directory(), spared = kept_output(own);
   std::error_code ignored;

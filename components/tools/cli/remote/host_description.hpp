@@ -1,4 +1,4 @@
-// What an agent tells about its host, and whether that host can take part in a run.
+// What an agent reports about its host, and whether that host can take part in a run.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

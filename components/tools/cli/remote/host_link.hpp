@@ -59,7 +59,7 @@ class HostLink {
   /// The folder of the agent on its host.
   [[nodiscard]] std::string folder() const { return description_.value("folder", ""); }
 
-  /// Claims the domain on the host and sends files and keys of the run. prepared() tells when that is done.
+  /// Claims the domain on the host and sends files and keys of the run. prepared() is true when that is done.
   void prepare(const nlohmann::json& request);
   [[nodiscard]] bool prepared() const { return prepared_; }
   /// From where the plant, which is on this host, continues the run; empty: it is not there, or the run is new.

@@ -14,7 +14,7 @@
 namespace constrictor::cli {
 namespace {
 
-constexpr double kSlack_s = 0.02;  // nobody waits for these commands in a control loop
+constexpr double kSlack_s = 0.02;  // no control loop waits for these commands
 
 std::map<std::uint16_t, dynamixel::ServoModel> load_models() {
   std::map<std::uint16_t, dynamixel::ServoModel> models;
@@ -60,8 +60,9 @@ std::vector<FoundServo> ServoAccess::scan() {
 FoundServo ServoAccess::find(std::uint8_t id) {
   const serial::Answer answer = bus_.ping(id, kTries);
   if (!answer.good())
-    throw std::runtime_error(fmt::format("servo {} at {}: {}; `constrictor servo scan --port {}` shows who answers", id,
-                                         port_, answer.text(), port_));
+    throw std::runtime_error(
+        fmt::format("servo {} at {}: {}; `constrictor servo scan --port {}` shows which servos answer", id, port_,
+                    answer.text(), port_));
   FoundServo found = describe(id, answer);
   if (!found.model)
     throw std::runtime_error(

@@ -65,7 +65,7 @@ int scan(const ServoOptions& options) {
     print_devices(access, found);
   }
   if (count > 0) return exit_status::kOk;
-  fmt::print(stderr, "servo scan: nobody answers at {} with {}. Is the power on, and the cable plugged in? {}\n",
+  fmt::print(stderr, "servo scan: no servo answers at {} with {}. Is the power on, and the cable plugged in? {}\n",
              options.port, options.every_baud ? "any baud rate" : fmt::format("{} bit/s", options.baud),
              options.every_baud ? "Do two servos have the same id? Connect one at a time." : "Try --every-baud.");
   return exit_status::kFailed;
@@ -119,7 +119,7 @@ int change_id(const ServoOptions& options) {
   const auto to = static_cast<std::uint8_t>(options.to);
   if (to != *options.id && access.answers(to))
     throw std::runtime_error(fmt::format(
-        "--to: found {}, which another device at {} has; accepted an id that nobody has", to, options.port));
+        "--to: found {}, which another device at {} has; accepted an id that no device has", to, options.port));
   const FoundServo servo = unlocked_servo(access, options);
   access.write(servo, "id", to);
   if (!access.answers(to) || (to != servo.id && access.answers(servo.id)))
@@ -255,7 +255,7 @@ void add_servo(CLI::App& app, Action& action) {
       {"constrictor servo scan --port /dev/ttyUSB0 --every-baud",
        "constrictor servo id --port /dev/ttyUSB0 --id 1 --to 7",
        "constrictor servo torque off --port /dev/ttyUSB0 --all", "constrictor servo monitor --port /dev/ttyUSB0 --all"},
-      "0 done; 1 nobody answers; 64 wrong usage; 70 the port or a servo refuses, with the reason", kDataEnvironment);
+      "0 done; 1 no servo answers; 64 wrong usage; 70 the port or a servo refuses, with the reason", kDataEnvironment);
   group->footer(footer);
   for (CLI::App* sub : group->get_subcommands({})) sub->footer(footer);
 }

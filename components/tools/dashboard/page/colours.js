@@ -1,4 +1,4 @@
-// Colours of the page: those of Okabe and Ito, which colour-blind readers can tell apart.
+// Colours of the page: those of Okabe and Ito, which colour-blind readers can distinguish.
 
 const named = { green: "#009e73", red: "#c1341b", blue: "#0072b2", yellow: "#e69f00" };
 const fullTorque = 5; // [Nm] shown in the strongest colour

@@ -49,7 +49,7 @@ export function showTexts(state) {
   write(element("mission"), missionText(state.mission));
   const { task, authority } = state;
   write(element("task"), task ? `task ${task.task}: ${task.goal} ${task.phase} ${task.reason}` : "");
-  write(element("authority"), authority?.source ? `authority: ${authority.source}` : "nobody has authority");
+  write(element("authority"), authority?.source ? `authority: ${authority.source}` : "no source has authority");
   rows(element("events"), state.events.slice().reverse(), (item, event) =>
     write(item, `${event.time_s.toFixed(1)} s  ${event.text}`, event.trouble ? "bad" : ""));
   rows(element("processes"), state.processes, showProcess);

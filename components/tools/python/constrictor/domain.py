@@ -263,7 +263,7 @@ class Domain(_Closing):
     def publisher(self, topic: str, type: str = "") -> Publisher:
         """Makes a publisher of a topic of another program, of a new one, or of the topics on which clients command.
 
-        type: of a topic that nobody reads or writes yet, for example ``"JointState"``.
+        type: of a topic that has no reader or writer yet, for example ``"JointState"``.
         Raises RefusedError if the topic belongs to a run in this domain, and Error if its type is not known.
         """
         publisher = Publisher(_native.Publisher(self._session, topic, type), self)

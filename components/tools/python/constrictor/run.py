@@ -44,7 +44,7 @@ class GoalEnd:
 
 @checked_class
 class Goal:
-    """A task that was started. The robot works on it whether somebody waits for it or not."""
+    """A task that was started. The robot works on it, also if no program waits for it."""
 
     def __init__(self, run: Run, goal: int, task: str) -> None:
         self._run = run  # which leaves the run when nothing refers to it any more
@@ -196,10 +196,10 @@ class Run(Domain):
     # --- safety ---
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once, whoever has authority. The stop is latched: only clear_stop() ends it.
+        """Stops the robot at once, whichever source has authority. The stop is latched: only clear_stop() ends it.
 
         It goes to the plant itself, too, so that it works while other components hang, and needs neither authority nor
-        a token. Raises NoAnswerError if nobody has confirmed it within 5 s.
+        a token. Raises NoAnswerError if no component has confirmed it within 5 s.
         """
         self._session.emergency_stop()
 
