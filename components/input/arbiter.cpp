@@ -185,7 +185,8 @@ Decision Arbiter::release(const msg::Request& request) {
   const std::string name = request.source;
   const bool for_another = holder_is_detached() && request.level >= state_.level;
   if (state_.holder != name && !for_another) {
-    return refuse("release of " + name + ": authority is with " + (state_.holder.empty() ? "nobody" : state_.holder));
+    return refuse("release of " + name +
+                  (state_.holder.empty() ? ": no source has authority" : ": authority is with " + state_.holder));
   }
   leave_to_nobody();
   return {Decision::kCancelAll};

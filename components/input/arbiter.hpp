@@ -31,7 +31,7 @@ struct ArbiterState {
     }
   };
   std::uint8_t level = msg::kAuthorityNone;
-  std::string holder;    ///< source that has authority; empty: nobody
+  std::string holder;    ///< source that has authority; empty: none
   bool stopped = false;  ///< an emergency stop is latched
   std::string stopper;   ///< source that requested the emergency stop
   std::map<std::string, Source> sources;

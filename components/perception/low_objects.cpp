@@ -31,8 +31,8 @@ Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions&
   return height_m < kFlat_m ? Rise::kFlat : height_m > kLow_m ? Rise::kLow : Rise::kDoubtful;
 }
 
-/// A region of which the image shows both sides: the farthest edge of a disc lies where the nearest edge and the sides
-/// tell. `height_m` becomes the height of a round object whose farthest rim is the highest edge.
+/// For a region of which the image shows both sides: the nearest edge and the sides of a disc determine where its
+/// farthest edge lies. `height_m` becomes the height of a round object whose farthest rim is the highest edge.
 Rise rise_of_whole(const std::vector<Path>& paths, const GroundCamera& camera, const Sides& sides, double& height_m) {
   if (2 * paths.size() <= kPaths) return Rise::kDoubtful;
   const Disc disc = Disc::of(sides, paths);

@@ -14,7 +14,7 @@
 namespace constrictor::perception {
 namespace {
 
-// An object that does not exist looks like one of these: coloured things that lie about.
+// An invented object has one of these colours, and a range and a radius within these bounds.
 constexpr std::array<std::uint8_t, 2> kColours{msg::kColourGreen, msg::kColourRed};
 constexpr double kNearest_m = 0.5, kFarthest_m = 2.0;     // range
 constexpr double kThinnest_m = 0.05, kThickest_m = 0.12;  // radius

@@ -27,7 +27,7 @@ struct Region {
   // Of a low object, found by mark_low_objects() or split_objects_from_zones():
   bool low = false;                        ///< stands upright although it does not reach above the horizon
   bool on_zone = false;                    ///< a part of a zone of the same colour was taken for it
-  bool doubtful = false;                   ///< too small a part is in view to tell a low object from a zone
+  bool doubtful = false;                   ///< too little is in view to distinguish a low object from a zone
   double left_rad = 0.0, right_rad = 0.0;  ///< azimuths of its sides
   double height_m = 0.0;
 

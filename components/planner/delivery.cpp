@@ -48,10 +48,10 @@ DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& droppe
   for (const msg::MapObject& landmark : landmarks_of(map)) {
     if (!may_be(landmark, dropped)) continue;
     const DeliveryView view = view_of(map, landmark, dropped, seen_sd_m, zone_radius_m);
-    const auto tells = [](const DeliveryView& one) {
+    const auto is_certain = [](const DeliveryView& one) {
       return one.verdict == Delivery::kOnZone || one.verdict == Delivery::kOutside;
     };
-    const bool by_time = dropped.may_have_moved && best_object && tells(view) && tells(best);
+    const bool by_time = dropped.may_have_moved && best_object && is_certain(view) && is_certain(best);
     const bool better = !best_object ? true
                         : by_time    ? landmark.last_seen_tick > best_object->last_seen_tick
                                      : landmark.sd_m < best_object->sd_m;

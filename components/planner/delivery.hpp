@@ -31,14 +31,14 @@ struct DroppedObject {
   std::uint16_t newest_handle = 0;
   std::int64_t released_tick = -1;  ///< last tick in which the body held the object
   /// The robot may have pushed the object away from the place where the map still has it. Of several landmarks that may
-  /// be the object and tell where it is, the one that was seen last counts, and one that is outside of its zone by
-  /// three standard deviations tells it, however imprecise it is.
+  /// be the object and whose verdict is certain, the one that was seen last counts. The verdict on a landmark that is
+  /// outside of its zone by three standard deviations is certain, even if its place is imprecise.
   bool may_have_moved = false;
 };
 
 /// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
 /// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
-/// an object at the image's border does not tell where its centre is. Of several landmarks that may be the object, the
+/// an object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
 /// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.
 /// The standard deviations of object and zone are taken into account: the verdict is kOnZone if the object's centre
 /// lies inside the zone by one standard deviation, kOutside if it lies outside by one. `zone_radius_m`: [m] radius of a

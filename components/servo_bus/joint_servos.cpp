@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRepetitions = 2;  // of the reading in a tick, for servos that did not answer
 constexpr int kMostReboots = 3;
-constexpr double kSearchSlack_s = 0.004;  // in each tick: who is missed now is asked again
+constexpr double kSearchSlack_s = 0.004;  // in each tick, to ask the lost servos again
 
 /// The numbers that the block of measurements consists of, in its order.
 constexpr std::pair<const char*, std::size_t> kStateRegisters[] = {
@@ -118,7 +118,7 @@ void JointServos::read_port(std::size_t port) {
     for (int i = 0; i < kRepetitions && ports_.now_ns() - begin_ns < config_.period_ns() / 4; ++i) {
       ids = ids_at(port, ServoState::kReady, true);
       if (ids.empty()) return;
-      // The first one is perhaps the one that is missing, and those after it wait for it in vain.
+      // The first servo may be the missing one. The servos after it wait for its answer, so they do not answer either.
       if (i > 0) ids.erase(ids.begin());
       bus.sync_read(state_block_, state_bytes_, ids, use);
     }

@@ -69,8 +69,8 @@ void ServoBus::start() {
   const std::vector<std::string> failed = servos_.start(continued_ ? 0.0 : config_.servo_patience_s);
   if (!failed.empty() && !continued_)
     throw ConfigurationError(
-        fmt::format("{} of {} servos cannot be started (`constrictor servo scan` shows who "
-                    "answers):\n  {}",
+        fmt::format("{} of {} servos cannot be started (`constrictor servo scan` shows which servos "
+                    "answer):\n  {}",
                     failed.size(), servos_.count(), fmt::join(failed, "\n  ")));
   for (const auto& line : failed) wiring_.count_refusal(line);
   for (std::size_t port = 0; port < ports_.size(); ++port) {

@@ -141,7 +141,8 @@ void Member::on_tick(const msg::Tick& tick) {
     if (early_ticks_.size() < kMaxEarly) early_ticks_.push_back(tick);
     return;
   }
-  if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch) return refuse("tick: of another epoch");
+  if (tick.run_id != epoch_->run_id || tick.epoch != epoch_->epoch)
+    return refuse("tick: it belongs to another run or epoch");
   if (tick.index < 0 || tick.period_ns <= 0)
     return refuse(fmt::format("tick: found index {} and period_ns {}, accepted an index from 0 and a period above 0",
                               tick.index, tick.period_ns));
@@ -166,7 +167,7 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   const msg::Header& header = *sample.header;
   const std::string_view topic = (*found)->topic().name;
   if (header.run_id != epoch_->run_id || header.epoch != epoch_->epoch)
-    return refuse(fmt::format("{}: of another epoch", topic));
+    return refuse(fmt::format("{}: it belongs to another run or epoch", topic));
   const InputBuffer::Arrival arrival = (*found)->classify(header);
   if (arrival == InputBuffer::Arrival::kTooFarAhead) {
     return refuse(fmt::format("{}.sequence_number: found {}, accepted at most {} more than {}", topic,

@@ -74,7 +74,7 @@ class Member {
   void on_sample(std::size_t topic_id, const Sample& sample);
 
   /// Plant only: lets the component measure at the instant of the next tick. published() then has the counts. The
-  /// samples are kept until publish_sample(), so that the checkpoint can be stored before anybody sees them.
+  /// samples are kept until publish_sample(), so that the checkpoint can be stored before any process receives them.
   PlantCheckpoint measure(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns);
   /// Plant only: publishes what measure() has kept.
   void publish_sample();

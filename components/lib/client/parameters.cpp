@@ -54,7 +54,7 @@ bool ParameterReader::poll() {
   }
   changes_.take([&](const msg::ParameterChange& change) {
     const std::string name = change.name;
-    // Anybody can write this topic, so that the number of names is limited.
+    // Any process can write this topic, so the number of names is limited.
     if (newest_changes_.size() < msg::kMaxParameterChanges || newest_changes_.contains(name))
       newest_changes_.insert_or_assign(name, change);
   });

@@ -21,8 +21,9 @@ enum class Reach {
 
 /// [ms] after its last sample, a writer asks the readers for an acknowledgement; so do samples that follow after more
 /// than four fifths of it. Between hosts, the last message of a tick may be lost, and the run stands still until the
-/// reader hears that it lacks one. The loopback interface loses a message only if the buffer of a socket is full; there
-/// more questions would only cost CPU time: with 10 ms, every second or third datagram of a run was one of them.
+/// reader learns that it lacks one. The loopback interface loses a message only if the buffer of a socket is full;
+/// there more of these requests would only cost CPU time: with 10 ms, every second or third datagram of a run was one
+/// of them.
 inline constexpr int kNetworkHeartbeat_ms = 10;
 inline constexpr int kLoopbackHeartbeat_ms = 100;
 

@@ -31,8 +31,8 @@ struct DeviceOrder {
 [[nodiscard]] std::vector<std::string> breakable_devices();
 [[nodiscard]] std::vector<const DeviceCommand*> commands_of(std::string_view device);
 
-/// Reads a line such as "cable 0 7". `count` tells how many joints, modules or ports the device has. Returns the order,
-/// or why it is refused: what was found and what is accepted.
+/// Reads a line such as "cable 0 7". `count` returns how many joints, modules or ports the device has. Returns the
+/// order, or why it is refused: what was found and what is accepted.
 [[nodiscard]] std::variant<DeviceOrder, std::string> read_order(
     std::string_view device, const std::string& line, const std::function<std::size_t(std::string_view of)>& count);
 

@@ -47,7 +47,7 @@ enum class StatusError : std::uint8_t {
   kDataLimit = 6,    ///< the value is beyond the limits of the register
   kAccess = 7,       ///< read-only or write-only register, EEPROM while the torque is on, or locked by a watchdog
 };
-/// Bit of the error field: the device has a hardware error; its register hardware_error_status tells which.
+/// Bit of the error field: the device has a hardware error; its register hardware_error_status shows which.
 inline constexpr std::uint8_t kAlert = 0x80;
 
 /// The error in words that say what to do.

@@ -52,7 +52,7 @@ class Log {
   [[nodiscard]] Log about(const std::string& component) const;
   /// From now on lines carry this run, epoch and tick.
   void at(std::uint64_t run_id, std::uint32_t epoch, std::int64_t tick) const;
-  /// From now on `sink` receives every line, too, in the thread that writes it; null: nobody does. When this returns,
+  /// From now on `sink` also receives every line, in the thread that writes it; null: no sink does. When this returns,
   /// no call of the previous sink is in progress.
   void forward(Sink sink) const;
 

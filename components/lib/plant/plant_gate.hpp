@@ -31,7 +31,7 @@ class PlantGate {
   const std::vector<JointSetpoint>& setpoints(const Tick& tick, const MeasuredJoints& measured, bool hold = false);
   /// The next command that is obeyed begins at the measured posture, as after a takeover.
   void begin_at_posture() { state_.take_over = true; }
-  /// The same, and a hold begins at the measured posture, too: the joints may have moved while nobody measured them.
+  /// The same, and a hold begins at the measured posture, too: the joints may have moved while they were not measured.
   void forget_posture() {
     state_.take_over = true;
     state_.started = false;

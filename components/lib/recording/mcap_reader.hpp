@@ -28,8 +28,8 @@ class Reader {
   /// error: see complete().
   void read(const Visitor& visitor = {});
   /// The same, but damaged records are left out, and `left_out` is called with the offset [byte], the length [byte] and
-  /// the reason of each; the length is 0 for an index, which says nothing that the file does not have. What cannot be
-  /// told apart into records counts as one.
+  /// the reason of each; the length is 0 for an index, which says nothing that the file does not have. Bytes that
+  /// cannot be divided into records count as one record.
   using LeftOut = std::function<void(std::uint64_t offset, std::uint64_t length, const std::string& why)>;
   void read_undamaged(const Visitor& visitor, const LeftOut& left_out);
 

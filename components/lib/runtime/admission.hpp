@@ -32,16 +32,16 @@ class Admission {
 
   enum class Verdict {
     kAccepted,
-    kUnknown,   ///< nobody has announced this member yet
+    kUnknown,   ///< no participant has announced this member yet
     kStranger,  ///< the writer is not in the participant that has announced it, or not yet
   };
   [[nodiscard]] Verdict judge(const std::string& component, dds_instance_handle_t writer);
   /// Whether keep() has room for a message of this writer.
   [[nodiscard]] bool has_room(dds_instance_handle_t writer, std::size_t bytes) const;
   /// Keeps a message whose verdict is not kAccepted: `deliver` is called as soon as the participant of its writer
-  /// announces the member. The process that replaces a member may be heard before its Hello, because they are sent by
-  /// different writers. Whatever waits when somebody else announces the member is dropped. Returns false if there is no
-  /// room: the message is dropped.
+  /// announces the member. Messages of the process that replaces a member may arrive before its Hello, because
+  /// different writers send them. Messages that wait when another participant announces the member are dropped. Returns
+  /// false if there is no room: the message is dropped.
   bool keep(const std::string& component, dds_instance_handle_t writer, std::size_t bytes,
             std::function<void()> deliver);
 

@@ -134,7 +134,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
                  "NAME=TICKS: the outputs of this member of the roster become visible this many ticks after its step "
                  "began, or later if its own latency is longer; equal in all processes of the run; may be repeated");
   app.add_option("--faults", options.faults_file,
-                 "file of faults (YAML) that the run suffers on purpose; equal in all processes of the run");
+                 "file of faults (YAML) to inject into the run; equal in all processes of the run");
   app.add_option("--incarnation", options.incarnation,
                  "1 at the first start of the process in the run, and one more at each restart")
       ->check(CLI::Range(1u, 1'000'000u));

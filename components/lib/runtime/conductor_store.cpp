@@ -96,7 +96,7 @@ void ConductorSide::take_status(const msg::ComponentStatus& status) {
 void ConductorSide::stay_longer() { stays_until_ = HostContext::Clock::now() + kStay; }
 
 bool ConductorSide::stays() {
-  // Without a launcher, nobody restarts a member.
+  // Without a launcher, no process restarts a member.
   if (!store_ || context_.options.run_id == 0 || !conductor_->ended()) return false;
   const auto now = HostContext::Clock::now();
   if (!stays_until_) {

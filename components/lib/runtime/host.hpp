@@ -46,7 +46,7 @@ struct HostOptions {
   bool checkpoints = true;     ///< plant only: stores checkpoints in output_dir, so that its process can be restarted
   Setup setup;                 ///< of every component; its name is set by the host
   std::map<std::string, std::uint16_t> latency_ticks;  ///< by member of the roster; absent: that of the component
-  std::filesystem::path faults_file;                   ///< faults that the run suffers on purpose; empty: none
+  std::filesystem::path faults_file;                   ///< faults to inject into the run; empty: none
   std::map<std::string, std::filesystem::path> config_files;  ///< by component; a component without one has its default
 };
 

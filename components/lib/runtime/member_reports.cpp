@@ -1,4 +1,4 @@
-// The part of MemberSide that tells others how its members are, and what they wait for.
+// The part of MemberSide that reports the states of its members, and what they wait for.
 #include <unistd.h>
 
 #include "component/device_owner.hpp"
@@ -49,7 +49,7 @@ void MemberSide::report_waiting() {
     }
     publish_status(local, msg::kComponentWaiting);
   }
-  // Whoever has not heard who this process is does not accept its messages. Nobody minds hearing it again.
+  // A process that has not received the Hello of this one does not accept its messages. A repeated Hello does no harm.
   send_hello();
 }
 

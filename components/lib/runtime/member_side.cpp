@@ -224,7 +224,7 @@ void MemberSide::conclude_anyway() {
   for (auto& local : members_) {
     if (!local.member->concluding()) continue;
     const MissingInput missing = local.member->missing();
-    context_.log.warning("{} ends without {}, of which no sample has arrived since it was restarted",
+    context_.log.warning("{} ends without its last samples of {}: none has arrived since the member was restarted",
                          local.member->name(), missing.topic ? missing.topic->name : "an input");
     local.member->conclude_anyway();
   }

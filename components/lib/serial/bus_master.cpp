@@ -49,7 +49,7 @@ Answer BusMaster::ask(std::uint8_t id, std::size_t answer_bytes, int tries, Put&
     const std::int64_t deadline_ns = send(return_delay_s_ + bytes_s(kStatusBytes + 4 * answer_bytes / 3));
     do {
       while (const auto packet = parser_.next()) {
-        // The question itself comes back from adapters that hear themselves: it is no status packet.
+        // Some adapters receive what they send, and return the instruction, too: it is no status packet.
         if (packet->is_status() && packet->id == id) return answer_of(*packet);
       }
     } while (receive(deadline_ns));
@@ -158,8 +158,8 @@ std::size_t BusMaster::ask_fast(std::uint16_t address, std::uint16_t count, Byte
   const std::int64_t deadline_ns = send(return_delay_s_ * static_cast<double>(ids.size()) + bytes_s(bytes));
   whole_.clear();
   bool complete = false;
-  // When as many bytes have arrived as the answer has, a damaged one need not be waited for. An adapter that hears
-  // itself returns the question, too.
+  // When as many bytes have arrived as the answer has, a damaged one need not be waited for. An adapter that receives
+  // what it sends returns the instruction, too.
   const auto expected = [&] {
     const bool echo =
         whole_.size() >= question_.size() && std::equal(question_.begin(), question_.end(), whole_.begin());

@@ -107,7 +107,7 @@ void LiveVideo::Shared::run() {
         last_error.clear();
       } else {
         ++counters.failures;
-        if (error != last_error) tell(error);  // the same reason again is no news
+        if (error != last_error) tell(error);  // a repeated reason is not reported again
         last_error = error;
       }
     }

@@ -29,7 +29,7 @@ void prepare_environment(double timeout_s) {
   ::setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "rtsp_transport;tcp|flags;low_delay|analyzeduration;0|fpsprobesize;0", 0);
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "8", 0);  // fatal errors: it would else print a line for each attempt to open
   ::setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", std::to_string(std::max(1L, std::lround(timeout_s))).c_str(), 0);
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_ERROR);  // the errors are ours to tell
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_ERROR);  // this program reports errors itself
 }
 
 /// Sets a property of a device and reads it back. Returns false if the device has another value afterwards.

@@ -52,13 +52,13 @@ TEST_F(MemberTest, ImpossibleMessagesAndMessagesOfAnotherEpochAreRejectedAndCoun
     EXPECT_NE(member->counters().last_refusal.find(reason), std::string::npos) << member->counters().last_refusal;
   };
   give_joints(*member, 1, {8, 1});
-  rejected("joint_state: of another epoch");
+  rejected("joint_state: it belongs to another run or epoch");
   give_joints(*member, 1, {7, 2});
-  rejected("joint_state: of another epoch");
+  rejected("joint_state: it belongs to another run or epoch");
   give_joints(*member, 100'000);
   rejected("joint_state.sequence_number");
   member->on_tick(tick_at(0, {}, {8, 1}));
-  rejected("tick: of another epoch");
+  rejected("tick: it belongs to another run or epoch");
   member->on_tick(tick_at(-5));
   rejected("index -5");
   member->on_epoch({8, 1}, 1);
