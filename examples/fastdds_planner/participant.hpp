@@ -36,8 +36,8 @@ T* made(T* entity, const std::string& what) {
 class Participant {
  public:
   /// `domain` is the number that `constrictor run` prints. `address` is the address of the network interface on which
-  /// the robot's processes communicate. `listener`, if given, is told of every participant, reader and writer that Fast
-  /// DDS discovers, in a thread of Fast DDS; it must outlive this object.
+  /// the robot's processes communicate. `listener`, if given, is called for every participant, reader and writer that
+  /// Fast DDS discovers, in a thread of Fast DDS; it must outlive this object.
   Participant(std::uint32_t domain, const std::string& name, const std::string& address = "127.0.0.1",
               fdds::DomainParticipantListener* listener = nullptr) {
     namespace rtps = eprosima::fastrtps::rtps;

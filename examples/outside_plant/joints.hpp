@@ -66,7 +66,7 @@ class Joints {
     const bool silent = session_ == 0 || now_s - heard_s_ > kSilence_s;
     if (silent && !holding_) {
       goal_ = position_rad_;
-      torque_mode_ = false;  // a torque that nobody controls any more must end
+      torque_mode_ = false;  // a torque without a controller must end
     }
     holding_ = silent;
     for (std::size_t i = 0; i < position_rad_.size(); ++i) {

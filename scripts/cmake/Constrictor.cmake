@@ -23,7 +23,7 @@ if(CONSTRICTOR_SANITIZE)
 endif()
 
 # The headers that nearly every file includes, compiled once and used by every target: this halves the time of a build.
-# Files still include what they use: a build with CONSTRICTOR_PCH=OFF (preset tidy) shows what a file forgets.
+# Files still include what they use: a build with CONSTRICTOR_PCH=OFF (preset tidy) shows missing includes.
 set(CONSTRICTOR_COMMON_HEADERS
   <algorithm> <array> <chrono> <cmath> <cstdint> <cstdio> <filesystem> <functional> <map> <memory> <optional> <set>
   <stdexcept> <string> <string_view> <utility> <vector> <fmt/format.h>)

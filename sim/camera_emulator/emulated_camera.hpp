@@ -20,7 +20,7 @@ using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 /// What is wrong with the camera.
 struct CameraFaults {
-  bool off = false;     ///< nobody answers at its port
+  bool off = false;     ///< its port refuses connections
   bool silent = false;  ///< connections stay open, but no frame is sent
   bool black = false;
   bool frozen = false;

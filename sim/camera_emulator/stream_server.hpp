@@ -10,7 +10,7 @@
 
 namespace constrictor::camera_emulator {
 
-/// One thread calls all functions. A client that reads slowly loses frames; it delays nobody else.
+/// One thread calls all functions. A client that reads slowly loses frames; it delays no other client.
 class StreamServer {
  public:
   /// `port` 0: any free one. Throws std::runtime_error if the port cannot be opened.

@@ -83,14 +83,15 @@ struct Canvas::Parts {
   cairo_surface_t* surface = nullptr;
   cairo_t* cairo = nullptr;
   PangoLayout* layout = nullptr;
-  std::string texts;  ///< elements of an SVG file: Cairo 1.16 would draw outlines, which nobody can search or edit
+  std::string texts;  ///< elements of an SVG file: Cairo 1.16 would draw outlines, not editable text
 
   void begin() {
     require(cairo_surface_status(surface));
     cairo = cairo_create(surface);
     require(cairo_status(cairo));
     cairo_scale(cairo, scale, scale);
-    // The same positions for each format, size and user: no hinting, whatever fontconfig is told.
+    // Hinting is off, also if the user's fontconfig switches it on: glyphs have the same positions in each format and
+    // size.
     cairo_font_options_t* options = cairo_font_options_create();
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

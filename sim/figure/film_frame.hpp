@@ -24,8 +24,8 @@ struct FilmFrame {
   Picture scene, camera, processed;
 };
 
-/// Where things are, for a frame of any size: in units, of which the smaller of width / 1280 and height / 720 pixels
-/// are one.
+/// Places of the parts of a frame, for frames of any size: in units, of which the smaller of width / 1280 and height /
+/// 720 pixels are one.
 inline constexpr double kFilmWidth = 1280.0, kFilmHeight = 720.0;
 inline constexpr Rect kFilmScene{16.0, 78.0, 832.0, 400.0};
 

@@ -40,7 +40,7 @@ void draw_joint_key(Canvas& canvas, std::size_t joints, double left, double righ
 /// A picture in a frame; if it is empty, a grey area with the words `missing`.
 void draw_picture(Canvas& canvas, const Rect& area, const Picture& picture, const std::string& missing);
 
-/// The colour of an object or line (msg::kColour…), chosen so that colour-blind readers tell them apart.
+/// The colour of an object or line (msg::kColour…), chosen so that colour-blind readers can distinguish them.
 [[nodiscard]] Colour display_colour(std::uint8_t colour);
 
 [[nodiscard]] std::string number(double value, int decimals);

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Where things may stand. The robot is 2.1 m long and bends with a radius of about 0.8 m.
+// Where objects and zones may stand. The robot is 2.1 m long and bends with a radius of about 0.8 m.
 constexpr double kFirstObject_m = 0.45;   // beyond the end of the line
 constexpr double kObjectSpacing_m = 1.2;  // the body closes around one object alone
 constexpr double kZoneBehind_m = 1.25;    // of the beginning of the line: the body drives on over the zone

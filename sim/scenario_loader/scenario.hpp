@@ -43,8 +43,8 @@ struct ScenarioObstacle {
 };
 
 /// A scripted force on an object, for example to pull it out of a grasp. It begins at `at_s`, or once the object is
-/// `displaced_m` away from its start; the unused one of these two fields is NaN. The force lasts `duration_s`. Or
-/// somebody carries the object away, in no time.
+/// `displaced_m` away from its start; the unused one of these two fields is NaN. The force lasts `duration_s`. Or the
+/// object is moved at once, as if a person carried it away.
 struct ScenarioPerturbation {
   std::size_t object = 0;
   double at_s = 0.0;

@@ -23,7 +23,7 @@ class BusDevice {
   [[nodiscard]] virtual bool alert() const = 0;
   [[nodiscard]] virtual std::uint16_t model_number() const = 0;
   [[nodiscard]] virtual std::uint8_t firmware() const = 0;
-  /// Older firmware does not hear Fast Sync Read.
+  /// Older firmware does not support Fast Sync Read.
   [[nodiscard]] virtual bool knows_fast_sync_read() const = 0;
 
   /// Appends `count` bytes from `address` on.
@@ -32,7 +32,7 @@ class BusDevice {
   virtual dynamixel::StatusError write(std::uint16_t address, dynamixel::ByteView data) = 0;
   virtual dynamixel::StatusError clear_turns() = 0;
   virtual void reboot() = 0;
-  /// The device heard a whole instruction packet, for itself or for another device.
+  /// The device has received a whole instruction packet, for itself or for another device.
   virtual void heard(std::int64_t now_ns) = 0;
 };
 

@@ -57,7 +57,7 @@ void EmulatedRobot::step() {
   world_.set_servo(orders_);
   world_.advance(step_s);
   for (std::size_t i = 0; i < servos_.size(); ++i) {
-    // A servo measures the current of the moment; whoever reads it filters it, as the robot file says.
+    // A servo measures its unfiltered current; its driver filters the values, as the robot file says.
     servos_[i]->advance(step_s, time_ns_,
                         {world_.joint_angle_rad(i), world_.joint_rate_rad_s(i), world_.joint(i).step_torque_nm()});
   }

@@ -13,7 +13,8 @@
 
 namespace constrictor::servo_emulator {
 
-/// The joint that the servo moves, as physics has it. Sign and zero are those of the joint.
+/// State of the joint that the servo moves, from the simulated world. Sign and zero are those of the joint, not of the
+/// servo.
 struct JointMotion {
   double angle_rad = 0.0;
   double rate_rad_s = 0.0;

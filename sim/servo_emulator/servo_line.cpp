@@ -146,7 +146,7 @@ void ServoLine::answer_sync_read(const PacketView& packet) {
   if (packet.parameters.size() < 5) return;
   for (const std::uint8_t id : packet.parameters.subspan(4)) {
     BusDevice* device = find(id);
-    // A device answers when it has heard the answer of the device before it.
+    // A device answers when it has received the answer of the device before it.
     if (!device || device->status_return_level() < 1) return;
     Bytes data;
     const StatusError error = device->read(word(packet.parameters), word(packet.parameters.subspan(2)), data);

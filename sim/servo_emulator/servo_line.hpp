@@ -16,7 +16,7 @@ namespace constrictor::servo_emulator {
 /// What is wrong with the line. Changes act at once.
 struct LineFaults {
   std::optional<std::size_t> cable_broken_behind;  ///< the devices after this place in the chain are gone
-  std::vector<std::size_t> silent;                 ///< places of devices that neither hear nor answer
+  std::vector<std::size_t> silent;                 ///< places of devices that neither receive nor answer
   double damaged_bytes = 0.0;                      ///< probability that a byte of an answer is damaged
   double cut_answers = 0.0;                        ///< probability that an answer ends somewhere in the middle
   bool unplugged = false;                          ///< the adapter is gone, and with it the serial port

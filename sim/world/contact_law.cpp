@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// [N s/m] Bodies that somebody has put into each other must not be shot apart: their springs accelerate them only up
+/// [N s/m] Bodies that were placed so that they overlap must not be shot apart: their springs accelerate them only up
 /// to the maximum correcting velocity, as if this damper acted beyond it.
 constexpr double kBrake_n_s_m = 1e4;
 

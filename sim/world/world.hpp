@@ -50,7 +50,7 @@ class World {
   void set_servo(std::span<const JointSetpoint> setpoints);
   /// Applies a force (in W) to the centre of an object during the next advance() only. Several forces add up.
   void apply_force(std::size_t object, const Eigen::Vector3d& force_n);
-  /// Somebody takes an object and puts it down elsewhere: moves its centre by `by_m` (in W) and ends its motion.
+  /// Moves the centre of an object by `by_m` (in W) and ends its motion, as if a person put it down elsewhere.
   void move_object(std::size_t object, const Eigen::Vector2d& by_m);
   /// Integrates round(duration / step) steps, at least one. `after_step`, if it is given, is called after each of them.
   void advance(double duration_s, const std::function<void()>& after_step = {});

@@ -66,7 +66,7 @@ Measured watch(Viewer& viewer, const std::string& pid, int seconds) {
     std::uint64_t written_ns = 0;
     for (int i = 7; i >= 0; --i)
       written_ns = written_ns << 8 | static_cast<std::uint8_t>(message->bytes[static_cast<std::size_t>(5 + i)]);
-    if (static_cast<std::int64_t>(written_ns) < begin_ns) continue;  // it waited because nobody read
+    if (static_cast<std::int64_t>(written_ns) < begin_ns) continue;  // it waited because no client read
     measured.latencies_ms.push_back(static_cast<double>(now_ns() - static_cast<std::int64_t>(written_ns)) * 1e-6);
   }
   return measured;

@@ -1,4 +1,5 @@
-// A participant that nobody has invited: it reads everything that a run publishes, and forges messages of its members.
+// A participant that does not belong to the run: it reads everything that a run publishes, and forges messages of its
+// members.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ class Attacker {
         refused(get(), wire::kRefused),
         control(get(), wire::kRunControl),
         stop(get(), wire::kEmergencyStop),
-        // The user data of the true writer, in case that somebody believes it.
+        // The user data of the true writer, in case that a process trusts it.
         joint_command(get(), std::string(topics::kJointCommand.name), 8, "control") {}
 
   [[nodiscard]] dds_entity_t get() const { return participant_.get(); }

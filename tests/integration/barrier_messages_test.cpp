@@ -123,7 +123,7 @@ TEST(BarrierMessages, ImpossibleMessagesAreRejectedAndCountedAndTheRunGoesOn) {
   ASSERT_TRUE(eventually(newest_state)) << processes.front().errors();
   stranger.learn(*state);
   ASSERT_TRUE(eventually([&] { return stranger.matched(); }));
-  // A process that has heard nothing of its run yet would believe the refusal of any run.
+  // A process that has received no message of its run yet would obey the refusal of any run.
   bool planner_knows_its_run = false;
   ASSERT_TRUE(eventually([&] {
     statuses.take([&](const msg::ComponentStatus& status) {

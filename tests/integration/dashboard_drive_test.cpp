@@ -54,10 +54,10 @@ TEST_F(DashboardDrive, ADriveEndsWithAStopAndWithTheDashboard) {
   EXPECT_TRUE(eventually([&] { return driver.ask("drive", forwards).starts_with("failure: drive: "); }));
   EXPECT_TRUE(driver.ask("drive", forwards).starts_with("failure: drive: ")) << "the stop is latched";
   EXPECT_EQ(stopper.ask("clear_stop", "{}"), "emergency stop cleared");
-  EXPECT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s") << "a new wish, after the stop was cleared";
+  EXPECT_EQ(driver.ask("drive", forwards), "0.30 m/s, 0.00 rad/s") << "a new order, after the stop was cleared";
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
   dashboard_->signal(SIGKILL);
-  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone, 5s)) << "nobody asserts that the dashboard is alive";
+  ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone, 5s)) << "no process asserts that the dashboard is alive";
   EXPECT_TRUE(stands(watcher));
   dashboard_.reset();
 }

@@ -75,7 +75,7 @@ TEST_F(DashboardPage, ThePadAndTheKeysDriveWhileTheyAreHeld) {
                     "print=(i => { i.value = '9999'; i.dispatchEvent(new Event('change')); })"
                     "(document.querySelector('#parameter_rows input'))",
                     answered("accepted"), "click=#release", answered("released"), "print='handed back'",
-                    // Somebody else changes a parameter, and the page shows it without being asked.
+                    // Another client changes a parameter, and the page shows it without being asked.
                     "wait=[...document.querySelectorAll('#parameter_rows tr.changed input')].some("
                     "i => i.dataset.name === 'navigation.travel.frequency_hz' && i.value === '0.85')"});
   ASSERT_TRUE(page.wait_for("\"handed back\"", 240s)) << page.errors();

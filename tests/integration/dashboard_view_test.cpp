@@ -38,7 +38,7 @@ TEST_F(DashboardView, OpensTheBrowserAndEndsWithTheRun) {
   EXPECT_EQ(opened(), "http://127.0.0.1:" + std::to_string(port));
   launcher.signal(SIGINT);
   EXPECT_EQ(launcher.wait(60s), 130) << launcher.errors();
-  EXPECT_EQ(WebSocket(port).status, 0) << "nobody listens any more";
+  EXPECT_EQ(WebSocket(port).status, 0) << "no process listens any more";
 }
 
 TEST_F(DashboardView, ATakenPortIsSaidAndTheRunGoesOn) {

@@ -114,7 +114,7 @@ class DeterminismRun : public ::testing::Test {
       EXPECT_TRUE(launcher.running()) << "over before " << name << " was stopped";
       ::kill(pid, SIGCONT);
     }
-    launcher.signal(SIGSTOP);  // last: nobody waits for it, the run goes on
+    launcher.signal(SIGSTOP);  // last: no process waits for it, the run goes on
     std::this_thread::sleep_for(std::chrono::seconds(2));
     launcher.signal(SIGCONT);
     return hash_of("stopped", launcher);

@@ -1,5 +1,5 @@
-// Runs that suffer faults on purpose (`run --faults`): the same in every distribution over processes, and survived by
-// every component.
+// Runs with injected faults (`run --faults`): the same in every distribution over processes, and survived by every
+// component.
 #include <fmt/format.h>
 
 #include "constrictor/topics.hpp"
@@ -43,7 +43,8 @@ TEST_F(FaultInjection, FaultsOfTopicsAreTheSameInEveryDistributionAndThoseOfProc
   const nlohmann::json many = report("many");
   for (const auto& each : many["processes"]) restarts += each["restarts"].get<int>();
   EXPECT_EQ(restarts, 2);
-  EXPECT_TRUE(std::filesystem::exists(dir_ / "many" / "faults.yaml")) << "the report must tell what the run suffered";
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "many" / "faults.yaml"))
+      << "the report must contain the faults of the run";
   EXPECT_FALSE(std::filesystem::exists(dir_ / "none" / "faults.yaml"));
 }
 

@@ -66,7 +66,7 @@ TEST_F(RunControl, APausedAndSteppedRunHasTheSameHash) {
   EXPECT_EQ(next_tick(), paused + 1);
   ASSERT_EQ(command({"step", "25"}), exit_status::kOk) << output_;
   EXPECT_EQ(next_tick(), paused + 26);
-  std::this_thread::sleep_for(5s);  // longer than anybody's patience with a peer
+  std::this_thread::sleep_for(5s);  // longer than any process waits for a peer
   EXPECT_EQ(command({"step"}), exit_status::kOk) << output_;
   EXPECT_EQ(next_tick(), paused + 27) << "the paused run did no tick on its own";
   ASSERT_EQ(command({"pace", "lockstep"}), exit_status::kOk) << output_;

@@ -91,7 +91,7 @@ TEST_F(Secure, AStrangerWithoutAnIdentityOrWithOneOfAnotherAuthorityMeetsNobody)
   EXPECT_TRUE(launcher.wait(20s));
 }
 
-// Somebody has copied the files of one component, and wants to do what another one does.
+// An attacker has copied the files of one component, and tries to do what only another component may do.
 TEST_F(Secure, AStolenIdentityGivesNoRightsButThoseOfItsComponent) {
   Process launcher = secured_run(100'000, "1x");
   const Variable folder("CONSTRICTOR_SECURITY", keys());
@@ -118,7 +118,7 @@ TEST_F(Secure, AStolenIdentityGivesNoRightsButThoseOfItsComponent) {
   EXPECT_THROW(dds::Domain(domain_of(launcher), dds::Reach::kLoopback, "report"), dds::Error)
       << "the rights of control, with the certificate of report";
   {
-    // The thief's own software believes an authority of the thief, which grants the operator's rights.
+    // The thief's own software trusts an authority of the thief, which grants the operator's rights.
     const cli::Authority own(dir_ / "thief/own.pem", dir_ / "thief/own.key.pem", "thief", 1);
     fs::copy_file(dir_ / "thief/own.pem", dir_ / "thief/permissions_ca.pem", fs::copy_options::overwrite_existing);
     std::ofstream(dir_ / "thief/governance.p7s") << own.sign(cli::governance_document());

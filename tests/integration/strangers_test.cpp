@@ -159,7 +159,7 @@ TEST_F(Strangers, AnOperatorOnAnotherHostJoinsARunByItsDomain) {
   EXPECT_NE(output_.find("no run in DDS domain " + run), std::string::npos) << output_;
 }
 
-// Only the plant's own stop can end this motion: nothing that the operator sends is read by anybody else.
+// Only the plant's own stop can end this motion: no other component reads what the operator sends.
 TEST_F(Strangers, APlantStopsWithoutATokenWhileInputHangs) {
   Process launcher = run_blind("realtime");
   const std::string run = std::to_string(domain());

@@ -1,8 +1,8 @@
 """Repeats missions while their processes are killed and stopped at random. scripts/soak.sh starts this program.
 
 Each mission has a seed of its own for its random faults, so that missions do not depend on those before them. Every
-fourth one also suffers a random file of faults (lost, late, doubled and damaged samples). A mission passes if the run
-ends in order and has the state hash of a run in one process with the same seed and the same file that nobody disturbed.
+fourth one also has a random file of faults (lost, late, doubled and damaged samples). A mission passes if the run
+ends in order and has the state hash of an undisturbed run in one process with the same seed and the same file.
 """
 
 import argparse
@@ -31,7 +31,7 @@ class Interrupted(Exception):
 
 
 def die_with_parent() -> None:
-    """In the launcher, before it begins: without this program, nobody would end its run."""
+    """In the launcher, before it begins: without this program, no process would end its run."""
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
@@ -163,7 +163,7 @@ class Soak:
             return {}
 
     def reference(self, seed: int, faults: Optional[pathlib.Path], number: int) -> dict:
-        """Of a run in one process that nobody disturbs. Those without a file of faults are kept."""
+        """The result of an undisturbed run in one process. Without a file of faults, results are kept and reused."""
         kept = self.folder / f"reference-{seed}.json"
         if not faults and kept.exists():
             return json.loads(kept.read_text())

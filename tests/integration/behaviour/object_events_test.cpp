@@ -120,7 +120,7 @@ TEST_F(ObjectEvents, PregraspReportsPregraspLostWhenTheObjectVanishes) {
   EXPECT_EQ(until_end(1.0), msg::kGoalRefused);
 }
 
-// Somebody takes the object and puts it down out of view. The map gives the empty place up, and the search goes on
+// A person takes the object and puts it down out of view. The map gives the empty place up, and the search goes on
 // elsewhere and finds the object.
 TEST_F(ObjectEvents, AnObjectThatWasTakenAwayLeavesTheMapAndIsFoundAtItsNewPlace) {
   const Place empty{1.2, 0.1}, there{0.6, 1.4};

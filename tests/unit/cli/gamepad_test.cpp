@@ -150,7 +150,7 @@ TEST_F(GamepadTest, ReadsAStreamInAnyPieces) {
   const auto fifo = folder_.path() / "fifo";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   GamepadDevice device(fifo, GamepadMapping::load(file(kText)), "pad.yaml");
-  EXPECT_TRUE(device.read(pad_)) << "a FIFO that nobody writes yet is not gone";
+  EXPECT_TRUE(device.read(pad_)) << "a FIFO that has no writer yet is not gone";
   const int writer = ::open(fifo.c_str(), O_WRONLY | O_CLOEXEC);
   ASSERT_GE(writer, 0);
   std::vector<input_event> events(3);
@@ -178,7 +178,7 @@ TEST(GamepadChoice, IsTheOnlyOneOrTheNamedOne) {
   EXPECT_EQ(choose_gamepad("/tmp/fifo", {}), "/tmp/fifo");
   try {
     static_cast<void>(choose_gamepad("auto", {one, two}));
-    FAIL() << "two gamepads: nobody knows which one is meant";
+    FAIL() << "two gamepads: it is not clear which one is meant";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("--gamepad /dev/input/event3  (Pad A)"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("--gamepad /dev/input/event7  (Pad B)"), std::string::npos);

@@ -163,7 +163,7 @@ TEST_F(SupervisorTest, EndsAMemberThatHeardOfTheEndOfTheRunSecondsBeforeTheLaunc
   supervisor_->expect_end();
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
-  ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it would wait for the plant in vain";
+  ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it would wait for the plant for ever";
 }
 
 TEST_F(SupervisorTest, FailsWhenThePlantDiesAndTheManifestAllowsNoRestart) {

@@ -45,7 +45,7 @@ class Push : public ControlMethod {
     setpoints.torque_nm[4] = -50.0;
     setpoints.torque_nm[6] = std::numeric_limits<double>::quiet_NaN();
     setpoints.torque_limit_nm[4] = 2.0;
-    // Shows the test what the method is told: the sum of the rates, and of the torques of the last command.
+    // Shows the test what the method receives: the sum of the rates, and of the torques of the last command.
     body.scratch[0] = input.rate_rad_s[2];
     setpoints.torque_nm[8] = 0.1 * input.rate_rad_s[2];
     setpoints.torque_nm[10] = 0.1 * input.exerted_nm[4];

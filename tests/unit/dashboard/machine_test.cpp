@@ -64,7 +64,7 @@ TEST(Page, ListsNeitherTasksNorColoursNorDirections) {
   }
 }
 
-// Names and reasons come from the run, and from whoever can send to it.
+// Names and reasons come from the run, and from every program that can send to it.
 TEST(Page, InsertsNothingAsHtml) {
   int files = 0;
   for (const auto& entry :

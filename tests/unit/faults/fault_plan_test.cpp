@@ -67,7 +67,8 @@ TEST_F(FaultFile, ALinkThatIsDownConcernsEachTopicThatCrossesIt) {
   };
   EXPECT_EQ(readers_of(topics::kCameraImage.id), (std::vector<std::string>{"perception"}));
   EXPECT_EQ(readers_of(topics::kLinePercept.id), (std::vector<std::string>{"physics", "camera", "control"}));
-  EXPECT_EQ(readers_of(topics::kTaskEvent.id), (std::vector<std::string>{"no fault"})) << "nobody writes it here";
+  EXPECT_EQ(readers_of(topics::kTaskEvent.id), (std::vector<std::string>{"no fault"}))
+      << "no member of this run writes it";
   for (const auto& fault : plan.topics) {
     EXPECT_EQ(fault.kind, TopicFault::Kind::kLinkDown);
     EXPECT_EQ(fault.from_ns, 2'000'000'000);

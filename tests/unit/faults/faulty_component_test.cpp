@@ -1,4 +1,4 @@
-// What a component sees of a topic that suffers faults, in a run in one process.
+// What a component receives from a topic with injected faults, in a run in one process.
 #include "faults/faulty_component.hpp"
 
 #include <gtest/gtest.h>

@@ -159,7 +159,7 @@ TEST(PerceptErrors, AnInventedObjectKeepsItsDirectionWhileTheHeadTurns) {
 }
 
 TEST(PerceptErrors, ARangeFactorIsThatOfACameraAtAWrongHeight) {
-  // Who believes that the camera is 10 % higher than it is sees each ground point 10 % farther away.
+  // If the assumed height of the camera is 10 % too large, each ground point seems 10 % farther away.
   constexpr double kFactor = 1.1;
   msg::CameraInfo higher = test::camera_info();
   for (double* value : {&higher.X_HC.position_m.x, &higher.X_HC.position_m.z}) *value *= kFactor;

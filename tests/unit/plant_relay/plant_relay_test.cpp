@@ -83,13 +83,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST_F(Relay, GoesOnFromWhereTheJointsAreAfterALoss) {
-  command_ = [](std::int64_t, msg::JointCommand&) { return false; };  // nobody commands: the posture is held
+  command_ = [](std::int64_t, msg::JointCommand&) { return false; };  // no commands arrive: the posture is held
   ticks(20);
   alive_ = false;
   ticks(20);
   EXPECT_FALSE(relay().state().following);
   EXPECT_NE(last_refusal().find("hardware: lost"), std::string::npos) << last_refusal();
-  // Somebody has bent a joint by hand, and the process was started again.
+  // A person has bent a joint by hand, and the process was started again.
   angles_rad_[4] = 0.7;
   follows_ = false;
   session_ = 78;

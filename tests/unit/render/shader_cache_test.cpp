@@ -107,7 +107,7 @@ TEST_F(ShaderCache, RefusesAFolderIntoWhichOthersCanWrite) {
   EXPECT_FALSE(shader_cache_folder(cache_.path(), "one"));
   fs::remove(*folder);
   fs::create_directory_symlink(frames_.path(), *folder);
-  EXPECT_FALSE(shader_cache_folder(cache_.path(), "one")) << "a link may lead to anybody's folder";
+  EXPECT_FALSE(shader_cache_folder(cache_.path(), "one")) << "a link may lead to another user's folder";
   fs::remove(*folder);
   std::ofstream(folder->string()) << "a file";
   EXPECT_FALSE(shader_cache_folder(cache_.path(), "one"));

@@ -84,7 +84,7 @@ TEST(HistoryDepth, ATopicThatIsWrittenAfterImagesNeedsFewerSamples) {
   EXPECT_EQ(violation(5), std::nullopt);
   EXPECT_EQ(depth_violation({member("perception", 5, image, drawn), member("report", 5, drawn, {})}, "physics"),
             std::nullopt)
-      << "without a camera, nobody knows how often it is written";
+      << "without a camera, its rate is unknown";
   EXPECT_NE(violation(1).value_or("").find("latency_ticks: found 2 of camera, which writes camera/image"),
             std::string::npos);
 }

@@ -63,7 +63,7 @@ TEST_F(Master, AFastAnswerThatWouldBeTooLongIsAskedForInParts) {
   EXPECT_EQ(seen, ids);
   EXPECT_EQ(bus_.counters().questions, 2u);
 
-  // A gap in the first part: nobody behind it is asked.
+  // A gap in the first part: no servo behind it is asked.
   ASSERT_EQ(bench_.robot->command("silent 2"), "");
   seen.clear();
   EXPECT_EQ(bus_.fast_sync_read(0, kBytes, ids, use), 2u);

@@ -1,4 +1,4 @@
-// Ports that lead to an emulated robot, with a clock that only passes when somebody waits.
+// Ports that lead to an emulated robot, with a clock that advances only while the driver waits.
 #pragma once
 
 #include <algorithm>

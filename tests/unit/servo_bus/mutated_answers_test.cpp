@@ -34,7 +34,7 @@ class MutatingPort final : public Port {
         for (auto& byte : answer) byte = static_cast<std::uint8_t>(random_());
         break;
       default:
-        answer = question_back;  // an adapter that hears itself
+        answer = question_back;  // an adapter that receives what it sends
         break;
     }
     waiting_ = std::move(answer);

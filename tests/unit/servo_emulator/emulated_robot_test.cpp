@@ -108,7 +108,7 @@ TEST_F(Robot, ABrokenCableTakesThePowerOfTheServosBehindIt) {
   EXPECT_EQ(robot_.servo(5).get("torque_enable"), 1);
   EXPECT_EQ(robot_.servo(9).get("torque_enable"), 0);
   write(9, "torque_enable", 1);
-  EXPECT_EQ(robot_.servo(9).get("torque_enable"), 0) << "it does not hear";
+  EXPECT_EQ(robot_.servo(9).get("torque_enable"), 0) << "it does not receive";
   EXPECT_EQ(robot_.command("mend 0"), "");
   write(9, "torque_enable", 1);
   EXPECT_EQ(robot_.servo(9).get("torque_enable"), 1);

@@ -1,4 +1,4 @@
-// An emulated line: who answers, when, and what faults do.
+// An emulated line: which devices answer and when, and what faults do.
 #include <random>
 
 #include "bus_fixture.hpp"
@@ -107,7 +107,7 @@ TEST_F(Line, SyncReadIsAnsweredInTheOrderOfTheIds) {
               dynamixel::put_sync_read(to, 7, 1, Bytes{3, 9, 2});
             })),
             "3:3, ")
-      << "the device after a missing one waits for it in vain";
+      << "the device after a missing one waits for its answer, and does not answer";
 }
 
 TEST_F(Line, FastSyncReadIsAnsweredInOnePacket) {
