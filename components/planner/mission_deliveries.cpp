@@ -1,4 +1,4 @@
-// How the mission planner decides whether an object is delivered, and what it does with one that resists.
+// How the mission planner decides whether an object is delivered, and what it does after failures with an object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,7 +69,7 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.dropped = false;
   memory_.released_tick = -1;
   if (!choose_object()) return end_of_sequence();
-  // What has been pushed off its zone is near.
+  // An object that the robot has pushed off its zone is near.
   return (memory_.displaced >> memory_.object_index & 1u) != 0 ? kSearchObject : kTurnRound;
 }
 

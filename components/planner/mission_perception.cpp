@@ -137,7 +137,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     case msg::kTaskNone:
       choose_search(inputs, wanted);
       break;
-    case msg::kTaskExplore:  // of kApproachAnew; each time another way round
+    case msg::kTaskExplore:  // of kApproachAnew; each time to another side
       parameters.direction = memory_.failures % 3 == 2   ? msg::kDirectionBackwards
                              : memory_.failures % 3 == 0 ? msg::kDirectionLeft
                                                          : msg::kDirectionRight;
@@ -180,8 +180,8 @@ Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) cons
   return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
 }
 
-// Most attempts go by memory: turn towards the remembered place and go there. The others, and all attempts without a
-// memory, alternate between turning left, turning right, forwards and backwards.
+// Most moves use the memory: the robot turns towards the remembered place and moves there. The other moves, and all
+// moves without a remembered place, alternate between turning left, turning right, forwards and backwards.
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
   const unsigned attempt = memory_.searches++;
   const auto turn_rad = wanted_turn_rad(inputs);
@@ -200,7 +200,7 @@ void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& want
       memory_.search_by_memory = false;
     }
   }
-  // After a refusal the same move is pointless.
+  // After a refusal, the same move would be refused again.
   const bool again =
       refusals().rejected() && move.task == memory_.refusals.task &&
       (memory_.refusals.direction == msg::kDirectionNone || move.direction == memory_.refusals.direction);

@@ -59,7 +59,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (const std::string reason = refusals().give_up(memory_.active_s); !reason.empty()) enter(fail(reason));
   memory_.hindrance = hindrance(inputs);
   const bool over = memory_.state == kDone || memory_.state == kFailed;
-  if (over && memory_.goals > 0) return cancellation();  // no state will end the running task any more
+  if (over && memory_.goals > 0) return cancellation();  // the final state would not end the running task
   if (memory_.requested || over) return std::nullopt;
   if (refusals().pausing(memory_.active_s) || barred(memory_.state)) {
     memory_.entered_s += elapsed_s;  // the pause is no part of the state's time
@@ -141,7 +141,7 @@ bool MissionPlanner::waits_for_percepts(const PlannerInputs& inputs) {
     memory_.blind = false;
     resume(inputs);
   }
-  // Grasp and drop work by touch: breaking them off would lose the object.
+  // Grasp and drop need no images, and their cancellation would lose the object.
   const bool by_touch = memory_.state == kGrasp || memory_.state == kDrop;
   if (!by_touch && memory_.unseen_s > config_.blind_pause_s) memory_.blind = true;
   if (memory_.blind && memory_.unseen_s > config_.blind_timeout_s)
@@ -168,7 +168,8 @@ MissionState MissionPlanner::recover(MissionState to) {
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
   for (const auto* event : inputs.events) {
     const bool own = memory_.requested && event->goal_id == kGoalBase + memory_.goals;
-    // The loss of an object may belong to the previous goal, if the event crossed a new request.
+    // The loss of an object may belong to the previous goal, if navigation sent the event before it received a new
+    // request.
     const bool loss = holding() && event->event == msg::kEventObjectGraspLost && event->goal_id > kGoalBase &&
                       event->goal_id <= kGoalBase + memory_.goals;
     if (!own && !loss) continue;
@@ -249,7 +250,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     }
     case kSearchObject:
     case kTrackObject:
-      // A dropped object that was not seen at first may stand on its zone all the same.
+      // A dropped object that no image had shown before may stand on its zone after all.
       return memory_.released_tick >= 0 && dropped_object(inputs).verdict == Delivery::kOnZone
                  ? std::optional(delivered(inputs))
                  : std::nullopt;

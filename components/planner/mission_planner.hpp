@@ -42,7 +42,7 @@ struct WantedTask {
   msg::TaskParameters parameters{};
 };
 
-/// An object that was seen on its zone. Something may push it off again.
+/// An object that was seen on its zone. The robot may push it off again.
 struct PlacedObject {
   std::uint16_t index = 0;          ///< in the sequence
   std::uint16_t handle = 0;         ///< of its landmark; 0: unknown
@@ -142,7 +142,7 @@ class MissionPlanner {
   /// The state after the drop: the next object if the map shows the dropped object on its zone, another attempt if the
   /// map shows it elsewhere, otherwise a look at it.
   [[nodiscard]] MissionState after_drop(const PlannerInputs& inputs);
-  /// The state after this look: what is still uncertain is decided by the likelier case, and an object that was not
+  /// The state after this look: if the verdict is still uncertain, the likelier case counts; an object that was not
   /// seen is searched for. `in_view`: the look has ended because the object stayed in view. All places of the map are
   /// then as good as the robot's own, even if that is uncertain.
   [[nodiscard]] MissionState after_inspection(bool in_view, const PlannerInputs& inputs);
@@ -175,7 +175,7 @@ class MissionPlanner {
   /// The state after navigation's refusal: the same one if the refusal passes by itself, otherwise the state that
   /// follows a failure. It costs no recovery.
   [[nodiscard]] MissionState refused(const std::string& reason, const PlannerInputs& inputs);
-  /// The same state if `input` has refused the request, or navigation has not taken it for a while.
+  /// The same state if `input` has refused the request, or navigation has not answered it for a while.
   [[nodiscard]] std::optional<MissionState> next_without_answer(const PlannerInputs& inputs);
   /// What keeps the mission from its task, as a predicate: a source that has authority, a latched stop, or a refusal.
   [[nodiscard]] std::string hindrance(const PlannerInputs& inputs) const;

@@ -15,7 +15,7 @@ std::uint8_t MissionPlanner::requested_task() const {
 }
 
 bool MissionPlanner::barred(MissionState state) const {
-  // The other states begin for a reason that does not come again, and pause before their first request.
+  // The cause of the other states occurs only once, so they must begin now and pause before their first request.
   const bool may_wait =
       state == memory_.state || state == kTrackObject || state == kFollowLine || state == kTransport || state == kDrop;
   return may_wait && refusals().barred(row_of(state).task, memory_.active_s);

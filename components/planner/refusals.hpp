@@ -39,23 +39,23 @@ struct RefusalMemory {
 };
 
 /// Decides when a request may follow after refusals. All times are active times of the mission [s]. The pauses double
-/// with each refusal, from `refused_pause_s` to `refused_longest_pause_s`. A refusal is not a failed attempt: it costs
-/// no recovery.
+/// with each refusal, from `refused_pause_s` to `refused_longest_pause_s`. A refusal does not count as a failed attempt
+/// or as a recovery.
 class Refusals {
  public:
   Refusals(const PlannerConfig& config, RefusalMemory& memory) : config_(config), memory_(memory) {}
 
   /// A request of this task was accepted.
   void accept(std::uint8_t task);
-  /// The refusal passes by itself: the same request is made again after a pause.
+  /// The refusal is temporary: the same request is made again after a pause.
   void wait(std::uint8_t task, const std::string& reason, double now_s);
-  /// The refusal concerns the request, which is pointless to repeat: another one may follow at once if no other was
-  /// refused just before. The same task must wait.
+  /// The cause is the request itself, so that a repetition would be refused, too. Another request may follow at once,
+  /// unless another one was refused just before. The same task must wait.
   void reject(std::uint8_t task, std::uint8_t direction, const std::string& reason, double now_s);
   void forget() { memory_ = {}; }
 
   [[nodiscard]] bool any() const { return memory_.in_a_row > 0; }
-  /// Whether the last request was refused, and is pointless to repeat.
+  /// Whether the last request was refused, and would be refused again.
   [[nodiscard]] bool rejected() const { return any() && !memory_.again; }
   /// Whether any request has to wait.
   [[nodiscard]] bool pausing(double now_s) const { return any() && now_s < memory_.next_s; }

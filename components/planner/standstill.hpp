@@ -1,4 +1,4 @@
-// A search that gets nowhere, because the robot is caught on something that it does not see.
+// Recognises that a search does not move the robot, because it is caught on an obstacle that it does not see.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct Move {
 /// and forwards again; the next time round to the other side.
 class Standstill {
  public:
-  /// A search begins, at whatever place the robot is.
+  /// A search begins at the present place of the robot.
   void begin() { since_s_ = -1.0; }
   /// The next move, if it must lead away. Call it once for each move of a search, with the head's place [m] in M and
   /// the time [s]. `near_m`, `after_s`: the robot stands still if it stays this near to its place for this time.
