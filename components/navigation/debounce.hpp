@@ -27,7 +27,7 @@ struct DebounceConfig : ParameterSet {
   }
 };
 
-/// Takes one more image. `shown`: the thing is in it.
+/// Updates `state` with the next image. `shown`: the image shows the line, object or zone.
 inline void debounce(const DebounceConfig& config, bool shown, Visibility& state) {
   state.seen = shown ? state.seen + 1 : 0;
   state.missed = shown ? 0 : state.missed + 1;

@@ -86,8 +86,8 @@ class PlantPort {
   /// Begins a new epoch. Where `epochs`.
   virtual void begin_epoch() {}
   [[nodiscard]] virtual std::uint32_t epoch() const { return 0; }
-  /// Has the plant's process killed and started again, and does not wait for it. Returns why that cannot be done;
-  /// empty: it is being done.
+  /// Kills the plant's process and orders its restart, without waiting for the new process. Returns why this is not
+  /// possible; empty: the restart has begun.
   [[nodiscard]] virtual std::string restart() = 0;
   /// A number that is another one after each start of the plant's process, as far as it is known by now.
   [[nodiscard]] virtual std::uint64_t incarnation() const = 0;
