@@ -9,7 +9,7 @@
 namespace constrictor {
 namespace {
 constexpr std::uint64_t kMaxOwnGoal = 0xffffffffu;
-constexpr std::size_t kMaxSources = 64;        // at a time; dead sources are forgotten
+constexpr std::size_t kMaxSources = 64;        // at a time; sources whose process has ended are removed
 constexpr std::size_t kKeptForOperators = 16;  // of kMaxSources
 constexpr std::uint64_t kRemembered = 64;      // sequence numbers of a source with a known decision
 
@@ -41,7 +41,7 @@ void Arbiter::note(const msg::Request& request) {
   state_.answered_sequence = request.header.sequence_number;
 }
 
-/// A dead holder is forgotten when it loses authority.
+/// A holder whose process has ended is removed when it loses authority.
 void Arbiter::forget_gone_holder() {
   const auto holder = state_.sources.find(state_.holder);
   if (holder != state_.sources.end() && holder->second.gone) state_.sources.erase(holder);

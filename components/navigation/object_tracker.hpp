@@ -76,7 +76,7 @@ void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectP
 /// Averages the heights of the objects over the images, for the blobs that update_object_tracker takes for them.
 void measure_heights(const RobotModel& robot, const msg::ObjectPercepts& percepts, ObjectTrackerState& state);
 
-/// Forgets the places of objects and zones that the map has given up: their landmark is gone, and the map has no other
+/// Discards the places of objects and zones that the map has given up: their landmark is gone, and the map has no other
 /// one there.
 void forget_dropped(const ObjectTrackerConfig& config, const msg::FieldMap& map, ObjectTrackerState& state);
 

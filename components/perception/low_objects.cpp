@@ -15,8 +15,8 @@ constexpr double kHorizonPixels = 3.0;
 
 enum class Rise { kFlat, kLow, kDoubtful };
 
-/// A region of which the image shows one side. Close to this side a disc is thin, so that its two edges meet.
-/// `height_m` becomes the height of what rises there.
+/// A region of which the image shows one side. Close to this side a disc is thin: its nearest and farthest edges
+/// coincide there. `height_m` becomes the height of what rises there.
 Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
                   const Sides& sides, double& height_m) {
   constexpr double kInside = 2.5;  // [pixel]
@@ -52,7 +52,7 @@ void mark_low_objects(const cv::Mat& rgb, const GroundCamera& camera, const Perc
   for (std::size_t i = 0; i < regions.regions.size(); ++i) {
     Region& region = regions.regions[i];
     if (region.area < config.min_area_pixels || region.line) continue;
-    // Something as high as the camera reaches above the horizon with a few pixels at most.
+    // An object as high as the camera reaches above the horizon by a few pixels at most.
     const double horizon = std::min(camera.horizon_row(region.u_min), camera.horizon_row(region.u_max + 1.0));
     const double above = horizon - region.v_min;
     if (region.standing() && above > kHorizonPixels) continue;

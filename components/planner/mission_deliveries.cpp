@@ -86,7 +86,7 @@ void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double el
   if (!inputs.map) return;
   const auto off_zone = [&](PlacedObject& object) {
     const std::uint8_t colour = config_.sequence[object.index];
-    bool all = true;  // of this colour are delivered, so that an object that appears now is one of them
+    bool all = true;  // all objects of this colour are delivered: an object that appears now is one of them
     for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
     constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
     if (!all && object.handle == 0) return false;

@@ -1,5 +1,5 @@
 // The servos of all joints: start-up, one round of reading and one of writing in each tick, and what to do when a servo
-// is lost, shut down or locked. It sees the buses only, and reads no clock.
+// is lost, shut down or locked. It accesses only the buses, and reads no clock.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ class JointServos {
   [[nodiscard]] std::string name_of(std::size_t joint) const;
   /// Every joint can follow commands.
   [[nodiscard]] bool complete() const;
-  /// The watchdog of a servo has tripped: it obeys nothing until unlock().
+  /// The watchdog of a servo has tripped: it executes no command until unlock().
   [[nodiscard]] bool locked() const;
   /// Clears the watchdogs; the present positions become the goals, so that nothing moves.
   void unlock();

@@ -1,5 +1,5 @@
 // The component `servo_bus`, the plant of a real robot: it drives the joints over serial buses and owns the time of the
-// run, at real-time pace. It sees nothing but the buses.
+// run, at real-time pace. It accesses only the buses.
 #pragma once
 
 #include "component/component.hpp"

@@ -23,6 +23,6 @@ int main(int argc, char** argv) {
   const int status =
       constrictor::component_main(argc - skipped, argv + skipped, constrictor::make_video_capture_factory());
   std::fflush(nullptr);
-  // A thread may still wait for a source that does not answer. It must not meet destructors of the libraries.
+  // A thread may still wait for a source that does not answer. The libraries must not be destroyed while it runs.
   ::_exit(status);
 }

@@ -51,7 +51,8 @@ class EmulatedCamera {
   /// The next frame of the camera in a world.
   [[nodiscard]] EmulatedFrame expose(const msg::WorldState& world);
 
-  /// Obeys a line such as "blur 3". README.md lists the commands. Returns why it refuses the line; empty: obeyed.
+  /// Executes a line such as "blur 3". README.md lists the commands. Returns why the line is refused; empty: it was
+  /// executed.
   [[nodiscard]] std::string command(const std::string& line);
   [[nodiscard]] const CameraFaults& faults() const { return faults_; }
 

@@ -62,7 +62,7 @@ struct ObjectLedger {
                                      const msg::WorldState& world) const;
 };
 
-/// What the robot believes of an object: from the events of its tasks alone.
+/// The robot's estimate of what happened to an object: from the events of its tasks alone.
 struct BelievedObject {
   std::uint8_t colour = msg::kColourUnknown;
   bool grasped = false;

@@ -58,7 +58,7 @@ struct ReportState {
 /// Pictures of the scene are drawn from saved world states when the run ends. Without an output directory it judges the
 /// mission and ends the run, but writes nothing. It ends the run `settle_s` after the end of the mission, or at
 /// `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same files, and they give this
-/// end as the reason. Without ground truth (a real robot, or emulated hardware), success is what the robot believes,
+/// end as the reason. Without ground truth (a real robot, or emulated hardware), success is the robot's own estimate,
 /// and the figures that need ground truth are unknown.
 class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:

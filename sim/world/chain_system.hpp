@@ -19,7 +19,7 @@ struct SystemBody {
   Matrix6d inertia = Matrix6d::Zero();
   Vector6d impulse = Vector6d::Zero();   ///< of all but contacts and servos in this step: h (external - velocity terms)
   Vector6d velocity = Vector6d::Zero();  ///< before and, once it is solved, after the step
-  Vector6d change = Vector6d::Zero();    ///< of the velocity by the last step, at which the search for this one begins
+  Vector6d change = Vector6d::Zero();    ///< of the velocity in the last step; the solver starts from it
 };
 
 /// The system's unknowns are the generalised velocities at the end of the step: the six of the head, the rates of the

@@ -1,5 +1,5 @@
 // The servo of one joint: position controller, rotor, gear and, in some robots, a spring between gear and joint. It
-// knows nothing of ODE: it gives the solver one row for each step.
+// does not depend on ODE: it gives the solver one row for each step.
 #pragma once
 
 #include "robot/joint_limits.hpp"

@@ -69,7 +69,7 @@ TEST(RuntimeRefusals, AnEndpointThatDoesNotMatchIsNamedWithItsQos) {
     const dds::Entity named = write_as("control");
     EXPECT_TRUE(physics.wait_for(
         here + " (best effort, transient-local, keep-last 3); reliability: the writer offers best effort, the reader "
-               "wants reliable",
+               "requests reliable",
         20s))
         << physics.errors();
   }

@@ -1,5 +1,5 @@
-// The conductor: it knows which members take part, decides when the next tick may come and what the tick makes visible,
-// and lets restarted members resume. Without DDS and clock.
+// The conductor: it tracks which members take part, decides when the next tick may come and what the tick makes
+// visible, and lets restarted members resume. Without DDS and clock.
 #pragma once
 
 #include <cstdint>

@@ -116,7 +116,7 @@ void Member::on_epoch(const EpochId& epoch, std::uint64_t seed) {
     return;
   }
   if (epoch_ && (epoch.run_id != epoch_->run_id || epoch.epoch < epoch_->epoch)) {
-    return refuse("epoch: of another run, or older than the present one");
+    return refuse("epoch: it belongs to another run, or is older than the present one");
   }
   step_.reset();  // its outputs belong to the previous epoch
   written_.clear();

@@ -36,7 +36,7 @@ struct Hello {
   Timing timing;
   TopicSet reads;
   TopicSet writes;
-  std::string proof;  ///< that the writer knows the run's token; empty: it was given none
+  std::string proof;  ///< proof that the writer has the run's token; empty: it has none
 };
 
 /// Hello.component_hash of a component, made from the hashes of the two files in hexadecimal.

@@ -29,7 +29,7 @@ constexpr auto kQuiet = 250ms;
 /// What the table of topics says about a topic.
 struct Row {
   std::string type;
-  std::string owner;  ///< who writes it, for people
+  std::string owner;  ///< its writer, as a text for people
   bool of_clients = false;
 };
 

@@ -1,4 +1,4 @@
-// What a component is: a step function with declared ports and one serialisable state. Nothing here knows DDS.
+// What a component is: a step function with declared ports and one serialisable state. Nothing here depends on DDS.
 #pragma once
 
 #include <cstdint>

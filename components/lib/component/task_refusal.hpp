@@ -1,4 +1,4 @@
-// How navigation's refusals of tasks are classified by those who asked.
+// How the programs that request tasks classify navigation's refusals.
 #pragma once
 
 #include <string>

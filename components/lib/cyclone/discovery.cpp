@@ -175,9 +175,9 @@ std::string mismatch(const Endpoint& writer, const Endpoint& reader) {
     return fmt::format("key: the writer has {}, the reader {}", writer.keyed ? "one" : "none",
                        reader.keyed ? "one" : "none");
   if (reader.qos.reliable && !writer.qos.reliable)
-    return "reliability: the writer offers best effort, the reader wants reliable";
+    return "reliability: the writer offers best effort, the reader requests reliable";
   if (reader.qos.transient_local && !writer.qos.transient_local) {
-    return "durability: the writer offers volatile, the reader wants transient-local";
+    return "durability: the writer offers volatile, the reader requests transient-local";
   }
   // An empty list stands for XCDR1 alone.
   const std::int16_t offered =

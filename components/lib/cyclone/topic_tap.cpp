@@ -34,7 +34,7 @@ void TopicTap::read(const Endpoint& writer) {
     readings_.emplace(key, std::move(reading));
     return;
   }
-  // A reader that asks for more than a writer offers does not meet it.
+  // DDS does not match a reader with a writer that offers less than the reader requests.
   Reading& reading = known->second;
   const RawQos least{reading.qos.reliable && offered.reliable, reading.qos.transient_local && offered.transient_local,
                      everything_};

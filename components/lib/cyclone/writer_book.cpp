@@ -7,7 +7,7 @@
 namespace constrictor::dds {
 namespace {
 
-constexpr std::size_t kMostDead = 512;  // dead writers whose samples may still be waiting in a reader
+constexpr std::size_t kMostDead = 512;  // deleted writers whose samples may still wait in a reader
 
 GuidPrefix prefix_of(const dds_guid_t& guid) {
   GuidPrefix prefix{};

@@ -64,7 +64,8 @@ struct BusPlan {
   std::vector<BusPort> ports;
   std::vector<JointServo> joints;  ///< from head to tail
   std::optional<SensorBoard> imu;  ///< empty: the robot has no inertial unit on a bus
-  /// Whether the devices are asked with Fast Sync Read; empty: the servos, if their firmware knows it, and the boards.
+  /// Whether the devices are asked with Fast Sync Read; empty: the servos, if their firmware supports it, and the
+  /// boards.
   std::optional<bool> fast_sync_read;
   std::vector<SensorBoard> contact_boards;  ///< one for each module, from the head; empty: no contact sensors
 

@@ -59,7 +59,7 @@ struct ServoModel {
   double stall_torque_nm = 0.0;
   double stall_current_a = 0.0;
   double no_load_speed_rad_s = 0.0;
-  int fast_sync_read_from = 46;     ///< firmware from which on the servo knows Fast Sync Read
+  int fast_sync_read_from = 46;     ///< first firmware that supports Fast Sync Read
   std::vector<Register> registers;  ///< by rising address, without overlap
 
   /// The register with this name. Throws std::out_of_range if the model has none.

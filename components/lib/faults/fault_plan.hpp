@@ -1,4 +1,4 @@
-// A file of faults that a run is to suffer: `constrictor run --faults FILE`.
+// A file of faults to inject into a run: `constrictor run --faults FILE`.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,7 @@ struct ProcessFault {
   double step_ms = 0.0;       ///< [ms] wall time, of kSlow
 };
 
-/// What happens to an emulated device that runs beside the run. It is no member, so that it knows no tick.
+/// What happens to an emulated device that runs beside the run. It is not a member, so it receives no ticks.
 struct DeviceFault {
   DeviceOrder order;
   std::int64_t from_ns = 0;   ///< simulated time

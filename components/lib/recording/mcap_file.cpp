@@ -79,7 +79,7 @@ void File::truncate(std::uint64_t size) const {
 }
 
 void File::reserve(std::uint64_t offset, std::uint64_t size) const {
-  // fallocate() does not heed the limit of the shell (ulimit -f), but write() does.
+  // fallocate() ignores the limit of the shell (ulimit -f), but write() does.
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && offset + size > limit.rlim_cur)
     fail("cannot be written", EFBIG);

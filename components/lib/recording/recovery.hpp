@@ -1,4 +1,4 @@
-// What can be read of a damaged recording, as a complete one.
+// Copies the readable part of a damaged recording into a complete recording.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct Recovered {
   std::uint64_t chunks = 0;
   std::uint64_t left_out_bytes = 0;  ///< of the damaged file
   std::uint64_t places = 0;          ///< at which something is left out
-  std::string why;                   ///< of the first one
+  std::string why;                   ///< reason at the first of these places
 };
 
 /// Writes what can be read of `damaged` into the new file `copy`: messages, attachments and metadata. Its metadata

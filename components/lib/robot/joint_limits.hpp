@@ -1,4 +1,4 @@
-// The limits of a joint. Control never demands more, and the plant never obeys more.
+// The limits of a joint. Control never demands more, and the plant never accepts more.
 #pragma once
 
 #include "robot/robot_model.hpp"

@@ -21,9 +21,9 @@ namespace constrictor::dds {
 /// Topic on which clients send requests.
 inline constexpr const char* kRequestTopic = barrier_topics::kRequest;
 
-/// Tracks which writers that the reader of `request/v2` has met are alive. DDS reports the end of a source only if the
-/// reader has taken a sample of it. A restarted process has none of the samples of its predecessor, so it must track
-/// the writers themselves.
+/// Tracks which writers that were matched with the reader of `request/v2` are alive. DDS reports the end of a source
+/// only if the reader has taken a sample of it. A restarted process has none of the samples of its predecessor, so it
+/// must track the writers themselves.
 class WriterTracker {
  public:
   /// `grace`: time after the start in which a writer may still be discovered.

@@ -87,7 +87,7 @@ class ComponentReplay {
         with_faults(std::move(*factory), plan_), run_.setup_of(name), run_.pixels, run_.requests,
         [this](const TopicInfo& topic, const Sample& sample) { pass_on(topic, sample); });
     if (run_.pixels) return;
-    // Who reads images needs their pixels: their writers make them again.
+    // Components that read images need the pixels: the components that write the images are replayed, too.
     for (const auto& topic : topics::kInfos) {
       const std::string writer(topic.writer);
       if (is_image(topic) && members_[name]->member().reads().contains(topic.id) &&

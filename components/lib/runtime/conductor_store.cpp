@@ -101,7 +101,7 @@ bool ConductorSide::stays() {
   const auto now = HostContext::Clock::now();
   if (!stays_until_) {
     stays_until_ = now + (context_.options.incarnation > 1 ? kSuccessorStays : kStay);
-    members_.publish_last_statuses();  // by them the launcher knows that the run is over
+    members_.publish_last_statuses();  // they show the launcher that the run is over
   }
   context_.note_progress();
   return now < *stays_until_ && !all_ended();

@@ -27,7 +27,7 @@ constexpr auto kWaitingReportInterval = std::chrono::seconds(1);
 
 // Bounds on the time in which a process that ends waits until its last messages have been received.
 constexpr dds_duration_t kWaitForMembers_ns = DDS_SECS(2);   // the plant's process, while a member has not ended
-constexpr dds_duration_t kWaitForLauncher_ns = DDS_SECS(1);  // by the plant's last status it knows that the run is over
+constexpr dds_duration_t kWaitForLauncher_ns = DDS_SECS(1);  // the plant's last status shows it that the run is over
 constexpr dds_duration_t kWaitAlone_ns = DDS_MSECS(500);     // every other process, for readers that are not members
 
 volatile std::sig_atomic_t g_stop = 0;

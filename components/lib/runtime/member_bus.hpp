@@ -25,8 +25,8 @@ struct Unmatched {
 
 class MemberBus {
  public:
-  /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws Error.
-  /// `book`: notes the writers that the readers meet, and must outlive them; null: none.
+  /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws Error. `book`:
+  /// notes the writers that are matched with the readers, and must outlive them; null: none.
   MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
             WriterBook* book = nullptr);
 

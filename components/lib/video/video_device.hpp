@@ -15,7 +15,7 @@ namespace constrictor::video {
 
 /// What is asked of a device. A device that does not obey is used all the same, and says so in its news.
 struct DeviceRequest {
-  int width = 0, height = 0;  ///< [pixel] 0: as the device likes
+  int width = 0, height = 0;  ///< [pixel] 0: the default of the device
   double frame_rate_hz = 30.0;
   double timeout_s = 1.0;  ///< for opening and for each frame
   bool lock_exposure = true;

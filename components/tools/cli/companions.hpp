@@ -27,7 +27,7 @@ class Companions {
 
   /// Prints a line for each program that has ended since the last call.
   void poll();
-  /// Breaks emulated devices by lines in their pipes for commands. Prints which one does not listen.
+  /// Injects faults into emulated devices, by lines in their command pipes. Prints the devices that do not read theirs.
   void obey(const std::vector<FaultDirector::Command>& commands);
 
  private:

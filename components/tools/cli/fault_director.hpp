@@ -1,5 +1,5 @@
-// Carries out the faults of processes and devices that a run is to suffer (`run --faults`): decides which process gets
-// which signal when, and which device which command. Pure: its owner sends them.
+// Injects the faults of processes and devices of a run (`run --faults`): decides which process gets which signal when,
+// and which device which command. Pure: its owner sends them.
 #pragma once
 
 #include <chrono>

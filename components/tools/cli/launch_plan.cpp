@@ -37,7 +37,7 @@ void require_program_of(const ProcessPlan& process) {
   require_program(process.program, "process " + process.name());
 }
 
-/// The faults that the run is to suffer; what they name must exist in this run.
+/// The faults to inject into the run; the components and topics that they name must exist in this run.
 FaultPlan load_faults(const std::string& file, const LaunchPlan& plan) {
   if (file.empty()) return {};
   const RobotModel robot = load_robot(plan.manifest.robot_file);

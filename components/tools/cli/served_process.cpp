@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kShortestPause = 200ms;
 constexpr auto kLongestPause = 10000ms;
-constexpr auto kSoon = 5s;  // a process that lives for a shorter time will probably die at its next start, too
+constexpr auto kSoon = 5s;  // a process that ends sooner will probably end as soon after its next start
 constexpr std::uint32_t kLargestIncarnation = 1'000'000;
 constexpr std::size_t kLongestLine = 4096;
 constexpr int kNoSuchProgram = 127;

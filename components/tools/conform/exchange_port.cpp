@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kMostSilence = 30s;  // a part that is silent for longer counts as dead
+constexpr auto kMostSilence = 30s;  // a part that sends nothing for longer counts as failed
 constexpr auto kStatusBound = 3s;
 constexpr std::int64_t kStatusEvery_ticks = 50;
 

@@ -13,7 +13,7 @@ constexpr std::chrono::seconds kMostSilence{15};  // a restarted plant needs som
 
 double clock_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Takes the place of `control`: shows what it sees to the checks, and writes the command that they give.
+/// Takes the place of `control`: passes its inputs to the checks, and writes the command that they give.
 class ConformControl final : public Component {
  public:
   ConformControl(Wiring& wiring, TickExchange& exchange)

@@ -25,7 +25,7 @@ class TickExchange {
     std::uint32_t epoch = 0;
     std::int64_t tick = -1;
   };
-  /// The component, at each tick: adds what it sees. Returns the command of this tick; empty: none.
+  /// Called by the component at each tick: adds its inputs. Returns the command of this tick; empty: none.
   std::optional<PlantCommand> step(Observed observed);
   /// The checks: gives the command of the next tick and waits until the component has taken it. Returns what the
   /// component has seen since the last call. Throws PlantGone if the run has ended, or makes no ticks.

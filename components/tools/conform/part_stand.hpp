@@ -11,8 +11,8 @@
 
 namespace constrictor::conform {
 
-/// Where the surroundings and the checks meet. The leader is the component that exchanges messages with the checks:
-/// the plant of the run, or the only component of the surroundings.
+/// Connects the surroundings with the checks. The leader is the component that exchanges messages with the checks: the
+/// plant of the run, or the only component of the surroundings.
 class StandBoard {
  public:
   virtual ~StandBoard() = default;

@@ -200,7 +200,7 @@ void PlantConformance::check_stop(std::size_t joint) {
 }
 
 void PlantConformance::check_epoch(std::size_t joint) {
-  if (!port_.abilities().epochs) return report_.skip("epoch", "the process knows sessions, not epochs");
+  if (!port_.abilities().epochs) return report_.skip("epoch", "the process has sessions, not epochs");
   const std::uint32_t before = port_.epoch();
   port_.begin_epoch();
   for (const double begin_s = port_.now_s(); port_.epoch() == before && port_.now_s() - begin_s < 10.0;)

@@ -41,7 +41,8 @@ void PlantConformance::check_restart(std::size_t joint) {
     for (const double begin_s = port_.now_s(); port_.stopped() && port_.now_s() - begin_s < kStopBound_s;)
       hand_.watch(profile_.period_s);
   }
-  check_return(joint, "restart", "obey the session that goes on: a new process knows no number of it");
+  check_return(joint, "restart",
+               "obey the session that continues: a new process has not yet received any number of it");
 }
 
 std::string PlantConformance::restart_fault(const std::vector<double>& rest_rad, std::uint64_t before) {

@@ -25,7 +25,7 @@ inline constexpr const char* kParameterList = "param_list";
 
 /// The services that the page and other viewers can call: `pause`, `resume`, `step` {"ticks": N}, `pace` {"pace": X}
 /// (0: as fast as possible), `stop` (emergency stop), `clear_stop`, `param_list`, `param_set` {"name", "value"}, and
-/// those of Driver. The run obeys or refuses them as it does the commands of `constrictor`.
+/// those of Driver. The run accepts or refuses them like the commands of `constrictor`.
 class Commands : public Controls {
  public:
   explicit Commands(const RunNote& run);

@@ -24,7 +24,7 @@ class Controls {
   [[nodiscard]] virtual std::vector<std::string> services() const = 0;
   /// DDS participant in the domain, for readers of this process.
   [[nodiscard]] virtual std::int32_t participant() const = 0;
-  /// Obeys a call, in another thread if it must wait.
+  /// Carries out a call, in another thread if it must wait.
   virtual void add(WebServer::Call call) = 0;
   /// Why parameters cannot be changed; empty: they can be, by change().
   [[nodiscard]] virtual std::string frozen() const { return "a recording cannot be changed"; }

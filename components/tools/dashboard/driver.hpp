@@ -31,8 +31,8 @@ class Driver {
       : client_(domain, operator_client("dashboard", ending)) {}
   [[nodiscard]] std::int32_t participant() const { return client_.participant(); }
 
-  /// Obeys `drive` {"speed_m_s", "turn_rad_s"} (both 0: let go), `stand`, `task` {"task": "rotate direction=left"},
-  /// `take`, `release`. Returns the answer; throws std::exception with the reason of a refusal.
+  /// Carries out `drive` {"speed_m_s", "turn_rad_s"} (both 0: let go), `stand`, `task` {"task": "rotate
+  /// direction=left"}, `take`, `release`. Returns the answer; throws std::exception with the reason of a refusal.
   std::string obey(const WebServer::Call& call);
   /// To be called at least every 50 ms: ends a drive that no viewer repeats.
   void watch();

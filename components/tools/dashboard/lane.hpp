@@ -28,7 +28,7 @@ class Answers {
 /// One thread with its queue. An emergency stop must not wait for the answer to a pause, so there are several.
 class Lane {
  public:
-  /// Obeys a call and returns its answer; throws std::exception with the reason of a refusal.
+  /// Carries out a call and returns its answer; throws std::exception with the reason of a refusal.
   using Do = std::function<std::string(const WebServer::Call&)>;
   /// Calls of the service `newest_only` take the place of a waiting call of the same kind, which is answered at once.
   /// `each_turn` is called between calls, at least every 50 ms; empty: never.

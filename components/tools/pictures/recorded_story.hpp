@@ -16,7 +16,7 @@
 
 namespace constrictor::pictures {
 
-/// A recording, or a wish, that cannot be fulfilled: the message says what to do. Exit status 78.
+/// A recording or a choice of which no picture can be made: the message says what to do. Exit status 78.
 class NoPicture : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -62,7 +62,7 @@ TEST_F(MemberTest, ImpossibleMessagesAndMessagesOfAnotherEpochAreRejectedAndCoun
   member->on_tick(tick_at(-5));
   rejected("index -5");
   member->on_epoch({8, 1}, 1);
-  rejected("epoch: of another run");
+  rejected("epoch: it belongs to another run");
   msg::JointState not_a_number{};
   not_a_number.joint_count = 1;
   not_a_number.position_rad[0] = std::nan("");

@@ -70,7 +70,7 @@ int keys(const KeysOptions& options) {
   issue(folder, "observer", rights_of_observer(), identities, permissions, options.days);
   fmt::print(
       "`constrictor run --secure {0}` uses them, and sends the keys of its own processes to each other host.\n"
-      "Keep authority/ in a safe place: anybody who has it can make further identities.\n",
+      "Keep authority/ in a safe place: every person who has it can make further identities.\n",
       folder.string());
   return exit_status::kOk;
 }

@@ -122,7 +122,7 @@ class Player {
     return {seconds(position_ns_), seconds(end_ns_), speed_.value_or(0.0), paused_, over_, options_.file.string()};
   }
 
-  /// Obeys programs that control the replay.
+  /// Executes the commands of programs that control the replay.
   void obey_control() {
     controlled_ = Clock::now();
     std::optional<Seek> seek;

@@ -178,7 +178,7 @@ export class Forces {
   }
 }
 
-/** The pose and the map that the robot believes in, drawn in the frame M of its map. */
+/** The robot's estimated pose and map, drawn in the frame M of its map. */
 export class Estimate {
   constructor({ module_length_m: length, module_radius_m: radius }) {
     this.group = new THREE.Group();

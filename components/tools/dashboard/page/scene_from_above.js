@@ -46,7 +46,7 @@ function drawRobot(context, state) {
   }
 }
 
-/** The pose and the map that the robot believes in, over the truth. */
+/** The robot's estimated pose and map, over the true ones. */
 function drawEstimate(context, state) {
   if (!state.start) return;
   const [x0, y0, yaw0] = state.start;
