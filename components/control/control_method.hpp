@@ -12,7 +12,7 @@
 
 namespace constrictor {
 
-/// What sliding mode control remembers from one tick to the next. Serialisable.
+/// The state of sliding mode control between ticks. Serialisable.
 struct SlidingState {
   bool started = false;
   JointArray reference_rad{};   ///< of the previous tick

@@ -27,11 +27,11 @@ struct Disc {
   double sd_m = 0.0;  ///< standard deviation of the place
 };
 
-/// What an image could show, at its exposure.
+/// The percepts of an image, and the bodies that may hide a landmark in it, at its exposure.
 struct View {
   const RobotModel& model;
   const msg::ObjectPercepts& percepts;
-  std::vector<Disc> screens;  ///< what may hide a landmark: other objects of the map, and the modules of the body
+  std::vector<Disc> screens;  ///< they may hide a landmark: other objects of the map, and the modules of the body
 };
 
 /// Whether the image must show a landmark of this colour at this place: it lies in the field of view with a margin that

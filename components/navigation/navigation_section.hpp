@@ -1,4 +1,4 @@
-// What the groups of navigation's parameters share: bounds, and rows for gaits and PID controllers.
+// Parts that all groups of navigation's parameters use: bounds, and rows for gaits and PID controllers.
 #pragma once
 
 #include <string>

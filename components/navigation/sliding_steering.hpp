@@ -16,8 +16,8 @@ struct SlidingSteeringConfig : ParameterSet {
                           "On the surface, the offset of the line falls by a factor of e along this distance");
 };
 
-/// What an image shows of the line: at `ahead_m` in front of the head its offset and its direction relative to the
-/// head, positive to the left, and its curvature, which counts as constant up to there.
+/// The line in an image: at `ahead_m` in front of the head its offset and its direction relative to the head, positive
+/// to the left, and its curvature, which counts as constant up to there.
 struct LineAhead {
   double ahead_m = 0.0;
   double offset_m = 0.0;

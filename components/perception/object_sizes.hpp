@@ -1,5 +1,5 @@
-// What earlier images have shown of the size of objects, by colour. Where the ground under an object has its colour,
-// its foot cannot be seen: the known size then gives the range.
+// The sizes of objects in earlier images, by colour. Where the ground under an object has its colour, its foot cannot
+// be seen: the known size then gives the range.
 #pragma once
 
 #include <algorithm>

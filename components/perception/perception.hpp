@@ -29,7 +29,7 @@ struct PerceptionState {
   std::uint64_t images = 0;        ///< number of processed images
   std::uint64_t fingerprint = 0;   ///< of the last image
   int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
-  perception::ObjectSizes sizes;   ///< what the images have shown so far
+  perception::ObjectSizes sizes;   ///< from the images so far
   perception::GroundSlope slope;
   ParameterState parameters;
   template <class Archive>

@@ -29,7 +29,7 @@ struct Sides {
 /// `rgb` is the smoothed image.
 [[nodiscard]] Sides sides_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index);
 
-/// What a line of sight through a region has shown.
+/// The result of a line of sight through a region.
 struct Path {
   double aside_rad = 0.0;  ///< from the middle azimuth
   double near_m = 0.0;     ///< distance of the lowest edge on the ground

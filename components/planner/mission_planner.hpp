@@ -94,7 +94,7 @@ struct MissionMemory {
   std::uint8_t direction = msg::kDirectionNone;  ///< of the last requested rotate or explore
   LineTrail trail;
   std::string reason;                  ///< why the mission failed
-  std::string hindrance;               ///< what keeps the mission from its task, as a predicate; empty: nothing
+  std::string hindrance;               ///< the hindrance of the mission, as a predicate; empty: none
   double suspended_s = 0.0;            ///< duration of the present suspension
   double unseen_s = 0.0;               ///< time without percepts
   bool blind = false;                  ///< the mission waits for percepts
@@ -177,7 +177,7 @@ class MissionPlanner {
   [[nodiscard]] MissionState refused(const std::string& reason, const PlannerInputs& inputs);
   /// The same state if `input` has refused the request, or navigation has not answered it for a while.
   [[nodiscard]] std::optional<MissionState> next_without_answer(const PlannerInputs& inputs);
-  /// What keeps the mission from its task, as a predicate: a source that has authority, a latched stop, or a refusal.
+  /// The hindrance of the mission, as a predicate: a source that has authority, a latched stop, or a refusal.
   [[nodiscard]] std::string hindrance(const PlannerInputs& inputs) const;
   // Percepts.
   void count_percepts(const PlannerInputs& inputs);

@@ -1,4 +1,4 @@
-// What the mission planner does when its requests are refused, or not answered.
+// The reaction of the mission planner to requests that are refused or not answered.
 #include <fmt/format.h>
 
 #include "component/task_refusal.hpp"

@@ -1,4 +1,4 @@
-// What the planner remembers of refused requests, and how long it waits before it asks again.
+// The refused requests of the planner, and the pauses before it makes requests again.
 #pragma once
 
 #include <cereal/types/string.hpp>
@@ -64,7 +64,7 @@ class Refusals {
   /// Why the mission must end: nothing, or not this task again and again, was accepted for `refused_timeout_s`. Empty:
   /// it goes on.
   [[nodiscard]] std::string give_up(double now_s) const;
-  /// What the mission does about the last refusal, for people: a predicate. Empty after an acceptance.
+  /// The reaction of the mission to the last refusal, as a predicate for people. Empty after an acceptance.
   [[nodiscard]] std::string answer() const;
 
  private:

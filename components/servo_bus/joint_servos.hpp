@@ -14,7 +14,7 @@
 
 namespace constrictor {
 
-/// What a servo reports of itself and of its joint.
+/// The measurements of a servo, and those of its joint.
 struct JointReading {
   double angle_rad = 0.0;
   double rate_rad_s = 0.0;
@@ -63,7 +63,7 @@ class JointServos {
   void unlock();
   /// Why the servos at a port are asked with Sync Read, and not with Fast Sync Read; empty: they are not.
   [[nodiscard]] std::string slow_because(std::size_t port) const;
-  /// What happened since the last call, one line each.
+  /// Texts on the events since the last call, one line each.
   [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
  private:

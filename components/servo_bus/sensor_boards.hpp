@@ -26,7 +26,7 @@ class SensorBoards {
   /// [rad] yaw of the board at the first reading, which a successor needs; NaN before it.
   [[nodiscard]] double start_yaw_rad() const { return start_yaw_rad_; }
   void set_start_yaw(double yaw_rad) { start_yaw_rad_ = yaw_rad; }
-  /// What happened since the last call, one line each.
+  /// Texts on the events since the last call, one line each.
   [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
  private:

@@ -1,4 +1,4 @@
-// What the generated header constrictor/messages.hpp says about messages, their fields and the constants in them.
+// The descriptions of messages, their fields and constants in the generated header constrictor/messages.hpp.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ struct ConstantGroup {
   std::span<const char* const> names;  ///< by value: "unknown", "green", ...
 };
 
-/// What the IDL says about one field.
+/// The description of one field in the IDL.
 struct FieldInfo {
   const char* name;
   const char* unit;  ///< without brackets; may be empty

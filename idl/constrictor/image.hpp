@@ -1,4 +1,4 @@
-// What every reader of images checks before it uses their pixels.
+// The check that every reader of images makes before it uses their pixels.
 #pragma once
 
 #include <string>

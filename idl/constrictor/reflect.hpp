@@ -1,4 +1,4 @@
-// What works on any message by its description: validation, deterministic bytes, deep copies.
+// Functions that work on any message by its description: validation, deterministic bytes, deep copies.
 #pragma once
 
 #include <cmath>

@@ -6,8 +6,8 @@
 
 namespace constrictor {
 
-/// What is wrong with the images, as an experiment. The defaults change no byte of them. Intensity is the light on a
-/// pixel: the square of its value, because the display's gamma is a square root.
+/// Errors that are added to the images, as an experiment. The defaults change no byte of the images. Intensity is the
+/// light on a pixel: the square of its value, because the display's gamma is a square root.
 struct CameraErrorConfig : ParameterSet {
   double dropped_share =
       add(dropped_share, "dropped_share", 0.0, "", {0.0, 1.0}, kAtStart, "Share of the images that are never written");

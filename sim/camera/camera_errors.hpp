@@ -1,4 +1,4 @@
-// What a bad camera does to images: the parameters `error.*` of the camera.
+// The errors of a bad camera in the images: the parameters `error.*` of the camera.
 #pragma once
 
 #include <cstdint>

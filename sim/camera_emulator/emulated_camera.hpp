@@ -18,7 +18,7 @@ namespace constrictor::camera_emulator {
 
 using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-/// What is wrong with the camera.
+/// The faults of the camera.
 struct CameraFaults {
   bool off = false;     ///< its port refuses connections
   bool silent = false;  ///< connections stay open, but no frame is sent

@@ -1,4 +1,4 @@
-// What the programs of emulated devices have in common: their command line, their end, and the commands to them.
+// The common parts of the programs of emulated devices: their command line, their end, and the commands to them.
 #pragma once
 
 #include <functional>

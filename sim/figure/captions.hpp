@@ -1,4 +1,4 @@
-// What the figure and the film say of an event.
+// The texts of the figure and the film about an event.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the module of the figure and its user agree on. Both are built together, so that C++ types may cross.
+// The interface between the module of the figure and its user. Both are built together, so that C++ types may cross.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a scenario does to its objects: scripted forces, and objects that are carried away.
+// The perturbations of a scenario: scripted forces, and objects that are carried away.
 #pragma once
 
 #include <cereal/types/vector.hpp>

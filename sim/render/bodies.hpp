@@ -1,5 +1,5 @@
-// What the renderer draws: solid bodies, which are placed anew for each frame, and flat surfaces on the ground. Parts
-// that cannot change the image are left out.
+// The bodies that the renderer draws: solid bodies, which are placed anew for each frame, and flat surfaces on the
+// ground. Parts that cannot change the image are left out.
 #pragma once
 
 #include <functional>

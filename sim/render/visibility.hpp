@@ -1,4 +1,4 @@
-// What a camera can see. The renderer leaves out bodies that cannot change a single pixel of the image.
+// Tests whether a camera can see a body. The renderer leaves out bodies that cannot change a single pixel of the image.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -190,7 +190,7 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.state = state_.mission_state;
   const bool has_camera = camera_ && image_violation(*camera_).empty();
   state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, world_ ? &*world_ : nullptr);
-  // What perception found in this image may be here already.
+  // The percepts of this image may have arrived already.
   if (processed_ && image_violation(*processed_).empty()) state_.album.on_processed(folder_, *processed_);
 }
 

@@ -45,7 +45,7 @@ std::vector<LineSegment> draw_line(const RandomScene& ranges, Random& random) {
     left_m -= length_m;
     side = -side;
   }
-  segments.push_back({kStraight_m + left_m, 0.0});  // what is too short for a bend
+  segments.push_back({kStraight_m + left_m, 0.0});  // a rest that is too short for a bend
   return segments;
 }
 

@@ -58,7 +58,7 @@ class ServoDevice final : public BusDevice {
   /// Lets the time `dt_s` pass, at whose end it is `now_ns` and the joint moves as given. Updates measurements,
   /// temperature, protections, watchdog and motion profile.
   void advance(double dt_s, std::int64_t now_ns, const JointMotion& motion);
-  /// What the joint must do during the next `dt_s`.
+  /// The drive of the joint during the next `dt_s`.
   [[nodiscard]] JointSetpoint order(double dt_s) const;
 
   /// The value of a register, and setting it without any rule: for faults and tests.
@@ -88,7 +88,7 @@ class ServoDevice final : public BusDevice {
   StatusError write_directly(std::uint16_t address, dynamixel::ByteView data, bool apply);
   void apply(const Register& reg, std::int64_t value);
   void measure(const JointMotion& motion);
-  /// What the motor would let the joint do if the gear were not jammed.
+  /// The drive of the joint by the motor if the gear were not jammed.
   [[nodiscard]] JointSetpoint wanted(double dt_s) const;
   void protect(double dt_s, double current_a);
   void start_profile();

@@ -13,7 +13,7 @@
 
 namespace constrictor::servo_emulator {
 
-/// What is wrong with the line. Changes act at once.
+/// The faults of the line. Changes act at once.
 struct LineFaults {
   std::optional<std::size_t> cable_broken_behind;  ///< the devices after this place in the chain are gone
   std::vector<std::size_t> silent;                 ///< places of devices that neither receive nor answer

@@ -27,7 +27,7 @@ struct RigidBody {
   Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
 };
 
-/// What an engine simulates. The bodies have numbers: first the modules from head to tail, then the objects.
+/// The system that an engine simulates. The bodies have numbers: first the modules from head to tail, then the objects.
 struct Mechanism {
   std::vector<RigidBody> modules;  ///< straight, all joints at the angle 0
   std::vector<JointModel> joints;  ///< joint i is between the modules i and i + 1

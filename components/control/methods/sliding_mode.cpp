@@ -77,7 +77,7 @@ class SlidingMode : public ControlMethod {
     if (law.inertia != 0) inertia = inertia.inverse().diagonal().cwiseInverse().asDiagonal().toDenseMatrix();
     const auto solver = inertia.ldlt();
 
-    // What the torques of the tick before last have not explained. They acted until now.
+    // The torques of the motion that the torques of the tick before last, which acted until now, do not explain.
     const VectorXd missing = inertia * (rate - axis.of(state.rate_rad_s)) / dt - axis.of(state.exerted_nm);
     VectorXd unknown = axis.of(state.unknown_nm);
     unknown += (missing - unknown) * dt / (law.estimate_s + dt);

@@ -78,8 +78,8 @@ struct TickDone {
   std::vector<Written> written;  ///< by this step; empty if the member keeps no checkpoint
 };
 
-/// What the plant's successor continues from, besides the conductor's own state: the plant's state after it has
-/// measured for a tick, and what it wrote since its previous sample.
+/// The data from which the plant's successor continues, besides the conductor's own state: the plant's state after it
+/// has measured for a tick, and what it wrote since its previous sample.
 struct PlantCheckpoint {
   std::string state;  ///< empty: the plant keeps no checkpoint
   std::vector<TickDone::Written> written;

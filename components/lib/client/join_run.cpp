@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kQuiet{300};  // the messages that writers keep for late readers arrive within it
 
-/// What the messages in a domain say about its run.
+/// The description of a run by the messages in its domain.
 class Discovered {
  public:
   explicit Discovered(std::uint32_t domain)

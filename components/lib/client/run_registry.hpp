@@ -29,7 +29,7 @@ struct RunNote {
   bool on_this_host = true;  ///< false: no launcher on this host has noted the run
 };
 
-/// What a client must know to command a run.
+/// The data that a client needs to command a run.
 struct RunKey {
   std::uint64_t run_id = 0;  ///< 0: the run that has the token
   std::string token;

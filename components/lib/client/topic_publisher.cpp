@@ -26,7 +26,7 @@ constexpr int kDepth = 64;
 constexpr auto kDiscovery = 1500ms;
 constexpr auto kQuiet = 250ms;
 
-/// What the table of topics says about a topic.
+/// The row of a topic in the table of topics.
 struct Row {
   std::string type;
   std::string owner;  ///< its writer, as a text for people

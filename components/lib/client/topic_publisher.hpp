@@ -38,7 +38,7 @@ class TopicPublisher {
   [[nodiscard]] nlohmann::ordered_json completed(nlohmann::ordered_json message);
   /// The encoded message. Throws std::invalid_argument as dds::TypeTree::encode() does.
   [[nodiscard]] std::vector<std::uint8_t> encode(const nlohmann::ordered_json& message) const;
-  /// What a receiver decodes from these bytes.
+  /// The message that a receiver decodes from these bytes.
   [[nodiscard]] nlohmann::ordered_json decode(const std::vector<std::uint8_t>& bytes) const;
 
   /// Creates the writer (the first call), and returns the number of readers that it has matched.

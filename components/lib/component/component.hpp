@@ -1,4 +1,4 @@
-// What a component is: a step function with declared ports and one serialisable state. Nothing here depends on DDS.
+// Defines a component: a step function with declared ports and one serialisable state. Nothing here depends on DDS.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Timing {
   std::uint16_t latency = 1;
 };
 
-/// What a component is built from. All paths are absolute.
+/// The inputs from which a component is built. All paths are absolute.
 struct Setup {
   std::string component;                ///< name in the roster
   std::filesystem::path robot_file;     ///< YAML of components/lib/robot

@@ -1,5 +1,5 @@
-// What a scenario states about its mission. The launcher passes this section of the scenario, and nothing else of it,
-// to the components (Setup::mission).
+// The mission that a scenario states. The launcher passes this section of the scenario, and nothing else of it, to the
+// components (Setup::mission).
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace constrictor {
 
-/// What is known about the scene before the mission begins. A quantity that is not given keeps the value that each
-/// component's configuration has for it.
+/// The facts about the scene that are known before the mission begins. A quantity that is not given keeps the value
+/// that each component's configuration has for it.
 struct PriorKnowledge {
   std::optional<double> object_height_m;
   std::optional<double> object_radius_m;
@@ -35,7 +35,7 @@ struct Mission {
 /// The same from the text of Setup::mission; nothing if the text is empty.
 [[nodiscard]] std::optional<Mission> parse_mission(const std::string& text);
 
-/// What the mission of a text states under `known`; nothing of it if the text is empty.
+/// The section `known` of the mission in a text; all quantities are unset if the text is empty.
 [[nodiscard]] PriorKnowledge prior_knowledge(const std::string& text);
 
 }  // namespace constrictor

@@ -15,7 +15,7 @@
 
 namespace constrictor {
 
-/// What a component remembers of its run-time parameters: a part of its state.
+/// The run-time parameters of a component, as a part of its state.
 struct ParameterState {
   struct Change {
     std::string name;

@@ -5,7 +5,7 @@
 
 namespace constrictor {
 
-/// What the robot's body measures.
+/// The measurements of the robot's body.
 struct BodyView {
   explicit BodyView(Wiring& wiring)
       : joints(wiring.latest(topics::kJointState)), contacts(wiring.latest(topics::kContactState)) {}
@@ -13,7 +13,7 @@ struct BodyView {
   Latest<msg::ContactState> contacts;
 };
 
-/// What perception found in the newest image.
+/// The percepts of the newest image.
 struct PerceptView {
   explicit PerceptView(Wiring& wiring)
       : line(wiring.latest(topics::kLinePercept)), objects(wiring.latest(topics::kObjectPercepts)) {}
@@ -21,7 +21,7 @@ struct PerceptView {
   Latest<msg::ObjectPercepts> objects;
 };
 
-/// What the robot knows of the field around it: the percepts, its own pose, and the map.
+/// The robot's estimate of the field around it: the percepts, its own pose, and the map.
 struct FieldView : PerceptView {
   explicit FieldView(Wiring& wiring)
       : PerceptView(wiring), pose(wiring.latest(topics::kRobotPose)), map(wiring.latest(topics::kFieldMap)) {}

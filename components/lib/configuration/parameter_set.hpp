@@ -17,7 +17,7 @@ namespace constrictor {
 /// When a parameter may take another value: only at the start of a run, or also during the run.
 enum class Changes { kAtStart, kWhileRunning };
 
-/// What people and tools can know of one parameter. Values are in YAML notation.
+/// The description of one parameter for people and tools. Values are in YAML notation.
 struct ParameterRow {
   std::string key;            ///< keys of the configuration file, joined by dots
   std::string unit;           ///< as people write it ("rad/s"); empty for texts, lists of texts, and plain numbers

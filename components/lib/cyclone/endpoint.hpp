@@ -17,7 +17,7 @@
 
 namespace constrictor::dds {
 
-/// What a reader needs against strangers. The reader keeps the pointers, which must outlive it.
+/// The checks of a reader against foreign writers. The reader keeps the pointers, which must outlive it.
 struct ReaderGuard {
   WriterBook* book = nullptr;  ///< notes the writers; null: none does
   /// Called by DDS, in any thread, before a sample costs the reader any memory: false drops the sample. Null: all pass.

@@ -145,7 +145,7 @@ class Gathering {
     message.msg_namelen = sizeof datagram.to;
     message.msg_iov = &bytes;
     message.msg_iovlen = 1;
-    // What the kernel does not accept is lost like a datagram in a network, and DDS sends it again.
+    // A datagram that the kernel does not accept is lost like one in a network, and DDS sends the samples again.
     while (send_now(datagram.socket, message, datagram.flags) < 0 && errno == EINTR) continue;
     datagram.bytes.clear();
   }

@@ -16,7 +16,7 @@ struct RawSample {
   std::int64_t source_time_ns = 0;      ///< [ns] the writer's clock, since 1970
 };
 
-/// What a RawReader asks of writers.
+/// The QoS that a RawReader requests from writers.
 struct RawQos {
   bool reliable = false;
   bool transient_local = false;  ///< the samples that the writers keep for late readers arrive first

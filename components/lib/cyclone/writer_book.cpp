@@ -36,7 +36,7 @@ void WriterBook::watch(dds_entity_t reader) {
 }
 
 void WriterBook::note(dds_entity_t reader, dds_instance_handle_t writer) {
-  // What Cyclone answers under the lock decides, not the status, which may be older than another thread's answer.
+  // The answer of Cyclone under the lock decides, not the status, which may be older than another thread's answer.
   const std::lock_guard lock(mutex_);
   dds_builtintopic_endpoint_t* data = dds_get_matched_publication_data(reader, writer);
   const auto known = writers_.find(writer);

@@ -13,7 +13,7 @@ namespace constrictor {
 struct DeviceCommand {
   std::string_view device;  ///< the program that obeys it: "servo_emulator"
   std::string_view name;    ///< "weak"
-  std::string_view of;      ///< what its first number counts: "joint", "module", "port"; empty: it has no such number
+  std::string_view of;      ///< meaning of its first number: "joint", "module", "port"; empty: it has no such number
   std::string_view value;   ///< the name of its other number: "share"; empty: it has none
   double min = 0.0, max = 0.0;  ///< of that number
   bool whole = false;           ///< that number is a whole one

@@ -16,7 +16,7 @@ namespace constrictor::dynamixel {
 /// largest piece.
 class PacketParser {
  public:
-  /// What was found on the line since the beginning.
+  /// Counts of the packets and errors on the line since the beginning.
   struct Counters {
     std::uint64_t packets = 0;
     std::uint64_t skipped_bytes = 0;  ///< bytes of no valid packet

@@ -81,7 +81,7 @@ LinkFault read_link_fault(Configuration& entry, const std::vector<std::string>& 
   return fault;
 }
 
-/// What the fault of a link does to each topic that crosses the link.
+/// The effect of a link's fault on each topic that crosses the link.
 std::vector<TopicFault> topics_across(const LinkFault& link, const std::vector<std::string>& roster) {
   std::vector<std::string> others;
   for (const auto& name : roster) {

@@ -12,7 +12,7 @@
 
 namespace constrictor {
 
-/// What happens to the samples of one topic, for all of its readers alike, or for `readers`.
+/// The fault of the samples of one topic, for all of its readers alike, or for `readers`.
 struct TopicFault {
   enum class Kind {
     kDrop,       ///< the sample never arrives
@@ -43,7 +43,7 @@ struct LinkFault {
   std::int64_t until_ns = 0;            ///< simulated time
 };
 
-/// What happens to the process of one component. It changes no result in lock-step.
+/// The fault of the process of one component. It changes no result in lock-step.
 struct ProcessFault {
   enum class Kind {
     kKill,  ///< killed; the launcher starts it again
@@ -58,7 +58,7 @@ struct ProcessFault {
   double step_ms = 0.0;       ///< [ms] wall time, of kSlow
 };
 
-/// What happens to an emulated device that runs beside the run. It is not a member, so it receives no ticks.
+/// The fault of an emulated device that runs beside the run. The device is not a member, so it receives no ticks.
 struct DeviceFault {
   DeviceOrder order;
   std::int64_t from_ns = 0;   ///< simulated time
@@ -73,7 +73,7 @@ struct FaultPlan {
   std::vector<DeviceFault> devices;
 };
 
-/// What a file of faults may name.
+/// The names that a file of faults may contain.
 struct FaultTargets {
   std::vector<std::string> roster;
   /// The programs that run beside the run; empty: not checked, because only the launcher knows them.

@@ -23,7 +23,7 @@ class FaultyInput {
   /// gives it the reason.
   void present(const Tick& tick, const std::function<void(const std::string&)>& refuse);
 
-  /// What a restarted component needs: samples that are late, frozen contents, the newest sample.
+  /// The state that a restarted component needs: samples that are late, frozen contents, the newest sample.
   [[nodiscard]] std::string save() const;
   /// Throws cereal::Exception or std::runtime_error if the bytes are damaged.
   void load(const std::string& bytes);

@@ -17,7 +17,7 @@ namespace {
 
 /// Visits the fields of a message along a path, and changes the number at its end.
 struct FieldVisitor {
-  std::string_view rest;                        ///< what is left of the path
+  std::string_view rest;                        ///< rest of the path
   const std::function<double(double)>* change;  ///< null: only look whether there is such a number
   bool found = false;
   std::string problem{};

@@ -126,7 +126,7 @@ struct Statistics {
   bool operator==(const Statistics&) const = default;
 };
 
-/// What a summary section is made of: everything about the data section but the messages themselves.
+/// The content of a summary section: everything about the data section but the messages themselves.
 struct Contents {
   std::string profile;
   std::string library;

@@ -120,7 +120,7 @@ void Reader::learn_definitions() {
       if (op == Op::kSchema) add_schema(content);
       else if (op == Op::kChannel) add_channel(content);
     });
-  } catch (const Error&) {  // what is missing counts as damage where it is needed
+  } catch (const Error&) {  // a missing part counts as damage where it is needed
   }
 }
 

@@ -12,7 +12,7 @@
 
 namespace constrictor::mcap {
 
-/// What receives the content of a file, in its order. Functions that are not set receive nothing.
+/// Functions that are called with the content of a file, in its order. A function may be unset.
 struct Visitor {
   std::function<void(const Channel&, const Message&)> message;
   std::function<void(const Attachment&)> attachment;

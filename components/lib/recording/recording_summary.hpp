@@ -1,4 +1,4 @@
-// What a recording contains, and whether a message is missing.
+// The content of a recording, and whether a message is missing.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ struct RecordingSummary {
   std::string incomplete;  ///< why the file is not finished; empty: it is
   mcap::Texts recording;   ///< how it was made: kind, log_time, images ...; empty: by another program
   mcap::Texts dropped;     ///< tick and reason, if the recording ended before the run
-  mcap::Texts recovered;   ///< what `constrictor recover` did
+  mcap::Texts recovered;   ///< metadata that `constrictor recover` wrote
   std::vector<std::pair<std::string, std::uint64_t>> attachments;  ///< name, bytes
   std::vector<RecordedTopic> topics;                               ///< by name
   std::vector<RecordedEpoch> epochs;

@@ -58,7 +58,7 @@ struct GateCommand {
   std::span<const double> torque_nm{};  ///< used in torque mode only
 };
 
-/// What was measured at the joints; one entry for each joint.
+/// The measurements of the joints; one entry for each joint.
 struct MeasuredJoints {
   std::span<const double> angle_rad;
   std::span<const double> rate_rad_s{};  ///< used in torque mode only; empty: not known, and no torque is exerted

@@ -193,7 +193,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   next.blobs = checkpoint.blobs.size();
   std::atomic_signal_fence(std::memory_order_seq_cst);
   next.checksum = next.own_checksum();
-  // What only the checkpoint before the previous one contained is free now.
+  // Memory that only the checkpoint before the previous one used is free now.
   release(std::exchange(table_of_last_but_one_, std::exchange(table_of_last_, table)));
   std::erase_if(stored_, [this](const auto& entry) {
     if (entry.second.last_used + 1 >= number_) return false;

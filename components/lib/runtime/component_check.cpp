@@ -39,7 +39,7 @@ class UnconnectedWiring : public Wiring {
     return &outputs_.emplace_back(OutputSlot{&topic, [](const void*) {}});
   }
 
-  Hello hello;  ///< what the component would announce: name, timing and topics
+  Hello hello;  ///< the announcement of the component: name, timing and topics
 
   bool takes_requests = false;
   bool relays_hardware = false;

@@ -36,10 +36,11 @@ struct ReplayResult {
 /// Makes the factory of a component; nothing if there is no such component.
 using FindFactory = std::function<std::optional<ComponentFactory>(const std::string& name)>;
 
-/// What shows, while a replay goes on, what it reads and computes. A function may end the replay by an exception.
+/// Functions that a replay calls with the messages that it reads and computes. A function may end the replay by an
+/// exception.
 struct ReplayHooks {
   std::function<void(const mcap::Channel&, const mcap::Message&)> message;  ///< each one, in the order of the file
-  /// An image that was not recorded and has been computed again.
+  /// Called with each image that was not recorded and has been computed again.
   std::function<void(const TopicInfo&, const std::shared_ptr<const msg::CameraImage>&)> image;
 };
 

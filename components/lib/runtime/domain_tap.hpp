@@ -29,7 +29,7 @@ class DomainTap {
   DomainTap(const DomainTap&) = delete;
   DomainTap& operator=(const DomainTap&) = delete;
 
-  /// What has arrived since the last call. The channels live as long as this object.
+  /// The messages that have arrived since the last call. The channels live as long as this object.
   [[nodiscard]] std::vector<Arrived> take();
 
  private:

@@ -37,7 +37,7 @@ class Pacer {
   [[nodiscard]] bool capped() const {
     return operator_ && !overruled_ && operator_pace_ > 0.0 && (pace_ <= 0.0 || pace_ > operator_pace_);
   }
-  /// What a successor of this process must know: pace, pause, steps left.
+  /// The state that a successor of this process needs: pace, pause, steps left.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(pace_, operator_, overruled_, paused_, steps_);

@@ -1,4 +1,4 @@
-// What a replay must know of a recorded run before it begins: its files, its roster, the requests of its clients.
+// The data on a recorded run that a replay needs before it begins: its files, its roster, the requests of its clients.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What `run --record` records.
+// The choice of what `run --record` records.
 #pragma once
 
 #include <filesystem>

@@ -11,7 +11,7 @@ using dynamixel::StatusError;
 namespace {
 
 constexpr std::size_t kStatusBytes = 11;  // of a status packet without data
-constexpr double kPingAllOf_s = 0.003;    // what the manual allows each device for its answer to a broadcast Ping
+constexpr double kPingAllOf_s = 0.003;    // time of each device for its answer to a broadcast Ping (manual)
 
 Answer answer_of(const dynamixel::PacketView& packet) {
   return {true, packet.error(), packet.alert(), Bytes(packet.data().begin(), packet.data().end())};

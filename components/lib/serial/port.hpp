@@ -1,4 +1,4 @@
-// What a driver needs of a serial port. Tests replace it by an emulated line.
+// The serial port as a driver uses it. Tests replace it by an emulated line.
 #pragma once
 
 #include <cstdint>

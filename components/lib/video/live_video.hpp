@@ -48,7 +48,7 @@ class LiveVideo {
   /// The newest fresh frame, once.
   [[nodiscard]] std::optional<LiveFrame> take();
   [[nodiscard]] LiveCounters counters() const;
-  /// What has happened since the last call, one line each, the oldest first; at most kMostNews.
+  /// Texts on the events since the last call, one line each, the oldest first; at most kMostNews.
   [[nodiscard]] std::vector<std::string> take_news();
   /// [ns] since some fixed point.
   [[nodiscard]] std::int64_t now_ns() const;

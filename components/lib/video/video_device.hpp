@@ -13,7 +13,8 @@
 
 namespace constrictor::video {
 
-/// What is asked of a device. A device that does not obey is used all the same, and says so in its news.
+/// The settings that are requested from a device. A device that does not accept one is used anyway; its news contain
+/// the setting.
 struct DeviceRequest {
   int width = 0, height = 0;  ///< [pixel] 0: the default of the device
   double frame_rate_hz = 30.0;
@@ -36,7 +37,7 @@ class VideoInput {
   [[nodiscard]] virtual std::optional<std::int64_t> stamp_ns() const { return {}; }
   /// One line for people, for example "http://10.0.0.7/stream: 640 x 480, FFMPEG".
   [[nodiscard]] virtual std::string description() const = 0;
-  /// What the device did not obey, one line each.
+  /// The settings that the device did not accept, one line each.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };
 

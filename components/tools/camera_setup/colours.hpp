@@ -29,7 +29,7 @@ class ColourSample {
   std::vector<cv::Vec3b> pixels_;
 };
 
-/// What perception needs to distinguish the colours: lines of its configuration file, and warnings.
+/// The parameters with which perception distinguishes the colours: lines of its configuration file, and warnings.
 struct ColourResult {
   std::string yaml;
   std::vector<std::string> warnings;

@@ -1,4 +1,4 @@
-// What the subcommands of `constrictor camera` do. Each returns the exit status.
+// The subcommands of `constrictor camera`. Each function returns the exit status.
 #pragma once
 
 #include <csignal>

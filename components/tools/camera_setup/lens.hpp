@@ -12,7 +12,7 @@ namespace constrictor::camera_setup {
 struct LensResult {
   video::CameraCalibration calibration;  ///< lens and reprojection error; its mount is the identity
   std::vector<double> view_errors_px;    ///< root mean square of each view
-  std::vector<std::string> warnings;     ///< what makes the result doubtful, one line each
+  std::vector<std::string> warnings;     ///< reasons to doubt the result, one line each
 };
 
 inline constexpr std::size_t kFewestViews = 6;

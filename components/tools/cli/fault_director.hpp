@@ -33,7 +33,8 @@ class FaultDirector {
   std::vector<Signal> due(double sim_time_s, Clock::time_point now);
   /// The commands that are due at this simulated time, each once.
   std::vector<Command> commands(double sim_time_s);
-  /// What has begun or ended since the last call, for people: "fault: drop of perception/objects begins".
+  /// The faults that have begun or ended since the last call, as texts for people: "fault: drop of perception/objects
+  /// begins".
   std::vector<std::string> news(double sim_time_s);
 
  private:

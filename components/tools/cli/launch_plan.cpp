@@ -85,7 +85,7 @@ std::vector<std::string> scheduling_arguments(const Scheduling& scheduling) {
   return arguments;
 }
 
-/// What the user may have meant by a name that is not one of `names`: a name of another kind, or a similar one.
+/// A suggestion for a name that is not one of `names`: a name of another kind, or a similar one.
 std::string hint_of(const std::string& text, const std::vector<std::string>& names) {
   for (const auto& [files, option] :
        {std::pair(kScenarios, ""), std::pair(kManifests, "--manifest "), std::pair(kRobots, "--robot ")}) {

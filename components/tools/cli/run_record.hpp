@@ -1,4 +1,5 @@
-// What `constrictor run --resume` must know of a run besides its checkpoint: the file run.json in the run's folder.
+// The data on a run that `constrictor run --resume` needs besides the checkpoint: the file run.json in the run's
+// folder.
 #pragma once
 
 #include <cstdint>

@@ -92,7 +92,7 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
                     {"refused", sum_over(process.components, view.refused)}});
   }
   report["processes"] = std::move(list);
-  // What each member said about itself: a result can be repeated with the same releases, files and numeric profile.
+  // The description of each member: a result can be repeated with the same releases, files and numeric profile.
   report["members"] = Json::array();
   for (const auto& [name, hello] : view.hellos) {
     report["members"].push_back({{"name", name},

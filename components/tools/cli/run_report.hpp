@@ -19,7 +19,7 @@ struct RunOutcome {
   double wall_time_s = 0;  ///< [s] from the start of the processes to the plant's end
   std::string error;       ///< why the run failed or its processes were killed; empty if the run ended normally
   std::string end_reason;  ///< why the run ended normally, but before its mission (user, time limit); else empty
-  nlohmann::ordered_json recording = nullptr;  ///< what run.mcap contains; null: the run is not recorded
+  nlohmann::ordered_json recording = nullptr;  ///< content of run.mcap; null: the run is not recorded
 };
 
 struct RunVerdict {

@@ -9,7 +9,7 @@
 
 namespace constrictor::cli {
 
-/// What the chosen subcommand does. It returns the exit status.
+/// The action of the chosen subcommand. It returns the exit status.
 using Action = std::function<int()>;
 
 /// Each adds the subcommands that its file implements. When one of them is chosen on the command line, `action` is set.

@@ -1,4 +1,5 @@
-// What `constrictor swap` leaves in the report directory of a run: which program takes the place of a process's own.
+// The file of `constrictor swap` in the report directory of a run: it names the program that takes the place of a
+// process's own.
 #pragma once
 
 #include <filesystem>

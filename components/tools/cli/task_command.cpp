@@ -52,7 +52,7 @@ int with_client(const TaskOptions& options, int (*use)(RequestClient&, const Tas
   return use(client, options);
 }
 
-/// What `task NAME --json` prints if nothing was done.
+/// The output of `task NAME --json` if no task was started.
 Json nothing_done(const std::string& name) {
   if (name == "start") return {{"started", nullptr}};
   if (name == "cancel") return {{"cancelled", false}};

@@ -1,4 +1,4 @@
-// What can be seen of a camera while the head rests: model, sizes, rate, stamps, pictures, colours.
+// Checks of a camera while the head rests: model, sizes, rate, stamps, pictures, colours.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// What `constrictor conform camera` expects of a camera, and how it is moved: one row for each value.
+// The expectations of `constrictor conform camera`, and how it moves the camera: one row for each value.
 #pragma once
 
 #include <string>

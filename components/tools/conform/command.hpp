@@ -1,4 +1,4 @@
-// What the subcommands of `constrictor conform` have in common.
+// Functions that all subcommands of `constrictor conform` use.
 #pragma once
 
 #include <csignal>

@@ -69,7 +69,7 @@ class ControlConformance {
   ControlHand hand_;
   std::vector<std::size_t> yaw_;
   bool bends_ = false, undulates_ = false;
-  // What holds for all commands.
+  // Checks of every command.
   bool judges_rate_ = true;
   std::vector<double> previous_rad_;       ///< setpoints of the last command; empty: none, or the joints were displaced
   double largest_rate_ = 0.0;              ///< of a setpoint, as a share of its joint's largest speed

@@ -78,7 +78,7 @@ std::vector<ControlStep> ControlHand::run(double seconds) {
     port_.advance();
     ControlStep step;
     step.tick = port_.tick();
-    // What is visible now was written in the previous tick.
+    // The messages that are visible now were written in the previous tick.
     step.measured_rad = std::exchange(shown_rad_, shown_rad);
     for (const auto* command : port_.written(topics::kJointCommand)) step.commands.push_back(*command);
     for (const auto* state : port_.written(topics::kMotionStatus)) step.states.push_back(*state);

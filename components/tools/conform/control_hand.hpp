@@ -10,12 +10,12 @@
 
 namespace constrictor::conform {
 
-/// What happened in one tick.
+/// The messages of one tick.
 struct ControlStep {
   std::int64_t tick = 0;
   std::vector<msg::JointCommand> commands;  ///< one in each tick, from a right control
   std::vector<msg::MotionStatus> states;
-  std::vector<double> measured_rad;  ///< what control was shown before it wrote these
+  std::vector<double> measured_rad;  ///< the measured angles that control received before it wrote these
 };
 
 class ControlHand {

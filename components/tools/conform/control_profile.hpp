@@ -1,4 +1,4 @@
-// What `constrictor conform control` expects of a control, and how it is tried: one row for each value.
+// The expectations of `constrictor conform control`, and the values of its checks: one row for each value.
 #pragma once
 
 #include "configuration/parameter_set.hpp"

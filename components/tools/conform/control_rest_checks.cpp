@@ -1,4 +1,4 @@
-// What a control does before it receives a trajectory that it must follow: commands in every tick, the measured
+// Checks of a control before it receives a trajectory that it must follow: commands in every tick, the measured
 // posture, and trajectories that it must refuse.
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-// What must keep the robot safe: relaxing, silence of navigation, authority, stops, joints of another robot, epochs.
+// Checks of the functions that keep the robot safe: relaxing, silence of navigation, authority, stops, joints of
+// another robot, epochs.
 #include <fmt/format.h>
 
 #include <algorithm>

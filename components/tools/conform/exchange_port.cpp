@@ -19,7 +19,7 @@ constexpr std::int64_t kStatusEvery_ticks = 50;
 
 }  // namespace
 
-/// What an operator does and sees. Made at the first use, when the run has begun.
+/// The topics that an operator writes and reads. Created at the first use, when the run has begun.
 struct ExchangePort::Operator {
   Operator(std::uint32_t domain, const std::string& part)
       : participant(dds::create_participant(domain, dds::Reach::kLoopback, "operator")),

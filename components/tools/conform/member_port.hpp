@@ -46,7 +46,7 @@ class TickExchange {
   std::atomic<bool> finished_{false};
 };
 
-/// What a client does and sees for the checks: emergency stops, new epochs, and the plant's process.
+/// The actions of a client for the checks: emergency stops, new epochs, and the plant's process.
 struct RunClient {
   std::function<void()> stop, clear_stop, begin_epoch;
   std::function<std::string()> restart;        ///< as PlantPort::restart()

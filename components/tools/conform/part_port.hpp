@@ -43,7 +43,8 @@ class PartPort {
     arrived_.clear();
     exchange(std::exchange(outgoing_, {}));
   }
-  /// What the part wrote and what became visible in the last tick, oldest first. Valid until the next advance().
+  /// The messages that the part wrote, and those that became visible in the last tick, oldest first. Valid until the
+  /// next advance().
   template <class T>
   [[nodiscard]] std::vector<const T*> written(const Topic<T>& topic) const {
     std::vector<const T*> messages;

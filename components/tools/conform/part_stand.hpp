@@ -18,7 +18,7 @@ class StandBoard {
   virtual ~StandBoard() = default;
   /// The leader, before anything is written in a tick. An implementation may wait here for the checks.
   virtual void begin_tick(const Tick& tick) = 0;
-  /// What is to be written on a topic in this tick, oldest first. Each message is returned once.
+  /// The messages to write on a topic in this tick, oldest first. Each message is returned once.
   virtual std::vector<Sample> take(std::size_t topic) = 0;
   /// The leader: what became visible in this tick.
   virtual void deliver(const Tick& tick, std::vector<Letter> arrived) = 0;
@@ -29,8 +29,8 @@ class StandBoard {
 /// A part as a member of a run, and its surroundings.
 struct PartPlace {
   std::string part;                        ///< name in the roster
-  std::vector<const TopicInfo*> writes;    ///< what the surroundings write
-  std::vector<const TopicInfo*> observes;  ///< what the checks see
+  std::vector<const TopicInfo*> writes;    ///< topics that the surroundings write
+  std::vector<const TopicInfo*> observes;  ///< topics that the checks read
   /// False: the run keeps the plant of the manifest, and the surroundings are one component of this run.
   bool own_plant = true;
 };

@@ -12,7 +12,7 @@
 
 namespace constrictor::conform {
 
-/// What the checks of a part need to know.
+/// The inputs of the checks of a part.
 struct PartSetting {
   RobotModel robot;
   std::filesystem::path profile;  ///< empty: the defaults
@@ -23,7 +23,7 @@ struct PartSetting {
 struct PartKind {
   const char* name;     ///< in the roster, and of the subcommand
   const char* summary;  ///< of the subcommand's help
-  const char* what;     ///< what the checks do, for the subcommand's help
+  const char* what;     ///< description of the checks, for the subcommand's help
   std::vector<Check> (*checks)();
   DescribeParameters profile;
   /// Makes all checks. Throws ConfigurationError if the profile is wrong, and PartGone.

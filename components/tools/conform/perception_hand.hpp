@@ -10,7 +10,7 @@
 
 namespace constrictor::conform {
 
-/// What became of one image.
+/// The result for one image.
 struct Seen {
   std::int64_t exposure_tick = 0;  ///< of the image
   std::int64_t sent_tick = 0;      ///< at which it was written

@@ -15,7 +15,7 @@ SyntheticScene scene_with(const PaintedLine& line) {
   return scene;
 }
 
-/// What a percept should say of the line at its own lookahead.
+/// The correct percept of the line at the lookahead of this percept.
 struct Truth {
   double offset_m = 0.0, heading_rad = 0.0;
 };

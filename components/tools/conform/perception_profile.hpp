@@ -1,4 +1,4 @@
-// What `constrictor conform perception` expects of a perception: one row for each value.
+// The expectations of `constrictor conform perception`: one row for each value.
 #pragma once
 
 #include "configuration/parameter_set.hpp"

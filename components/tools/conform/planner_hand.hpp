@@ -22,7 +22,7 @@ class PlannerHand {
   /// Goes on for `seconds`. `until`: ends earlier when it returns true. Returns whether it did.
   bool run(double seconds, const std::function<bool()>& until = {});
 
-  // What the robot sees from now on.
+  // The content of the percepts from now on.
   void see_line(bool visible) { sees_line_ = visible; }
   void see(std::uint8_t colour, std::uint8_t kind, double range_m);
   void see_no_objects() { objects_.blob_count = 0; }

@@ -1,4 +1,4 @@
-// What `constrictor conform planner` expects of a planner: one row for each value.
+// The expectations of `constrictor conform planner`: one row for each value.
 #pragma once
 
 #include "configuration/parameter_set.hpp"

@@ -1,4 +1,4 @@
-// What a planner does until it sees an object: search, the line, refused and lost requests, authority, stops.
+// Checks of a planner until it sees an object: search, the line, refused and lost requests, authority, stops.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -24,7 +24,7 @@ class PlantConformance {
   void run();
 
  private:
-  // What can be seen while the joints rest (plant_rest_checks.cpp). False: nothing must be moved.
+  // Checks while the joints rest (plant_rest_checks.cpp). False: no joint may be moved.
   bool check_arrival();
   bool check_samples(const std::vector<JointSample>& samples);
   void check_stamps(const std::vector<JointSample>& samples);

@@ -92,7 +92,7 @@ PlantConformance::Moved PlantConformance::move_joint(std::size_t joint) {
   const std::vector<double> before_rad = hand_.mean_rad(hand_.hold(5 * profile_.period_s));
   const std::vector<Instant> away = hand_.move(joint, goal_rad, &moved.escaped);
   if (moved.escaped) {
-    // What the joints had done when they were held: the largest step by the commanded one.
+    // The motion of the joints until they were held: the largest step divided by the commanded one.
     const JointSample& last = away.back().sample;
     double most_rad = 0.0;
     for (std::size_t i = 0; i < before_rad.size() && i < last.position_rad.size(); ++i) {
@@ -183,7 +183,7 @@ void PlantConformance::check_motions() {
   const std::string moved_joints = fmt::format("{} joints moved", profile_.joints.size());
   report_.judge("moves", !still.empty(), list(still, " did not move", moved_joints),
                 "check power, wiring, torque limit and the servo's number; a frozen measurement looks the same");
-  // What moves 57 times too far may still move when the next joint is commanded.
+  // A joint that moves 57 times too far may still move when the next joint is commanded.
   if (!degrees.empty() && !order.empty()) report_.skip("order", "cannot be judged before the unit is right");
   else
     report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,

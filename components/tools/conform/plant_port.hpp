@@ -33,7 +33,7 @@ struct ContactSample {
   bool finite = true;
 };
 
-/// What the joints shall do. Size and values may be wrong on purpose.
+/// A command to the joints. Its size and values may be wrong on purpose.
 struct PlantCommand {
   std::vector<double> position_rad, velocity_rad_s, torque_limit_nm, torque_nm;
   bool relaxed = false;
@@ -68,7 +68,7 @@ class PlantPort {
   /// [s] now.
   [[nodiscard]] virtual double now_s() const = 0;
 
-  // What arrived during the last advance(), oldest first.
+  // The samples that arrived during the last advance(), oldest first.
   [[nodiscard]] const std::vector<JointSample>& joints() const { return joints_; }
   [[nodiscard]] const std::vector<ImuSample>& imus() const { return imus_; }
   [[nodiscard]] const std::vector<ContactSample>& contacts() const { return contacts_; }

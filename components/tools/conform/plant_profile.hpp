@@ -1,4 +1,4 @@
-// What `constrictor conform plant` expects of a plant and how it moves it: one row for each value.
+// The expectations of `constrictor conform plant`, and how it moves the joints: one row for each value.
 #pragma once
 
 #include <cstddef>

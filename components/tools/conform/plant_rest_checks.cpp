@@ -1,4 +1,4 @@
-// What can be seen of a plant while its joints rest.
+// Checks of a plant while its joints rest.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a conformance run has found: one line for each check, for people and as JSON.
+// The results of a conformance run: one line for each check, for people and as JSON.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What viewers watch and command: a run, or a replay of a recording.
+// The interface to the source that viewers watch and command: a run, or a replay of a recording.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What viewers command with authority: to drive, and to start tasks.
+// The commands of viewers that need authority: to drive, and to start tasks.
 #pragma once
 
 #include <atomic>

@@ -34,11 +34,11 @@ std::string place_of(const dashboard::WebOptions& web, std::uint16_t port) {
   return fmt::format("{}:{}", every ? "localhost" : v6 ? "[" + web.address + "]" : web.address, port);
 }
 
-/// What is shown: its name, and how it is commanded.
+/// The source that is shown: its name, and how it is commanded.
 struct Shown {
   std::string name;
   std::unique_ptr<dashboard::Controls> controls;
-  const char* after;  ///< what the end of this program does not end
+  const char* after;  ///< what continues after the end of this program
 };
 
 /// The run or the replay in `domain`; without a domain the only run on this host, or else the only replay.

@@ -15,7 +15,7 @@ namespace constrictor::dashboard {
 /// The subprotocols that the server accepts. The messages used here are the same in both, also those about parameters.
 inline constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
-/// What a client can subscribe to.
+/// A channel to which a client can subscribe.
 struct Channel {
   std::uint32_t id = 0;
   std::string topic;
@@ -84,7 +84,7 @@ struct UnsubscribeParameters {
 using Action = std::variant<Subscribe, Unsubscribe, ServiceCall, GetParameters, SetParameters, SubscribeParameters,
                             UnsubscribeParameters>;
 
-/// What a client asks for, or why it is refused. Clients may send anything.
+/// The request of a client, or the reason why it is refused. Clients may send anything.
 struct Parsed {
   std::vector<Action> actions;
   std::string refusal;  ///< empty: none

@@ -1,4 +1,4 @@
-// What viewers command of a replay.
+// The commands of viewers to a replay.
 #pragma once
 
 #include <chrono>

@@ -227,7 +227,7 @@ void Session::answer(const SetParameters& wish, const std::vector<WebServer::Cha
 void Session::push(Outgoing message) {
   if (closed_) return;
   if (message.droppable) {
-    // What is being sent is not in the queue.
+    // The message that is being sent is not in the queue.
     while (queued_bytes_ + message.bytes.size() > kMostQueuedBytes) {
       const auto oldest =
           std::find_if(queue_.begin(), queue_.end(), [](const Outgoing& waiting) { return waiting.droppable; });

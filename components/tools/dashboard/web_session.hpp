@@ -1,4 +1,4 @@
-// What WebServer consists of: its state, and one object for each connection.
+// The parts of WebServer: its state, and one object for each connection.
 #pragma once
 
 #include <algorithm>

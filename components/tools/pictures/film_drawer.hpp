@@ -12,7 +12,7 @@
 
 namespace constrictor::pictures {
 
-/// What all frames of a film share.
+/// The parts that all frames of a film share.
 struct FilmStyle {
   int width = 0, height = 0;  ///< [pixel] of a frame
   figure::TorqueSeries torques;
@@ -38,7 +38,7 @@ class FilmDrawer {
   [[nodiscard]] const std::uint8_t* take();
 
  private:
-  struct Desk;  // what a thread draws with
+  struct Desk;  // the canvas and data of one drawing thread
   const FilmStyle& style_;
   std::vector<std::unique_ptr<Desk>> desks_;
   std::size_t next_ = 0;

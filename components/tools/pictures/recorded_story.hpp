@@ -1,4 +1,4 @@
-// What happened in a recorded run, apart from worlds and images: read in one pass, before anything is drawn.
+// The events of a recorded run, without worlds and images: read in one pass, before anything is drawn.
 #pragma once
 
 #include <Eigen/Core>

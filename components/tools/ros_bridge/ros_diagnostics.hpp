@@ -16,7 +16,7 @@ namespace constrictor::ros {
 
 using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
 
-/// What the bridge itself has done since its start.
+/// The counters of the bridge since its start.
 struct BridgeCounts {
   std::uint64_t dropped = 0;     ///< messages of the run that ROS 2 cannot represent
   std::uint64_t refused = 0;     ///< requests of ROS programs that the bridge or the run refused

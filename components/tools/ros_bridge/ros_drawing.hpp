@@ -1,4 +1,4 @@
-// What guidance has mapped and what perception sees, as markers and paths for RViz. Pure: no DDS calls, no clock.
+// The map of guidance and the percepts as markers and paths for RViz. Pure: no DDS calls, no clock.
 #pragma once
 
 #include <cstdint>

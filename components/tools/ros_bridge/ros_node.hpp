@@ -47,7 +47,8 @@ class Node {
  public:
   enum class Reliability { kBestEffort, kReliable };
 
-  /// What the node reads or writes, in ROS 2's words: "/joint_states", "sensor_msgs/msg/JointState".
+  /// A topic that the node reads or writes, and its type, as ROS 2 names them: "/joint_states",
+  /// "sensor_msgs/msg/JointState".
   struct Topic {
     std::string name, type;
     bool written = true;

@@ -19,7 +19,7 @@ inline constexpr std::size_t kLongestTaskLine = 2000;
 /// More requests than these may not wait for their answers.
 inline constexpr std::size_t kMostWaitingTasks = 16;
 
-/// What a line asks for.
+/// The request in a line.
 struct TaskLine {
   enum class Kind { kStart, kCancel, kTake, kRelease } kind = Kind::kStart;
   msg::Request request{};  ///< of a start

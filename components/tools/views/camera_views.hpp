@@ -1,4 +1,4 @@
-// What viewers see of the camera: images, the model of the lens, and what perception found, as annotations. Pure.
+// The views of the camera for viewers: images, the model of the lens, and the percepts as annotations. Pure.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// What the newest messages of a run say: the source of everything that viewers see. Pure: no sockets, no DDS.
+// The newest messages of a run, from which all views are made. Pure: no sockets, no DDS.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What viewers show: messages of the run in forms that Foxglove and the page know. Pure: no sockets, no DDS.
+// The content of viewers: messages of the run in forms that Foxglove and the page can show. Pure: no sockets, no DDS.
 #pragma once
 
 #include <Eigen/Core>

@@ -15,7 +15,7 @@
 
 namespace constrictor::cli {
 
-/// What is evaluated.
+/// The runs of an evaluation.
 struct EvaluationRequest {
   RunOptions run;  ///< the options of every run but its seed, its report directory and what is varied
   std::vector<std::uint64_t> seeds;

@@ -21,7 +21,7 @@ struct EvaluationRecord {
   std::map<std::string, std::string> identities;  ///< SHA-256 of each file and of the program; other options as text
 };
 
-/// What every result of an evaluation depends on, besides seed and variant.
+/// The inputs on which every result of an evaluation depends, besides seed and variant.
 [[nodiscard]] std::map<std::string, std::string> identities_of(const RunOptions& options);
 
 void write_record(const std::filesystem::path& folder, const EvaluationRecord& record);

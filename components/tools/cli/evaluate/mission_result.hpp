@@ -51,12 +51,13 @@ inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", 
                                           "mission succeeded"};
 [[nodiscard]] bool reached(const MissionResult& result, std::size_t phase);
 
-/// What `constrictor run` left in `folder`, which ended with `exit_status`. Of a run that wrote no report, only the
-/// status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type stays unknown.
+/// The result of a `constrictor run` that wrote into `folder` and ended with `exit_status`. Of a run that wrote no
+/// report, only the status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type
+/// stays unknown.
 [[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status);
 
-/// What went wrong in an event of a task: its goal was aborted or refused, it timed out, or something was lost. The
-/// text contains no numbers of the event, so that equal causes are counted together. Empty for all other events.
+/// The failure that an event of a task reports: its goal was aborted or refused, it timed out, or something was lost.
+/// The text contains no numbers of the event, so that equal causes are counted together. Empty for all other events.
 [[nodiscard]] std::string trouble_of(const nlohmann::json& event);
 
 }  // namespace constrictor::cli

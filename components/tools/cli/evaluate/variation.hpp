@@ -1,4 +1,5 @@
-// What an evaluation varies: values of the scenario, of the robot, and of the components' configurations.
+// The quantities that an evaluation varies: values of the scenario, of the robot, and of the components'
+// configurations.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ struct FreeDevice {
 };
 using Device = std::unique_ptr<libevdev, FreeDevice>;
 
-/// What the kernel says about an open event device; null if it is none.
+/// The kernel's description of an open event device; null if it is none.
 Device described(int descriptor) {
   libevdev* device = nullptr;
   if (libevdev_new_from_fd(descriptor, &device) != 0) return nullptr;

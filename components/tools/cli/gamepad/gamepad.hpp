@@ -1,4 +1,4 @@
-// What the events of a gamepad mean for the robot. Pure: no device, no DDS, no clock.
+// Translates the events of a gamepad into commands to the robot. Pure: no device, no DDS, no clock.
 #pragma once
 
 #include <linux/input.h>

@@ -1,4 +1,4 @@
-// What `topic echo`, `hz`, `bw` and `delay` share: waiting for the writers and the samples of topics.
+// The common part of `topic echo`, `hz`, `bw` and `delay`: waiting for the writers and the samples of topics.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct WatchOptions {
   SampleView shown;         ///< echo
 };
 
-/// What a command does with the samples. `topic` is the index in WatchOptions::topics.
+/// The function of a command that receives the samples. `topic` is the index in WatchOptions::topics.
 struct Watcher {
   /// Called once for each topic, when a writer was found.
   std::function<void(const DomainView&, std::size_t topic, const dds::Endpoint& writer)> begin;

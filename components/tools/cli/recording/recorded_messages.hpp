@@ -17,7 +17,7 @@ namespace constrictor::cli {
 /// The same; throws UsageError if there is none.
 [[nodiscard]] std::filesystem::path recording_or_throw(const std::string& name);
 
-/// What the help of a command says of such an argument.
+/// The help text of such an argument.
 inline constexpr const char* kFileMeaning = "recording (MCAP), or the report directory of a run with --record";
 
 /// Whether the recording has the pixels of images.

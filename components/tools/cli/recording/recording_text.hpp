@@ -14,7 +14,7 @@ inline constexpr int kMissing = 1;  ///< exit status: the recording is not compl
 /// "84,123 messages of 40 topics, 12.3 MB, 120.0 s; nothing is missing".
 [[nodiscard]] std::string describe_recording(const RecordingSummary& summary);
 
-/// What the recording in a report directory contains, for report.json; "text" is a line for people. Null: there is
+/// The content of the recording in a report directory, for report.json; "text" is a line for people. Null: there is
 /// none.
 [[nodiscard]] nlohmann::ordered_json recording_report(const std::filesystem::path& report_dir);
 

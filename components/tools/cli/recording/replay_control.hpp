@@ -12,7 +12,7 @@
 
 namespace constrictor::cli {
 
-/// What a replay is asked for.
+/// A request to a replay.
 struct ReplayRequest {
   enum class Kind { kState, kPause, kResume, kStep, kSpeed, kSeek } kind = Kind::kState;
   /// kStep: number of ticks. kSpeed: times the recorded speed, 0: as fast as possible. kSeek: [s] after the first

@@ -1,4 +1,4 @@
-// What a replay does with each topic.
+// How a replay treats each topic.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 std::string file_of_configuration(const std::string& component) { return "configuration/" + component + ".yaml"; }
 
-/// What constrictor_host says of the build: its numeric profile, libraries and default configurations.
+/// The description of the build by constrictor_host: its numeric profile, libraries and default configurations.
 struct BuildDescription {
   std::string numeric_profile;
   std::vector<std::pair<std::string, std::string>> libraries;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr auto kMakingBound = 60s;  // an agent's folder this young may not be locked yet
-constexpr auto kKeptFor = 7 * 24h;  // what the processes of an interrupted run have written
+constexpr auto kKeptFor = 7 * 24h;  // the output of the processes of an interrupted run
 constexpr const char* kAgent = "agent-";
 constexpr const char* kKept = "run-";
 

@@ -1,4 +1,4 @@
-// What the agent sends to the launcher while processes run: their state, their logs, the files that they write.
+// The reports of the agent to the launcher while processes run: their state, their logs, the files that they write.
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <netinet/in.h>

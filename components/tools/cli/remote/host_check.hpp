@@ -11,7 +11,7 @@
 
 namespace constrictor::cli {
 
-/// What was found about one host.
+/// The result of the check of one host.
 struct HostReport {
   std::string name;
   std::string facts;  ///< "robot at 10.0.0.2, release 0.1.0, 4 cores"; empty if the host was not reached

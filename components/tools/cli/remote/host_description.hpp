@@ -1,4 +1,4 @@
-// What an agent reports about its host, and whether that host can take part in a run.
+// The description of a host by its agent, and the check whether this host can take part in a run.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

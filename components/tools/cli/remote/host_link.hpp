@@ -29,7 +29,7 @@ class HostError : public std::runtime_error {
 class HostLink {
  public:
   using Print = std::function<void(const std::string& line)>;
-  /// What the agent reported about one process.
+  /// The report of the agent on one process.
   struct Process {
     std::uint32_t incarnation = 0;
     nlohmann::json request;  ///< the message that starts it

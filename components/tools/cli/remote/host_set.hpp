@@ -19,7 +19,7 @@
 
 namespace constrictor::cli {
 
-/// What hosts need to know of a run.
+/// The description of a run for its hosts.
 struct HostOptions {
   std::string token;             ///< names the run on all hosts; a run that is continued has the token of its begin
   std::filesystem::path secure;  ///< folder with the keys of the run; empty: without DDS Security
