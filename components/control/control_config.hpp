@@ -17,7 +17,7 @@ inline const std::vector<std::string>& drive_methods() {
   return names;
 }
 
-/// Of the method "sliding_mode"; methods/sliding_mode.cpp has the law.
+/// Parameters of the method "sliding_mode"; methods/sliding_mode.cpp explains the law.
 struct SlidingParameters {
   double surface_1_s = 0.0;
   double reaching_rad_s2 = 0.0;

@@ -59,7 +59,7 @@ class JointLimiter {
   msg::JointCommand relax(const JointArray& measured_rad, LimiterState& state) const;
 
  private:
-  /// Where the setpoint of joint `j` must return before its torque limit rises to `limit_nm`. Nothing if it need not.
+  /// The setpoint to which joint `j` must return before its torque limit rises to `limit_nm`; empty if it may stay.
   [[nodiscard]] std::optional<double> before_rise(std::size_t j, double limit_nm, double measured_rad,
                                                   const LimiterState& state) const;
 

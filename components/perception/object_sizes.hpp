@@ -26,7 +26,7 @@ struct ObjectSize {
   static constexpr std::int32_t kMemoryImages = 30;
 };
 
-/// By colour. Of two objects of one colour, the one that was measured last counts most.
+/// The sizes by colour. Of two objects of one colour, the one that was measured last counts most.
 struct ObjectSizes {
   std::array<ObjectSize, msg::kColourCount> of{};
 

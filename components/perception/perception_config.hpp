@@ -66,7 +66,7 @@ struct PerceptionConfig : ParameterSet {
   }
 
  private:
-  /// By number; "unknown" has no name here, because no file may ask for it.
+  /// The names by number; "unknown" has no name here, because no file may contain it.
   static std::vector<std::string> colour_names() {
     std::vector<std::string> names = names_of(constants::kColour, msg::kColourGreen);
     names.insert(names.begin(), "");

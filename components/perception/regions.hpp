@@ -24,7 +24,7 @@ struct Region {
   int standing_first = 0, standing_last = -1;
   int standing_bottom = -1;  ///< lowest row in which the standing part still has most of its width
   bool line = false;         ///< elongated on the ground and of the line's colour
-  // Of a low object, found by mark_low_objects() or split_objects_from_zones():
+  // Fields of a low object, set by mark_low_objects() or split_objects_from_zones():
   bool low = false;                        ///< stands upright although it does not reach above the horizon
   bool on_zone = false;                    ///< a part of a zone of the same colour was taken for it
   bool doubtful = false;                   ///< too little is in view to distinguish a low object from a zone

@@ -88,7 +88,7 @@ class Joints {
   [[nodiscard]] double velocity_rad_s(std::size_t joint) const { return velocity_rad_s_[joint]; }
   [[nodiscard]] double torque_nm(std::size_t joint) const { return torque_nm_[joint]; }
   [[nodiscard]] bool holding() const { return holding_; }
-  /// Of the newest command that was obeyed; 0: none.
+  /// The session of the newest command that was executed; 0: none.
   [[nodiscard]] std::uint64_t session() const { return session_; }
   [[nodiscard]] std::uint64_t number() const { return number_; }
 

@@ -14,7 +14,7 @@ struct FieldEntry {
   FieldInfo info;
   std::string_view type;   ///< IDL name of the type that it contains ("constrictor::msg::Blob"); empty: no structure
   std::size_t length = 0;  ///< of an array; 0: not an array
-  /// Of an array: place of the field ..._count before it, which says how many of its elements are used; -1: all are.
+  /// For an array: index of the field ..._count before it, the number of elements that are used; -1: all are used.
   std::ptrdiff_t count_at = -1;
 };
 

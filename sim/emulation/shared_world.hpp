@@ -27,7 +27,7 @@ class SharedMapping {
   SharedBlock* block_ = nullptr;
 };
 
-/// Where bodies are, and when.
+/// The poses of the bodies at one time.
 struct WorldSnapshot {
   msg::WorldState world{};   ///< poses; the other fields are empty
   std::int64_t time_ns = 0;  ///< of the world

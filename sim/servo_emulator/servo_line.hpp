@@ -29,11 +29,11 @@ class ServoLine {
   ServoLine(std::vector<BusDevice*> devices, std::uint64_t seed)
       : devices_(std::move(devices)), random_(seed, "line") {}
 
-  /// Bytes that the controller has sent at this baud rate; a device with another rate does not understand them. The
-  /// last byte is on the line for its own time after `now_ns`.
+  /// Takes bytes that the controller has sent at this baud rate; devices with another rate ignore them. The last byte
+  /// is on the line for its own time after `now_ns`.
   void receive(dynamixel::ByteView bytes, std::uint32_t baud, std::int64_t now_ns);
 
-  /// Bytes of an answer. They are complete at `at_ns`.
+  /// Bytes of an answer, which are complete at `at_ns`.
   struct Transmission {
     std::int64_t at_ns = 0;
     dynamixel::Bytes bytes;

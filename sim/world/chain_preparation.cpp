@@ -57,7 +57,7 @@ void ChainDynamics::prepare_joints(std::span<const ServoRow> rows) {
     ChainSystem::Joint& joint = system_.joints()[i];
     joint.rate_rad_s = rates_rad_s_[i];
     joint.servo = rows[i];
-    // As ODE's stops: a share of the error is corrected in each step.
+    // Like ODE's stops, this corrects a share of the error in each step.
     const double low_rad = models_[i].min_rad - angles_rad_[i];
     const double high_rad = models_[i].max_rad - angles_rad_[i];
     joint.stop_side = low_rad > 0.0 ? 1.0 : high_rad < 0.0 ? -1.0 : 0.0;

@@ -101,7 +101,7 @@ void ChainSystem::assemble() {
       stiffness_[contact.second].noalias() += (weight * second) * second.transpose();
     }
   }
-  // Of objects, the chain's recursion overwrites nothing, so that they can come first.
+  // The recursion over the chain does not overwrite the objects' part, so the objects can come first.
   assemble_objects();
   if (!with_chain_) return;
   assemble_chain();

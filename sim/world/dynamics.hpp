@@ -17,7 +17,7 @@
 
 namespace constrictor {
 
-/// In place of the number of a body: the ground, or an obstacle.
+/// Stands in place of the number of a body for the ground or an obstacle.
 inline constexpr std::size_t kFixed = std::numeric_limits<std::size_t>::max();
 
 /// A rigid body as it is built, at rest.

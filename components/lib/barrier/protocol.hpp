@@ -45,7 +45,7 @@ std::string component_hash(const std::string& scenario, const std::string& confi
 std::string scenario_part(const std::string& component_hash);
 /// The same hash for a member that takes the place of one with another configuration, at real-time pace.
 std::string replacing(const std::string& component_hash);
-/// In place of the state of its predecessor, which such a member does not understand: it begins anew.
+/// Stands in place of the predecessor's state for a member that cannot read that state: the member begins anew.
 inline constexpr std::string_view kBeginAnew = "begin anew";
 /// Whether a hash is one of replacing().
 bool replaces(const std::string& component_hash);

@@ -29,7 +29,7 @@ struct TopicOps {
   std::optional<std::string> (*validate)(const void* message);
   /// Appends the canonical bytes (idl/constrictor/reflect.hpp) of every field.
   void (*append_bytes)(const void* message, std::string& bytes);
-  /// Where the header is in a message's canonical bytes, so that they can be hashed with another header without a copy
+  /// Offset of the header in a message's canonical bytes, so that they can be hashed with another header without a copy
   /// of the message; empty if they are too short for it. The first two bytes are the robot id.
   std::optional<std::size_t> (*header_at)(std::span<const std::byte> bytes);
   /// The inverse of append_bytes; an empty sample if the bytes are not exactly one message.

@@ -34,7 +34,7 @@ class ParameterReader {
   explicit ParameterReader(std::int32_t participant);
   /// Takes the lists that have arrived. Returns whether one has. Never waits.
   bool poll();
-  /// By name. Writers keep several lists for late readers; the newest one that has arrived counts.
+  /// The parameters by name. Writers keep several lists for late readers; the newest one that has arrived counts.
   [[nodiscard]] std::map<std::string, OwnedParameter> parameters() const;
   /// Components that write a list by what `has_writer(topic)` says, but none of which a list has arrived.
   [[nodiscard]] std::vector<std::string> silent(const std::function<bool(std::string_view topic)>& has_writer) const;

@@ -208,7 +208,7 @@ const GoalTracker& RequestClient::goals() {
 }
 
 bool RequestClient::release(std::chrono::milliseconds bound) {
-  // Not wait_for_answer(): a client that was interrupted must still be able to give authority back.
+  // wait_for_answer() would throw after an interruption, but an interrupted client must still return authority.
   const std::uint64_t number = ask(msg::kRequestRelease);
   const auto end = WaitClock::now() + bound;
   while (!answer(number) && WaitClock::now() < end) {

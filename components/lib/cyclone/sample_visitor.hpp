@@ -30,7 +30,7 @@ class SampleVisitor {
   /// A list of anything else, of `count` values.
   virtual void begin_list(std::uint32_t count) = 0;
   virtual void end_list() = 0;
-  /// Of a structure or union; member() names the member to which the next value belongs.
+  /// A structure or union begins; member() names the member to which the next value belongs.
   virtual void begin_struct(const TypeNode& type) = 0;
   virtual void member(const std::string& name) = 0;
   virtual void end_struct() = 0;

@@ -60,7 +60,7 @@ struct PacketView {
   ByteView parameters;  ///< of a status packet: the error field first
 
   [[nodiscard]] bool is_status() const { return instruction == Instruction::kStatus && !parameters.empty(); }
-  /// Of a status packet.
+  /// The error of a status packet.
   [[nodiscard]] StatusError error() const { return static_cast<StatusError>(parameters[0] & 0x7F); }
   [[nodiscard]] bool alert() const { return (parameters[0] & kAlert) != 0; }
   [[nodiscard]] ByteView data() const { return parameters.subspan(1); }

@@ -229,7 +229,7 @@ bool convert_to_cdr(Bytes canonical, std::string& cdr, bool octets) {
   cdr.append(kLittleEndian);
   ToCdr visitor{canonical, cdr, cdr.size(), octets};
   Description<T>::visit(kBlank, visitor);
-  // As DDS sends it: padded to a multiple of 4 bytes, with the number of these bytes in the options.
+  // The same form as DDS sends: padded to a multiple of 4 bytes, with the number of these bytes in the options.
   const std::size_t padding = (4 - (cdr.size() - visitor.start) % 4) % 4;
   cdr.append(padding, '\0');
   cdr[visitor.start - 1] = static_cast<char>(padding);

@@ -1,4 +1,4 @@
-// Where the camera of the robot file is.
+// The pose of the camera of the robot file.
 #pragma once
 
 #include <Eigen/Geometry>

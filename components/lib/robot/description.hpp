@@ -31,7 +31,7 @@ struct ModuleInertia {
   double along_kg_m2 = 0.0;
   double across_kg_m2 = 0.0;
 };
-/// Of a homogeneous capsule, as in the simulator.
+/// The inertia of a module as a homogeneous capsule, as in the simulator.
 [[nodiscard]] ModuleInertia module_inertia(const RobotModel& robot);
 
 /// The text of a URDF file: links with masses, inertias and shapes, joints with axes, limits and friction, the frame of

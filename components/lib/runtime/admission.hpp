@@ -50,10 +50,11 @@ class Admission {
  private:
   struct Announced {
     std::uint32_t incarnation = 0;
-    /// Of the newest incarnation first. Earlier ones count, too: their last samples may arrive late.
+    /// The participants of the member's incarnations, newest first. Earlier ones are accepted, too: their last samples
+    /// may arrive late.
     std::vector<dds::GuidPrefix> participants;
-    /// Of the same incarnation, ignored while the announced one lives. The conductor may have accepted another one of
-    /// them first than this process; those that it refuses end.
+    /// Other participants of the same incarnation, ignored while the announced one is alive. The conductor may have
+    /// accepted another one of them first than this process; those that it refuses end.
     std::vector<dds::GuidPrefix> rivals;
   };
   struct Waiting {

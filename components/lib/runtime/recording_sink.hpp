@@ -1,4 +1,4 @@
-// Where recorded messages go: an MCAP file. In lock-step, every message is in the open chunk when write() returns. At
+// Writes recorded messages to an MCAP file. In lock-step, every message is in the open chunk when write() returns. At
 // real-time pace a thread writes them, so that nothing waits for the disk; what it cannot write in time is counted.
 #pragma once
 

@@ -51,7 +51,7 @@ class RunRecorder {
 
   /// Takes what arrived over DDS, and closes a chunk that is old enough. To be called at least every 100 ms.
   void poll();
-  /// Where a successor continues, after everything up to there was stored.
+  /// The position from which a successor continues, after everything before it was stored.
   [[nodiscard]] RecordingPosition position();
   /// Ends the file.
   void finish();

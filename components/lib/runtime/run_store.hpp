@@ -1,5 +1,5 @@
-// Where the plant's process keeps the checkpoints of its run: a file that survives the process, and now and then a copy
-// that survives a reboot.
+// Stores the checkpoints of the plant's process: in a file that survives the process, and regularly in a copy that
+// survives a reboot.
 #pragma once
 
 #include <chrono>

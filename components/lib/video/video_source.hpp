@@ -1,4 +1,4 @@
-// Where pictures come from, as one text.
+// The source of pictures, as one text.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ struct VideoSource {
 
   /// Frames arrive when they want. The other sources are read at the times of the run.
   [[nodiscard]] bool live() const { return kind != SourceKind::kFolder && kind != SourceKind::kFile; }
-  /// For people; without the password of an address.
+  /// The name of the source for people, without the password of an address.
   [[nodiscard]] std::string name() const;
 };
 

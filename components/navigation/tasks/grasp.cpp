@@ -111,7 +111,7 @@ class Grasp : public StatefulTask<GraspState> {
     }
   }
 
-  /// As many modules touch as a held object touches; always true for a robot that feels no touch.
+  /// Whether as many modules touch as with a held object; always true for a robot without contact sensors.
   [[nodiscard]] bool enough_touches(const TaskInput& input) const {
     return !input.feels || state_.touching >= input.config.grasp.touching_modules;
   }

@@ -30,7 +30,7 @@ void refine(const cv::Mat& bgr, const Board& board, Corners& corners);
 /// [pixel] the largest distance between corresponding corners.
 [[nodiscard]] double largest_motion(const Corners& a, const Corners& b);
 
-/// Where a board stands in the picture, each from 0 to about 1.
+/// The place of a board in the picture, each value from 0 to about 1.
 struct Pose2 {
   double x = 0.0, y = 0.0, size = 0.0, slant = 0.0;
 };

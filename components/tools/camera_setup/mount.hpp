@@ -1,4 +1,4 @@
-// Where the camera is in the head, from one view of a board that lies on the ground.
+// Finds the pose of the camera in the head from one view of a board that lies on the ground.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 
 namespace constrictor::camera_setup {
 
-/// Where the board lies, in the frame G: origin on the ground below the head's centre, x forward, y left.
+/// The place of the board in the frame G: origin on the ground below the head's centre, x forward, y left.
 struct BoardOnGround {
   double x_m = 0.5, y_m = 0.0;  ///< middle of the inner corners
   double yaw_rad = 0.0;         ///< 0: its rows lie across the robot (along y)

@@ -44,7 +44,7 @@ Scheduling read_scheduling(Configuration from) {
   return scheduling;
 }
 
-/// Of a process that hosts the components of both.
+/// The scheduling of a process that hosts the components of both.
 Scheduling join(const Scheduling& a, const Scheduling& b) {
   Scheduling both{std::max(a.priority, b.priority), a.lock_memory || b.lock_memory, {}};
   if (!a.cpus.empty() && !b.cpus.empty())

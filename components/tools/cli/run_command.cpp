@@ -136,7 +136,7 @@ class Launcher {
   void wait_for_hosts() {
     if (const int signal = signals_.wait(20ms); signal != 0) throw Interrupted{signal};
   }
-  /// Until the run has ended, a process failed, or the processes must be killed.
+  /// Returns when the run has ended, a process has failed, or the processes must be killed.
   void watch_run() {
     SpeedMeter speed;
     while (supervisor_.poll() == Supervisor::State::kRunning && !must_kill(200ms)) {

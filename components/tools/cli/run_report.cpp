@@ -33,7 +33,7 @@ Json largest_jitter(const std::vector<std::string>& components, const RunView& v
   return largest;
 }
 
-/// Of a process with these components; null: it has sent no status.
+/// The scheduling of a process with these components; null: the process has sent no status.
 Json scheduling_of(const std::vector<std::string>& components, const RunView& view) {
   for (const auto& component : components) {
     const auto found = view.components.find(component);

@@ -85,7 +85,7 @@ class Supervisor {
   [[nodiscard]] const std::string& failure() const { return failure_; }
   /// The exit status of the command for this failure.
   [[nodiscard]] int failure_status() const { return failure_status_; }
-  /// In the order of the manifest.
+  /// The records of the processes, in the order of the manifest.
   [[nodiscard]] std::vector<ProcessRecord> records() const;
 
  private:

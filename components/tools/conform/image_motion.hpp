@@ -1,4 +1,4 @@
-// By which rotation of the camera one image follows from another.
+// Finds the rotation of the camera between two images.
 #pragma once
 
 #include <Eigen/Core>

@@ -39,7 +39,7 @@ struct PlantCommand {
   bool relaxed = false;
   bool torque = false;  ///< the joints exert torque_nm, and the positions do not count
   bool unknown_mode = false;
-  /// Where the port can choose it: an older number than the newest, or a session beside its own.
+  /// The origin, if the port can choose it: an older number than the newest, or another session than its own.
   enum class Origin { kProper, kOld, kStranger } origin = Origin::kProper;
 };
 

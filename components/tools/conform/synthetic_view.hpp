@@ -53,7 +53,7 @@ class SyntheticCamera {
   [[nodiscard]] std::vector<std::uint8_t> draw(const SyntheticScene& scene) const;
   /// The same picture with the noise of the scene; other noise for each `seed`.
   static void add_noise(std::vector<std::uint8_t>& rgb, double noise, std::uint64_t seed);
-  /// Where a point of G is seen with a level head; pixel coordinates (u, v).
+  /// The pixel coordinates (u, v) of a point of G, seen with a level head.
   [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector3d& point) const;
   [[nodiscard]] static msg::Quaternion attitude(const SyntheticScene& scene);
 

@@ -36,7 +36,7 @@ class Controls {
   [[nodiscard]] virtual std::string over() const = 0;
   /// The newest state of a run; empty for a replay.
   [[nodiscard]] virtual std::optional<msg::RunState> run() const { return {}; }
-  /// Where a replay is, for the page; empty for a run.
+  /// The position of a replay, for the page; empty for a run.
   [[nodiscard]] virtual std::optional<nlohmann::json> replay() const { return {}; }
 };
 

@@ -89,7 +89,7 @@ Parsed parse_values(const json& list, const std::string& id) {
   return {{std::move(wish)}, {}};
 }
 
-/// Of each message that has a list: its key.
+/// The key of the list, by the name of the message.
 const std::map<std::string, const char*> kLists = {{"subscribe", "subscriptions"},
                                                    {"unsubscribe", "subscriptionIds"},
                                                    {"getParameters", "parameterNames"},

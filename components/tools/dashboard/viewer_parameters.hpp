@@ -18,7 +18,7 @@ class ViewerParameters {
   /// Subscribes to these parameters; without names, to all of them, also to those that are not known yet. The viewer
   /// knows the present values.
   void subscribe(const std::vector<std::string>& names, const ParameterMap& present);
-  /// Without names: from all parameters.
+  /// Unsubscribes from these parameters; without names, from all.
   void unsubscribe(const std::vector<std::string>& names);
   /// These values were sent to the viewer.
   void sent(const std::vector<ParameterValue>& values);

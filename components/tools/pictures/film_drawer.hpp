@@ -28,7 +28,7 @@ class FilmDrawer {
   FilmDrawer(const RecordedStory& story, const FilmStyle& style, std::size_t threads);
   ~FilmDrawer();
 
-  /// As many frames are being drawn as there are threads: take() must come before the next begin().
+  /// Whether all threads draw a frame: take() must then be called before the next begin().
   [[nodiscard]] bool full() const { return drawn_.size() == desks_.size(); }
   [[nodiscard]] bool empty() const { return drawn_.empty(); }
   /// Begins a frame. The pictures in `frame` are set here; everything else of it is the caller's.

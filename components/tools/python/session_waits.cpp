@@ -92,7 +92,7 @@ std::vector<msg::TaskEvent> Session::events(std::uint64_t goal) {
 void Session::emergency_stop() {
   const Turn turn(*this);
   need_run();
-  // Not client(): the stop also goes to the plant, which obeys it while `input` hangs.
+  // client() is not used here: the stop also goes to the plant, which executes it even if `input` hangs.
   if (!client_) client_ = std::make_unique<RequestClient>(participant_->participant(), domain_, request_options_);
   if (!client_->connect_to_stop(5s)) {
     throw CommandError(fmt::format("run {}: neither the plant nor `input` reads emergency stops (see `constrictor "

@@ -198,7 +198,7 @@ void Subscription::close() {
 nlohmann::ordered_json list_topics(Session& session) {
   const auto domain = session.participant();
   const dds::Discovery discovery(domain->participant());
-  // Until discovery has found nothing new for a moment.
+  // Waits until discovery has found nothing new for a moment.
   const auto end = WaitClock::now() + kDiscovery;
   std::size_t before = 0;
   auto changed = WaitClock::now();

@@ -27,7 +27,7 @@ inline constexpr const char* kImageSchema =
     "================================================================================\n"
     "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// In the order of `View`.
+/// The topics, in the order of `View`.
 inline constexpr std::array kViewTopics = {
     ViewTopic{"view/scene", "json", "foxglove.SceneUpdate", "jsonschema", kAnyObject},
     ViewTopic{"view/transforms", "json", "foxglove.FrameTransforms", "jsonschema", kAnyObject},

@@ -25,7 +25,7 @@ struct ContactArrow {
 /// foxglove.Log. A line of a process has the time at which it was written.
 [[nodiscard]] nlohmann::json log_of(const msg::TaskEvent& event, std::uint64_t time_ns);
 [[nodiscard]] nlohmann::json log_of(const msg::LogLine& line);
-/// For the page: everything but images, in one object. Documented in README.md.
+/// The state for the page: everything but images, in one object. Documented in README.md.
 [[nodiscard]] nlohmann::json page_state(const Newest& newest);
 
 }  // namespace constrictor::views

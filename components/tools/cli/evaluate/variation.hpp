@@ -27,7 +27,7 @@ struct Variation {
   std::string file;
   std::string key;
   std::vector<std::string> values;
-  /// As on the command line, without the values.
+  /// The name as on the command line, without the values.
   [[nodiscard]] std::string name() const { return file == "scenario" ? key : file + ":" + key; }
 };
 

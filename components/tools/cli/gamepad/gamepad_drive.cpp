@@ -34,7 +34,7 @@ constexpr auto kLookAgain = 500ms;      // for a gamepad that is gone
 constexpr double kSmallest_m_s = 0.02;  // a smaller change of the stick is noise
 constexpr double kSmallest_rad_s = 0.03;
 
-/// From the gamepad to requests.
+/// Turns the input of the gamepad into requests.
 class GamepadTeleop {
  public:
   GamepadTeleop(std::string wanted, std::string mapping_file, GamepadMapping mapping, const RunNote& run)

@@ -17,11 +17,11 @@ struct Rights {
 /// TOPIC" and "writes TOPIC". `conducts`: the plant is among the components. Throws std::runtime_error if a line has
 /// another form.
 [[nodiscard]] Rights rights_of_member(const std::vector<std::string>& lines, bool conducts);
-/// Of `constrictor` and of teleoperation: they read everything, send requests and command the run.
+/// The rights of `constrictor` and of teleoperation: they read everything, send requests and command the run.
 [[nodiscard]] Rights rights_of_operator();
-/// Of external planners and bridges: they read what the robot's components publish, and send requests.
+/// The rights of external planners and bridges: they read what the robot's components publish, and send requests.
 [[nodiscard]] Rights rights_of_client();
-/// Of programs that only read.
+/// The rights of programs that only read.
 [[nodiscard]] Rights rights_of_observer();
 
 /// The permissions of one identity for the domains 0 to 229, for `days` from yesterday on. Not signed yet.

@@ -121,8 +121,8 @@ class LiveLog {
  private:
   [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
 
-  /// Until the run is over and no line has arrived for kQuiet: the last lines of the processes may arrive after the
-  /// news of the end, in particular if this process was stopped meanwhile.
+  /// Prints lines until the run is over and no line has arrived for kQuiet: the last lines of the processes may arrive
+  /// after the end was reported, in particular if this process was stopped meanwhile.
   void follow() {
     std::optional<Clock::time_point> known;  // since when the end is known
     for (auto changed = Clock::now(); interrupt_signal() == 0; std::this_thread::sleep_for(kLogPoll)) {

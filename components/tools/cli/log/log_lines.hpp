@@ -19,8 +19,8 @@ struct LogEntry {
   std::string host;
   std::int32_t pid = 0;
   std::uint32_t incarnation = 0;
-  /// Not written by our log but by a library, directly into the file: it has the time of the line before, and counts as
-  /// a warning.
+  /// The line was written by a library, directly into the file: it has the time of the line before, and counts as a
+  /// warning.
   bool foreign = false;
 };
 
@@ -36,7 +36,7 @@ struct LogFilter {
   [[nodiscard]] bool accepts(const LogEntry& entry) const;
 };
 
-/// As in a log file; the host is named if it is not `own_host`.
+/// The text of a line as in a log file; it contains the host if that is not `own_host`.
 [[nodiscard]] std::string text_of(const LogEntry& entry, const std::string& own_host);
 [[nodiscard]] nlohmann::ordered_json to_json(const LogEntry& entry);
 

@@ -20,7 +20,7 @@ struct ReplayRequest {
   double value = 0;
 };
 
-/// Where a replay is.
+/// The position and state of a replay.
 struct ReplayState {
   double position_s = 0;  ///< [s] after the first message
   double length_s = 0;    ///< [s] from the first to the last message

@@ -37,7 +37,7 @@ class Agent {
   ~Agent();
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
-  /// Until the run is over. Returns the exit status.
+  /// Serves the launcher until the run is over. Returns the exit status.
   int run();
 
  private:

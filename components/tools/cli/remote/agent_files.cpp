@@ -23,8 +23,8 @@ constexpr auto kKeptFor = 7 * 24h;  // the output of the processes of an interru
 constexpr const char* kAgent = "agent-";
 constexpr const char* kKept = "run-";
 
-/// Where output is kept until its run is over: unlike the run directory, this folder survives a reboot and the end of
-/// the user's last login. Empty: the user has no such folder.
+/// The folder in which output is kept until its run is over: unlike the run directory, this folder survives a reboot
+/// and the end of the user's last login. Empty: the user has no such folder.
 fs::path state_directory() {
   const char* state = std::getenv("XDG_STATE_HOME");
   const char* home = std::getenv("HOME");
@@ -37,7 +37,7 @@ fs::path state_directory() {
   return error ? fs::path() : folder / "constrictor";
 }
 
-/// Where the output of the agent with this folder is kept; empty: nowhere.
+/// The folder in which the output of the agent with this folder is kept; empty: there is none.
 fs::path kept_output(const fs::path& agent) {
   const fs::path state = state_directory();
   return state.empty() ? state : state / (kKept + agent.filename().string().substr(std::string(kAgent).size()));

@@ -62,7 +62,8 @@ class HostLink {
   /// Claims the domain on the host and sends files and keys of the run. prepared() is true when that is done.
   void prepare(const nlohmann::json& request);
   [[nodiscard]] bool prepared() const { return prepared_; }
-  /// From where the plant, which is on this host, continues the run; empty: it is not there, or the run is new.
+  /// The checkpoint from which the plant on this host continues the run, as a text; empty: the plant is not there, or
+  /// the run is new.
   [[nodiscard]] const std::string& continued() const { return continued_; }
   void start(const std::string& process, std::uint32_t incarnation, nlohmann::json request,
              const std::filesystem::path& log);

@@ -54,7 +54,8 @@ class HostSet {
                                              const std::vector<std::string>& argv,
                                              const std::vector<std::string>& environment,
                                              const std::filesystem::path& log);
-  /// From where the plant continues the run, if it is on another host; else empty.
+  /// The checkpoint from which the plant on another host continues the run, as a text; empty: the plant is here, or the
+  /// run is new.
   [[nodiscard]] std::string continued() const;
   /// Fetches the files that the processes of the other hosts have written into the report's directory, and ends the
   /// agents. All processes must have ended. `over`: the run will not be continued.
