@@ -10,7 +10,7 @@
 namespace constrictor {
 
 /// The joints of one axis divide the body into n + 1 links, which turn in one plane while all other joints are
-/// straight. The body floats: ground and gravity are no part of the model.
+/// straight. The body floats: ground and gravity are not part of the model.
 class JointInertia {
  public:
   /// `joints`: the indices of joints with one axis, from the head. `mass_share`: how much of the modules' mass counts.

@@ -45,7 +45,7 @@ class Tracer {
     for (int i = 0; i < kMaxSteps; ++i) {
       const double step_m = std::clamp(0.05 * view_.range(p), 0.012, 0.05);
       if (i > 0) p += step_m * direction;
-      // Beyond the distance at which it can be resolved, the line fades; that is no end.
+      // Beyond the distance at which it can be resolved, the line fades; that is not an end.
       if (p.norm() > config_.line_max_range_m || view_.pixel_size_m(p, left_of(direction)) > 0.9 * width_m_) {
         w.stopped_by = Section::kOutside;
         break;
@@ -178,7 +178,7 @@ class Tracer {
       if (s == Seen::kOutside || s == Seen::kStanding || p.norm() > config_.line_max_range_m) return;
       if (s == Seen::kLine) last = p;
     }
-    // If the trace missed a bend, the colour of the line is near the tip but off the traced course. That is no end.
+    // If the trace missed a bend, the colour of the line is near the tip but off the traced course. That is not an end.
     const double stray_m = 1.5 * width_m_ + 2.0 * pixel_m;
     for (const Eigen::Vector2d& p : pixels_) {
       if ((p - tip).norm() > 0.4) continue;

@@ -62,7 +62,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (over && memory_.goals > 0) return cancellation();  // the final state would not end the running task
   if (memory_.requested || over) return std::nullopt;
   if (refusals().pausing(memory_.active_s) || barred(memory_.state)) {
-    memory_.entered_s += elapsed_s;  // the pause is no part of the state's time
+    memory_.entered_s += elapsed_s;  // the pause is not part of the state's time
     return std::nullopt;
   }
   if (waits_for_percepts(inputs)) return std::nullopt;  // the state that has begun needs them

@@ -157,7 +157,7 @@ class MissionPlanner {
   void note_drops(const PlannerInputs& inputs);
   /// Selects the next object. False if none is left.
   bool choose_object();
-  /// The state at the end of the sequence: failed if an object was put aside for good.
+  /// The state at the end of the sequence: failed if an object was put aside and not delivered later.
   [[nodiscard]] MissionState end_of_sequence();
   /// Counts a failure with the present object. Returns the state of the next attempt, which differs from the last one,
   /// or puts the object aside and returns the state in which the next one is looked for.
@@ -173,7 +173,7 @@ class MissionPlanner {
   /// Whether navigation has refused this task a short time ago, so that the state must not begin yet.
   [[nodiscard]] bool barred(MissionState state) const;
   /// The state after navigation's refusal: the same one if the refusal passes by itself, otherwise the state that
-  /// follows a failure. It costs no recovery.
+  /// follows a failure. It does not count as a recovery.
   [[nodiscard]] MissionState refused(const std::string& reason, const PlannerInputs& inputs);
   /// The same state if `input` has refused the request, or navigation has not answered it for a while.
   [[nodiscard]] std::optional<MissionState> next_without_answer(const PlannerInputs& inputs);

@@ -48,7 +48,7 @@ class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureC
   std::unique_ptr<video::LiveVideo> live_;      ///< from the first step
   std::unique_ptr<video::PictureFiles> files_;  ///< null: the source is live
   CaptureRecord record_;
-  std::string last_misfit_;  ///< why the last frame was no image of this camera; empty: it was one
+  std::string last_misfit_;  ///< why the last frame was not an image of this camera; empty: it was one
   Output<msg::CameraInfo> info_ = wiring_.output(topics::kCameraInfo);
   Output<msg::CameraImage> image_ = wiring_.output(topics::kCameraImage);
 };

@@ -128,7 +128,7 @@ void ChainDynamics::step(std::span<const ServoRow> rows, std::span<const SolverC
     forces_n_[i] = contact.law.frame() * contact.force_n;
     const Vector6d impulse = settings_.step_s * at_point(contacts[i].touch.position_m, forces_n_[i]);
     if (contact.first < module_count()) momentum_after += impulse;
-    if (contact.second < module_count()) momentum_after -= impulse;  // kFixed is no module
+    if (contact.second < module_count()) momentum_after -= impulse;  // kFixed is not a module
   }
   integrate();
   restore_momentum(momentum_after);

@@ -1,5 +1,5 @@
 // The tests send barrier messages themselves: as a conductor that resumes one member at a time, as a member without
-// checkpoints, and as a process that is no part of the run.
+// checkpoints, and as a process that is not part of the run.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>

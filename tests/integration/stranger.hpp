@@ -1,4 +1,4 @@
-// A process that is no part of a run and sends impossible barrier messages.
+// A process that is not part of a run and sends impossible barrier messages.
 #pragma once
 
 #include <unistd.h>

@@ -77,7 +77,7 @@ TEST_F(Teleoperation, JointsHoldWithinALeaseAndATickAfterTeleopIsKilled) {
     if (pace != "realtime") expect_hold_begins_after(watcher, latched);
     EXPECT_LE(fastest_setpoint(watcher, {held}), kMaxSpeed_rad_s * 1.001);
     EXPECT_LE(fastest_joint(watcher, latched), kMaxSpeed_rad_s);
-    // Rest is judged by the angles, which have a noise of 0.001 rad. Velocities are no measure: contact forces make
+    // Rest is judged by the angles, which have a noise of 0.001 rad. Velocities are not measure: contact forces make
     // held joints tremble with up to 0.4 rad/s within a step, although they move by less than the noise.
     EXPECT_LT(resting_rad, 0.02) << "a joint has not come to rest";
     end(launcher);

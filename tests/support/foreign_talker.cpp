@@ -1,4 +1,4 @@
-// A program that is no part of the run. It publishes types of its own, or causes one of the faults that `constrictor
+// A program that is not part of the run. It publishes types of its own, or causes one of the faults that `constrictor
 // doctor` finds.
 //   foreign_talker DOMAIN final|appendable|untyped|silent_qos|other_idl|plant
 #include <chrono>

@@ -21,7 +21,7 @@ struct DeleteMujoco {
 using MujocoModel = std::unique_ptr<mjModel, DeleteMujoco>;
 using MujocoData = std::unique_ptr<mjData, DeleteMujoco>;
 
-/// Throws std::runtime_error with MuJoCo's message if the text is no correct model.
+/// Throws std::runtime_error with MuJoCo's message if the text is not a correct model.
 inline MujocoModel compile_mujoco_model(const std::string& xml) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "model.xml";

@@ -23,7 +23,7 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
   ToyReport(Wiring& wiring, const Setup& setup)
       : wiring_(wiring),
         joints_(wiring.latest(topics::kJointState)),
-        // 0 if the name is no number: `--topics` and `--check` build the toy with any scenario
+        // 0 if the name is not a number: `--topics` and `--check` build the toy with any scenario
         ticks_(std::strtol(setup.scenario_file.filename().c_str(), nullptr, 10)),
         output_dir_(setup.output_dir),
         log_(setup.log) {

@@ -16,8 +16,8 @@ namespace constrictor {
 [[nodiscard]] int needed_history(int writer_latency, int interval, int reader_latency);
 
 /// Compares the latencies of all members of a run with the depths of the topics between them, and with the depth of
-/// TickDone. Returns the reason why a member could not be restarted, or not be heard; empty if everything fits.
-/// `plant`: name of the component that is the plant.
+/// TickDone. Returns the reason why a member could not be restarted, or why its messages could be lost; empty if
+/// everything fits. `plant`: name of the component that is the plant.
 [[nodiscard]] std::optional<std::string> depth_violation(const std::vector<Hello>& members, const std::string& plant);
 
 }  // namespace constrictor

@@ -15,9 +15,9 @@
 
 namespace constrictor {
 
-/// Why a program that is no member of a run must not publish on this topic; empty: it may. `endpoints`: of the domain.
-/// In a domain with a run, the topics of members, plant and conductor are theirs: the members refuse what others write
-/// there, but observers would show it as if it were true. Pure.
+/// Why a program that is not a member of a run must not publish on this topic; empty: it may. `endpoints`: of the
+/// domain. In a domain with a run, the topics of members, plant and conductor are theirs: the members refuse what
+/// others write there, but observers would show it as if it were true. Pure.
 [[nodiscard]] std::string publishing_refusal(const std::string& topic, const std::vector<dds::Endpoint>& endpoints);
 
 /// True for the topics on which clients command a run; their readers obey a message once, however often it is written.

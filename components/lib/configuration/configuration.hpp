@@ -34,7 +34,7 @@ struct Range {
 /// fallback requires its key. Every accessor throws ConfigurationError.
 class Configuration {
  public:
-  /// Parses a file whose root is a map. Throws ConfigurationError, also if the file is missing or is no valid YAML.
+  /// Parses a file whose root is a map. Throws ConfigurationError, also if the file is missing or is not valid YAML.
   static Configuration load(const std::filesystem::path& file);
   /// Parses a text; `name` stands for the file in error messages.
   static Configuration parse(const std::string& text, const std::string& name);

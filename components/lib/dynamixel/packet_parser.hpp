@@ -38,7 +38,7 @@ class PacketParser {
  private:
   [[nodiscard]] bool may_begin(std::size_t at) const;
   void skip(std::size_t count);
-  /// False if the bytes from begin_ on are no packet: some of them were skipped.
+  /// False if the bytes from begin_ on are not packet: some of them were skipped.
   [[nodiscard]] bool check_body(std::size_t length);
   void unstuff(std::size_t length);
 

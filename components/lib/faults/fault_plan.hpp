@@ -18,7 +18,7 @@ struct TopicFault {
     kDrop,       ///< the sample never arrives
     kDelay,      ///< it arrives `delay_ticks` later, with its own time stamp
     kDuplicate,  ///< it arrives twice
-    kCorrupt,    ///< one bit of it is changed; readers refuse it if it is no valid message then
+    kCorrupt,    ///< one bit of it is changed; readers refuse it if it is not a valid message then
     kFreeze,     ///< it has the content of the last sample before the fault, with its own time stamp
     kBias,       ///< `amount` is added to the number `field`
     kLinkDown,   ///< it arrives when the link is up again, if the topic's history still contains it then

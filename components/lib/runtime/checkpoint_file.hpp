@@ -26,8 +26,8 @@ class CheckpointInUse : public std::runtime_error {
 /// that is killed at any point leaves a complete checkpoint. A blob that both checkpoints contain is stored once.
 class CheckpointFile {
  public:
-  /// Opens `path`, or creates it. Throws std::runtime_error if it cannot be written or if it is no checkpoint file, and
-  /// CheckpointInUse if another process has it open.
+  /// Opens `path`, or creates it. Throws std::runtime_error if it cannot be written or if it is not a checkpoint file,
+  /// and CheckpointInUse if another process has it open.
   explicit CheckpointFile(std::filesystem::path path);
   ~CheckpointFile();
   CheckpointFile(const CheckpointFile&) = delete;

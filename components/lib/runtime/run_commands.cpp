@@ -79,7 +79,7 @@ std::string ConductorSide::obey(const msg::RunControl& control) {
       break;
     default:
       pacer_.control(control.command, control.pace, static_cast<std::int64_t>(control.ticks));
-      members_.on_pause();  // the time until the next tick is no lateness
+      members_.on_pause();  // the pause does not count as a late tick
       break;
   }
   return {};

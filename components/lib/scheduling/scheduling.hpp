@@ -20,7 +20,7 @@ struct Scheduling {
 
 /// Asks the operating system for this treatment of the calling thread and of the threads that it starts from now on, so
 /// that it is called at the start of main(). Returns why something is not allowed, and what would allow it; what is
-/// allowed is in force all the same.
+/// allowed is applied anyway.
 [[nodiscard]] std::vector<std::string> apply(const Scheduling& wanted);
 
 /// The treatment of the calling thread, for people: "FIFO 5, memory locked, CPUs 0,2"; "usual" if nothing is special.

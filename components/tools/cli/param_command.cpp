@@ -168,7 +168,7 @@ int set_parameter(const ParamOptions& options) {
     std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
     return exit_status::kUsage;
   }
-  // Only a value that is no number needs the parameters' names of values.
+  // Only a value that is not a number needs the parameters' names of values.
   std::vector<ParameterValue> values;
   std::optional<ParameterView> view;
   for (std::size_t i = 0; i < options.changes.size() / 2; ++i) {

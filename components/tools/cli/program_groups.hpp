@@ -13,7 +13,7 @@ namespace constrictor::cli {
 /// for a program of the core, and for one that is not of this project, what was found and what is accepted.
 [[nodiscard]] std::string missing_program(const std::string& program);
 
-/// Throws ConfigurationError if `program`, a name or a path, is no executable file in program_folder(). The message
+/// Throws ConfigurationError if `program`, a name or a path, is not an executable file in program_folder(). The message
 /// begins with `where`, followed by missing_program().
 void require_program(const std::string& program, const std::string& where);
 

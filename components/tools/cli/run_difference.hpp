@@ -22,7 +22,7 @@ struct RunDifference {
 };
 
 /// Compares two logs, each ordered by (tick, topic, sequence number) as HashLog::read returns them. The plant ends
-/// first, so messages of the last ticks may be missing from a log; that is no difference.
+/// first, so messages of the last ticks may be missing from a log; that is not a difference.
 std::optional<RunDifference> first_run_difference(const std::vector<HashLog::Entry>& a,
                                                   const std::vector<HashLog::Entry>& b);
 

@@ -129,7 +129,7 @@ void Supervisor::handle_exit(Supervised& process, const ChildExit& exit) {
     if (!is_plant(process)) return;
     plant_gone_ = true;
     // A member that died after its own end, and was restarted, would wait for the plant for ever. A report that draws
-    // finishes its files before it heeds the signal.
+    // finishes its files before it reacts to the signal.
     for (const auto& other : processes_) {
       if (other.started_at_end && other.running()) other.child->signal(SIGTERM);
     }

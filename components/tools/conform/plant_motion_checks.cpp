@@ -13,7 +13,7 @@
 namespace constrictor::conform {
 namespace {
 
-constexpr double kMovedShare = 0.3;  // of the amplitude: less is no motion
+constexpr double kMovedShare = 0.3;  // of the amplitude: less is not a motion
 constexpr double kWrongRate = 4.0;   // a rate that is larger by this factor has a wrong unit, even at one joint only
 constexpr double kUnitFactor = 8.0;  // a gain beyond this, or below its inverse, is a wrong unit
 

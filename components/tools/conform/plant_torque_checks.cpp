@@ -10,7 +10,7 @@ namespace constrictor::conform {
 namespace {
 
 constexpr double kRise_s = 1.0;       // in which the torque rises to its largest value
-constexpr double kTurnedShare = 0.5;  // of the amplitude: further, and the push ends; a fifth of it is no motion
+constexpr double kTurnedShare = 0.5;  // of the amplitude: further, and the push ends; a fifth of it is not a motion
 constexpr double kNoneShare = 0.1;
 constexpr double kAfterHold_s = 0.5;  // so long a measured torque may contain that of a hold: drivers filter it
 constexpr double kStillShare =

@@ -89,7 +89,7 @@ void Commands::change(WebServer::Change change) {
 std::string Commands::change_all(const nlohmann::json& wishes) {
   parameters_.connect_or_throw(5s);
   nlohmann::json results = nlohmann::json::array();
-  std::string silence;  // why there is no sense in asking for the next one
+  std::string silence;  // why no further parameter is requested
   for (const auto& wish : wishes) {
     std::string refusal = silence;
     nlohmann::json value;

@@ -17,8 +17,8 @@
 
 namespace constrictor::dashboard {
 
-/// An observer outside of the barrier: no member waits for it, and none reads anything from it but the commands of its
-/// viewers. A replay looks like a run.
+/// An observer outside of the barrier: no member waits for it, and members read nothing from it except the commands of
+/// its viewers. A replay looks like a run.
 class Dashboard {
  public:
   /// `name` is shown to viewers.

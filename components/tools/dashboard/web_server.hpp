@@ -17,7 +17,7 @@ struct WebOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;   ///< 0: any free one
   std::filesystem::path page;  ///< folder of the files of the page
-  /// Further files of the page that are no files on the disk: content by path, as "/tasks.json".
+  /// Further files of the page that are not files on the disk: content by path, as "/tasks.json".
   std::map<std::string, std::string> made = {};
   std::vector<std::string> origins;  ///< further web sites whose pages may watch, as in the header Origin
 };

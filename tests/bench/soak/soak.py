@@ -52,7 +52,7 @@ def named(pids: Iterable[int], folder: pathlib.Path) -> Dict[int, str]:
 
 
 def left_of(folder: pathlib.Path) -> Dict[int, str]:
-    """The member processes of the run in `folder`, whoever has started them."""
+    """The member processes of the run in `folder`, whichever process started them."""
     return named((int(entry.name) for entry in pathlib.Path("/proc").iterdir() if entry.name.isdigit()), folder)
 
 

@@ -205,7 +205,7 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s))
       << "level " << int{authority.level};
 
-  // The same run obeys tasks of ROS programs, refuses what is no task, and stops.
+  // The same run obeys tasks of ROS programs, refuses what is not a task, and stops.
   const auto ros = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {program("ros_probe"), "--domain", ros_domain, "--for", "60"});
     return Process(std::move(more));

@@ -48,7 +48,7 @@ TEST(Machine, TheDiagramHasEachTransitionOfThePlannersTable) {
     for (const auto& loss : row.losses) {
       if (loss.event != msg::kEventNone) next.insert(loss.to);
     }
-    next.erase(row.state);  // to stay is no arrow
+    next.erase(row.state);  // to stay is not an arrow
     for (const MissionState to : next)
       EXPECT_TRUE(drawn.contains({row.name, name_of(to)})) << row.name << " to " << name_of(to);
   }

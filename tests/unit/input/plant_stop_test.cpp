@@ -82,7 +82,7 @@ TEST_F(PlantStopTest, StaysInForceUntilAnOperatorClearsIt) {
   EXPECT_EQ(states_.back().number, 1u);
 }
 
-// The operator who clears a stop cannot know of another stop that arrives in the same tick.
+// An operator clears a stop without information on another stop that arrives in the same tick.
 TEST_F(PlantStopTest, AStopThatArrivesWithTheClearingOfAnEarlierOneStaysInForce) {
   order_stop("first");
   run_.advance(10);

@@ -151,7 +151,8 @@ TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   const double neither_s = lost_after_s();
   EXPECT_GT(neither_s, config.lost_after_s);
   EXPECT_LT(neither_s, 5.0);
-  // A large wave loads the base of an empty U as well: torque without any touch is no hold, but is doubted for longer.
+  // A large wave loads the base of an empty U as well: torque without any touch is not a hold, but is doubted for
+  // longer.
   grip_sense.hold_starts(grip);
   load(1.2);
   const double untouched_s = lost_after_s();

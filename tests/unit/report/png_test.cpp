@@ -10,7 +10,7 @@ namespace constrictor::report {
 namespace {
 
 TEST(Png, EncodedImagesAreReadBackByOpenCvWithoutALoss) {
-  constexpr int kWidth = 5, kHeight = 7;  // width x 3 is no multiple of 4
+  constexpr int kWidth = 5, kHeight = 7;  // width x 3 is not a multiple of 4
   std::vector<std::uint8_t> rgb;
   for (int i = 0; i < kWidth * kHeight; ++i) {  // every pixel has its own colour
     for (const int byte : {7 * i, 255 - i, (31 * i) % 256}) rgb.push_back(static_cast<std::uint8_t>(byte));

@@ -10,7 +10,7 @@
 
 namespace constrictor::cli {
 
-/// Single keys from a terminal; nothing if the input is no terminal.
+/// Single keys from a terminal; nothing if the input is not a terminal.
 class KeyInput {
  public:
   KeyInput() : terminal_(::isatty(STDIN_FILENO) == 1 && ::tcgetattr(STDIN_FILENO, &before_) == 0) {

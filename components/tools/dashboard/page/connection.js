@@ -6,7 +6,7 @@ const silent_ms = 3000; // the dashboard sends at least twice a second
 
 export class Connection {
   /** `topics`: those to subscribe to. `on`: functions `message(topic, view, from)`, `change(text, kind)`,
-   * `parameters(values)` with the name and value of each parameter that has changed, whoever changed it. */
+   * `parameters(values)` with the name and value of each changed parameter, also if another client changed it. */
   constructor(topics, on) {
     this.topics = topics;
     this.on = on;

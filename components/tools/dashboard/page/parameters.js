@@ -26,7 +26,7 @@ export class Parameters {
     this.show();
   }
 
-  /** These parameters have other values, whoever has changed them. */
+  /** These parameters have other values, also if another client has changed them. */
   take(values) {
     for (const { name, value } of values) {
       const parameter = this.list.find((each) => each.name === name);
