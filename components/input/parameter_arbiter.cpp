@@ -9,7 +9,8 @@
 namespace constrictor {
 namespace {
 
-constexpr std::int64_t kFirstPlannedTick = 10;  // every owner has announced its parameters by then
+// The earliest tick of `parameter_changes`: each component has announced its parameters before it.
+constexpr std::int64_t kFirstPlannedTick = 10;
 constexpr std::size_t kMostInATick = topics::kParameterChange.max_per_tick;
 
 /// A name as people may read it on a terminal.

@@ -46,7 +46,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   if (any_zone && any_zone->range_m < 2.0) memory_.zone_seen_s = memory_.active_s;
   if (inputs.pose && !holding() && inputs.line->colour == config_.line_colour)
     memory_.trail.note_beyond(*inputs.line, *inputs.pose);
-  // At the beginning of a state the head may still look aside.
+  // At the beginning of a state the head may still point to the side.
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
   if (follows && inputs.pose && memory_.line_images >= config_.confirm_images &&
       memory_.active_s - memory_.entered_s > 1.0) {

@@ -31,7 +31,7 @@ struct RunNote {
 
 /// The data that a client needs to command a run.
 struct RunKey {
-  std::uint64_t run_id = 0;  ///< 0: the run that has the token
+  std::uint64_t run_id = 0;  ///< 0: the run is found by the token
   std::string token;
 };
 

@@ -1,5 +1,5 @@
-// Which parameters each task needs, whatever the robot sees or holds. `input` checks them before a request takes
-// authority, navigation before it starts a goal, and clients may check them before they send a request.
+// The parameters that each task needs, independently of percepts and of a held object. `input` checks them before a
+// request takes authority, navigation before it starts a goal, and clients may check them before they send a request.
 #pragma once
 
 #include <cstdint>

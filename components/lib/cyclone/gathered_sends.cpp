@@ -75,7 +75,8 @@ class Gathering {
  public:
   [[nodiscard]] const GatheredSends::Counts& counts() const { return counts_; }
 
-  /// Takes the message if it can wait, and returns its size; otherwise sends it, after what waits for its address.
+  /// Takes the message if it can wait, and returns its size; otherwise sends it, after the messages that wait for its
+  /// address.
   ssize_t send(int socket, const msghdr& message, int flags) {
     ++counts_.messages;
     sockaddr_in to{};

@@ -7,9 +7,9 @@ namespace constrictor::dds {
 
 /// Cyclone DDS sends a datagram for each sample and each process that reads it. Each of them costs the sender a system
 /// call and wakes a thread of the receiver, which needs more CPU time than most of the samples themselves. While an
-/// object of this class exists, what its thread sends to addresses 127.x.x.x waits; the destructor sends everything
-/// that waits for one address as one datagram. To other addresses nothing changes: there a lost datagram would take
-/// more samples with it.
+/// object of this class exists, messages from its thread to addresses 127.x.x.x wait; the destructor sends all messages
+/// that wait for one address as one datagram. To other addresses nothing changes: there a lost datagram would take more
+/// samples with it.
 ///
 /// It works because the program's function `sendmsg` (gathered_sends.cpp) stands in for that of the C library. A
 /// program in which it does not, for example a Python module, sends each sample for itself, which is also right.

@@ -29,7 +29,7 @@ class Writer {
 
   /// Creates the file, or empties it. Throws Error.
   Writer(const std::filesystem::path& path, const std::string& profile, const std::string& library);
-  /// Continues the file that `reader` has read: cuts what is not complete, and the summary. Throws Error.
+  /// Continues the file that `reader` has read: cuts off incomplete records and the summary. Throws Error.
   explicit Writer(const Reader& reader);
   /// From now on the disk counts as full while fewer bytes than these are left on it for other files.
   void leave_free(std::uint64_t bytes) { left_free_ = bytes; }
