@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace constrictor::figure {
 namespace {
@@ -50,9 +51,13 @@ std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, co
   const double height = header + static_cast<double>(rows.size()) * kRowHeight + kMargin - 8.0;
   Canvas canvas(format, kWidth, height, scale, heading.title + ": " + heading.subtitle);
 
+  // A run of a real robot has no pictures of the scene. Their column is then left out, and the torques are wider.
+  const bool scenes = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.scene.empty(); });
+  std::array<double, kColumnWidths.size()> width = kColumnWidths;
+  if (!scenes) width[4] += std::exchange(width[1], -kGap) + kGap;
   std::array<double, kColumnWidths.size()> left{};
   left[0] = kMargin;
-  for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + kColumnWidths[i - 1] + kGap;
+  for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + width[i - 1] + kGap;
   const double right = kWidth - kMargin;
   canvas.text(heading.title, {kMargin, 40.0}, {24.0, kInk, true});
   const auto fitted_line = [&](const std::string& words, double y, const TextStyle& style) {
@@ -63,7 +68,7 @@ std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, co
   static constexpr std::array<const char*, 4> kHeadings{"Scene", "Camera", "Processed", "Yaw torques [Nm]"};
   const TextStyle heading_style{15.0, kInk, true};
   double end = 0.0;  // of the last heading
-  for (std::size_t i = 0; i < kHeadings.size(); ++i) {
+  for (std::size_t i = scenes ? 0 : 1; i < kHeadings.size(); ++i) {
     const double x = left[i + 1] + (i == 3 ? 30.0 : 0.0);
     canvas.text(kHeadings[i], {x, header - 10.0}, heading_style);
     end = x + canvas.width_of(kHeadings[i], heading_style);
@@ -75,15 +80,15 @@ std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, co
   double top = header;
   for (const Row& row : rows) {
     draw_caption(canvas, row, left[0], top);
-    draw_picture(canvas, {left[1], top, kColumnWidths[1], kPanelHeight}, row.scene, "no image");
-    draw_picture(canvas, {left[2], top, kColumnWidths[2], kPanelHeight}, row.camera, "no image");
-    draw_picture(canvas, {left[3], top, kColumnWidths[3], kPanelHeight}, row.processed, "no image");
+    if (scenes) draw_picture(canvas, {left[1], top, width[1], kPanelHeight}, row.scene, "no image");
+    draw_picture(canvas, {left[2], top, width[2], kPanelHeight}, row.camera, "no image");
+    draw_picture(canvas, {left[3], top, width[3], kPanelHeight}, row.processed, "no image");
     // The moment is at four fifths of the window; early in the run the window begins at zero.
     axes.moment_s = row.time_s;
     axes.from_s = std::max(0.0, row.time_s - 0.8 * window_s);
     axes.to_s = axes.from_s + window_s;
-    draw_torques(canvas, {left[4], top - 0.5 * kNumbers, kColumnWidths[4], kPanelHeight + 0.5 * kNumbers}, torques,
-                 axes, kNumbers);
+    draw_torques(canvas, {left[4], top - 0.5 * kNumbers, width[4], kPanelHeight + 0.5 * kNumbers}, torques, axes,
+                 kNumbers);
     top += kRowHeight;
   }
   return canvas.finish();

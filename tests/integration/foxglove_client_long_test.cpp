@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "integration/dashboard_run.hpp"
+#include "support/npm_packages.hpp"
 #include "support/project.hpp"
 
 namespace constrictor::testing {
@@ -16,12 +17,7 @@ const std::string kName = "navigation.travel.frequency_hz";
 class FoxgloveClient : public DashboardRun, public ::testing::WithParamInterface<const char*> {
  protected:
   static void SetUpTestSuite() {
-    fs::create_directories(folder());
-    for (const char* name : {"package.json", "foxglove_client.mjs"})
-      fs::copy_file(source_path("tests/integration/node") / name, folder() / name,
-                    fs::copy_options::overwrite_existing);
-    Process npm({"npm", "install", "--no-audit", "--no-fund", "--prefix", folder().string()});
-    ASSERT_EQ(npm.wait(200s), 0) << npm.errors();
+    install_npm_packages(source_path("tests/integration/node"), {"package.json", "foxglove_client.mjs"}, folder());
   }
   [[nodiscard]] std::vector<std::string> run_options() const override { return {"--record"}; }
   static fs::path folder() { return build_path("foxglove_client"); }

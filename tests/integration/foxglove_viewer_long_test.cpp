@@ -1,6 +1,7 @@
 // Foxglove's real viewer (npm's @foxglove/studio-base) in headless Chromium, with the layout that the dashboard serves:
 // it draws a run, the replay of a recording, and a recording as a file. Needs npm and the internet.
 #include "integration/cli_fixture.hpp"
+#include "support/npm_packages.hpp"
 #include "support/project.hpp"
 
 namespace constrictor::testing {
@@ -22,11 +23,7 @@ class FoxgloveViewer : public CliFixture {
  protected:
   static fs::path modules() { return build_path("foxglove_viewer"); }
   static void SetUpTestSuite() {
-    fs::create_directories(modules());
-    fs::copy_file(source_path("tests/integration/node/viewer/package.json"), modules() / "package.json",
-                  fs::copy_options::overwrite_existing);
-    Process npm({"npm", "install", "--no-audit", "--no-fund", "--prefix", modules().string()});
-    ASSERT_EQ(npm.wait(300s), 0) << npm.errors();
+    install_npm_packages(source_path("tests/integration/node/viewer"), {"package.json"}, modules());
   }
   void SetUp() override {
     server_.emplace(

@@ -83,6 +83,23 @@ TEST(Figure, HasARowForEachMomentWithItsPictures) {
   EXPECT_EQ(half.size(), cv::Size((one.cols + 1) / 2, (one.rows + 1) / 2));
 }
 
+TEST(Figure, LeavesTheColumnOfTheSceneOutIfNoMomentHasOne) {
+  Row real = blue_row();
+  std::swap(real.camera, real.scene);
+  const std::string svg = draw({"title", "subtitle", ""}, {real, real}, Format::kSvg);
+  EXPECT_EQ(svg.find(">Scene</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">Camera</text>"), std::string::npos);
+  const cv::Mat figure = decoded(draw({"title", "subtitle", ""}, {real, real}, Format::kPng));
+  EXPECT_EQ(figure.cols, 1400);
+  cv::Mat blue;
+  cv::inRange(figure, cv::Scalar(250, 0, 0), cv::Scalar(255, 5, 5), blue);
+  EXPECT_NEAR(cv::boundingRect(blue).x, 24 + 150 + 10, 1) << "the camera is beside the caption";
+  EXPECT_NEAR(cv::countNonZero(blue), 2 * 240 * 180, 2 * 2 * (240 + 180));
+
+  const std::string mixed = draw({"title", "subtitle", ""}, {blue_row(), real}, Format::kSvg);
+  EXPECT_NE(mixed.find(">Scene</text>"), std::string::npos);
+}
+
 TEST(Figure, NamesWhyTheMissionDidNotSucceedInRed) {
   const auto red_pixels = [](const cv::Mat& figure) {
     std::vector<cv::Mat> bgr;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/npm_packages.hpp"
 #include "support/process.hpp"
 
 namespace constrictor::testing {
@@ -21,12 +22,7 @@ class OfficialReader {
   /// `source`: the folder of this file. `build`: the build folder.
   OfficialReader(const std::filesystem::path& source, const std::filesystem::path& build)
       : folder_(build / "recording_reader") {
-    std::filesystem::create_directories(folder_);
-    for (const char* name : {"package.json", "read.mjs"}) {
-      std::filesystem::copy_file(source / name, folder_ / name, std::filesystem::copy_options::overwrite_existing);
-    }
-    Process npm({"npm", "install", "--no-audit", "--no-fund", "--prefix", folder_.string()});
-    EXPECT_EQ(npm.wait(std::chrono::seconds(200)), 0) << npm.errors();
+    install_npm_packages(source, {"package.json", "read.mjs"}, folder_);
   }
   /// The lines that read.mjs prints. `stream`: the file need not be finished.
   [[nodiscard]] std::vector<nlohmann::json> read(const std::filesystem::path& file, bool stream = false) const {
