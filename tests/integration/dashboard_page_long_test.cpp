@@ -107,10 +107,10 @@ TEST_F(DashboardPage, ShowsARecordingWithATimeLine) {
   start_dashboard(port_);
   Process page = browse(
       "390x844",
-      {kConnected, "colours=30 #scene_3d", "wait=document.querySelector('#place').textContent.includes('of 0:12.0')",
-       "wait=document.querySelector('#operate').hidden", "click=#play", answered("resume: playing"), "click=#play",
-       answered("pause: paused at"), "click=#position", answered("seek: paused at 6.0 of 12.0"),
-       "wait=document.querySelector('#run').textContent.includes(' 6.0 s')",
+      {kConnected, "wait=document.querySelector('#place').textContent.includes('of 0:12.0')",
+       "wait=document.querySelector('#operate').hidden", "click=#play", answered("resume: playing"),
+       "colours=30 #scene_3d", "click=#play", answered("pause: paused at"), "click=#position",
+       answered("seek: paused at 6.0 of 12.0"), "wait=document.querySelector('#run').textContent.includes(' 6.0 s')",
        "wait=document.querySelectorAll('#machine .present').length === 1", "click=#play", answered("resume: playing"),
        "wait=parseFloat(document.querySelector('#place').textContent.slice(2)) >= 8",
        "wait=document.documentElement.scrollWidth <= 390"});
