@@ -1,5 +1,6 @@
 // `constrictor status`: the runs of this host, and a live table of one's components.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -92,9 +93,8 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return lines;
 }
 
-std::string run_line(const RunView& view) {
-  std::string line = progress_line(view, 0);
-  line = line.substr(0, line.rfind(','));
+std::string run_line(const RunNote& run, const RunView& view) {
+  std::string line = fmt::format("run {}: {}", run.domain, progress_line(view, 0));
   if (view.run_state) {
     const auto& state = *view.run_state;
     if (std::isfinite(state.real_time_factor)) line += fmt::format(", {:.1f}x real time", state.real_time_factor);
@@ -216,16 +216,18 @@ bool is_gone(const RunNote& run) {
 }
 
 int status(const StatusOptions& options) {
+void tell(const RunNote& run) {
+  fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
+             run.report_dir.string());
+}
+
   const auto runs = live_runs();
-  if (!options.view.json) {
-    for (const auto& run : runs) {
-      fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
-                 run.report_dir.string());
-    }
-    if (runs.size() > 1 && !options.view.domain) {
-      fmt::print("choose one with --run for its components\n");
-      return exit_status::kOk;
-    }
+  if (!options.view.json && !options.view.domain && runs.size() > 1) {
+    for (const auto& run : runs) tell(run);
+    std::vector<std::string> choices;
+    for (const auto& run : runs) choices.push_back(fmt::format("--run {}", run.domain));
+    fmt::print("choose one for its components: {}\n", fmt::join(choices, ", "));
+    return exit_status::kOk;
   }
   const RunNote run = join_run(options.view.domain);
   RunObserver observer(run.domain);
@@ -249,7 +251,7 @@ int status(const StatusOptions& options) {
       shown = now;
       if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
       else
-        fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()),
+        fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(run, observer.view()),
                    table(run, observer.view(), rates));
       std::fflush(stdout);
       if (observer.view().ended(run.plant) || is_gone(run)) return exit_status::kOk;
@@ -258,7 +260,7 @@ int status(const StatusOptions& options) {
   }
   if (options.watch) return exit_status::kOk;
   if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates), 2));
-  else fmt::print("{}\n\n{}", run_line(observer.view()), table(run, observer.view(), rates));
+  else fmt::print("{}\n\n{}", run_line(run, observer.view()), table(run, observer.view(), rates));
   return exit_status::kOk;
 }
 
