@@ -89,6 +89,11 @@ TEST_F(DashboardTest, AViewerPausesStepsAndResumesTheRun) {
   EXPECT_NE(ask("pace", R"({"pace":-1})").find("failure: pace: accepted"), std::string::npos);
   ASSERT_TRUE(viewer.send_binary(Viewer::call(99, 1, "{}")));
   EXPECT_EQ(viewer.wait_for("serviceCallFailure").value("message", ""), "there is no service 99");
+  ASSERT_TRUE(viewer.send_binary(Viewer::call(3, 7, "no JSON")));
+  const auto failure = viewer.wait_for("serviceCallFailure");
+  EXPECT_EQ(failure.value("message", ""), "service call: accepted a JSON object");
+  EXPECT_EQ(failure.value("serviceId", 0), 3);
+  EXPECT_EQ(failure.value("callId", 0), 7);
   end();
 }
 

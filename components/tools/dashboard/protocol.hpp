@@ -87,7 +87,14 @@ using Action = std::variant<Subscribe, Unsubscribe, ServiceCall, GetParameters, 
 /// What a client asks for, or why it is refused. Clients may send anything.
 struct Parsed {
   std::vector<Action> actions;
-  std::string refusal;  ///< empty: none
+/// A call whose request cannot be read.
+struct FailedCall {
+  std::uint32_t service = 0;
+  std::uint32_t call = 0;
+};
+
+  std::string refusal;                         ///< empty: none
+  std::optional<FailedCall> failed_call = {};  ///< to be answered with the refusal
 };
 [[nodiscard]] Parsed parse_text(std::string_view text);
 [[nodiscard]] Parsed parse_frame(std::string_view frame);

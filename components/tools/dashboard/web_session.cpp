@@ -147,6 +147,8 @@ void Session::read() {
 }
 
 void Session::obey(const Parsed& parsed) {
+  if (const auto& failed = parsed.failed_call)
+    return send_text(service_failure(failed->service, failed->call, parsed.refusal));
   if (!parsed.refusal.empty()) send_text(status(2, parsed.refusal));
   for (const auto& action : parsed.actions) std::visit([this](const auto& wish) { obey(wish); }, action);
 }

@@ -126,6 +126,15 @@ TEST(Frames, OfClientsThatAreDamagedAreRefused) {
     std::string bytes = good;
     for (std::uint32_t changes = 1 + random() % 4; changes > 0; --changes)
       bytes[random() % bytes.size()] = static_cast<char>(random());
+  EXPECT_FALSE(parse_frame(good.substr(0, 8)).failed_call) << "the call is not known";
+  for (const std::string& wrong : {good.substr(0, 9), good.substr(0, 16), good.substr(0, 20), good.substr(0, 17) + "3",
+                                   good.substr(0, 13) + "cbor{}", good.substr(0, 17) + "no JSON"}) {
+    const Parsed parsed = parse_frame(wrong);
+    EXPECT_NE(parsed.refusal, "") << wrong;
+    ASSERT_TRUE(parsed.failed_call) << wrong;
+    EXPECT_EQ(parsed.failed_call->service, 5u);
+    EXPECT_EQ(parsed.failed_call->call, 6u);
+  }
     const Parsed parsed = parse_frame(bytes);
     EXPECT_NE(parsed.refusal.empty(), parsed.actions.empty());
     accepted += parsed.actions.size();
