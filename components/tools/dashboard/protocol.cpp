@@ -152,6 +152,10 @@ std::string service_failure(std::uint32_t service, std::uint32_t call, const std
   return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
+std::string named(const std::string& name, const std::string& text) {
+  return text.starts_with(name + ": ") ? text : name + ": " + text;
+}
+
 std::string parameter_values(const std::vector<ParameterValue>& values, const std::string& id) {
   json list = json::array();
   for (const auto& [name, value, real] : values) {

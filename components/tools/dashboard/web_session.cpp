@@ -219,7 +219,7 @@ void Session::answer(const SetParameters& wish, const std::vector<WebServer::Cha
     if (results[i].refusal.empty() && known != server_->parameters.end()) values.back().value = results[i].value;
     if (results[i].refusal.empty()) continue;
     refused = true;
-    send_text(status(2, fmt::format("{}: {}", name, results[i].refusal)));
+    send_text(status(2, named(name, results[i].refusal)));
   }
   // Viewers show the wish at once. After a refusal they need the true value, whether they have asked for it or not.
   if (refused || !wish.id.empty()) send_values(values, wish.id);

@@ -37,6 +37,12 @@ TEST(Texts, OfTheServerHaveTheFieldsOfTheSpecification) {
   EXPECT_EQ(nlohmann::json::parse(status(2, "\xff")).at("level"), 2) << "text that is not UTF-8 is replaced";
 }
 
+TEST(Texts, OfRefusalsNameTheirObjectOnce) {
+  EXPECT_EQ(named("task", "found 'fly'"), "task: found 'fly'");
+  EXPECT_EQ(named("task", "task: found 'fly'"), "task: found 'fly'");
+  EXPECT_EQ(named("task", "tasks: none"), "task: tasks: none");
+}
+
 TEST(Texts, OfClientsAreCheckedFieldByField) {
   const Parsed good =
       parse_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2},{"id":3,"channelId":4}]})");
@@ -120,12 +126,6 @@ TEST(Frames, OfClientsThatAreDamagedAreRefused) {
   for (std::size_t size = 0; size < 17; ++size) EXPECT_NE(parse_frame(good.substr(0, size)).refusal, "") << size;
   EXPECT_EQ(parse_frame(good.substr(0, 17)).refusal, "") << "an empty request";
   EXPECT_NE(parse_frame("\x01" + good.substr(1)).refusal, "");
-  std::mt19937 random(20261122);
-  std::size_t accepted = 0;
-  for (int i = 0; i < 100'000; ++i) {
-    std::string bytes = good;
-    for (std::uint32_t changes = 1 + random() % 4; changes > 0; --changes)
-      bytes[random() % bytes.size()] = static_cast<char>(random());
   EXPECT_FALSE(parse_frame(good.substr(0, 8)).failed_call) << "the call is not known";
   for (const std::string& wrong : {good.substr(0, 9), good.substr(0, 16), good.substr(0, 20), good.substr(0, 17) + "3",
                                    good.substr(0, 13) + "cbor{}", good.substr(0, 17) + "no JSON"}) {
@@ -135,6 +135,12 @@ TEST(Frames, OfClientsThatAreDamagedAreRefused) {
     EXPECT_EQ(parsed.failed_call->service, 5u);
     EXPECT_EQ(parsed.failed_call->call, 6u);
   }
+  std::mt19937 random(20261122);
+  std::size_t accepted = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    std::string bytes = good;
+    for (std::uint32_t changes = 1 + random() % 4; changes > 0; --changes)
+      bytes[random() % bytes.size()] = static_cast<char>(random());
     const Parsed parsed = parse_frame(bytes);
     EXPECT_NE(parsed.refusal.empty(), parsed.actions.empty());
     accepted += parsed.actions.size();
