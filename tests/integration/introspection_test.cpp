@@ -261,7 +261,7 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
   }
   const std::string text = flat(output_);
   EXPECT_NE(text.find("authority: EMERGENCY STOP "), std::string::npos) << text;
-  EXPECT_NE(text.find("; 1 requests refused, the last one from "), std::string::npos) << text;
+  EXPECT_NE(text.find("; 1 request refused, the last one from "), std::string::npos) << text;
   EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason of the refusal must be shown: " << text;
   const json status = json_of({"status"});
   EXPECT_EQ(status["authority"]["level"], "emergency stop") << output_;

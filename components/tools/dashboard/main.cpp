@@ -73,7 +73,9 @@ int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
   while (g_signal == 0 && board.over().empty()) board.serve();
   if (!board.over().empty()) board.say_farewell();
   if (board.server().dropped() > 0)
-    fmt::print("{} messages were dropped, because viewers were too slow for them\n", board.server().dropped());
+    fmt::print(
+        "{} dropped, because viewers were too slow\n",
+        board.server().dropped() == 1 ? "1 message was" : fmt::format("{} messages were", board.server().dropped()));
   if (g_signal != 0) return 128 + g_signal;
   fmt::print("{}\n", board.over());
   return exit_status::kOk;

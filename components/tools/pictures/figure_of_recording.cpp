@@ -134,7 +134,7 @@ int make_figure(const FigureOptions& options) {
   if (!wrong.empty()) fmt::print(stderr, "figure: images are missing or differ from the run: {}\n", wrong);
   write_whole(options.output,
               figure::draw_figure(heading_of(story), rows, story.torques, kTorqueWindow_s, options.format, scale));
-  fmt::print("wrote {}: {} rows, {:.1f} MB\n", options.output.string(), rows.size(),
+  fmt::print("wrote {}: {} row{}, {:.1f} MB\n", options.output.string(), rows.size(), rows.size() == 1 ? "" : "s",
              1e-6 * static_cast<double>(std::filesystem::file_size(options.output)));
   return exit_status::kOk;
 }

@@ -109,8 +109,8 @@ std::string run_line(const RunNote& run, const RunView& view) {
     const auto& authority = *view.authority;
     std::string who = authority_text(authority);
     if (authority.refused_count > 0)
-      who += fmt::format("; {} requests refused, the last one from {}: {}", authority.refused_count,
-                         authority.refused_source, authority.refusal);
+      who += fmt::format("; {} request{} refused, the last one from {}: {}", authority.refused_count,
+                         authority.refused_count == 1 ? "" : "s", authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }
   if (view.mission && *view.mission->reason)
