@@ -12,6 +12,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/operator.hpp"
+#include "cli/recording/replay_control.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -215,12 +216,12 @@ bool is_gone(const RunNote& run) {
                       [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
 }
 
-int status(const StatusOptions& options) {
 void tell(const RunNote& run) {
   fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
              run.report_dir.string());
 }
 
+int status(const StatusOptions& options) {
   const auto runs = live_runs();
   if (!options.view.json && !options.view.domain && runs.size() > 1) {
     for (const auto& run : runs) tell(run);
@@ -230,6 +231,9 @@ void tell(const RunNote& run) {
     return exit_status::kOk;
   }
   const RunNote run = join_run(options.view.domain);
+  if (!options.view.json && run.on_this_host) tell(run);
+  if (!options.view.json && is_replay(options.view.domain))
+    fmt::print("run {} is a replay of a recording; `constrictor dashboard` shows and seeks it\n", run.domain);
   RunObserver observer(run.domain);
   RateMeter rates;
   // Statuses are kept for late readers, but a rate needs two of them; the state of the run arrives once a second.
