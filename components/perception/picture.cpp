@@ -1,10 +1,12 @@
 #include "perception/picture.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <vector>
 
 #include "perception/perception_config.hpp"
@@ -55,10 +57,7 @@ void draw_line(cv::Mat& picture, const GroundCamera& camera, const msg::LinePerc
   }
 }
 
-void draw_blob(cv::Mat& picture, const msg::Blob& blob) {
-  const cv::Vec3b paint = kPaint[blob.colour];
-  const cv::Scalar colour(paint[0], paint[1], paint[2]);
-  cv::rectangle(picture, cv::Point(blob.u_min, blob.v_min), cv::Point(blob.u_max, blob.v_max), colour, 1, cv::LINE_8);
+std::string label_of(const msg::Blob& blob) {
   const char* kind = blob.kind == msg::kBlobObject ? "object" : blob.kind == msg::kBlobZone ? "zone" : "?";
   std::array<char, 48> text{};
   if (std::isfinite(blob.range_m)) {
@@ -66,9 +65,50 @@ void draw_blob(cv::Mat& picture, const msg::Blob& blob) {
   } else {
     std::snprintf(text.data(), text.size(), "%s", kind);
   }
-  const int above = blob.v_min > 10 ? blob.v_min - 3 : std::min(blob.v_max + 10, picture.rows - 2);
-  cv::putText(picture, text.data(), {std::min<int>(blob.u_min, picture.cols - 70), above}, cv::FONT_HERSHEY_PLAIN, 0.7,
-              cv::Scalar(255, 255, 255), 1, cv::LINE_8);
+  return text.data();
+}
+
+/// A place of this size inside `image` that touches none of the `taken` ones: as near as possible above or below
+/// `wanted`. If there is none, `wanted` inside the image.
+cv::Rect free_place(cv::Rect wanted, const cv::Rect& image, const std::vector<cv::Rect>& taken) {
+  const int right = image.x + image.width - wanted.width, bottom = image.y + image.height - wanted.height;
+  wanted.x = std::max(std::min(wanted.x, right), image.x);
+  wanted.y = std::max(std::min(wanted.y, bottom), image.y);
+  const auto is_free = [&](const cv::Rect& place) {
+    return std::none_of(taken.begin(), taken.end(), [&](const cv::Rect& other) { return (place & other).area() > 0; });
+  };
+  for (int shift = 0; shift < image.height; ++shift) {
+    for (const int y : {wanted.y - shift, wanted.y + shift}) {
+      const cv::Rect place(wanted.x, y, wanted.width, wanted.height);
+      if (y >= image.y && y <= bottom && is_free(place)) return place;
+    }
+  }
+  return wanted;
+}
+
+void draw_blobs(cv::Mat& picture, const msg::ObjectPercepts& objects) {
+  constexpr double kSize = 0.7;
+  const int cut = picture.rows / 24;  // figures and films cut this much off an image of 4:3
+  const cv::Rect inside(0, cut, picture.cols, picture.rows - 2 * cut);
+  std::vector<cv::Rect> labels;
+  for (int i = 0; i < objects.blob_count; ++i) {
+    const msg::Blob& blob = objects.blobs[i];
+    const cv::Vec3b paint = kPaint[blob.colour];
+    cv::rectangle(picture, cv::Point(blob.u_min, blob.v_min), cv::Point(blob.u_max, blob.v_max),
+                  cv::Scalar(paint[0], paint[1], paint[2]), 1, cv::LINE_8);
+  }
+  for (int i = 0; i < objects.blob_count; ++i) {
+    const msg::Blob& blob = objects.blobs[i];
+    const std::string text = label_of(blob);
+    int below = 0;  // the baseline
+    const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_PLAIN, kSize, 1, &below);
+    const int height = size.height + below;
+    const int above = blob.v_min - 1 - height;
+    const cv::Rect wanted(blob.u_min, above >= inside.y ? above : blob.v_max + 2, size.width + 1, height);
+    labels.push_back(free_place(wanted, inside, labels));
+    cv::putText(picture, text, {labels.back().x, labels.back().y + size.height}, cv::FONT_HERSHEY_PLAIN, kSize,
+                cv::Scalar(255, 255, 255), 1, cv::LINE_8);
+  }
 }
 
 }  // namespace
@@ -85,7 +125,7 @@ void draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera
     cv::line(picture, {0, static_cast<int>(left)}, {rgb.cols - 1, static_cast<int>(right)}, cv::Scalar(90, 90, 110), 1,
              cv::LINE_8);
   }
-  for (int i = 0; i < objects.blob_count; ++i) draw_blob(picture, objects.blobs[i]);
+  draw_blobs(picture, objects);
   draw_line(picture, camera, line);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "component/data_path.hpp"
+#include "configuration/command_line.hpp"
 #include "configuration/whole_file.hpp"
 #include "sim/camera_emulator/emulated_camera.hpp"
 #include "sim/camera_emulator/run_world.hpp"
@@ -112,34 +113,36 @@ int main(int argc, char** argv) {
   CLI::App app{"camera_emulator: serves what the camera of the emulated robot sees, as multipart JPEG over HTTP."};
   app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
   app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--seed", options.seed, "seed of the scenario and of the noise");
+  app.add_option("--seed", options.seed, "seed of the scenario and of the noise")->check(whole_number());
   app.add_option("--output", options.output,
                  "folder in which camera_emulator.url and the pipe camera_emulator.commands are made")
       ->capture_default_str();
   app.add_option("--world", options.world,
                  "file in which servo_emulator keeps its world (default: world.state in --output)");
   app.add_option("--run", options.run, "DDS domain of a simulated run, whose world is drawn instead of --world")
-      ->check(CLI::Range(0, 229));
+      ->check(whole_number(0, 229));
   app.add_option("--address", options.address, "IP address to listen on")->capture_default_str();
-  app.add_option("--port", options.port, "TCP port; 0: a free one")->capture_default_str();
+  app.add_option("--port", options.port, "TCP port; 0: a free one")
+      ->check(whole_number(0, 65535))
+      ->capture_default_str();
   app.add_option("--rate", options.frame_rate_hz, "[Hz] frames in a second; 0: as in the robot file")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 120.0));
+      ->check(number(0.0, 120.0, "Hz"));
   app.add_option("--scale", options.settings.scale, "times the width and height of the robot file")
       ->capture_default_str()
-      ->check(CLI::Range(1, 4));
+      ->check(whole_number(1, 4));
   app.add_option("--quality", options.settings.jpeg_quality, "of the JPEG pictures")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+      ->check(whole_number(1, 100));
   app.add_option("--delay", options.settings.usual.delay_s, "[s] from the exposure until a frame is sent")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(number(0.0, 10.0, "s"));
   app.add_option("--jitter", options.settings.usual.jitter_s, "[s] up to so much is added to the delay of each frame")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(number(0.0, 10.0, "s"));
   app.add_option("--drop", options.settings.usual.drop, "probability that a frame is never sent")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number(0.0, 1.0, ""));
   app.footer(
       "It draws the world of a servo_emulator with the same robot, scenario and seed, and sends no frame before that\n"
       "runs. It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 
 namespace constrictor::emulation {
@@ -23,11 +24,7 @@ int run_emulator(const std::string& name, CLI::App& app, int argc, char** argv,
                  const std::function<void(const Log& log)>& emulate) {
   g_parent = ::getppid();
   app.set_version_flag("--version", name + " " CONSTRICTOR_VERSION, "print the release");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 64;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   struct sigaction action {};
   action.sa_handler = on_signal;
   ::sigaction(SIGTERM, &action, nullptr);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "component/data_path.hpp"
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 #include "robot/robot_model.hpp"
 #include "scheduling/scheduling.hpp"
@@ -105,14 +106,14 @@ int main(int argc, char** argv) {
   app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
   app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
   app.add_option("--bus", options.bus, "bus file (YAML): the servos, their ids and ports")->check(CLI::ExistingFile);
-  app.add_option("--seed", options.seed, "seed of the scenario and of the noise");
+  app.add_option("--seed", options.seed, "seed of the scenario and of the noise")->check(whole_number());
   app.add_option("--output", options.output,
                  "folder in which the ports, the pipe servo_emulator.commands, and the files world.jsonl,\nworld.state "
                  "and truth.json are made")
       ->capture_default_str();
   app.add_option("--note-every", options.note_every_s, "[s] time between two lines of world.jsonl")
       ->capture_default_str()
-      ->check(CLI::Range(0.004, 3600.0));
+      ->check(number(0.004, 3600.0, "s"));
   app.footer(
       "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
       "EXAMPLES\n  servo_emulator --output /tmp/robot\n  echo 'cable 0 7' > /tmp/robot/servo_emulator.commands\n\n"

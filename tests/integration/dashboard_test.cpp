@@ -89,6 +89,11 @@ TEST_F(DashboardTest, AViewerPausesStepsAndResumesTheRun) {
   EXPECT_NE(ask("pace", R"({"pace":-1})").find("failure: pace: accepted"), std::string::npos);
   ASSERT_TRUE(viewer.send_binary(Viewer::call(99, 1, "{}")));
   EXPECT_EQ(viewer.wait_for("serviceCallFailure").value("message", ""), "there is no service 99");
+  ASSERT_TRUE(viewer.send_binary(Viewer::call(3, 7, "no JSON")));
+  const auto failure = viewer.wait_for("serviceCallFailure");
+  EXPECT_EQ(failure.value("message", ""), "service call: accepted a JSON object");
+  EXPECT_EQ(failure.value("serviceId", 0), 3);
+  EXPECT_EQ(failure.value("callId", 0), 7);
   end();
 }
 
@@ -107,6 +112,11 @@ TEST_F(DashboardTest, RefusesPagesOfOtherSitesAndNamesThatAreNotItsOwn) {
   ASSERT_TRUE(watcher.send_binary(Viewer::call(1, 5, "{}")));
   EXPECT_EQ(watcher.wait_for("serviceCallFailure").value("message", ""),
             "pages of other web sites may watch, but not command");
+  Process wrong = command({"dashboard", "--port", "99999"});
+  EXPECT_EQ(wrong.wait(20s), exit_status::kUsage);
+  EXPECT_EQ(wrong.errors(),
+            "dashboard: --port: found '99999', accepted a whole number from 0 to 65535 (see constrictor dashboard "
+            "--help)\n");
   Process second = command({"dashboard", "--port", std::to_string(port_)});
   EXPECT_EQ(second.wait(20s), exit_status::kSoftware);
   EXPECT_NE(second.errors().find("choose another one with --port"), std::string::npos) << second.errors();

@@ -74,6 +74,7 @@ TEST_F(Introspection, TheDoctorFindsAConfigurationThatCannotBeReadOrIsWrong) {
   environment_["CYCLONEDDS_URI"] = "file:///nosuch/cyclonedds.xml";
   EXPECT_EQ(faults(claim.domain()), (Faults{"unreadable configuration", "no DDS"})) << output_;
   EXPECT_NE(output_.find("cannot read /nosuch/cyclonedds.xml"), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("can't open"), std::string::npos) << "the finding is enough: " << output_;
   EXPECT_NE(output_.find("cure the findings above first"), std::string::npos) << output_;
   write("unclosed.xml", "<CycloneDDS><Domain>\n");
   for (const std::string wrong :

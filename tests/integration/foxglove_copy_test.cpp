@@ -62,6 +62,13 @@ TEST_F(Pictures, TheCopyForFoxgloveSaysWhyItHasNoImagesAndRefusesWrongFiles) {
   EXPECT_TRUE(says("the recording itself")) << output_;
   EXPECT_EQ(command({"foxglove", recording, "-o", dir_.string()}), exit_status::kUsage);
   EXPECT_TRUE(says("a folder")) << output_;
+  write("mine.mcap", "another recording");
+  EXPECT_EQ(command({"foxglove", recording, "-o", out("mine.mcap")}), exit_status::kUsage);
+  EXPECT_TRUE(says("--output: found " + out("mine.mcap") + ", which exists, accepted a new file (or --force)"))
+      << output_;
+  EXPECT_EQ(content("mine.mcap"), "another recording");
+  EXPECT_EQ(command({"foxglove", recording, "-o", out("mine.mcap"), "--force"}), exit_status::kOk) << output_;
+  EXPECT_EQ(Content(out("mine.mcap")).incomplete, "");
   EXPECT_EQ(command({"foxglove", dir_.string()}), exit_status::kUsage);
   EXPECT_TRUE(says("which has no run.mcap")) << output_;
   write("text.mcap", "no recording");

@@ -197,6 +197,17 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
   std::size_t domains = 0;
   for (auto at = output_.find("domain "); at != std::string::npos; at = output_.find("\ndomain ", at + 1)) ++domains;
   EXPECT_EQ(domains, 2u) << "doctor must examine each run: " << output_;
+  ASSERT_EQ(command({"status"}), 0) << output_;
+  const std::string run_number = "run " + std::to_string(domain()) + ": ";
+  EXPECT_NE(output_.find(run_number), std::string::npos) << output_;
+  EXPECT_NE(output_.find("choose one for its components: --run "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("--run " + std::to_string(domain())), std::string::npos) << output_;
+  ASSERT_EQ(command({"status", "--run", std::to_string(domain())}), 0) << output_;
+  std::size_t named = 0;
+  for (auto at = output_.find("run "); at != std::string::npos; at = output_.find("\nrun ", at + 1)) ++named;
+  EXPECT_EQ(named, 2u) << "the run that was asked for, and its state: " << output_;
+  EXPECT_EQ(output_.rfind(run_number, 0), 0u) << output_;
+  EXPECT_NE(output_.find("\n" + run_number), std::string::npos) << "the state must name its run: " << output_;
   other.signal(SIGTERM);
   EXPECT_TRUE(other.wait(20s));
   run.signal(SIGTERM);
@@ -250,7 +261,7 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
   }
   const std::string text = flat(output_);
   EXPECT_NE(text.find("authority: EMERGENCY STOP "), std::string::npos) << text;
-  EXPECT_NE(text.find("; 1 requests refused, the last one from "), std::string::npos) << text;
+  EXPECT_NE(text.find("; 1 request refused, the last one from "), std::string::npos) << text;
   EXPECT_NE(text.find(" is latched"), std::string::npos) << "the reason of the refusal must be shown: " << text;
   const json status = json_of({"status"});
   EXPECT_EQ(status["authority"]["level"], "emergency stop") << output_;

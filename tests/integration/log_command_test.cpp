@@ -95,6 +95,10 @@ TEST_F(LogCommand, ShowsTheLinesOfAllProcessesOfALiveRun) {
   EXPECT_EQ(lines({"--component", "control"}).size(), of(all, "navigation,control").size());
   EXPECT_EQ(lines({"--grep", "starts: Constrictor", "--last", "1"}).size(), 1u);
   EXPECT_TRUE(lines({"--level", "error"}).empty()) << output_;
+  EXPECT_TRUE(lines({"--level", "error", "--component", "physics"}).empty()) << output_;
+  EXPECT_EQ(command({"log", "--component", "physcs"}), 64) << output_;
+  EXPECT_NE(output_.find("--component: found 'physcs', accepted "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("did you mean 'physics'?"), std::string::npos) << output_;
   EXPECT_EQ(lines({"--level", "warn"}).size(), lines({"--level", "warning"}).size());
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));

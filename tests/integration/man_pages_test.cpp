@@ -38,6 +38,10 @@ TEST_F(Introspection, EverySubcommandHasAManualPageWithoutErrors) {
                            "constrictor topic hz joint_state camera/image"})
     EXPECT_NE(topic.find(part), std::string::npos) << part << " in\n" << topic;
 
+  EXPECT_EQ(command({"man-pages", "/proc/pages"}), 70) << output_;
+  EXPECT_NE(output_.find("DIR: found /proc/pages, which cannot be made ("), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("filesystem error"), std::string::npos) << output_;
+
   if (!fs::exists("/usr/bin/mandoc")) GTEST_SKIP() << "mandoc is not installed";
   std::vector<std::string> lint = {"/usr/bin/mandoc", "-T", "lint", "-W", "warning"};
   for (const auto& page : fs::directory_iterator(pages)) lint.push_back(page.path().string());

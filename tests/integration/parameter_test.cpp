@@ -196,6 +196,23 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(command({"param"}), exit_status::kUsage);
   EXPECT_EQ(command({"param", "list", "--names", "--json"}), exit_status::kUsage);
 
+  // With --json, scripts read from standard output why nothing was done.
+  EXPECT_EQ(ask({"param", "get", "navigation.travel.frequency"}, 1),
+            (json{{"name", "navigation.travel.frequency"},
+                  {"refused",
+                   "no parameter 'navigation.travel.frequency', did you mean 'navigation.travel.frequency_hz'?"
+                   " (`constrictor param list` lists all)"}}));
+  const auto refusal = [&](std::vector<std::string> arguments, int status) {
+    const json answer = ask(std::move(arguments), status);
+    return answer.is_array() && answer.size() == 1 ? answer[0].value("refused", "") : answer.dump();
+  };
+  write("wrong.yaml", "navigation: {travel: {frequency_hz: 99}}\n");
+  const std::string wrong = refusal({"param", "load", (dir_ / "wrong.yaml").string()}, exit_status::kConfiguration);
+  EXPECT_NE(wrong.find("found 99"), std::string::npos) << wrong;
+  EXPECT_NE(refusal({"param", "set", kFrequency, "fast"}, exit_status::kUsage).find("found 'fast'"), std::string::npos);
+  EXPECT_NE(refusal({"param", "load", "/nosuch.yaml"}, exit_status::kConfiguration).find("cannot be read"),
+            std::string::npos);
+
   // A reset restores the defaults.
   EXPECT_EQ(command({"reset", "1"}), 0) << output_;
   json after;
@@ -208,6 +225,8 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
 TEST_F(RunTimeParameters, TheExitStatusShowsThatThereIsNoRun) {
   EXPECT_EQ(command({"param", "list"}), exit_status::kSoftware);
   EXPECT_EQ(command({"param", "set", kFrequency, "0.9"}), exit_status::kSoftware);
+  EXPECT_NE(ask({"param", "get", kFrequency}, exit_status::kSoftware).value("refused", "").find("no run"),
+            std::string::npos);
   EXPECT_EQ(command({"param", "--help"}), 0);
   EXPECT_NE(output_.find("EXAMPLES"), std::string::npos);
 }

@@ -1,10 +1,37 @@
 // `constrictor figure` and `constrictor film` with real processes, on the recording of a short run.
 #include <signal.h>
 
+#include "constrictor/topics.hpp"
 #include "integration/pictures_fixture.hpp"
+#include "recording/mcap_copy.hpp"
 
 namespace constrictor::testing {
 namespace {
+
+/// A copy of the recording of a run as an observer makes it who joins in the last quarter of the run: of the time
+/// before it has only the events, which their writer keeps for late readers.
+void copy_last_quarter(const fs::path& from, const fs::path& to) {
+  mcap::Reader reader(from);
+  std::vector<std::uint64_t> times_ns;
+  reader.read({[&](const mcap::Channel& channel, const mcap::Message& message) {
+                 if (channel.topic == topics::kJointState.name) times_ns.push_back(message.log_time);
+               },
+               {},
+               {}});
+  ASSERT_FALSE(times_ns.empty());
+  const std::uint64_t joined_ns = times_ns[times_ns.size() * 3 / 4];
+  mcap::Reader again(from);
+  mcap::Copy copy(to, again);
+  again.read({[&](const mcap::Channel& channel, const mcap::Message& message) {
+                const bool kept = channel.topic == topics::kTaskEvent.name ||
+                                  channel.topic == topics::kSceneDescription.name ||
+                                  channel.topic == topics::kMissionStatus.name;
+                if (kept || message.log_time >= joined_ns) copy.copy(channel, message);
+              },
+              {},
+              {}});
+  copy.finish();
+}
 
 TEST_F(Pictures, TheFigureOfARecordingHasTheChosenMoments) {
   EXPECT_EQ(command({"figure", run("on").string(), "--size", "700", "-o", out("f.png")}), exit_status::kOk) << output_;
@@ -23,6 +50,17 @@ TEST_F(Pictures, TheFigureOfARecordingHasTheChosenMoments) {
             exit_status::kOk)
       << output_;
   EXPECT_EQ(content("f").rfind("%PDF", 0), 0U);
+}
+
+TEST_F(Pictures, TheFigureOfARecordingThatBeganLateHasOnlyMomentsOfTheRecording) {
+  copy_last_quarter(run("on") / "run.mcap", dir_ / "late.mcap");
+  ASSERT_EQ(command({"figure", out("late.mcap"), "-o", out("f.svg")}), exit_status::kOk) << output_;
+  const std::string svg = content("f.svg");
+  for (const char* time : {">0.7 s</text>", ">0.8 s</text>"}) EXPECT_NE(svg.find(time), std::string::npos) << time;
+  for (const char* words : {">line found", ">no image", ">0.4 s</text>", ">0.5 s</text>"})
+    EXPECT_EQ(svg.find(words), std::string::npos) << words;
+  EXPECT_EQ(command({"figure", out("late.mcap"), "--event", "line found", "-o", out("f.svg")}), 78) << output_;
+  EXPECT_TRUE(says("does not occur")) << output_;
 }
 
 TEST_F(Pictures, AFilmHasItsFramesInMotion) {

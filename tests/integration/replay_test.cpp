@@ -179,6 +179,10 @@ TEST_F(Replay, PublishesTheRecordedBytesAlsoForLateReaders) {
     }
     EXPECT_TRUE(replayed.contains("joint_state 75")) << file;
   }
+  for (const std::string name : {"pause", "end"}) {
+    EXPECT_EQ(status_of({name, "--run", domain}), 70) << output_;
+    EXPECT_NE(output_.find("--run: found " + domain + ", a replay, accepted a run"), std::string::npos) << output_;
+  }
   EXPECT_GT(messages_of(first).size(), messages_of(late).size());
   replay.signal(SIGINT);
   EXPECT_EQ(replay.wait(20s), 0);

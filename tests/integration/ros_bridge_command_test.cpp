@@ -51,8 +51,8 @@ TEST_F(RosBridgeCommand, BridgesTheOnlyRunUntilItEndsAndRefusesToChooseAmongSeve
 
 TEST_F(RosBridgeCommand, RefusesWrongOptionsWithWhatIsAccepted) {
   for (const auto& [option, value, said] : std::initializer_list<std::tuple<std::string, std::string, std::string>>{
-           {"--ros-distro", "noetic", "humble"},
-           {"--ros-domain", "300", "229"},
+           {"--ros-distro", "noetic", "ros_bridge: --ros-distro: found 'noetic', accepted humble, "},
+           {"--ros-domain", "300", "--ros-domain: found '300', accepted a whole number from 0 to 229"},
            {"--level", "king", "operator"},
            {"--robot", "nothing.yaml", "nothing.yaml"}}) {
     Process refused = bridge({option, value});

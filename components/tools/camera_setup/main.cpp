@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "camera_setup/commands.hpp"
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
@@ -22,11 +23,11 @@ void add_source(CLI::App& sub, Options& options) {
       ->required();
   sub.add_option("--rate", options.device.frame_rate_hz, "[Hz] frames in a second of a live source")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 240.0));
+      ->check(number(0.5, 240.0, "Hz"));
   sub.add_option("--width", options.device.width, "[pixel] width of the pictures of a device; 0: the device chooses")
-      ->check(CLI::Range(0, 4096));
+      ->check(whole_number(0, 4096));
   sub.add_option("--height", options.device.height, "[pixel] height of the pictures of a device; 0: the device chooses")
-      ->check(CLI::Range(0, 4096));
+      ->check(whole_number(0, 4096));
 }
 
 void add_board(CLI::App& sub, Options& options) {
@@ -34,11 +35,11 @@ void add_board(CLI::App& sub, Options& options) {
   sub.add_option("--square", options.square_m,
                  "[m] edge of one square of the chessboard, measured on the printed board")
       ->required()
-      ->check(CLI::Range(0.001, 1.0));
+      ->check(number(0.001, 1.0, "m"));
   sub.add_option("--largest-error", options.largest_error_px,
                  "[pixel] the result is refused if the root mean square error of the corners is larger")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 100.0));
+      ->check(number(0.01, 100.0, "pixels"));
 }
 
 }  // namespace
@@ -46,7 +47,8 @@ void add_board(CLI::App& sub, Options& options) {
 int main(int argc, char** argv) {
   Options options;
   int (*chosen)(const Options&) = nullptr;
-  CLI::App app{"Sets a new camera up: try it, calibrate its lens, find its mount, teach colours."};
+  CLI::App app{"Sets a new camera up: try it, calibrate its lens, find its mount, teach colours.",
+               "constrictor camera"};
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
   const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
@@ -61,7 +63,7 @@ int main(int argc, char** argv) {
   add_board(*sub, options);
   sub->add_option("--views", options.views, "how many views of a live source are collected")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{6}, std::size_t{200}));
+      ->check(whole_number(6, 200));
   sub->add_option("--out", options.out, "calibration file (YAML)")->required();
   sub = add("mount", "find the place of the camera in the head with a chessboard on the ground", mount);
   add_board(*sub, options);
@@ -73,11 +75,11 @@ int main(int argc, char** argv) {
       ->required()
       ->delimiter(',')
       ->expected(2)
-      ->check(CLI::Range(-10.0, 10.0));
+      ->check(number(-10.0, 10.0, "m"));
   sub->add_option("--yaw", options.yaw_deg,
                   "[degrees] 0: the board's rows lie across the robot; positive: turned to the left")
       ->capture_default_str()
-      ->check(CLI::Range(-180.0, 180.0));
+      ->check(number(-180.0, 180.0, "degrees"));
   sub->add_option("--robot", options.robot, "robot file")->check(CLI::ExistingFile);
   sub->add_option("--out", options.out, "calibration file with the mount (default: that of --calibration)");
   sub = add("colours", "teach colours from a picture", colours);
@@ -107,10 +109,8 @@ int main(int argc, char** argv) {
   ::sigaction(SIGINT, &action, nullptr);
   int status = exit_status::kSoftware;
   try {
-    app.parse(argc, argv);
-    status = chosen(options);
-  } catch (const CLI::ParseError& error) {
-    status = app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
+    const auto finished = parse_command_line(app, argc, argv);
+    status = finished ? *finished : chosen(options);
   } catch (const Failed& error) {
     fmt::print(stderr, "camera: {}\n", error.what());
     status = exit_status::kFailed;

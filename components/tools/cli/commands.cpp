@@ -16,6 +16,7 @@
 
 #include "cli/launch_plan.hpp"
 #include "cli/program_groups.hpp"
+#include "cli/recording/replay_control.hpp"
 #include "cli/run_difference.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -55,6 +56,7 @@ int become(const char* name, std::vector<std::string> arguments) {
 }
 
 int end_command(std::optional<std::uint32_t> domain) {
+  refuse_replay(domain);
   const RunNote run = join_run(domain);
   if (!run.on_this_host) return end_over_dds(run);
   if (::kill(run.pid, SIGTERM) != 0) {

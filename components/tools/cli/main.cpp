@@ -35,7 +35,7 @@ int dispatch(int argc, char** argv) {
       fmt::print("{}", app.help());
       return exit_status::kUsage;
     }
-    throw cli::UsageError(cli::explain_parse_error(app, error));
+    throw cli::UsageError(explain_parse_error(app, error));
   }
   return action();
 }

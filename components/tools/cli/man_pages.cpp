@@ -231,7 +231,13 @@ void add_man_pages(CLI::App& app, Action& action, const std::string& date) {
   sub->callback([&action, &app, folder, date] {
     action = [&app, folder, date] {
       const std::filesystem::path into = *folder;
-      std::filesystem::create_directories(into);
+      std::error_code error;
+      std::filesystem::create_directories(into, error);
+      if (error)
+        throw std::runtime_error(
+            fmt::format("DIR: found {}, which cannot be made ({}), accepted a folder in which "
+                        "files can be written",
+                        into.string(), error.message()));
       write_page(into / "constrictor.1", page(app, "constrictor", date));
       for (const CLI::App* each : named_subcommands(app)) {
         const std::string path = "constrictor " + each->get_name();

@@ -106,15 +106,42 @@ int list_parameters(const ParamOptions& options) {
   return begins ? exit_status::kOk : exit_status::kFailed;
 }
 
+/// Thrown when nothing was done and the reason is in the message: exit status 1.
+class Refused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `param NAME`. With --json, a script reads from standard output why nothing was done, in the form of a refusal
+/// of `param set`, also after wrong usage and if there is no run.
+int with_json(const std::string& name, const ParamOptions& options, int (*run)(const ParamOptions&)) {
+  const auto print = [&](const std::exception& error) {
+    if (!options.view.json) return;
+    Json refusal;
+    if (name == "get") refusal["name"] = options.name;
+    refusal["refused"] = error.what();
+    fmt::print("{}\n", json_text(name == "get" ? refusal : Json::array({refusal}), 2));
+  };
+  try {
+    return run(options);
+  } catch (const Refused& error) {
+    print(error);
+    if (!options.view.json) fmt::print(stderr, "param: {}\n", error.what());
+    return exit_status::kFailed;
+  } catch (const std::exception& error) {
+    print(error);
+    throw;  // main() prints it, and knows the exit status
+  }
+}
+
 int get_parameter(const ParamOptions& options) {
   const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
     report_silent(view);
-    fmt::print(stderr, "param: no parameter '{}'{} (`constrictor param list` lists all)\n", options.name,
-               did_you_mean(options.name, view.parameters));
-    return exit_status::kFailed;
+    throw Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", options.name,
+                              did_you_mean(options.name, view.parameters)));
   }
   const msg::Parameter& p = found->second.parameter;
   if (options.view.json) {
@@ -164,10 +191,7 @@ int set_all(const ParamOptions& options, const std::vector<ParameterValue>& valu
 }
 
 int set_parameter(const ParamOptions& options) {
-  if (options.changes.size() % 2 != 0) {
-    std::fprintf(stderr, "param: %s has no value\n", options.changes.back().c_str());
-    return exit_status::kUsage;
-  }
+  if (options.changes.size() % 2 != 0) throw UsageError(options.changes.back() + " has no value");
   // Only a value that is not a number needs the parameters' names of values.
   std::vector<ParameterValue> values;
   std::optional<ParameterView> view;
@@ -183,11 +207,9 @@ int set_parameter(const ParamOptions& options) {
       const auto found = view->parameters.find(name);
       const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
       value = value_from(known, text);
-      if (!value) {
-        std::fprintf(stderr, "param: VALUE of %s: found '%s', accepted %s\n", name.c_str(), text.c_str(),
-                     *known.choices ? accepted_text(known).c_str() : "a number");
-        return exit_status::kUsage;
-      }
+      if (!value)
+        throw UsageError(fmt::format("VALUE of {}: found '{}', accepted {}", name, text,
+                                     *known.choices ? accepted_text(known) : "a number"));
     }
     values.push_back({name, *value, text});
   }
@@ -261,7 +283,8 @@ void add_param(CLI::App& app, Action& action) {
       "  78 the file of `load` is wrong: nothing was set; 130 interrupted by Ctrl-C",
       "CONSTRICTOR_DOMAIN  the run, like --run"));
   const auto add = [&](const char* name, const char* what, int (*run)(const ParamOptions&)) {
-    auto* sub = add_subcommand(*param, name, what, action, options, run);
+    const auto with = [name, run](const ParamOptions& chosen) { return with_json(name, chosen, run); };
+    auto* sub = add_subcommand(*param, name, what, action, options, with);
     add_view_options(*sub, options->view);
     return sub;
   };

@@ -13,6 +13,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
+#include "cli/recording/replay_control.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
@@ -81,6 +82,7 @@ class BeginWatch {
 
 int control(const RunControlOptions& options, std::uint8_t command) {
   const double pace = command == msg::kRunPace ? parse_pace(options.pace) : 0.0;
+  refuse_replay(options.run);
   const RunNote run = join_run(options.run);
   catch_interrupts();
   const dds::Domain domain(run.domain);
@@ -136,6 +138,7 @@ int release(RequestClient& client) {
 }
 
 int operate(const RunControlOptions& options, const char* command, int (*use)(RequestClient&)) {
+  refuse_replay(options.run);
   RequestClient client(join_run(options.run).domain, operator_options(unique_source("operator")));
   if (const int status = connect(client, command); status != exit_status::kOk) return status;
   return use(client);

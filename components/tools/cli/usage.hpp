@@ -1,18 +1,16 @@
-// The common parts of all subcommands: errors of usage, checks of numbers, and the last part of --help.
+// The common parts of all subcommands: errors of usage, common options, and the last part of --help.
 #pragma once
 
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
+
+#include "configuration/command_line.hpp"
 
 namespace CLI {
 class App;
-class ParseError;
-class Validator;
 }  // namespace CLI
 
 namespace constrictor::cli {
@@ -23,16 +21,6 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-/// Accepts only decimal digits that make a number from `min` to `max`. CLI11 alone would read "-1" as a very large
-/// number and replace a number above 2^64 - 1 by 2^64 - 1.
-CLI::Validator whole_number(std::uint64_t min = 0, std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
-
-/// Accepts only finite numbers from `min` to `max`; `unit`, for example "s", is shown in the error message.
-CLI::Validator number(double min, double max, const std::string& unit);
-
-/// Accepts only these words, and suggests the closest one.
-CLI::Validator one_of(std::vector<std::string> words);
 
 /// Adds --run: the DDS domain of a run, also read from CONSTRICTOR_DOMAIN; and --token-file.
 void add_run_option(CLI::App& app, std::optional<std::uint32_t>& domain);
@@ -55,9 +43,5 @@ std::string help_footer(const std::string& about, std::initializer_list<const ch
 
 /// Text for help_footer(): the exit statuses of all commands that look for a run.
 inline constexpr const char* kRunStatuses = "64 wrong usage; 70 no run, or several and none chosen";
-
-/// The error message for a command line that `app` could not parse, with the closest name for a mistyped subcommand or
-/// option.
-std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace constrictor::cli

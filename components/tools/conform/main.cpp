@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 #include "conform/command.hpp"
 #include "conform/parts.hpp"
@@ -35,7 +36,7 @@ void add_plant(CLI::App& app, Options& options) {
       "plant", "check a process that drives joints on the topics hardware/*, or the plant of a manifest");
   sub->add_option("--domain", options.domain, "DDS domain in which the process writes; no plant_relay may be there")
       ->envname("CONSTRICTOR_DOMAIN")
-      ->check(CLI::Range(0, 229));
+      ->check(whole_number(0, 229));
   sub->add_option(
       "--manifest", options.manifest,
       "instead of --domain: check the plant of this manifest (a file, or a name as in `constrictor run`) in a run of "
@@ -70,7 +71,7 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
   if (kind.observable) {
     sub->add_option("--domain", options.observed,
                     "instead of --manifest: only watch the run in this DDS domain; nothing is moved")
-        ->check(CLI::Range(0, 229));
+        ->check(whole_number(0, 229));
     sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
         ->capture_default_str();
   }
@@ -94,11 +95,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_plant(app, options);
   for (const PartKind& kind : part_kinds()) add_part(app, options, kind);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   const std::string part = app.get_subcommands().front()->get_name();
   try {
     return part == "plant" ? plant_command(options) : part_command(options, part);

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "dashboard/protocol.hpp"
+
 namespace constrictor::dashboard {
 namespace {
 
@@ -140,7 +142,7 @@ std::string Commands::parameter(const WebServer::Call& call) {
     const msg::ParameterChange change = setter_.set(name, value);
     return fmt::format("{}: {:g} from tick {} on", name, change.value, change.effective_tick);
   } catch (const CommandError& error) {
-    throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+    throw std::runtime_error(named(name, error.what()));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "client/task_names.hpp"
 #include "component/task_parameters.hpp"
 #include "dashboard/lane.hpp"
+#include "dashboard/protocol.hpp"
 #include "robot/drive_gait.hpp"
 
 namespace constrictor::dashboard {
@@ -88,7 +89,7 @@ std::string Driver::task(const std::string& line) {
   msg::Request request = task_request(msg::kTaskNone);
   std::string problem = parse_task(line, request.task, request.parameters, request.path);
   if (problem.empty()) problem = cli::task_problem(request);
-  if (!problem.empty()) throw std::invalid_argument("task: " + problem);
+  if (!problem.empty()) throw std::invalid_argument(named("task", problem));
   client_.start_goal(request);
   return fmt::format("{} was accepted", task_word(request.task));
 }

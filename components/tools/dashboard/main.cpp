@@ -14,6 +14,7 @@
 #include "client/command_error.hpp"
 #include "client/run_registry.hpp"
 #include "component/data_path.hpp"
+#include "configuration/command_line.hpp"
 #include "dashboard/commands.hpp"
 #include "dashboard/dashboard.hpp"
 #include "dashboard/replay_controls.hpp"
@@ -72,7 +73,9 @@ int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
   while (g_signal == 0 && board.over().empty()) board.serve();
   if (!board.over().empty()) board.say_farewell();
   if (board.server().dropped() > 0)
-    fmt::print("{} messages were dropped, because viewers were too slow for them\n", board.server().dropped());
+    fmt::print(
+        "{} dropped, because viewers were too slow\n",
+        board.server().dropped() == 1 ? "1 message was" : fmt::format("{} messages were", board.server().dropped()));
   if (g_signal != 0) return 128 + g_signal;
   fmt::print("{}\n", board.over());
   return exit_status::kOk;
@@ -90,10 +93,12 @@ int main(int argc, char** argv) {
                  "DDS domain of the run or replay, as `constrictor run` and `replay` print it (default: the only run\n"
                  "here, or else the only replay)")
       ->envname("CONSTRICTOR_DOMAIN")
-      ->check(CLI::Range(0, 229));
+      ->check(whole_number(0, 229));
   app.add_option("--token-file", token_file, "file with the token of a run that was started on another host")
       ->check(CLI::ExistingFile);
-  app.add_option("--port", web.port, "TCP port for web pages and WebSockets; 0: a free one")->capture_default_str();
+  app.add_option("--port", web.port, "TCP port for web pages and WebSockets; 0: a free one")
+      ->check(whole_number(0, 65535))
+      ->capture_default_str();
   app.add_option(
          "--address", web.address,
          "IP address to listen on; 0.0.0.0 for viewers on other hosts: everybody there may then command the run")
@@ -112,11 +117,7 @@ int main(int argc, char** argv) {
       "0.0.0.0\n\n"
       "EXIT STATUS\n  0 the run has ended; 64 wrong usage; 70 no run, or the port cannot be opened; 130 Ctrl-C, 143 "
       "SIGTERM");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   if (!token_file.empty()) ::setenv("CONSTRICTOR_TOKEN_FILE", token_file.c_str(), 1);
   struct sigaction action {};
   action.sa_handler = [](int number) { g_signal = number; };

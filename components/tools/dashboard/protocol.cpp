@@ -152,6 +152,10 @@ std::string service_failure(std::uint32_t service, std::uint32_t call, const std
   return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
+std::string named(const std::string& name, const std::string& text) {
+  return text.starts_with(name + ": ") ? text : name + ": " + text;
+}
+
 std::string parameter_values(const std::vector<ParameterValue>& values, const std::string& id) {
   json list = json::array();
   for (const auto& [name, value, real] : values) {
@@ -211,11 +215,14 @@ Parsed parse_frame(std::string_view frame) {
     return refused("found a frame that is not a service call");
   frame.remove_prefix(1);
   const auto service = take_u32(frame), call = take_u32(frame), length = take_u32(frame);
-  if (!service || !call || !length || frame.size() < *length) return refused("found a service call that is too short");
-  if (frame.substr(0, *length) != "json") return refused("service call: accepted the encoding json");
+  if (!service || !call) return refused("found a service call that is too short");
+  // The caller waits for an answer to its call.
+  const auto failed = [&](const std::string& why) { return Parsed{{}, why, FailedCall{*service, *call}}; };
+  if (!length || frame.size() < *length) return failed("found a service call that is too short");
+  if (frame.substr(0, *length) != "json") return failed("service call: accepted the encoding json");
   frame.remove_prefix(*length);
   json request = frame.empty() ? json::object() : json::parse(frame, nullptr, false);
-  if (!request.is_object()) return refused("service call: accepted a JSON object");
+  if (!request.is_object()) return failed("service call: accepted a JSON object");
   return {{ServiceCall{*service, *call, std::move(request)}}, {}};
 }
 

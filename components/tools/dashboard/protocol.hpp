@@ -47,6 +47,9 @@ struct ParameterValue {
 [[nodiscard]] std::string status(int level, const std::string& message, const std::string& id = {});
 [[nodiscard]] std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message);
 
+/// `text` that begins with `name: `, once also if it begins so already.
+[[nodiscard]] std::string named(const std::string& name, const std::string& text);
+
 /// `id`: of the request that this answers; empty: none.
 [[nodiscard]] std::string parameter_values(const std::vector<ParameterValue>& values, const std::string& id);
 
@@ -84,10 +87,17 @@ struct UnsubscribeParameters {
 using Action = std::variant<Subscribe, Unsubscribe, ServiceCall, GetParameters, SetParameters, SubscribeParameters,
                             UnsubscribeParameters>;
 
+/// A call whose request cannot be read.
+struct FailedCall {
+  std::uint32_t service = 0;
+  std::uint32_t call = 0;
+};
+
 /// The request of a client, or the reason why it is refused. Clients may send anything.
 struct Parsed {
   std::vector<Action> actions;
-  std::string refusal;  ///< empty: none
+  std::string refusal;                         ///< empty: none
+  std::optional<FailedCall> failed_call = {};  ///< to be answered with the refusal
 };
 [[nodiscard]] Parsed parse_text(std::string_view text);
 [[nodiscard]] Parsed parse_frame(std::string_view frame);

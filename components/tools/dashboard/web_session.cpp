@@ -147,6 +147,8 @@ void Session::read() {
 }
 
 void Session::obey(const Parsed& parsed) {
+  if (const auto& failed = parsed.failed_call)
+    return send_text(service_failure(failed->service, failed->call, parsed.refusal));
   if (!parsed.refusal.empty()) send_text(status(2, parsed.refusal));
   for (const auto& action : parsed.actions) std::visit([this](const auto& wish) { obey(wish); }, action);
 }
@@ -217,7 +219,7 @@ void Session::answer(const SetParameters& wish, const std::vector<WebServer::Cha
     if (results[i].refusal.empty() && known != server_->parameters.end()) values.back().value = results[i].value;
     if (results[i].refusal.empty()) continue;
     refused = true;
-    send_text(status(2, fmt::format("{}: {}", name, results[i].refusal)));
+    send_text(status(2, named(name, results[i].refusal)));
   }
   // Viewers show the wanted value at once. After a refusal they need the true value, also if they have not asked for
   // it.

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kTorqueWindow_s = 30.0;
 constexpr std::size_t kMostRows = 200;
+constexpr double kFirstImages_s = 0.5;  // after the begin of a recording, its first images have arrived
 
 report::Moment moment_at(const RecordedStory& story, double time_s) {
   report::Moment moment;
@@ -27,21 +28,34 @@ report::Moment moment_at(const RecordedStory& story, double time_s) {
   return moment;
 }
 
-/// The rows of the figure at the end of a run.
+/// Whether the recording has joints, and thus images, of this time. A recording that began during the run also has the
+/// events before it, which writers keep for late readers.
+bool recorded(const RecordedStory& story, double time_s) {
+  return time_s >= story.from_s - 1e-9 && time_s <= story.to_s + 1e-9;
+}
+
+/// The rows of the figure at the end of a run. If no event was recorded: begin, middle and end of the recording.
 std::vector<report::Moment> usual_moments(const RecordedStory& story) {
   std::vector<report::Moment> moments;
   for (const auto& event : story.events) {
     const bool same = !moments.empty() && moments.back().tick == event.tick;  // it would have the same pictures
-    if (report::is_key_event(event.event) && !same) moments.push_back(event);
+    if (report::is_key_event(event.event) && !same && recorded(story, event.time_s)) moments.push_back(event);
   }
-  moments.push_back(moment_at(story, story.mission_end_s >= 0.0 ? story.mission_end_s : story.to_s));
+  const double end_s = recorded(story, story.mission_end_s) ? story.mission_end_s : story.to_s;
+  if (moments.empty() && story.from_s < end_s) {
+    moments.push_back(moment_at(story, story.from_s + std::min(kFirstImages_s, 0.25 * (end_s - story.from_s))));
+    moments.push_back(moment_at(story, 0.5 * (story.from_s + end_s)));
+    moments.push_back(moment_at(story, end_s));
+    return moments;
+  }
+  moments.push_back(moment_at(story, end_s));
   return report::merge_end(report::figure_rows(moments));
 }
 
 std::vector<report::Moment> chosen_moments(const RecordedStory& story, const FigureOptions& options) {
   std::vector<report::Moment> moments;
   for (const double at_s : options.at_s) {
-    if (at_s < story.from_s - 1e-9 || at_s > story.to_s + 1e-9)
+    if (!recorded(story, at_s))
       throw NoPicture(fmt::format("--at: found {:g}, accepted {:.2f} to {:.2f} s, the time of the recording", at_s,
                                   story.from_s, story.to_s));
     moments.push_back(moment_at(story, at_s));
@@ -49,10 +63,11 @@ std::vector<report::Moment> chosen_moments(const RecordedStory& story, const Fig
   for (const auto wanted : options.events) {
     const auto before = moments.size();
     std::copy_if(story.events.begin(), story.events.end(), std::back_inserter(moments),
-                 [&](const auto& event) { return event.event == wanted; });
+                 [&](const auto& event) { return event.event == wanted && recorded(story, event.time_s); });
     if (moments.size() > before) continue;
     std::vector<std::string> names;
     for (const auto& event : story.events) {
+      if (!recorded(story, event.time_s)) continue;
       const std::string name = name_of(constants::kEvent, event.event);
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
@@ -72,8 +87,10 @@ std::vector<report::Moment> chosen_moments(const RecordedStory& story, const Fig
 }
 
 std::string caption_of(const RecordedStory& story, const report::Moment& moment, bool chosen) {
-  const std::string end = story.mission_end_s >= 0.0 ? "end of the mission" : "end of the recording";
-  if (moment.event == msg::kEventNone) return chosen ? "" : end;
+  const bool ended = recorded(story, story.mission_end_s);
+  const std::string end = ended ? "end of the mission" : "end of the recording";
+  if (moment.event == msg::kEventNone)
+    return chosen || moment.time_s < (ended ? story.mission_end_s : story.to_s) - 1e-9 ? "" : end;
   const std::string words = figure::event_caption(moment.event, moment.colour);
   return moment.ends ? words + ", " + end : words;
 }
@@ -117,7 +134,7 @@ int make_figure(const FigureOptions& options) {
   if (!wrong.empty()) fmt::print(stderr, "figure: images are missing or differ from the run: {}\n", wrong);
   write_whole(options.output,
               figure::draw_figure(heading_of(story), rows, story.torques, kTorqueWindow_s, options.format, scale));
-  fmt::print("wrote {}: {} rows, {:.1f} MB\n", options.output.string(), rows.size(),
+  fmt::print("wrote {}: {} row{}, {:.1f} MB\n", options.output.string(), rows.size(), rows.size() == 1 ? "" : "s",
              1e-6 * static_cast<double>(std::filesystem::file_size(options.output)));
   return exit_status::kOk;
 }

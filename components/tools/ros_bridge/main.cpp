@@ -12,6 +12,7 @@
 
 #include "client/run_registry.hpp"
 #include "component/data_path.hpp"
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 #include "log/log.hpp"
 #include "ros_bridge/bridge.hpp"
@@ -76,7 +77,8 @@ int main(int argc, char** argv) {
 
   CLI::App app{
       "Shows a run to ROS 2 (joints, tf, odometry, images, map, diagnostics, logs), and takes velocities, tasks and\n"
-      "emergency stops from ROS 2. Without options it bridges the only run on this host to ROS_DOMAIN_ID."};
+      "emergency stops from ROS 2. Without options it bridges the only run on this host to ROS_DOMAIN_ID.",
+      "ros_bridge"};
   app.footer(
       "EXAMPLES\n  ros_bridge\n  ros_bridge --run 3 --ros-domain 7 --localhost\n"
       "  ros2 topic echo /joint_states        # in another terminal, where ROS 2 is installed\n\n"
@@ -87,15 +89,15 @@ int main(int argc, char** argv) {
   app.add_option("--run,--domain", domain,
                  "DDS domain of the run, as `constrictor run` prints it (default: the only run here)")
       ->envname("CONSTRICTOR_DOMAIN")
-      ->check(CLI::Range(0, 229));
+      ->check(whole_number(0, 229));
   app.add_option("--ros-domain", options.ros_domain, "ROS 2's domain")
       ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, 229))
+      ->check(whole_number(0, 229))
       ->capture_default_str();
   app.add_option("--ros-distro", distribution,
                  "release of ROS 2; ids of nodes are longer in humble than in all later releases")
       ->envname("ROS_DISTRO")
-      ->check(CLI::IsMember({"humble", "iron", "jazzy", "kilted", "lyrical", "rolling"}))
+      ->check(one_of({"humble", "iron", "jazzy", "kilted", "lyrical", "rolling"}))
       ->capture_default_str();
   app.add_flag("--localhost", options.ros_localhost_only,
                "use ROS 2's domain on this host only; the same as ROS_LOCALHOST_ONLY=1 or "
@@ -103,16 +105,12 @@ int main(int argc, char** argv) {
   app.add_option("--robot", robot, "robot file (default: that of the run if it was started on this host, else mamba)")
       ->check(CLI::ExistingFile);
   app.add_option("--level", level, "level of the requests for velocities and tasks")
-      ->check(CLI::IsMember({"operator", "external"}))
+      ->check(one_of({"operator", "external"}))
       ->capture_default_str();
   app.add_option("--hold-after", options.hold_after_s, "[s] without /cmd_vel until the robot stands still")
-      ->check(CLI::Range(0.05, 60.0))
+      ->check(number(0.05, 60.0, "s"))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   options.level = level == "operator" ? msg::kAuthorityOperator : msg::kAuthorityExternal;
   options.release = distribution == "humble" ? ros::Release::kHumble : ros::Release::kIron;
   struct sigaction action {};

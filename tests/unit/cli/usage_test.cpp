@@ -64,6 +64,9 @@ TEST_F(CommandLineTest, NamesTheClosestSubcommandOrOption) {
   EXPECT_EQ(error({"run", "--sead", "3"}), "no option '--sead', did you mean '--seed'? (see constrictor run --help)");
   EXPECT_EQ(error({"run", "--sead=3"}), "no option '--sead', did you mean '--seed'? (see constrictor run --help)");
   EXPECT_EQ(error({"run", "--quite-different"}), "no option '--quite-different' (see constrictor run --help)");
+  app_.name("/usr/bin/constrictor");  // as CLI11 takes it from argv
+  EXPECT_EQ(error({"run", "--quite-different"}), "no option '--quite-different' (see constrictor run --help)");
+  app_.name("constrictor");
   EXPECT_EQ(error({"run", "elsewhere"}), "unexpected argument 'elsewhere' (see constrictor run --help)");
 }
 

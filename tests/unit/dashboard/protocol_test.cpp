@@ -37,6 +37,12 @@ TEST(Texts, OfTheServerHaveTheFieldsOfTheSpecification) {
   EXPECT_EQ(nlohmann::json::parse(status(2, "\xff")).at("level"), 2) << "text that is not UTF-8 is replaced";
 }
 
+TEST(Texts, OfRefusalsNameTheirObjectOnce) {
+  EXPECT_EQ(named("task", "found 'fly'"), "task: found 'fly'");
+  EXPECT_EQ(named("task", "task: found 'fly'"), "task: found 'fly'");
+  EXPECT_EQ(named("task", "tasks: none"), "task: tasks: none");
+}
+
 TEST(Texts, OfClientsAreCheckedFieldByField) {
   const Parsed good =
       parse_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2},{"id":3,"channelId":4}]})");
@@ -120,6 +126,15 @@ TEST(Frames, OfClientsThatAreDamagedAreRefused) {
   for (std::size_t size = 0; size < 17; ++size) EXPECT_NE(parse_frame(good.substr(0, size)).refusal, "") << size;
   EXPECT_EQ(parse_frame(good.substr(0, 17)).refusal, "") << "an empty request";
   EXPECT_NE(parse_frame("\x01" + good.substr(1)).refusal, "");
+  EXPECT_FALSE(parse_frame(good.substr(0, 8)).failed_call) << "the call is not known";
+  for (const std::string& wrong : {good.substr(0, 9), good.substr(0, 16), good.substr(0, 20), good.substr(0, 17) + "3",
+                                   good.substr(0, 13) + "cbor{}", good.substr(0, 17) + "no JSON"}) {
+    const Parsed parsed = parse_frame(wrong);
+    EXPECT_NE(parsed.refusal, "") << wrong;
+    ASSERT_TRUE(parsed.failed_call) << wrong;
+    EXPECT_EQ(parsed.failed_call->service, 5u);
+    EXPECT_EQ(parsed.failed_call->call, 6u);
+  }
   std::mt19937 random(20261122);
   std::size_t accepted = 0;
   for (int i = 0; i < 100'000; ++i) {

@@ -198,6 +198,39 @@ TEST(Reference, OwnHeadIsWhereARayPassesTheCapsule) {
   EXPECT_GT(misses, 3000);
 }
 
+TEST(Reference, LabelsOfBlobsAreInsideThePictureAndApartFromEachOther) {
+  msg::CameraInfo info = test::camera_info(320, 240, 1.0, 1.3);  // looks down: the horizon is not in the image
+  const GroundCamera camera(info, {1.0, 0.0, 0.0, 0.0}, 0.035);
+  const cv::Mat rgb(240, 320, CV_8UC3, cv::Scalar(0)), labels(240, 320, CV_8UC1, cv::Scalar(0));
+  // The number of white pixels: on black ground only the labels are white.
+  const auto white = [&](const std::vector<msg::Blob>& blobs) {
+    msg::ObjectPercepts objects{};
+    objects.blob_count = static_cast<std::uint8_t>(blobs.size());
+    std::copy(blobs.begin(), blobs.end(), objects.blobs);
+    cv::Mat picture, mask;
+    draw_percepts(rgb, labels, camera, {}, objects, picture);
+    cv::inRange(picture, cv::Scalar(255, 255, 255), cv::Scalar(255, 255, 255), mask);
+    return cv::countNonZero(mask);
+  };
+  const auto blob = [](int u, int v) {
+    msg::Blob one{};
+    one.kind = msg::kBlobZone;
+    one.colour = msg::kColourRed;
+    one.range_m = 10.25;
+    one.u_min = static_cast<decltype(one.u_min)>(u);
+    one.v_min = static_cast<decltype(one.v_min)>(v);
+    one.u_max = static_cast<decltype(one.u_max)>(u + 8);
+    one.v_max = static_cast<decltype(one.v_max)>(v + 8);
+    return one;
+  };
+  const int whole = white({blob(100, 100)});
+  ASSERT_GT(whole, 50);
+  for (const auto& [u, v] : std::vector<std::pair<int, int>>{{0, 0}, {311, 0}, {0, 231}, {311, 231}, {311, 100}})
+    EXPECT_EQ(white({blob(u, v)}), whole) << "the label is cut at " << u << ", " << v;
+  EXPECT_EQ(white({blob(100, 100), blob(104, 102), blob(110, 98), blob(100, 100)}), 4 * whole);
+  EXPECT_EQ(white({blob(311, 0), blob(305, 3), blob(311, 231), blob(300, 228)}), 4 * whole);
+}
+
 TEST(Reference, PictureIsDimmedAndPaintedPixelByPixel) {
   constexpr std::array<std::array<int, 3>, msg::kColourCount> kPaint{
       {{}, {60, 200, 60}, {220, 60, 60}, {60, 110, 230}, {220, 200, 60}}};

@@ -103,7 +103,9 @@ Diagnosis examine(std::uint32_t domain, const Facts& host) {
   try {
     ViewOptions chosen;
     chosen.domain = domain;
-    look(DomainView(chosen), facts);
+    // Cyclone would print again for each entity that the file cannot be opened.
+    if (facts.dds_configuration_error.empty()) look(DomainView(chosen), facts);
+    else error = "DDS does not start without its configuration, so the domain was not examined";
   } catch (const dds::Error& failed) {
     error = failed.what();  // Cyclone does not start with a wrong configuration; the findings name the cause
   }

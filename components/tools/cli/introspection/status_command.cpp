@@ -1,5 +1,6 @@
 // `constrictor status`: the runs of this host, and a live table of one's components.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "cli/introspection/domain_view.hpp"
 #include "cli/operator.hpp"
+#include "cli/recording/replay_control.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -92,9 +94,8 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return lines;
 }
 
-std::string run_line(const RunView& view) {
-  std::string line = progress_line(view, 0);
-  line = line.substr(0, line.rfind(','));
+std::string run_line(const RunNote& run, const RunView& view) {
+  std::string line = fmt::format("run {}: {}", run.domain, progress_line(view, 0));
   if (view.run_state) {
     const auto& state = *view.run_state;
     if (std::isfinite(state.real_time_factor)) line += fmt::format(", {:.1f}x real time", state.real_time_factor);
@@ -109,8 +110,8 @@ std::string run_line(const RunView& view) {
     const auto& authority = *view.authority;
     std::string who = authority_text(authority);
     if (authority.refused_count > 0)
-      who += fmt::format("; {} requests refused, the last one from {}: {}", authority.refused_count,
-                         authority.refused_source, authority.refusal);
+      who += fmt::format("; {} request{} refused, the last one from {}: {}", authority.refused_count,
+                         authority.refused_count == 1 ? "" : "s", authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }
   if (view.mission && *view.mission->reason)
@@ -215,19 +216,24 @@ bool is_gone(const RunNote& run) {
                       [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
 }
 
+void tell(const RunNote& run) {
+  fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
+             run.report_dir.string());
+}
+
 int status(const StatusOptions& options) {
   const auto runs = live_runs();
-  if (!options.view.json) {
-    for (const auto& run : runs) {
-      fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
-                 run.report_dir.string());
-    }
-    if (runs.size() > 1 && !options.view.domain) {
-      fmt::print("choose one with --run for its components\n");
-      return exit_status::kOk;
-    }
+  if (!options.view.json && !options.view.domain && runs.size() > 1) {
+    for (const auto& run : runs) tell(run);
+    std::vector<std::string> choices;
+    for (const auto& run : runs) choices.push_back(fmt::format("--run {}", run.domain));
+    fmt::print("choose one for its components: {}\n", fmt::join(choices, ", "));
+    return exit_status::kOk;
   }
   const RunNote run = join_run(options.view.domain);
+  if (!options.view.json && run.on_this_host) tell(run);
+  if (!options.view.json && is_replay(options.view.domain))
+    fmt::print("run {} is a replay of a recording; `constrictor dashboard` shows and seeks it\n", run.domain);
   RunObserver observer(run.domain);
   RateMeter rates;
   // Statuses are kept for late readers, but a rate needs two of them; the state of the run arrives once a second.
@@ -249,7 +255,7 @@ int status(const StatusOptions& options) {
       shown = now;
       if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates)));
       else
-        fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(observer.view()),
+        fmt::print("{}{}\n\n{}", screen ? "\x1b[H\x1b[J" : "\n", run_line(run, observer.view()),
                    table(run, observer.view(), rates));
       std::fflush(stdout);
       if (observer.view().ended(run.plant) || is_gone(run)) return exit_status::kOk;
@@ -258,7 +264,7 @@ int status(const StatusOptions& options) {
   }
   if (options.watch) return exit_status::kOk;
   if (options.view.json) fmt::print("{}\n", json_text(json_of(run, observer.view(), rates), 2));
-  else fmt::print("{}\n\n{}", run_line(observer.view()), table(run, observer.view(), rates));
+  else fmt::print("{}\n\n{}", run_line(run, observer.view()), table(run, observer.view(), rates));
   return exit_status::kOk;
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
+#include "cli/log/log_files.hpp"
 #include "cli/log/log_lines.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
@@ -62,14 +63,15 @@ class Printer {
   std::string own_host_ = own_host();
 };
 
-/// Throws UsageError if a component of the filter has no line at all.
-void refuse_unknown_components(const LogOptions& options) {
-  const std::vector<LogEntry> all = read_logs(options.folder, {});
+/// Throws UsageError if a component of the filter has no line at all in `all`, and is none of the `others`.
+void refuse_unknown_components(const LogOptions& options, const std::vector<LogEntry>& all,
+                               const std::vector<std::string>& others = {}) {
   for (const std::string& name : options.filter.components) {
     LogFilter only;
     only.components = {name};
+    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
     if (std::any_of(all.begin(), all.end(), [&](const LogEntry& entry) { return only.accepts(entry); })) continue;
-    std::set<std::string> known;
+    std::set<std::string> known(others.begin(), others.end());
     for (const LogEntry& entry : all) known.insert(entry.record.subject);
     known.erase("");
     const std::vector<std::string> names(known.begin(), known.end());
@@ -85,7 +87,8 @@ int of_files(const LogOptions& options) {
                     "leave the folder out",
                     options.folder));
   const auto entries = read_logs(options.folder, options.filter);
-  if (entries.empty() && !options.filter.components.empty()) refuse_unknown_components(options);
+  if (entries.empty() && !options.filter.components.empty())
+    refuse_unknown_components(options, read_logs(options.folder, {}));
   Printer(options).print_last(entries, options.last);
   return exit_status::kOk;
 }
@@ -111,6 +114,7 @@ class LiveLog {
     }
     std::stable_sort(waiting_.begin(), waiting_.end(),
                      [](const auto& a, const auto& b) { return a.record.time < b.record.time; });
+    if (interrupt_signal() == 0) refuse_unknown();
     printer_.print_last(waiting_, options_.last);
     waiting_.clear();
     if (options_.follow) follow();
@@ -119,6 +123,20 @@ class LiveLog {
   }
 
  private:
+  /// A component may be silent, or its lines be older than those that its process keeps: the members of the run and the
+  /// files of its report name it.
+  void refuse_unknown() const {
+    if (!waiting_.empty() || options_.filter.components.empty()) return;
+    std::vector<std::string> others = run_.roster;
+    others.emplace_back("launcher");
+    std::vector<LogEntry> all;
+    for (const std::string& subject : subjects_) all.emplace_back().record.subject = subject;
+    if (run_.on_this_host && !log_files(run_.report_dir / "logs").empty()) {
+      const auto kept = read_logs(run_.report_dir, {});
+      all.insert(all.end(), kept.begin(), kept.end());
+    }
+    refuse_unknown_components(options_, all, others);
+  }
   [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
 
   /// Prints lines until the run is over and no line has arrived for kQuiet: the last lines of the processes may arrive
@@ -146,6 +164,7 @@ class LiveLog {
       if (state && line.run_id != 0 && line.run_id != state->run_id) return;
       if (lost > 0) lost_[constrictor::text_of(line.process)] += lost;
       LogEntry entry = entry_of(line);
+      subjects_.insert(entry.record.subject);
       if (options_.filter.accepts(entry)) waiting_.push_back(std::move(entry));
     });
     return taken;
@@ -166,6 +185,7 @@ class LiveLog {
   LogReader reader_;
   Printer printer_;
   std::vector<LogEntry> waiting_;
+  std::set<std::string> subjects_;             ///< of all lines, also of those that the filter does not accept
   std::map<std::string, std::uint64_t> lost_;  ///< number of lines, by process
 };
 

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 struct FoxgloveOptions {
   std::string file, output = "foxglove.mcap";
+  bool force = false;
 };
 
 /// Ctrl-C: no file is left.
@@ -92,6 +93,8 @@ int foxglove(const FoxgloveOptions& options) {
     throw UsageError(fmt::format("--output: found {}, the recording itself, accepted another file", options.output));
   if (fs::is_directory(options.output))
     throw UsageError(fmt::format("--output: found {}, a folder, accepted a file", options.output));
+  if (!options.force && fs::exists(options.output))
+    throw UsageError(fmt::format("--output: found {}, which exists, accepted a new file (or --force)", options.output));
   catch_interrupts();
   NewFile file(options.output);
   try {
@@ -119,8 +122,8 @@ void add_foxglove(CLI::App& app, Action& action) {
   auto* sub = add_subcommand(app, "foxglove", "copy a recording and add the 3D scene, images and log for Foxglove",
                              action, options, foxglove);
   sub->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
-  sub->add_option("-o,--output", options->output, "file (MCAP); an existing one is replaced when the copy is complete")
-      ->capture_default_str();
+  sub->add_option("-o,--output", options->output, "file to write (MCAP)")->capture_default_str();
+  sub->add_flag("--force", options->force, "replace the file if it exists, when the copy is complete");
   sub->footer(help_footer(
       "Foxglove and Lichtblick open every recording and can plot its numbers. The copy also has the topics that the\n"
       "dashboard makes for them (view/scene, view/camera, view/annotations ...), so that they show the scene in 3D, "

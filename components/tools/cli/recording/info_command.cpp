@@ -121,9 +121,9 @@ int recover_damaged(const fs::path& file) {
   const mcap::Recovered recovered = mcap::copy_undamaged(file, copy.part());
   fs::rename(file, kept);
   copy.complete();
-  fmt::print("{}: {} messages in {} chunks, {} bytes in {} places left out ({}); the damaged file is {}\n",
+  fmt::print("{}: {} messages in {} chunks, {} bytes in {} place{} left out ({}); the damaged file is {}\n",
              file.string(), recovered.messages, recovered.chunks, recovered.left_out_bytes, recovered.places,
-             recovered.why, kept.string());
+             recovered.places == 1 ? "" : "s", recovered.why, kept.string());
   return exit_status::kOk;
 }
 

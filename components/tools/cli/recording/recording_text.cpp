@@ -15,7 +15,8 @@ std::string describe_recording(const RecordingSummary& summary) {
     return found == texts.end() ? std::string("?") : found->second;
   };
   if (summary.missing() > 0) {
-    text += fmt::format("; {} messages are missing:", summary.missing());
+    text += fmt::format("; {} missing:",
+                        summary.missing() == 1 ? "1 message is" : fmt::format("{} messages are", summary.missing()));
     for (const auto& topic : summary.topics) {
       if (topic.missing > 0) text += fmt::format(" {} of {},", topic.missing, topic.name);
     }

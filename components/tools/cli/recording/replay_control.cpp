@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/command_error.hpp"
 #include "cyclone/domain_claim.hpp"
 
 namespace constrictor::cli {
@@ -174,6 +175,19 @@ std::vector<std::uint32_t> live_replays() {
   }
   std::sort(domains.begin(), domains.end());
   return domains;
+}
+
+bool is_replay(std::optional<std::uint32_t> domain) {
+  const auto replays = domain ? live_replays() : std::vector<std::uint32_t>();
+  return std::find(replays.begin(), replays.end(), domain) != replays.end();
+}
+
+void refuse_replay(std::optional<std::uint32_t> domain) {
+  if (!is_replay(domain)) return;
+  throw CommandError(fmt::format("--run: found {0}, a replay, accepted a run; the keys of `constrictor replay` and "
+                                 "`constrictor dashboard --run {0}` pause and end it",
+                                 *domain),
+                     CommandError::Cause::kNoRun);
 }
 
 }  // namespace constrictor::cli

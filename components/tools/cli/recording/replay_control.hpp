@@ -71,6 +71,10 @@ class ReplayClient {
 
 /// The domains of the replays on this host.
 std::vector<std::uint32_t> live_replays();
+/// Whether this domain is that of a replay on this host.
+bool is_replay(std::optional<std::uint32_t> domain);
+/// For commands to a run. Throws CommandError (kNoRun) if the domain is that of a replay.
+void refuse_replay(std::optional<std::uint32_t> domain);
 
 [[nodiscard]] nlohmann::json to_json(const ReplayState& state);
 /// Both throw std::invalid_argument with what was found and what is accepted.
