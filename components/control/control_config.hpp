@@ -89,7 +89,7 @@ struct ControlConfig : ParameterSet {
                              "Share of the squeeze by which the two joints beside the base open, in total");
   double speed_share = add(speed_share, "safety.speed_share", 0.8, "", {0.01, 1.0}, kAtStart,
                            "Share of the servos' maximum speed that control uses");
-  double lead_s = add(lead_s, "safety.lead_s", 0.04, "s", {0.02, 1.0}, kAtStart,
+  double lead_s = add(lead_s, "safety.lead_s", 0.06, "s", {0.02, 1.0}, kAtStart,
                       "Largest lead of a setpoint over a joint that cannot follow: the way at full speed in this time");
   std::int64_t hold_after_ticks =
       add(hold_after_ticks, "safety.hold_after_ticks", 10, "ticks", {2, 1000}, kAtStart,

@@ -114,6 +114,9 @@ int main(int argc, char** argv) {
   } catch (const Failed& error) {
     fmt::print(stderr, "camera: {}\n", error.what());
     status = exit_status::kFailed;
+  } catch (const CLI::ValidationError& error) {  // of an option that a subcommand reads by itself
+    fmt::print(stderr, "camera: {}\n", error.what());
+    status = exit_status::kUsage;
   } catch (const ConfigurationError& error) {
     fmt::print(stderr, "camera: {}\n", error.what());
     status = exit_status::kConfiguration;

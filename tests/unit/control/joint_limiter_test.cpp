@@ -160,7 +160,7 @@ TEST_F(JointLimiterTest, RelaxedJointsHaveNoTorqueAndAreLaterHeldWhereTheyAre) {
   EXPECT_EQ(command.torque_limit_nm[2], 0.0);
   Setpoints wanted;
   wanted.position_rad[2] = 0.7;
-  EXPECT_NEAR(limiter.limit(wanted, {}, 0.02, state).position_rad[2], 0.7, 1e-12);
+  EXPECT_NEAR(limiter.limit(wanted, measured, 0.02, state).position_rad[2], 0.7, 1e-12);
 }
 
 }  // namespace
