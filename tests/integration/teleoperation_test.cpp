@@ -283,7 +283,9 @@ TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
   }
   EXPECT_GE(begun.size(), 2u);
   EXPECT_LE(fastest_setpoint(watcher, begun), kMaxSpeed_rad_s * 1.001);
-  EXPECT_LE(fastest_joint(watcher, 0), kMaxSpeed_rad_s);
+  // The setpoints of the new source begin where the joints are, so that none jumps. Later, a joint that the drive has
+  // pressed against an object may slip off it and catch up with its setpoint faster than the setpoint moves.
+  for (const std::int64_t tick : begun) EXPECT_LE(fastest_joint(watcher, tick, tick + 25), kMaxSpeed_rad_s) << tick;
   EXPECT_EQ(watcher.mission.outcome, msg::kMissionRunning);
   end(launcher);
 }
