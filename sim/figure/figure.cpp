@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 namespace constrictor::figure {
 namespace {
@@ -54,7 +53,10 @@ std::string draw_figure(const Heading& heading, const std::vector<Row>& rows, co
   // A run of a real robot has no pictures of the scene. Their column is then left out, and the torques are wider.
   const bool scenes = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.scene.empty(); });
   std::array<double, kColumnWidths.size()> width = kColumnWidths;
-  if (!scenes) width[4] += std::exchange(width[1], -kGap) + kGap;
+  if (!scenes) {
+    width[4] += width[1] + kGap;
+    width[1] = -kGap;  // the gap behind the column is left out, too
+  }
   std::array<double, kColumnWidths.size()> left{};
   left[0] = kMargin;
   for (std::size_t i = 1; i < left.size(); ++i) left[i] = left[i - 1] + width[i - 1] + kGap;

@@ -43,6 +43,12 @@ std::size_t read_fast_answer(ByteView bytes, std::size_t count, Use&& use);
 [[nodiscard]] constexpr std::size_t fast_answer_end(std::size_t index, std::size_t count) {
   return kHeadBytes + 1 + (index + 1) * (count + 4);
 }
+/// Number of devices whose answer to a Fast Sync Read is not longer than kLargestLength; at least 1.
+[[nodiscard]] constexpr std::size_t fast_answer_devices(std::size_t count) {
+  std::size_t devices = 1;
+  while (fast_answer_end(devices, count) - kHeadBytes <= kLargestLength) ++devices;
+  return devices;
+}
 /// Whether the CRC of device `index` is there and right.
 [[nodiscard]] bool fast_answer_is_right(ByteView bytes, std::size_t index, std::size_t count);
 

@@ -140,15 +140,15 @@ std::size_t BusMaster::take_fast_answer(std::uint16_t count, ByteView ids, const
 }
 
 std::size_t BusMaster::fast_sync_read(std::uint16_t address, std::uint16_t count, ByteView ids, const Use& use) {
-  const std::size_t most = (dynamixel::kLargestLength - 1) / (std::size_t{count} + 4);  // in one answer
-  for (std::size_t answered = 0; most > 0;) {
+  const std::size_t most = dynamixel::fast_answer_devices(count);
+  std::size_t answered = 0;
+  while (answered < ids.size()) {
     const ByteView part = ids.subspan(answered, std::min(most, ids.size() - answered));
-    if (part.empty()) return answered;
     const std::size_t more = ask_fast(address, count, part, use);
     answered += more;
-    if (more < part.size()) return answered;
+    if (more < part.size()) break;  // the devices behind a silent one are silent, too
   }
-  return 0;
+  return answered;
 }
 
 std::size_t BusMaster::ask_fast(std::uint16_t address, std::uint16_t count, ByteView ids, const Use& use) {

@@ -63,7 +63,7 @@ TEST_F(FastDdsTopics, BwMeasuresTheBytesOfAMessage) {
   EXPECT_LT(bytes["bytes_per_s"].get<double>(), 110.0 * kImu_bytes) << bytes;
 }
 
-TEST_F(FastDdsTopics, ListAndInfoNameTheWriter) {
+TEST_F(FastDdsTopics, ListHasTheTopic) {
   const json topics = topic({"list"});
   const auto named = std::find_if(topics.begin(), topics.end(),
                                   [](const json& entry) { return entry["topic"] == "hardware/joint_state"; });

@@ -216,7 +216,7 @@ bool is_gone(const RunNote& run) {
                       [&](const RunNote& other) { return other.domain == run.domain && other.pid == run.pid; });
 }
 
-void tell(const RunNote& run) {
+void print_run(const RunNote& run) {
   fmt::print("run {}: {} seed {}, pid {}\n  report in {}\n", run.domain, run.scenario, run.seed, run.pid,
              run.report_dir.string());
 }
@@ -224,14 +224,14 @@ void tell(const RunNote& run) {
 int status(const StatusOptions& options) {
   const auto runs = live_runs();
   if (!options.view.json && !options.view.domain && runs.size() > 1) {
-    for (const auto& run : runs) tell(run);
+    for (const auto& run : runs) print_run(run);
     std::vector<std::string> choices;
     for (const auto& run : runs) choices.push_back(fmt::format("--run {}", run.domain));
     fmt::print("choose one for its components: {}\n", fmt::join(choices, ", "));
     return exit_status::kOk;
   }
   const RunNote run = join_run(options.view.domain);
-  if (!options.view.json && run.on_this_host) tell(run);
+  if (!options.view.json && run.on_this_host) print_run(run);
   if (!options.view.json && is_replay(options.view.domain))
     fmt::print("run {} is a replay of a recording; `constrictor dashboard` shows and seeks it\n", run.domain);
   RunObserver observer(run.domain);
