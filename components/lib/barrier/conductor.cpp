@@ -20,8 +20,8 @@ void Conductor::on_hello(const Hello& hello) {
   MemberState& member = found->second;
   if (member.hello_received && hello.pid == member.hello.pid && hello.host == member.hello.host &&
       hello.incarnation == member.hello.incarnation) {
-    // A repeated Hello. The predecessor of this conductor may have died before its Resume arrived.
-    if (successor_ && epoch_ && !member.ready && hello.incarnation > 1) send_resume(member);
+    // A repeated Hello: its Resume has not arrived, or the predecessor of this conductor died before sending it.
+    if (epoch_ && !member.ready && hello.incarnation > 1) send_resume(member);
     return;
   }
   if (member.hello_received && hello.incarnation <= member.hello.incarnation) {

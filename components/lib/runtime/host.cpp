@@ -83,6 +83,7 @@ class Host::Impl {
     if (conductor_) conductor_->continue_epoch();
     links_.take_all();
     while (!context_.exit_status && !g_stop) {
+      members_.repeat_hello();
       members_.send_ready();
       bool stepped = false;
       while (members_.step()) stepped = true;  // the outputs of one member may let another one step

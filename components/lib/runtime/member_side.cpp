@@ -19,6 +19,7 @@ namespace {
 namespace wire = dds::barrier_topics;
 
 constexpr auto kMatchCheckInterval = std::chrono::milliseconds(10);
+constexpr auto kHelloInterval = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -89,10 +90,21 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
 }
 
 void MemberSide::send_hello() {
+  last_hello_ = HostContext::Clock::now();
   for (const auto& local : members_) {
     const Hello hello = hello_of(local);
     hello_writer_.write(dds::to_wire(hello));
     if (conductor_) conductor_->on_hello(hello);
+  }
+}
+
+void MemberSide::repeat_hello() {
+  if (conductor_ || context_.options.incarnation == 1) return;
+  const auto now = HostContext::Clock::now();
+  if (now - last_hello_ < kHelloInterval) return;
+  last_hello_ = now;
+  for (const auto& local : members_) {
+    if (!local.member->in_epoch()) hello_writer_.write(dds::to_wire(hello_of(local)));
   }
 }
 

@@ -36,6 +36,9 @@ class MemberSide : private MemberSink {
   [[nodiscard]] Member* plant() const { return plant_; }
   /// Announces every member.
   void send_hello();
+  /// Announces once a second every restarted member that still waits for its Resume: a message that is sent once would
+  /// leave it waiting for ever if it were lost.
+  void repeat_hello();
   /// Sends Ready for each member that is in an epoch and whose endpoints have all met their counterparts.
   void send_ready();
   /// Does every step that is due. Returns whether one was finished.
@@ -136,6 +139,7 @@ class MemberSide : private MemberSink {
   dds::Writer<msg::Waiting> waiting_writer_;
   dds::Writer<msg::ComponentStatus> status_writer_;
   std::map<std::string, Hello> hellos_;  ///< of members in other processes
+  HostContext::Clock::time_point last_hello_{};
   HostContext::Clock::time_point last_match_check_{};
   dds::Unmatched unmatched_;  ///< result of the last check
 };

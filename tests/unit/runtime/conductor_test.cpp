@@ -174,6 +174,23 @@ TEST_F(ConductorTest, ARunThatIsOverTakesBackItsOwnProcessesAndNoOthers) {
   EXPECT_EQ(record_.resumes[0].index, 3);
 }
 
+TEST_F(ConductorTest, ARepeatedHelloIsAnsweredByTheSameResumeUntilTheMemberIsReady) {
+  begin();
+  run_to(3);
+  const Hello restarted = hello("navigation", 2);
+  for (int i = 0; i < 3; ++i) conductor_.on_hello(restarted);
+  ASSERT_EQ(record_.resumes.size(), 3u);
+  for (const Resume& resume : record_.resumes) {
+    EXPECT_EQ(resume.component, "navigation");
+    EXPECT_EQ(resume.incarnation, 2u);
+    EXPECT_EQ(resume.index, 3);
+    EXPECT_EQ(resume.state, record_.resumes[0].state);
+  }
+  conductor_.on_ready("navigation", kEpoch, 2);
+  conductor_.on_hello(restarted);
+  EXPECT_EQ(record_.resumes.size(), 3u) << "a member that is ready has received it";
+}
+
 TEST_F(ConductorTest, ImpossibleReportsAreRecognisedWithTheReason) {
   begin();
   run_to(3);
