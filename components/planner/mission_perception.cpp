@@ -48,7 +48,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
     memory_.trail.note_beyond(*inputs.line, *inputs.pose);
   // At the beginning of a state the head may still point to the side.
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
-  if (follows && inputs.pose && memory_.line_images >= config_.confirm_images &&
+  if (follows && !memory_.wrong_way && inputs.pose && memory_.line_images >= config_.confirm_images &&
       memory_.active_s - memory_.entered_s > 1.0) {
     memory_.trail.record(*inputs.line, *inputs.pose, memory_.state == kFollowLine);
   }
@@ -112,6 +112,11 @@ bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   const bool curled = !holding() && inputs.pose &&
                       std::abs(wrap_angle(inputs.pose->yaw_rad - inputs.pose->body_yaw_rad)) > config_.straight_rad;
   return !curled;
+}
+
+bool MissionPlanner::stands_still(const PlannerInputs& inputs) {
+  return inputs.pose && memory_.standstill.notice(inputs.pose->x_m, inputs.pose->y_m, memory_.active_s,
+                                                  config_.standstill_m, config_.standstill_s);
 }
 
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
@@ -192,10 +197,9 @@ void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& want
   } else if (attempt % 2 == 1) {
     move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
   }
-  if (holding() && inputs.pose) {
-    const auto& pose = *inputs.pose;
-    if (const auto away =
-            memory_.standstill.next(pose.x_m, pose.y_m, memory_.active_s, config_.standstill_m, config_.standstill_s)) {
+  if (holding()) {
+    static_cast<void>(stands_still(inputs));
+    if (const auto away = memory_.standstill.next()) {
       move = *away;
       memory_.search_by_memory = false;
     }

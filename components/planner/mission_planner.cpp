@@ -84,10 +84,13 @@ void MissionPlanner::enter(MissionState state) {
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
     memory_.standstill.begin();
   }
+  if (state != kFollowLine) memory_.wrong_way = false;
   if (state == kGrasp) memory_.direction_known = true;
   if (row_of(state).holding) {
     memory_.dropped = false;
     memory_.released_tick = -1;
+  } else {
+    memory_.standstill.end();
   }
   if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
@@ -199,6 +202,7 @@ std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& 
 // behind the robot.
 std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inputs) {
   if (memory_.state != kFollowLine && memory_.state != kTransport) return std::nullopt;
+  if (memory_.wrong_way) return recover(kTurnRound);
   const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
   if (zones_about && memory_.direction_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
   memory_.line_ended_s = memory_.active_s;
@@ -239,10 +243,12 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
   switch (memory_.state) {
     case kSearchLineOrObject:
       if (object) return kTrackObject;
-      return line && may_follow(inputs) ? std::optional(kFollowLine)
-                                        : std::nullopt;  // otherwise the search turns towards the wanted direction
+      return line ? follow_found_line(inputs) : std::nullopt;
     case kFollowLine:
-      return object ? std::optional(kTrackObject) : std::nullopt;
+      if (object) return kTrackObject;
+      return memory_.wrong_way && memory_.active_s - memory_.entered_s > config_.wrong_way_s
+                 ? std::optional(recover(kTurnRound))
+                 : std::nullopt;
     case kInspect: {
       if (memory_.released_tick < 0) return std::nullopt;
       const MissionState to = after_drop(inputs);
@@ -256,7 +262,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
                  : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
-      if (line) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);
+      if (line && !memory_.standstill.leads_away()) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);
       return std::nullopt;
     case kTransport:
       return zone ? std::optional(kDrop) : std::nullopt;
@@ -269,6 +275,15 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
     default:
       return std::nullopt;
   }
+}
+
+// The search turns a robot that sees the line towards the wanted direction. That may not succeed: beside the last piece
+// of the line, the turning head sees only the line behind it. Then the robot turns round on the line itself.
+std::optional<MissionState> MissionPlanner::follow_found_line(const PlannerInputs& inputs) {
+  const bool right_way = may_follow(inputs);
+  const bool tired = memory_.active_s - memory_.entered_s > config_.any_way_s && !leads_wanted_way(inputs);
+  memory_.wrong_way = !right_way && tired;
+  return right_way || tired ? std::optional(kFollowLine) : std::nullopt;
 }
 
 std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& inputs) {
@@ -292,6 +307,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);
+  if (memory_.state == kTransport && stands_still(inputs)) return recover(row.failed);
   if (memory_.state == kInspect)
     return in_state_s > config_.inspect_s ? std::optional(after_inspection(false, inputs)) : std::nullopt;
   if (memory_.state == kApproachAnew)

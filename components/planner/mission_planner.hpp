@@ -89,7 +89,8 @@ struct MissionMemory {
   std::uint16_t line_images = 0;
   std::uint16_t searches = 0;                    ///< requests of the two searches so far; selects the next move
   std::uint8_t search_task = msg::kTaskNone;     ///< task of the present search: explore or rotate
-  Standstill standstill;                         ///< of a search with an object
+  Standstill standstill;                         ///< of a search or transport with an object
+  bool wrong_way = false;                        ///< the robot follows the line the wrong way, and will turn round
   bool search_by_memory = false;                 ///< its direction comes from the memory of line, object or zone
   std::uint8_t direction = msg::kDirectionNone;  ///< of the last requested rotate or explore
   LineTrail trail;
@@ -107,7 +108,7 @@ struct MissionMemory {
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
-            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals);
+            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way);
   }
 };
 
@@ -137,6 +138,8 @@ class MissionPlanner {
   [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_status(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_percepts(const PlannerInputs& inputs);
+  /// The state after a search without an object that sees the line; empty: it must go on.
+  [[nodiscard]] std::optional<MissionState> follow_found_line(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
   /// The state after the drop: the next object if the map shows the dropped object on its zone, another attempt if the
@@ -208,6 +211,8 @@ class MissionPlanner {
   /// from the zone, so that the turning body does not hit an object there.
   [[nodiscard]] std::uint8_t side_for(double turn_rad, const PlannerInputs& inputs) const;
   void choose_search(const PlannerInputs& inputs, WantedTask& wanted);
+  /// Whether a robot that should move has stayed at one place for a while.
+  [[nodiscard]] bool stands_still(const PlannerInputs& inputs);
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
   /// A duration given for the robot without an object; with an object in the U everything takes longer.

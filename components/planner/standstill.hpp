@@ -1,4 +1,4 @@
-// Recognises that a search does not move the robot, because it is caught on an obstacle that it does not see.
+// Recognises that a robot with an object does not move, because it is caught on an obstacle that it does not see.
 #pragma once
 
 #include <cmath>
@@ -15,17 +15,20 @@ struct Move {
   std::uint8_t direction = msg::kDirectionNone;
 };
 
-/// Notices that a search has not left its place for a while, and leads the robot away: backwards, round to one side,
-/// and forwards again; the next time round to the other side.
+/// Notices that the robot has not left its place for a while, and leads it away: backwards, round to one side, and
+/// forwards again; the next time round to the other side.
 class Standstill {
  public:
-  /// A search begins at the present place of the robot.
+  /// A state of the mission begins at the present place of the robot.
   void begin() { since_s_ = -1.0; }
-  /// The next move, if it must lead away. Call it once for each move of a search, with the head's place [m] in M and
-  /// the time [s]. `near_m`, `after_s`: the robot stands still if it stays this near to its place for this time.
-  std::optional<Move> next(double x_m, double y_m, double now_s, double near_m, double after_s) {
+  /// The object is gone, and with it the moves that were to lead it away.
+  void end() { moves_left_ = 0; }
+  /// Takes the head's place [m] in M and the time [s]. Returns whether the robot stands still: whether it has stayed
+  /// within `near_m` of one place for `after_s`. The next moves of a search then lead away.
+  bool notice(double x_m, double y_m, double now_s, double near_m, double after_s) {
     const bool away = std::hypot(x_m - x_m_, y_m - y_m_) > near_m;
-    if (moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s) {
+    const bool still = moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s;
+    if (still) {
       moves_left_ = kMoves;
       ++times_;
     }
@@ -34,6 +37,12 @@ class Standstill {
       y_m_ = y_m;
       since_s_ = now_s;
     }
+    return still;
+  }
+  /// Whether moves that lead away are still to come: what the robot sees meanwhile has not freed it.
+  [[nodiscard]] bool leads_away() const { return moves_left_ > 0; }
+  /// The next move, if it must lead away. Call it once for each move of a search, after notice().
+  std::optional<Move> next() {
     if (moves_left_ == 0) return std::nullopt;
     switch (moves_left_--) {
       case 1:

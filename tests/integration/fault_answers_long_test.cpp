@@ -27,7 +27,7 @@ TEST_P(FaultAnswer, IsThatOfTheTable) {
   EXPECT_EQ(report_["reason"], row.succeeds ? "" : row.reason);
 }
 
-constexpr const char* kNoPercepts = "no percepts for 30 s: are the camera and perception running?";
+constexpr const char* kNoPercepts = "the planner gave up: no percepts for 30 s: are the camera and perception running?";
 
 constexpr Row kRows[] = {
     {"CameraFrozen", "topic: camera/image, kind: freeze, from_s: 4, until_s: 8", true, 14, 50},

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
 #include "scripted_planner.hpp"
 
@@ -116,6 +117,54 @@ TEST_F(PlannerTest, ALostGraspCountsAlsoIfItCrossesANewRequest) {
   --crossing.goal_id;
   step({crossing});
   EXPECT_EQ(memory_.state, kSearchObject);
+}
+
+// Beside the last piece of a line, the turning head sees only the line behind it.
+TEST_F(PlannerTest, ALineThatIsOnlySeenTheWrongWayIsFollowedAndTheRobotTurnsOnIt) {
+  config_.sequence.clear();
+  find_line();
+  drive(4.0);
+  face(std::numbers::pi);
+  abort(msg::kEventLineLost);
+  EXPECT_EQ(memory_.state, kSearchLineOrObject);
+  see_line(true);
+  steps(700);
+  EXPECT_EQ(memory_.state, kSearchLineOrObject) << "the search turns the robot first";
+  steps(60);  // any_way_s is 15 s
+  EXPECT_EQ(memory_.state, kFollowLine);
+  step({event(msg::kEventEndOfLine)});
+  EXPECT_EQ(memory_.state, kTurnRound) << "the wrong end of the line is not the end of the mission";
+  turn();
+  EXPECT_EQ(memory_.state, kFollowLine);
+  steps(400);
+  EXPECT_EQ(memory_.state, kFollowLine) << "now it leads the right way";
+  step({event(msg::kEventEndOfLine)});
+  EXPECT_EQ(memory_.state, kDone);
+}
+
+// The line stays in view while a wall between the arms of the U holds the robot.
+TEST_F(PlannerTest, ARobotThatIsCaughtWhileItFollowsTheLineWithAnObjectIsLedAway) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  const int recoveries = memory_.recoveries;
+  for (int i = 0; i < 800 && memory_.state == kTransport; ++i) step();  // standstill_s is 15 s
+  EXPECT_EQ(memory_.state, kSearchLine);
+  EXPECT_EQ(memory_.recoveries, recoveries + 1);
+  step();
+  EXPECT_EQ(last_.task, msg::kTaskExplore);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionBackwards);
+  steps(50);
+  EXPECT_EQ(memory_.state, kSearchLine) << "to see the line frees nobody";
+  std::vector<std::uint8_t> tasks;
+  for (int i = 0; i < 12'000 && memory_.state == kSearchLine; ++i) {
+    if (step()) tasks.push_back(last_.task);
+  }
+  EXPECT_EQ(memory_.state, kTransport);
+  ASSERT_GE(tasks.size(), 3u);
+  EXPECT_EQ(tasks[0], msg::kTaskExplore);
+  EXPECT_EQ(tasks[1], msg::kTaskRotate);
+  EXPECT_EQ(tasks[2], msg::kTaskExplore);
 }
 
 TEST_F(PlannerTest, NavigationsReportOfAHeldObjectOverridesTheStateAfterAWhile) {

@@ -11,7 +11,10 @@ constexpr double kNear_m = 0.3, kAfter_s = 15.0;
 
 class StandstillTest : public ::testing::Test {
  protected:
-  std::optional<Move> at(double x_m, double now_s) { return standstill_.next(x_m, 0.0, now_s, kNear_m, kAfter_s); }
+  std::optional<Move> at(double x_m, double now_s) {
+    static_cast<void>(standstill_.notice(x_m, 0.0, now_s, kNear_m, kAfter_s));
+    return standstill_.next();
+  }
   Standstill standstill_;
 };
 
@@ -33,6 +36,16 @@ TEST_F(StandstillTest, ACaughtRobotIsLedAwayToOneSideAndThenToTheOther) {
     EXPECT_EQ(at(-0.1, now_s += 10.0)->direction, msg::kDirectionForwards);
     EXPECT_FALSE(at(0.0, now_s += 8.0));
   }
+}
+
+TEST_F(StandstillTest, ALostObjectIsNotLedAway) {
+  standstill_.begin();
+  EXPECT_FALSE(standstill_.notice(0.0, 0.0, 0.0, kNear_m, kAfter_s));
+  EXPECT_TRUE(standstill_.notice(0.0, 0.0, 16.0, kNear_m, kAfter_s));
+  EXPECT_TRUE(standstill_.leads_away());
+  standstill_.end();
+  EXPECT_FALSE(standstill_.leads_away());
+  EXPECT_FALSE(standstill_.next());
 }
 
 TEST_F(StandstillTest, AnotherSearchBeginsAnew) {
