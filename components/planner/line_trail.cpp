@@ -9,7 +9,8 @@
 namespace constrictor {
 namespace {
 constexpr double kSpacing_m = 0.3;       // between recorded points
-constexpr double kNewGround_m = 0.45;    // from every recorded point
+constexpr double kNewGround_m = 0.45;    // from every recorded point, if the robot knows where it is
+constexpr double kOpposite_rad = 2.4;    // between the directions of neighbouring points: one of them is wrong
 constexpr double kFrontier_m = 1.5;      // radius of the frontier's neighbourhood
 constexpr std::size_t kMaxPoints = 400;  // 120 m of line
 
@@ -18,6 +19,13 @@ LinePoint in_map(const msg::RobotPose& pose, double x_m, double y_m) {
   const double c = std::cos(pose.yaw_rad);
   const double s = std::sin(pose.yaw_rad);
   return {pose.x_m + c * x_m - s * y_m, pose.y_m + s * x_m + c * y_m, true};
+}
+/// [m] beyond which a point that is seen from `pose` cannot be a recorded one. After a loss of the line the estimated
+/// pose is up to three and a half times as wrong as its standard deviation says.
+double new_ground_m(const msg::RobotPose& pose) {
+  constexpr double kDoubt = 3.5;
+  const double sd_m = std::sqrt(std::max(pose.covariance[0], pose.covariance[4]));
+  return std::max(kNewGround_m, kDoubt * sd_m);
 }
 /// The farthest visible point of the line, in M.
 LinePoint farthest(const msg::LinePercept& line, const msg::RobotPose& pose) {
@@ -49,8 +57,10 @@ void LineTrail::record(const msg::LinePercept& line, const msg::RobotPose& pose,
   const auto [x_m, y_m, known_point] = in_map(pose, line.lookahead_m, line.offset_m);
   const TrailPoint* known = nearest(x_m, y_m);
   if (known && std::hypot(known->x_m - x_m, known->y_m - y_m) < kSpacing_m) return;
+  const double outbound_rad = wrap_angle(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi));
+  if (known && std::abs(wrap_angle(known->outbound_rad - outbound_rad)) > kOpposite_rad) return;
   if (points_.size() >= kMaxPoints) points_.erase(points_.begin());
-  points_.push_back({x_m, y_m, wrap_angle(pose.yaw_rad + line.heading_rad + (outbound ? 0.0 : std::numbers::pi))});
+  points_.push_back({x_m, y_m, outbound_rad});
   if (outbound) frontier_ = {x_m, y_m, true};
 }
 
@@ -67,7 +77,7 @@ bool LineTrail::leads_to_new_ground(const msg::LinePercept& line, const msg::Rob
   const LinePoint point = farthest(line, pose);
   if (!point.known || !at_frontier(point.x_m, point.y_m)) return false;
   const TrailPoint* known = nearest(point.x_m, point.y_m);
-  return std::hypot(known->x_m - point.x_m, known->y_m - point.y_m) > kNewGround_m;
+  return std::hypot(known->x_m - point.x_m, known->y_m - point.y_m) > new_ground_m(pose);
 }
 
 std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool outbound) const {

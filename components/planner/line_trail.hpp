@@ -35,11 +35,12 @@ class LineTrail {
  public:
   /// Adds the point of the line at the lookahead of a percept taken at `pose`. `outbound`: the robot follows the line
   /// towards the objects. Known points (within 0.3 m) keep their direction. A percept without a visible line is
-  /// ignored.
+  /// ignored, and so is one whose direction is opposite to that of the nearest point: the robot goes the wrong way.
   void record(const msg::LinePercept& line, const msg::RobotPose& pose, bool outbound);
   /// Stores the farthest visible point of the line if it lies near, or beyond, the last point followed outbound.
   void note_beyond(const msg::LinePercept& line, const msg::RobotPose& pose);
-  /// Whether the visible line continues, in any direction, over new ground beyond the last point followed outbound.
+  /// Whether the visible line continues, in any direction, over new ground beyond the last point followed outbound. The
+  /// less certain the pose, the farther from the known line this ground must be.
   [[nodiscard]] bool leads_to_new_ground(const msg::LinePercept& line, const msg::RobotPose& pose) const;
   /// [rad] in M, direction of the line beside the pose, towards the objects or back; empty: no point of the line is
   /// known.

@@ -202,7 +202,8 @@ std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& 
 // behind the robot.
 std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inputs) {
   if (memory_.state != kFollowLine && memory_.state != kTransport) return std::nullopt;
-  if (memory_.wrong_way) return recover(kTurnRound);
+  const bool other_end = config_.sequence.empty() && memory_.state == kFollowLine && !leads_wanted_way(inputs);
+  if (memory_.wrong_way || other_end) return recover(kTurnRound);
   const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
   if (zones_about && memory_.direction_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
   memory_.line_ended_s = memory_.active_s;

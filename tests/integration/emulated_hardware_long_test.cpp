@@ -34,13 +34,14 @@ struct Fault {
 class CameraFault : public EmulatedMission, public ::testing::WithParamInterface<Fault> {};
 
 TEST_P(CameraFault, OfFourSecondsDoesNotEndTheMission) {
-  Process launcher = run("line", {"--max-sim-time", "120"});
+  // Which frames are lost differs from run to run, and so does how long the robot looks for the line afterwards.
+  Process launcher = run("line", {"--max-sim-time", "300"});
   ASSERT_TRUE(eventually([&] { return camera().value("tick", 0) >= 200; }, 60s)) << launcher.output();
   order(GetParam().command);
   const int begin = camera()["tick"];
   EXPECT_TRUE(camera_says([&](const json& now) { return now["tick"].get<int>() >= begin + 200; }));
   order("mend");
-  expect_success(launcher, 140s);
+  expect_success(launcher, 340s);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, CameraFault,

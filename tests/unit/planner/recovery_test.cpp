@@ -142,6 +142,18 @@ TEST_F(PlannerTest, ALineThatIsOnlySeenTheWrongWayIsFollowedAndTheRobotTurnsOnIt
   EXPECT_EQ(memory_.state, kDone);
 }
 
+TEST_F(PlannerTest, TheEndFromWhichTheRobotCameDoesNotEndAMissionWithoutObjects) {
+  config_.sequence.clear();
+  find_line();
+  drive(4.0);
+  face(std::numbers::pi);
+  drive(3.5);  // back, whatever the reason
+  EXPECT_EQ(memory_.state, kFollowLine);
+  see_line(false);
+  step({event(msg::kEventEndOfLine)});
+  EXPECT_EQ(memory_.state, kTurnRound);
+}
+
 // The line stays in view while a wall between the arms of the U holds the robot.
 TEST_F(PlannerTest, ARobotThatIsCaughtWhileItFollowsTheLineWithAnObjectIsLedAway) {
   find_line();

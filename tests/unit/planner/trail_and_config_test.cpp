@@ -77,6 +77,9 @@ TEST(LineTrail, LeadsToTheLastVisiblePointOfABendAndOverNewGroundOnly) {
   const double corner_rad = 110.0 / 180.0 * std::numbers::pi;
   see(2.0 + 0.9 * std::cos(corner_rad), 0.9 * std::sin(corner_rad));
   EXPECT_TRUE(trail.leads_to_new_ground(line, pose));
+  pose.covariance[0] = pose.covariance[4] = 0.3 * 0.3;  // it may be a known point
+  EXPECT_FALSE(trail.leads_to_new_ground(line, pose));
+  pose.covariance[0] = pose.covariance[4] = 0.0;
   see(1.0, 0.0);  // behind the robot
   EXPECT_FALSE(trail.leads_to_new_ground(line, pose));
   see(0.3, 0.8);  // new ground, but not where the line was followed last
