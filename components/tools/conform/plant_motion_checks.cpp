@@ -186,8 +186,8 @@ void PlantConformance::check_motions() {
   // A joint that moves 57 times too far may still move when the next joint is commanded.
   if (!degrees.empty() && !order.empty()) report_.skip("order", "cannot be judged before the unit is right");
   else
-    report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,
-                  "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");
+    report_.pass_unless("order", order, "each joint by itself",
+                        "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");
   report_.judge("sign", !negative.empty(), list(negative, " moved the other way", "the right way"),
                 "invert these joints' direction, for commands and measurements alike (yaw: positive is left, pitch: "
                 "positive is nose down)");
