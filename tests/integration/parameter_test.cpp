@@ -170,8 +170,10 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
             std::string::npos)
       << output_;
   EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find(
-                "parameter: found 'navigation.nothing'"),
+                "no component announces a parameter 'navigation.nothing'"),
             0u);
+  EXPECT_EQ(command({"param", "set", "navigation.nothing", "1"}), 1);
+  EXPECT_EQ(output_.find("param: refused: no component announces a parameter 'navigation.nothing'"), 0u) << output_;
   EXPECT_EQ(command({"param", "set", kFrequency, "0.8", "--at-tick", "1"}), 1);
   EXPECT_NE(output_.find("found 1, accepted "), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "set", "navigation.line_tracker.lost_after_images", "3.5"}), 1);
