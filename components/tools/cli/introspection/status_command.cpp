@@ -17,6 +17,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
@@ -110,8 +111,8 @@ std::string run_line(const RunNote& run, const RunView& view) {
     const auto& authority = *view.authority;
     std::string who = authority_text(authority);
     if (authority.refused_count > 0)
-      who += fmt::format("; {} request{} refused, the last one from {}: {}", authority.refused_count,
-                         authority.refused_count == 1 ? "" : "s", authority.refused_source, authority.refusal);
+      who += fmt::format("; {} refused, the last one from {}: {}", counted(authority.refused_count, "request"),
+                         authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }
   if (view.mission && *view.mission->reason)
