@@ -222,7 +222,16 @@ void print_run(const RunNote& run) {
              run.report_dir.string());
 }
 
+/// A replay is no run, so that no command chooses it by itself.
+void print_replays() {
+  for (const auto domain : live_replays()) {
+    fmt::print("replay of a recording in DDS domain {0}: `constrictor dashboard --run {0}` shows and seeks it\n",
+               domain);
+  }
+}
+
 int status(const StatusOptions& options) {
+  if (!options.view.json && !options.view.domain) print_replays();
   const auto runs = live_runs();
   if (!options.view.json && !options.view.domain && runs.size() > 1) {
     for (const auto& run : runs) print_run(run);
