@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "configuration/counted.hpp"
 #include "conform/camera_conformance.hpp"
 #include "robot/camera_mount.hpp"
 
@@ -87,7 +88,7 @@ void CameraConformance::check_restart() {
   if (info_changed_ && fault.empty()) fault = "camera/info changes";
   if (before > 1) fault = fmt::format("the process has ended by itself, and is now incarnation {}", before);
   else if (fault.empty() && port_.incarnation() != before + 1) fault = "the process was not started again";
-  report_.pass_unless("restart", fault, fmt::format("{} images of the new process", frames_.size() - first),
+  report_.pass_unless("restart", fault, counted(frames_.size() - first, "image") + " of the new process",
                       "connect again at the start, write camera/info first, and show nothing that was seen before");
 }
 
@@ -146,7 +147,7 @@ void CameraConformance::check_model() {
   const msg::CameraInfo& info = *info_;
   const bool late = info_tick_ > frames_.front().arrival_tick;
   report_.judge("info_once", late || info_changed_,
-                late ? fmt::format("{} ticks after the first image", info_tick_ - frames_.front().arrival_tick)
+                late ? counted(info_tick_ - frames_.front().arrival_tick, "tick") + " after the first image"
                      : fmt::format("{} messages{}", infos_, info_changed_ ? ", which differ" : ""),
                 "write camera/info once, in the step of the first image");
   std::string wrong;
@@ -190,10 +191,10 @@ void CameraConformance::check_frames() {
       wrong = fmt::format("{} x {} pixels in {} bytes, with {} x {} in camera/info", frame.width, frame.height,
                           frame.bytes, info.width, info.height);
   }
-  report_.pass_unless("size", wrong, fmt::format("{} images", frames_.size()),
+  report_.pass_unless("size", wrong, counted(frames_.size(), "image"),
                       "write width * height * 3 bytes, rows from the top, of the size in camera/info");
   if (frames_.size() < 3 || !(info.frame_period_s > 0.0))
-    return report_.fail("rate", fmt::format("{} images in {} s", frames_.size(), profile_.watch_s),
+    return report_.fail("rate", fmt::format("{} in {} s", counted(frames_.size(), "image"), profile_.watch_s),
                         "write an image every frame_period_s");
   const double passed_s = kTick_s * static_cast<double>(frames_.back().arrival_tick - frames_.front().arrival_tick);
   const double period_s = passed_s / static_cast<double>(frames_.size() - 1);

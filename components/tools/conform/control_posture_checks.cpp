@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "configuration/counted.hpp"
+
 #include "conform/control_conformance.hpp"
 
 namespace constrictor::conform {
@@ -51,7 +53,7 @@ void ControlConformance::check_bend() {
   const msg::MotionStatus* state = last_state(first);
   const bool late = !echo_ticks || ControlHand::kPeriod_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
   report_.judge("echo", late,
-                echo_ticks ? fmt::format("after {} ticks", *echo_ticks)
+                echo_ticks ? "after " + counted(*echo_ticks, "tick")
                 : state    ? fmt::format("motion {} with the method '{}', not motion {} with 'bend'", state->motion_id,
                                          printable(text_of(state->method)), hand_.desired->motion_id)
                            : "no motion_status",

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
 #include "conform/perception_conformance.hpp"
 
@@ -83,8 +84,8 @@ bool PerceptionConformance::check_arrival() {
   shown_ = hand_.show(scene, 10);
   const bool arrived = std::any_of(shown_.begin(), shown_.end(), [](const Seen& seen) { return seen.answered(); });
   report_.judge("arrives", !arrived,
-                arrived ? fmt::format("after {} ticks", shown_.front().answer_ticks)
-                        : fmt::format("no answer to {} images", shown_.size()),
+                arrived ? "after " + counted(shown_.front().answer_ticks, "tick")
+                        : "no answer to " + counted(shown_.size(), "image"),
                 "write both topics for each image, as soon as camera/info has arrived; the run refuses values that are "
                 "not finite or out of range, and its log names them");
   if (!arrived) return false;
@@ -123,7 +124,7 @@ bool PerceptionConformance::check_arrival() {
   report_.judge("answer", slowest_s > profile_.answer_s, fmt::format("{:.2f} s at most", slowest_s),
                 fmt::format("be faster than {} s, or change answer_s of the profile", profile_.answer_s));
   if (pictures == 0) report_.skip("picture", "perception writes no perception/image");
-  else report_.pass_unless("picture", picture, fmt::format("{} images", pictures), "draw into a copy of the image");
+  else report_.pass_unless("picture", picture, counted(pictures, "image"), "draw into a copy of the image");
   return true;
 }
 

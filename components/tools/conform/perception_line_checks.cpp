@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/perception_conformance.hpp"
 
 namespace constrictor::conform {
@@ -101,7 +103,7 @@ void PerceptionConformance::check_line_shape() {
       if (off_m > profile_.line_m && points.empty())
         points = fmt::format("point {} at ({:.2f}, {:.2f}) m is not on the line", i, point.x(), point.y());
     }
-    if (percept->point_count < 3) points = fmt::format("{} points", percept->point_count);
+    if (percept->point_count < 3) points = counted(percept->point_count, "point");
   }
   report_.pass_unless("line_curvature", curvature, fmt::format("{:.2f} 1/m, for a line of 1.20 1/m", first),
                       "one by the radius of the line, positive where it bends left");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/perception_conformance.hpp"
 
 namespace constrictor::conform {
@@ -112,7 +114,7 @@ void PerceptionConformance::check_image_border() {
   for (int i = 1; i < count; ++i)
     sorted = sorted && percepts->blobs[i - 1].area_fraction >= percepts->blobs[i].area_fraction;
   report_.judge("largest_first", count != 2 || !sorted || percepts->blobs[0].colour != msg::kColourRed,
-                count != 2 ? fmt::format("{} objects, for two", count)
+                count != 2 ? counted(count, "object") + ", for two"
                            : fmt::format("{} and {} of the image", percepts->blobs[0].area_fraction,
                                          percepts->blobs[1].area_fraction),
                 "sort the blobs by area_fraction, the largest first");

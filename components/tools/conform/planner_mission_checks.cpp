@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "component/task_parameters.hpp"
+#include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
 #include "conform/planner_conformance.hpp"
 
@@ -141,7 +142,7 @@ void PlannerConformance::check_end() {
   }
   if (mission_.sequence.size() < 2) report_.skip("rest", "the mission has one object");
   else
-    report_.pass_unless("rest", stuck, fmt::format("{} objects", mission_.sequence.size()),
+    report_.pass_unless("rest", stuck, counted(mission_.sequence.size(), "object"),
                         "go on with the next object of the mission, in the same way");
   if (!stuck.empty()) return;
   const msg::MissionStatus mission = hand_->missions().back();
@@ -168,7 +169,7 @@ void PlannerConformance::check_form() {
     if (const auto refusal = task_parameter_refusal(request.task, request.parameters, request.path); !refusal.empty())
       wrong = fmt::format("{}: {}", task_name(request.task), refusal);
   }
-  report_.pass_unless("form", wrong, fmt::format("{} requests", hand_->requests().size()),
+  report_.pass_unless("form", wrong, counted(hand_->requests().size(), "request"),
                       "fill in the fields as idl/CLIENTS.md says; `input` refuses the request otherwise");
   const auto& ticks = hand_->request_ticks();
   std::size_t most = 0;
@@ -198,7 +199,7 @@ void PlannerConformance::check_form() {
                           before.object_index, before.recoveries);
     if (before.outcome != msg::kMissionRunning && now.outcome != before.outcome) wrong = "the outcome changes";
   }
-  report_.pass_unless("status", wrong, fmt::format("{} messages", missions.size()),
+  report_.pass_unless("status", wrong, counted(missions.size(), "message"),
                       "write the state of the mission in every tick");
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "configuration/counted.hpp"
 #include "conform/median.hpp"
 #include "conform/plant_conformance.hpp"
 
@@ -180,7 +181,7 @@ void PlantConformance::check_motions() {
   const auto list = [](const std::vector<std::size_t>& joints, const std::string& more, const std::string& fine) {
     return joints.empty() ? fine : names_of(joints) + more;
   };
-  const std::string moved_joints = fmt::format("{} joints moved", profile_.joints.size());
+  const std::string moved_joints = counted(profile_.joints.size(), "joint") + " moved";
   report_.judge("moves", !still.empty(), list(still, " did not move", moved_joints),
                 "check power, wiring, torque limit and the servo's number; a frozen measurement looks the same");
   // A joint that moves 57 times too far may still move when the next joint is commanded.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/plant_conformance.hpp"
 
 namespace constrictor::conform {
@@ -96,7 +98,7 @@ bool PlantConformance::check_samples(const std::vector<JointSample>& samples) {
     }
     if (!sample.fault.empty()) fault = sample.fault;
   }
-  report_.judge("joint_count", wrong_count != count || samples.empty(), fmt::format("{} joints", wrong_count),
+  report_.judge("joint_count", wrong_count != count || samples.empty(), counted(wrong_count, "joint"),
                 fmt::format("write {} joints, or name the right robot file (--robot)", count));
   report_.pass_unless("finite", not_finite, "all values are finite",
                       "report `fault` instead of writing NaN when a joint cannot be measured");
@@ -156,7 +158,7 @@ void PlantConformance::check_confirmation(const std::vector<JointSample>& sample
   const std::uint64_t behind = port_.number() - std::min(port_.number(), newest.confirmed_number);
   report_.judge(
       "confirms", !right || behind > bound,
-      right ? fmt::format("{} commands behind", behind)
+      right ? counted(behind, "command") + " behind"
             : fmt::format("session {:x}, that of the commands is {:x}", newest.confirmed_session, port_.session()),
       "copy session and sequence_number of the newest obeyed command into command_session and "
       "command_number");
@@ -195,10 +197,10 @@ void PlantConformance::check_contacts() {
   std::string wrong;
   const int modules = static_cast<int>(robot_.joints.size()) + 1;
   for (const auto& one : hand_.contacts()) {
-    if (one.module_count != 0 && one.module_count != modules) wrong = fmt::format("{} modules", one.module_count);
+    if (one.module_count != 0 && one.module_count != modules) wrong = counted(one.module_count, "module");
     if (!one.finite) wrong = "a force that is not finite";
   }
-  report_.pass_unless("contacts", wrong, fmt::format("{} modules", hand_.contacts().back().module_count),
+  report_.pass_unless("contacts", wrong, counted(hand_.contacts().back().module_count, "module"),
                       fmt::format("write {} modules, or 0 if the sensors do not answer", modules));
 }
 
