@@ -59,9 +59,8 @@ std::variant<msg::ParameterChange, std::string> ParameterArbiter::decide(
     }
   }
   if (!parameter) {
-    return "parameter: found '" + readable_name(name) +
-           "', accepted one that its component announces (constrictor param list)" +
-           (all_announced ? "" : "; not every component has yet");
+    return "no component announces a parameter '" + readable_name(name) + "' (constrictor param list)" +
+           (all_announced ? "" : "; not every component has announced its own yet");
   }
   if (auto refusal = parameter_refusal(*parameter, request.parameter_value); !refusal.empty()) return refusal;
   const std::int64_t soonest = now + 1;

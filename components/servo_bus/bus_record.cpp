@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "configuration/counted.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -24,8 +26,9 @@ std::string summary_of(const JointServos& servos, const BusPorts& ports) {
     sum.retries += counts.retries;
     sum.crc_errors += counts.crc_errors;
   }
-  return fmt::format("{}{} of {} servos ready, {} timeouts, {} retries, {} CRC errors", gone, ready, servos.count(),
-                     sum.timeouts, sum.retries, sum.crc_errors);
+  return fmt::format("{}{} of {} ready, {}, {}, {}", gone, ready, counted(servos.count(), "servo"),
+                     counted(sum.timeouts, "timeout"), counted(sum.retries, "retry", "retries"),
+                     counted(sum.crc_errors, "CRC error"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "component/data_path.hpp"
 #include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
+#include "robot/pose_message.hpp"
 
 namespace constrictor {
 namespace {
@@ -76,8 +77,6 @@ void VideoCapture::publish(const Tick& tick, const cv::Mat& bgr, std::int64_t ex
   if (rgb == nullptr) return;
   if (state_.published == 0) {
     const video::CameraCalibration& model = rectifier_.model();
-    const Eigen::Quaterniond q(model.X_HC.linear());
-    const Eigen::Vector3d p = model.X_HC.translation();
     msg::CameraInfo info{};
     info.width = static_cast<std::uint16_t>(model.width);
     info.height = static_cast<std::uint16_t>(model.height);
@@ -85,7 +84,7 @@ void VideoCapture::publish(const Tick& tick, const cv::Mat& bgr, std::int64_t ex
     info.fy = model.fy;
     info.cx = model.cx;
     info.cy = model.cy;
-    info.X_HC = {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+    info.X_HC = pose_message(model.X_HC);
     info.frame_period_s = std::max(1.0 / config_.frame_rate_hz, tick.period_s());
     info_.write(info);
   }

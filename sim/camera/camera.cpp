@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "robot/pose_message.hpp"
 #include "sim/render/image_message.hpp"
 #include "sim/render/scene_from_messages.hpp"
 
@@ -36,9 +37,7 @@ void Camera::write_info(const Tick& tick) {
   info.fy = camera.fy;
   info.cx = camera.cx;
   info.cy = camera.cy;
-  const Eigen::Quaterniond q(X_HC_.linear());
-  const Eigen::Vector3d p = X_HC_.translation();
-  info.X_HC = {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+  info.X_HC = pose_message(X_HC_);
   info.frame_period_s = timing_.period * tick.period_s();
   info_.write(info);
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "configuration/xml_escaped.hpp"
 #include "constrictor/text.hpp"
 #include "sim/figure/cairo_status.hpp"
 
@@ -22,29 +23,6 @@ constexpr const char* kFamilies = "DejaVu Sans, Verdana, Arial, sans-serif";
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
-}
-
-std::string escaped(std::string_view words) {
-  std::string text;
-  for (const char c : words) {
-    switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '>':
-        text += "&gt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      default:
-        text += c;
-    }
-  }
-  return text;
 }
 
 std::string hex(const Colour& colour) {
@@ -213,7 +191,7 @@ void Canvas::text(std::string_view words, const Point& at, const TextStyle& styl
     parts_->texts += fmt::format(
         "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\"{} fill=\"{}\" textLength=\"{:.2f}\" "
         "lengthAdjust=\"spacingAndGlyphs\">{}</text>\n",
-        x, at.y, style.size, style.bold ? " font-weight=\"bold\"" : "", hex(style.colour), width, escaped(clean));
+        x, at.y, style.size, style.bold ? " font-weight=\"bold\"" : "", hex(style.colour), width, xml_escaped(clean));
     return;
   }
   parts_->set_source(style.colour);

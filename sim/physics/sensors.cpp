@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "robot/planar_message.hpp"
+#include "robot/pose_message.hpp"
 #include "robot/rotation.hpp"
 
 namespace constrictor {
@@ -17,10 +18,6 @@ static_assert(static_cast<std::uint8_t>(Touched::kObstacle) == msg::kTouchedObst
 msg::Vector3 vector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 msg::Quaternion quaternion(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-
-msg::Pose3 pose3(const Eigen::Isometry3d& pose) {
-  return {vector3(pose.translation()), quaternion(Eigen::Quaterniond(pose.linear()))};
-}
 
 void add(msg::Vector3& sum, const Eigen::Vector3d& v) {
   sum.x += v.x();
@@ -100,10 +97,10 @@ msg::ImuState Sensors::imu(const World& world, double elapsed_s) {
 msg::WorldState world_state(const World& world) {
   msg::WorldState state{};
   state.module_count = static_cast<std::uint16_t>(world.module_count());
-  for (std::size_t i = 0; i < world.module_count(); ++i) state.module_poses[i] = pose3(world.module_pose(i));
+  for (std::size_t i = 0; i < world.module_count(); ++i) state.module_poses[i] = pose_message(world.module_pose(i));
   state.object_count = static_cast<std::uint16_t>(world.object_count());
   for (std::size_t i = 0; i < world.object_count(); ++i) {
-    state.object_poses[i] = pose3(world.object_pose(i));
+    state.object_poses[i] = pose_message(world.object_pose(i));
     state.object_velocities_m_s[i] = vector3(world.object_velocity_m_s(i));
   }
   std::copy(world.state_hash().begin(), world.state_hash().end(), state.state_hash);

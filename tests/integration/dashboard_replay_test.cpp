@@ -62,6 +62,9 @@ TEST_F(DashboardReplay, RefusesWhatARecordingCannotDoAndEndsWithTheReplay) {
   EXPECT_EQ(viewer.ask("seek", R"({"time_s":-1})"), "failure: seek: accepted {\"time_s\": 0 to 1000000000}");
   EXPECT_EQ(viewer.ask("pace", R"({"pace":0.0001})").substr(0, 16), "failure: speed: ");
   EXPECT_EQ(viewer.ask("stop", "{}"), "failure: there is no service 0");
+  Process status = command({"status"});
+  EXPECT_EQ(status.wait(20s), exit_status::kSoftware) << "a replay is no run";
+  EXPECT_EQ(status.output().find("replay of a recording in DDS domain "), 0u) << status.output();
   replay_->signal(SIGKILL);
   EXPECT_EQ(dashboard_->wait(20s), exit_status::kOk) << dashboard_->errors();
   EXPECT_NE(dashboard_->output().find("the replay has ended"), std::string::npos) << dashboard_->output();

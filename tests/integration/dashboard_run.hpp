@@ -14,9 +14,7 @@ class DashboardRun : public CliFixture {
  protected:
   void SetUp() override {
     // No test here needs camera and perception, and the run is faster without them.
-    write("blind.yaml",
-          "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
-          "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
+    write("blind.yaml", case_study_manifest(20, "  - {components: [physics, guidance, navigation, control, input]}\n"));
     std::vector<std::string> arguments = {
         "run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "2x"};
     for (const auto& option : run_options()) arguments.push_back(option);

@@ -1,7 +1,6 @@
 // The whole case study. The state hash does not depend on the grouping of components into processes, on the pace, the
 // load, stops, kills or a reset. It does depend on the seed, and on one ulp in one command.
 #include <cstdlib>
-#include <random>
 
 #include "integration/determinism_run.hpp"
 
@@ -73,9 +72,7 @@ TEST_F(WholeCaseStudy, SameHashWhenEachProcessIsStoppedInTurnOneOfThemForFifteen
 TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
   constexpr int kDeaths = 20;
   const std::string expected = reference();
-  const auto seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
+  PrintedRandom random;
   fs::create_directory(dir_ / "deaths");
   std::map<std::string, std::string> lines;
   for (const auto& member : kRestartableLive) {
@@ -94,9 +91,7 @@ TEST_F(WholeCaseStudy, SameHashWhenEachMemberIsKilledAtTwentyTicks) {
 // The plant, which is also the conductor, is one of them. The moments are random.
 TEST_F(WholeCaseStudy, SameHashWhenAnyProcessIsKilledAtRandomMoments) {
   const std::string expected = reference();
-  const auto seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
+  PrintedRandom random;
   std::vector<std::string> all = kRestartable;
   all.emplace_back("physics");
   Process launcher = start("shot");
@@ -116,9 +111,7 @@ TEST_F(WholeCaseStudy, SameHashWhenAnyProcessIsKilledAtRandomMoments) {
 
 TEST_F(WholeCaseStudy, SameHashWhenTheProcessWithAllMembersIsKilledAtRandomMoments) {
   const std::string expected = reference();
-  const auto seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
+  PrintedRandom random;
   Process launcher = start("all", {"--in-process"});
   for (int i = 0; i < 10 && launcher.running(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 3000));
@@ -133,9 +126,7 @@ TEST_F(WholeCaseStudy, SameHashWhenTheProcessWithAllMembersIsKilledAtRandomMomen
 
 TEST_F(WholeCaseStudy, SameHashWhenTheLauncherIsKilledAndTheRunIsResumed) {
   const std::string expected = reference();
-  const auto seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
+  PrintedRandom random;
   auto launcher = std::make_unique<Process>(start("left"));
   int kills = 0;
   for (; kills < 6 && launcher->running(); ++kills) {

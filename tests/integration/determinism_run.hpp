@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <string>
 #include <thread>
 
 #include "runtime/host.hpp"
@@ -27,6 +29,17 @@ inline const std::vector<std::string> kRestartableLive = [] {
   members.insert(members.begin() + 1, "overview");
   return members;
 }();
+
+/// Random numbers of a new seed. Every failure during its life prints the seed.
+class PrintedRandom {
+ public:
+  auto operator()() { return engine_(); }
+
+ private:
+  std::mt19937::result_type seed_ = std::random_device{}();
+  ::testing::ScopedTrace trace_{__FILE__, __LINE__, "seed " + std::to_string(seed_)};
+  std::mt19937 engine_{seed_};
+};
 
 class DeterminismRun : public ::testing::Test {
  protected:

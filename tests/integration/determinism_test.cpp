@@ -1,7 +1,6 @@
 // The first 12 s of a mission with the real components, or fewer. The state hash does not depend on the grouping of
 // components into processes, on stops, kills or the pace, nor on the observer `overview`. It does depend on the seed,
 // and on one ulp in one command.
-#include <random>
 
 #include "integration/determinism_run.hpp"
 #include "integration/run_ticks.hpp"
@@ -83,10 +82,7 @@ TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
 
 TEST_F(Determinism, KilledMembersDoNotChangeTheHash) {
   const std::string expected = run("reference");
-  std::mt19937 random;
-  const auto seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  random.seed(seed);
+  PrintedRandom random;
   Process process =
       start("killed", {"--manifest", "case_study_live", "--pace", "2x"});  // slow: to kill each member once
   ASSERT_GT(running("report"), 0);

@@ -17,9 +17,7 @@ using nlohmann::json;
 class GamepadDrive : public CliFixture {
  protected:
   GamepadDrive() {
-    write("blind.yaml",
-          "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\n"
-          "patience_s: 20\nprocesses:\n  - {components: [physics, guidance, navigation, control, input]}\n");
+    write("blind.yaml", case_study_manifest(20, "  - {components: [physics, guidance, navigation, control, input]}\n"));
   }
   [[nodiscard]] Process begin() {
     Process run =

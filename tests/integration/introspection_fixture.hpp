@@ -9,10 +9,8 @@ namespace constrictor::testing {
 
 class Introspection : public CliFixture {
  protected:
-  static constexpr const char* kManifest =
-      "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-      "30\nprocesses:\n"
-      "  - {components: [physics], program: toy_host}\n";
+  static inline const std::string kManifest =
+      case_study_manifest(30, "  - {components: [physics], program: toy_host}\n");
   static constexpr const char* kMembers = "  - {components: [navigation, control], program: toy_host}\n";
 
   [[nodiscard]] Process foreign(std::uint32_t domain, const std::string& mode) const {

@@ -20,11 +20,8 @@ using namespace std::chrono_literals;
 class OperatorLoss : public CliFixture {
  protected:
   void SetUp() override {
-    write(
-        "blind.yaml",  // a run without camera and perception
-        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-        "20\nprocesses:\n"
-        "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
+    write("blind.yaml",  // a run without camera and perception
+          case_study_manifest(20, kBlindProcesses));
     launcher_.emplace(start(
         {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
     ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->output() << launcher_->errors();

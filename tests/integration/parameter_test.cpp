@@ -170,8 +170,10 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
             std::string::npos)
       << output_;
   EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find(
-                "parameter: found 'navigation.nothing'"),
+                "no component announces a parameter 'navigation.nothing'"),
             0u);
+  EXPECT_EQ(command({"param", "set", "navigation.nothing", "1"}), 1);
+  EXPECT_EQ(output_.find("param: refused: no component announces a parameter 'navigation.nothing'"), 0u) << output_;
   EXPECT_EQ(command({"param", "set", kFrequency, "0.8", "--at-tick", "1"}), 1);
   EXPECT_NE(output_.find("found 1, accepted "), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "set", "navigation.line_tracker.lost_after_images", "3.5"}), 1);
@@ -213,6 +215,14 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_NE(refusal({"param", "load", "/nosuch.yaml"}, exit_status::kConfiguration).find("cannot be read"),
             std::string::npos);
 
+  // Input answers in its next step, which a paused run does not make.
+  EXPECT_EQ(command({"pause"}), 0) << output_;
+  const json silent = ask({"param", "set", kFrequency, "0.6"}, exit_status::kWaitedTooLong);
+  ASSERT_EQ(silent.size(), 1u) << silent;
+  EXPECT_EQ(silent[0]["name"], kFrequency);
+  EXPECT_EQ(silent[0]["no_answer"].get<std::string>().find("no answer within 5 s"), 0u) << silent;
+  EXPECT_EQ(command({"resume"}), 0) << output_;
+
   // A reset restores the defaults.
   EXPECT_EQ(command({"reset", "1"}), 0) << output_;
   json after;
@@ -229,6 +239,18 @@ TEST_F(RunTimeParameters, TheExitStatusShowsThatThereIsNoRun) {
             std::string::npos);
   EXPECT_EQ(command({"param", "--help"}), 0);
   EXPECT_NE(output_.find("EXAMPLES"), std::string::npos);
+}
+
+TEST_F(RunTimeParameters, ARunWithoutInputIsNamedAlsoInJson) {
+  write("no_input.yaml", case_study_manifest(20, "  - {components: [physics, control]}\n"));
+  Process run = start(
+      {"run", "--manifest", (dir_ / "no_input.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
+  ASSERT_TRUE(run.wait_for("simulated", 30s)) << run.output() << run.errors();
+  const json answer = ask({"param", "set", kFrequency, "0.9"}, exit_status::kWaitedTooLong);
+  ASSERT_EQ(answer.size(), 1u) << answer;
+  EXPECT_NE(answer[0]["refused"].get<std::string>().find("input"), std::string::npos) << answer;
+  run.signal(SIGTERM);
+  EXPECT_TRUE(run.wait(20s));
 }
 
 }  // namespace

@@ -224,9 +224,9 @@ TEST_F(Replay, PausesAndMakesSingleTicksAtTheKeyboard) {
   const std::vector<std::string> arguments = {program("constrictor"), "replay", recording("r"), "--paused", "--topic",
                                               "barrier/tick"};
   const std::string stepped = on_a_terminal(arguments, "paused", "sssq");
-  EXPECT_NE(stepped.find("\n3 messages of 1 topics"), std::string::npos) << stepped;
+  EXPECT_NE(stepped.find("\n3 messages of 1 topic in"), std::string::npos) << stepped;
   const std::string continued = on_a_terminal(arguments, "paused", "s ");
-  EXPECT_NE(continued.find("\n41 messages of 1 topics"), std::string::npos) << continued;  // and the final tick
+  EXPECT_NE(continued.find("\n41 messages of 1 topic in"), std::string::npos) << continued;  // and the final tick
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "integration/case_study_manifest.hpp"
 #include "runtime/host.hpp"
 #include "support/command_lines.hpp"
 #include "support/eventually.hpp"
@@ -21,12 +22,11 @@ namespace constrictor::testing {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-inline constexpr const char* kManifest =
-    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-    "4\nprocesses:\n"
+inline const std::string kManifest = case_study_manifest(
+    4,
     "  - {components: [physics], program: toy_host}\n  - {components: [navigation], program: toy_host}\n"
     "  - {components: [control], program: toy_host}\n  - {components: [planner], program: toy_host}\n"
-    "  - {components: [report], program: toy_host}\n";
+    "  - {components: [report], program: toy_host}\n");
 
 inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
   return text.replace(text.find(what), what.size(), with);

@@ -16,11 +16,10 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr const char* kToys =
-    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-    "4\nprocesses:\n"
+const std::string kToys = case_study_manifest(
+    4,
     "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n"
-    "  - {components: [planner, report], program: toy_host}\n";
+    "  - {components: [planner, report], program: toy_host}\n");
 
 class RunControl : public CliFixture {
  protected:

@@ -41,11 +41,12 @@ class RunEnd : public CliFixture {
 };
 
 TEST_F(RunEnd, SigtermToThePlantEndsTheRunWithAnErrorThatNamesIt) {
-  write("toys.yaml",
-        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-        "60\nprocesses:\n"
-        "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n"
-        "  - {components: [report], program: toy_host}\n");
+  write(
+      "toys.yaml",
+      case_study_manifest(
+          60,
+          "  - {components: [physics], program: toy_host}\n  - {components: [navigation, control], program: toy_host}\n"
+          "  - {components: [report], program: toy_host}\n"));
   write("100000_ticks.yaml", "");
   Process launcher = start({"run", (dir_ / "100000_ticks.yaml").string(), "--manifest", (dir_ / "toys.yaml").string(),
                             "--report", (dir_ / "r").string(), "--pace", "1x"});

@@ -15,16 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr const char* kToys =
-    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-    "10\nprocesses:\n"
-    "  - {components: [physics, navigation, control, planner, report], program: toy_host}\n";
-// Without camera and perception, which no test here needs.
-constexpr const char* kBlind =
-    "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-    "20\nprocesses:\n"
-    "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n";
-
 /// A program that sends commands to the run by itself, as one of another vendor would.
 class Commander {
  public:
@@ -70,8 +60,10 @@ class Commander {
 class Strangers : public CliFixture {
  protected:
   Strangers() {
-    write("toys.yaml", kToys);
-    write("blind.yaml", kBlind);
+    write("toys.yaml",
+          case_study_manifest(
+              10, "  - {components: [physics, navigation, control, planner, report], program: toy_host}\n"));
+    write("blind.yaml", case_study_manifest(20, kBlindProcesses));
     fs::create_directory(elsewhere_);
   }
   [[nodiscard]] Process run_toys() {

@@ -18,11 +18,7 @@ class Teleoperation : public CliFixture {
  protected:
   Teleoperation() {
     // The run has no camera and no perception: no test here needs them, and it is faster without them.
-    write(
-        "blind.yaml",
-        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-        "20\nprocesses:\n"
-        "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
+    write("blind.yaml", case_study_manifest(20, kBlindProcesses));
   }
   [[nodiscard]] Process run_blind(const std::string& pace) {
     Process process =

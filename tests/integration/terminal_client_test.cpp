@@ -17,11 +17,7 @@ namespace fs = std::filesystem;
 class TerminalClient : public CliFixture {
  protected:
   TerminalClient() : socket_("constrictor-test-" + std::to_string(::getpid())) {
-    write(
-        "blind.yaml",
-        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-        "20\nprocesses:\n"
-        "  - {components: [physics, guidance, navigation, control, input]}\n");
+    write("blind.yaml", case_study_manifest(20, "  - {components: [physics, guidance, navigation, control, input]}\n"));
   }
   ~TerminalClient() override { tmux({"kill-server"}); }
 

@@ -29,6 +29,30 @@ TEST_F(Introspection, EchoWithACountBeginsWithTheNewestSampleThatTheWriterKeeps)
   EXPECT_EQ(echo.wait(10s), 0);
 }
 
+// `constrictor task` names a goal by the number that its source gave it.
+TEST_F(Introspection, EchoNamesGoalsAsTheTaskCommandDoes) {
+  const DomainClaim claim;
+  const std::string number = std::to_string(claim.domain());
+  const dds::Domain domain(claim.domain());
+  const dds::Writer<msg::TaskStatus> writer(domain.participant(), "task/status", 16);
+  msg::TaskStatus status{};
+  status.goal_id = 844'424'930'131'970;  // 3 * 2^48 + 2
+  static_assert(msg::kAuthorityOperator == 3);
+  writer.write(status);
+  const std::vector<std::string> echo = {"topic", "echo", "task/status", "-n", "1", "--run", number};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), echo.begin(), echo.end());
+    return more;
+  };
+  EXPECT_EQ(command(echo), 0);
+  EXPECT_NE(output_.find("\ngoal_id: 844424930131970, goal 2\n"), std::string::npos) << output_;
+  // Scripts and filters use the whole id.
+  EXPECT_EQ(command(with({"--field", "goal_id"})), 0);
+  EXPECT_EQ(output_, "844424930131970\n");
+  EXPECT_EQ(command(with({"--filter", "goal_id == 844424930131970", "--json"})), 0);
+  EXPECT_EQ(json::parse(output_, nullptr, false)["goal_id"], status.goal_id) << output_;
+}
+
 TEST_F(Introspection, EchoFiltersRoundsAndSummarises) {
   const DomainClaim claim;
   const std::string number = std::to_string(claim.domain());

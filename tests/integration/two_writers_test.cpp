@@ -123,9 +123,7 @@ class TwoWritersOverDds : public CliFixture {
 TEST_F(TwoWritersOverDds, InputNeverObeysBothInTenThousandRequests) {
   SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
   write("blind.yaml",  // a run without camera and perception
-        "plant: physics\nrobot: components/lib/robot/mamba.yaml\nscenario: sim/scenarios/case_study.yaml\npatience_s: "
-        "20\nprocesses:\n"
-        "  - {components: [physics, guidance, navigation, control]}\n  - {components: [input]}\n");
+        case_study_manifest(20, kBlindProcesses));
   Process launcher =
       start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "4x"});
   ASSERT_TRUE(launcher.wait_for("simulated", 30s)) << launcher.output() << launcher.errors();

@@ -46,18 +46,8 @@ inline std::vector<NamedFault> camera_faults() {
 /// The fault of this name; empty: none.
 inline PartFault camera_fault(const std::string& name) {
   PartFault fault;
-  const auto image = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      auto* written = as(topics::kCameraImage, topic, message);
-      return written == nullptr || change(*written);
-    };
-  };
-  const auto info = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      auto* written = as(topics::kCameraInfo, topic, message);
-      return written == nullptr || change(*written);
-    };
-  };
+  const auto image = [&](auto change) { fault.writes = changing(topics::kCameraImage, change); };
+  const auto info = [&](auto change) { fault.writes = changing(topics::kCameraInfo, change); };
   const auto pixel = [](msg::CameraImage& i, int u, int v) { return i.data._buffer + 3 * (v * i.width + u); };
   const auto mirror = [pixel](msg::CameraImage& i) {
     for (int v = 0; v < i.height; ++v)

@@ -60,24 +60,9 @@ inline std::vector<NamedFault> control_faults() {
 /// The fault of this name; empty: none. `memory` outlives the epochs.
 inline PartFault control_fault(const std::string& name, const std::shared_ptr<std::uint64_t>& memory) {
   PartFault fault;
-  const auto command = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      auto* written = as(topics::kJointCommand, topic, message);
-      return written == nullptr || change(*written);
-    };
-  };
-  const auto state = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      auto* written = as(topics::kMotionStatus, topic, message);
-      return written == nullptr || change(*written);
-    };
-  };
-  const auto trajectory = [&](auto change) {
-    fault.reads = [change](const TopicInfo& topic, void* message, std::int64_t) {
-      if (auto* read = as(topics::kDesiredTrajectory, topic, message)) change(*read);
-      return true;
-    };
-  };
+  const auto command = [&](auto change) { fault.writes = changing(topics::kJointCommand, change); };
+  const auto state = [&](auto change) { fault.writes = changing(topics::kMotionStatus, change); };
+  const auto trajectory = [&](auto change) { fault.reads = changing(topics::kDesiredTrajectory, change); };
   constexpr double kDegrees = 180.0 / M_PI;
   const auto is = [&](const char* one) { return name == one; };
   if (is("silent")) command([](msg::JointCommand&) { return false; });
@@ -141,10 +126,7 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
   }
   if (is("stays_at_setpoint")) {
     auto level = std::make_shared<std::uint8_t>(msg::kAuthorityPlanner);
-    fault.reads = [level](const TopicInfo& topic, void* message, std::int64_t) {
-      if (auto* read = as(topics::kAuthority, topic, message)) *level = read->level;
-      return true;
-    };
+    fault.reads = changing(topics::kAuthority, [level](const msg::Authority& read) { *level = read.level; });
     command([level, held = msg::JointCommand{}](msg::JointCommand& c) mutable {
       if (*level == msg::kAuthorityNone) held = c;
       if (*level == msg::kAuthorityOperator && held.joint_count > 0) c = held;
@@ -152,20 +134,12 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
     });
   }
   if (is("ignores_authority"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      auto* read = as(topics::kAuthority, topic, message);
-      return read == nullptr || read->level != msg::kAuthorityNone;
-    };
+    fault.reads =
+        changing(topics::kAuthority, [](const msg::Authority& read) { return read.level != msg::kAuthorityNone; });
   if (is("ignores_stop"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      auto* read = as(topics::kAuthority, topic, message);
-      return read == nullptr || !read->emergency_stop;
-    };
+    fault.reads = changing(topics::kAuthority, [](const msg::Authority& read) { return !read.emergency_stop; });
   if (is("counts_nothing"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      auto* read = as(topics::kJointState, topic, message);
-      return read == nullptr || read->joint_count == 23;
-    };
+    fault.reads = changing(topics::kJointState, [](const msg::JointState& read) { return read.joint_count == 23; });
   if (is("ignores_limit"))
     command([](msg::JointCommand& c) {
       if (std::abs(c.position_rad[6]) > 1.0) c.position_rad[6] *= 1.3;

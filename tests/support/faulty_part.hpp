@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "barrier/topic_ops.hpp"
@@ -27,6 +28,22 @@ struct PartFault {
 template <class T>
 T* as(const Topic<T>& wanted, const TopicInfo& topic, void* message) {
   return topic.id == wanted.id ? static_cast<T*>(message) : nullptr;
+}
+
+/// For PartFault::writes and PartFault::reads: passes each message of one topic to `change`, which returns false if the
+/// message gets lost, or nothing.
+template <class T, class Change>
+auto changing(const Topic<T>& wanted, Change change) {
+  return [wanted, change](const TopicInfo& topic, void* message, auto...) mutable {
+    T* const found = as(wanted, topic, message);
+    if (found == nullptr) return true;
+    if constexpr (std::is_void_v<decltype(change(*found))>) {
+      change(*found);
+      return true;
+    } else {
+      return change(*found);
+    }
+  };
 }
 
 /// Lies between a component and its real wiring.

@@ -55,31 +55,14 @@ inline std::vector<NamedFault> perception_faults() {
 /// The fault of this name; empty: none. `memory` outlives the epochs.
 inline PartFault perception_fault(const std::string& name, const std::shared_ptr<std::uint64_t>& memory) {
   PartFault fault;
-  const auto line = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      if (auto* written = as(topics::kLinePercept, topic, message)) change(*written);
-      return true;
-    };
-  };
+  const auto line = [&](auto change) { fault.writes = changing(topics::kLinePercept, change); };
+  const auto objects = [&](auto change) { fault.writes = changing(topics::kObjectPercepts, change); };
   const auto blobs = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      auto* written = as(topics::kObjectPercepts, topic, message);
-      for (int i = 0; written && i < written->blob_count; ++i) change(written->blobs[i]);
-      return true;
-    };
+    objects([change](msg::ObjectPercepts& o) mutable {
+      for (int i = 0; i < o.blob_count; ++i) change(o.blobs[i]);
+    });
   };
-  const auto objects = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      if (auto* written = as(topics::kObjectPercepts, topic, message)) change(*written);
-      return true;
-    };
-  };
-  const auto image = [&](auto change) {
-    fault.reads = [change](const TopicInfo& topic, void* message, std::int64_t) mutable {
-      auto* read = as(topics::kCameraImage, topic, message);
-      return read == nullptr || change(*read);
-    };
-  };
+  const auto image = [&](auto change) { fault.reads = changing(topics::kCameraImage, change); };
   const auto is = [&](const char* one) { return name == one; };
   if (is("silent")) fault.writes = [](const TopicInfo&, void*) { return false; };
   if (is("blind_to_objects"))
@@ -91,13 +74,10 @@ inline PartFault perception_fault(const std::string& name, const std::shared_ptr
   if (is("stamps_anew")) line([](msg::LinePercept& l) { l.exposure_tick += 2; });
   if (is("late")) fault.late_ticks = 12;
   if (is("picture_of_other_size"))
-    fault.writes = [](const TopicInfo& topic, void* message) {
-      if (auto* picture = as(topics::kProcessedImage, topic, message)) {
-        picture->height /= 2;
-        picture->data._length /= 2;
-      }
-      return true;
-    };
+    fault.writes = changing(topics::kProcessedImage, [](msg::CameraImage& picture) {
+      picture.height /= 2;
+      picture.data._length /= 2;
+    });
   if (is("sees_ghosts"))
     line([](msg::LinePercept& l) {
       if (!l.visible) l.offset_m = 0.1;
@@ -167,10 +147,7 @@ inline PartFault perception_fault(const std::string& name, const std::shared_ptr
     });
   if (is("counts_nothing")) image([](msg::CameraImage& i) { return i.width == 320; });
   if (is("uses_bad_model"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      auto* info = as(topics::kCameraInfo, topic, message);
-      return info == nullptr || info->fx > 0.0;
-    };
+    fault.reads = changing(topics::kCameraInfo, [](const msg::CameraInfo& info) { return info.fx > 0.0; });
   if (is("never_frozen"))
     image([n = std::uint8_t{0}](msg::CameraImage& i) mutable {
       i.data._buffer[0] = ++n;

@@ -23,9 +23,9 @@ inline std::vector<NamedFault> planner_faults() {
           {"ignores_line_lost", "line_lost", "follow_line"},
           {"ignores_refusals", "refused", "no request after the refusal"},
           {"asks_once", "lost_request", "0 requests"},
-          {"ignores_authority", "authority", "requests in 3 s"},
+          {"ignores_authority", "authority", "in 3 s"},
           {"never_returns", "returns", "0 requests"},
-          {"ignores_stop", "stop", "requests in 3 s"},
+          {"ignores_stop", "stop", "in 3 s"},
           {"tracks_all", "other_object", "track_object"},
           {"blind", "object", "follow_line"},
           {"obeys_all_goals", "wrong_goal", "after an event of another goal"},
@@ -49,24 +49,9 @@ inline std::vector<NamedFault> planner_faults() {
 /// The fault of this name; empty: none. `memory` outlives the epochs.
 inline PartFault planner_fault(const std::string& name, const std::shared_ptr<std::uint64_t>& memory) {
   PartFault fault;
-  const auto request = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      if (auto* written = as(topics::kPlannerRequest, topic, message)) change(*written);
-      return true;
-    };
-  };
-  const auto mission = [&](auto change) {
-    fault.writes = [change](const TopicInfo& topic, void* message) mutable {
-      if (auto* written = as(topics::kMissionStatus, topic, message)) change(*written);
-      return true;
-    };
-  };
-  const auto authority = [&](auto change) {
-    fault.reads = [change](const TopicInfo& topic, void* message, std::int64_t) mutable {
-      auto* read = as(topics::kAuthority, topic, message);
-      return read == nullptr || change(*read);
-    };
-  };
+  const auto request = [&](auto change) { fault.writes = changing(topics::kPlannerRequest, change); };
+  const auto mission = [&](auto change) { fault.writes = changing(topics::kMissionStatus, change); };
+  const auto authority = [&](auto change) { fault.reads = changing(topics::kAuthority, change); };
   /// These events never arrive, and the status does not show the end that they bring.
   const auto deaf_to = [&](std::uint8_t task, std::uint8_t event) {
     fault.reads = [task, event](const TopicInfo& topic, void* message, std::int64_t) {
@@ -119,16 +104,11 @@ inline PartFault planner_fault(const std::string& name, const std::shared_ptr<st
     });
   if (is("ignores_stop")) authority([](msg::Authority& a) { return !a.emergency_stop; });
   if (is("tracks_all"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      auto* read = as(topics::kObjectPercepts, topic, message);
-      for (int i = 0; read && i < read->blob_count; ++i) read->blobs[i].colour = msg::kColourGreen;
-      return true;
-    };
+    fault.reads = changing(topics::kObjectPercepts, [](msg::ObjectPercepts& read) {
+      for (int i = 0; i < read.blob_count; ++i) read.blobs[i].colour = msg::kColourGreen;
+    });
   if (is("blind"))
-    fault.reads = [](const TopicInfo& topic, void* message, std::int64_t) {
-      if (auto* read = as(topics::kObjectPercepts, topic, message)) read->blob_count = 0;
-      return true;
-    };
+    fault.reads = changing(topics::kObjectPercepts, [](msg::ObjectPercepts& read) { read.blob_count = 0; });
   if (is("leaves_pregrasp_out"))
     request([](msg::Request& r) {
       if (r.task == msg::kTaskPregrasp) r.task = msg::kTaskGrasp;

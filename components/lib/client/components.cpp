@@ -1,7 +1,5 @@
 #include "client/components.hpp"
 
-#include <thread>
-
 #include "client/polling.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/endpoint.hpp"
@@ -9,30 +7,26 @@
 namespace constrictor {
 namespace {
 
-/// When a writer discovers a reader, it sends the messages that it keeps for late readers. They arrive within this time
-/// of each other.
-constexpr std::chrono::milliseconds kQuiet{300};
-
 std::map<std::string, ComponentMessages> read(std::int32_t participant, std::chrono::milliseconds bound,
                                               bool wait_for_first) {
   const auto hellos = dds::Reader<msg::Hello>::member(participant, barrier_topics::kHello);
   const auto statuses = dds::Reader<msg::ComponentStatus>::member(participant, barrier_topics::kStatus);
   std::map<std::string, ComponentMessages> found;
-  const auto end = WaitClock::now() + bound;
-  auto changed = WaitClock::now();
-  while (WaitClock::now() < end && ((wait_for_first && found.empty()) || WaitClock::now() - changed < kQuiet)) {
+  const auto poll = [&] {
+    bool any = false;
     hellos.take([&](const msg::Hello& hello) {
       auto& component = found[hello.component];
       if (!component.hello || component.hello->incarnation <= hello.incarnation) component.hello = hello;
-      changed = WaitClock::now();
+      any = true;
     });
     statuses.take([&](const msg::ComponentStatus& status) {
       auto& component = found[status.component];
-      if (!component.status) changed = WaitClock::now();
+      any = any || !component.status;
       if (!component.status || component.status->incarnation <= status.incarnation) component.status = status;
     });
-    std::this_thread::sleep_for(kPoll);
-  }
+    return any;
+  };
+  wait_until_quiet(kQuiet, bound, poll, [&] { return !wait_for_first || !found.empty(); });
   return found;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <thread>
 
 #include "client/polling.hpp"
 #include "client/run_registry.hpp"
@@ -14,8 +13,6 @@
 
 namespace constrictor {
 namespace {
-
-constexpr std::chrono::milliseconds kQuiet{300};  // the messages that writers keep for late readers arrive within it
 
 /// The description of a run by the messages in its domain.
 class Discovered {
@@ -74,11 +71,8 @@ RunNote join_run(std::optional<std::uint32_t> domain, std::chrono::milliseconds 
   if (!domain) return find_run(domain);
   if (auto noted = live_run(*domain)) return std::move(*noted);
   Discovered discovered(*domain);
-  const auto end = WaitClock::now() + bound;
-  for (auto changed = WaitClock::now(); WaitClock::now() < end; std::this_thread::sleep_for(kPoll)) {
-    if (discovered.poll()) changed = WaitClock::now();
-    if (discovered.begun() && WaitClock::now() - changed > kQuiet) break;
-  }
+  wait_until_quiet(
+      kQuiet, bound, [&] { return discovered.poll(); }, [&] { return discovered.begun(); });
   if (!discovered.begun()) {
     throw CommandError(fmt::format("no run in DDS domain {}: no launcher on this host has noted one, and no plant "
                                    "publishes `run_state` there (for a run on another host, set CYCLONEDDS_URI as "

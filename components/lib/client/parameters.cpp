@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
 #include "client/polling.hpp"
 #include "component/parameters.hpp"
@@ -20,8 +19,6 @@ namespace constrictor {
 namespace {
 
 using namespace std::chrono_literals;
-/// Writers keep several lists for late readers. The lists arrive one after the other; the last one is valid.
-constexpr auto kQuiet = 300ms;
 /// After this time all writers of the run are known.
 constexpr auto kDiscovery = 700ms;
 
@@ -113,16 +110,14 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
     const auto endpoints = discovery.endpoints();
     return std::any_of(endpoints.begin(), endpoints.end(), [&](const auto& e) { return e.writer && e.topic == topic; });
   };
-  const auto start = WaitClock::now();
-  auto heard = start;
-  for (;;) {
-    if (reader.poll()) heard = WaitClock::now();
-    const auto waited = WaitClock::now() - start;
-    // A component whose list has no writer after discovery has settled is not part of this run.
-    const bool all = reader.complete() || (waited > kDiscovery && reader.silent(has_writer).empty());
-    if ((all && WaitClock::now() - heard > kQuiet) || waited > bound) break;
-    std::this_thread::sleep_for(kPoll);
-  }
+  const auto discovered_at = WaitClock::now() + kDiscovery;
+  // A component whose list has no writer after discovery has settled is not part of this run.
+  const auto all = [&] {
+    return reader.complete() || (WaitClock::now() > discovered_at && reader.silent(has_writer).empty());
+  };
+  // Writers keep several lists for late readers. The lists arrive one after the other; the last one is valid.
+  wait_until_quiet(
+      kQuiet, bound, [&] { return reader.poll(); }, all);
   return {reader.parameters(), reader.silent(has_writer)};
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 
 namespace constrictor {
@@ -85,8 +86,7 @@ std::string set_path(msg::Path& path, const std::vector<std::string>& points) {
   path = {};
   if (points.empty()) return {};
   if (points.size() < 2 || points.size() > msg::kMaxPathPoints) {
-    return fmt::format("path: found {} point{}, accepted 2 to {}", points.size(), points.size() == 1 ? "" : "s",
-                       msg::kMaxPathPoints);
+    return fmt::format("path: found {}, accepted 2 to {}", counted(points.size(), "point"), msg::kMaxPathPoints);
   }
   for (const auto& point : points) {
     double x_m = 0.0;

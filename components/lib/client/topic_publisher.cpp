@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "client/polling.hpp"
@@ -24,7 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kModule = "constrictor::msg::";
 constexpr int kDepth = 64;
 constexpr auto kDiscovery = 1500ms;
-constexpr auto kQuiet = 250ms;
+constexpr auto kSettled = 250ms;  // without a new endpoint
 
 /// The row of a topic in the table of topics.
 struct Row {
@@ -50,15 +49,14 @@ bool keyed(const std::string& type) {
 }
 
 std::vector<dds::Endpoint> settled_endpoints(const dds::Discovery& discovery) {
-  std::size_t before = 0;
-  const auto end = WaitClock::now() + kDiscovery;
-  for (auto changed = WaitClock::now(); WaitClock::now() < end; std::this_thread::sleep_for(kPoll)) {
-    auto endpoints = discovery.endpoints();
-    if (endpoints.size() != before) changed = WaitClock::now();
-    before = endpoints.size();
-    if (before > 0 && WaitClock::now() - changed > kQuiet) return endpoints;
-  }
-  return discovery.endpoints();
+  std::vector<dds::Endpoint> endpoints;
+  const auto poll = [&] {
+    const std::size_t before = endpoints.size();
+    endpoints = discovery.endpoints();
+    return endpoints.size() != before;
+  };
+  wait_until_quiet(kSettled, kDiscovery, poll, [&] { return !endpoints.empty(); });
+  return endpoints;
 }
 
 }  // namespace

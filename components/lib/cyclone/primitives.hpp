@@ -21,26 +21,41 @@ enum Primitive : std::uint8_t {
   kChar8 = 16
 };
 
-/// Bytes of a number in CDR; 0: not a number (a character), or a type that this project does not decode.
-constexpr std::size_t size_of_number(std::uint8_t kind) {
+/// Calls `visit` with a zero of the C++ type of a number, which is bool for a boolean, and returns its result. Calls
+/// `otherwise` for what is not a number (a character), and for types that this project does not decode.
+template <class Visit, class Otherwise>
+constexpr auto with_number_type(std::uint8_t kind, Visit&& visit, Otherwise&& otherwise) {
   switch (kind) {
     case kBoolean:
+      return visit(false);
     case kByte:
-      return 1;
+      return visit(std::uint8_t{});
     case kInt16:
-    case kUint16:
-      return 2;
+      return visit(std::int16_t{});
     case kInt32:
-    case kUint32:
-    case kFloat32:
-      return 4;
+      return visit(std::int32_t{});
     case kInt64:
+      return visit(std::int64_t{});
+    case kUint16:
+      return visit(std::uint16_t{});
+    case kUint32:
+      return visit(std::uint32_t{});
     case kUint64:
+      return visit(std::uint64_t{});
+    case kFloat32:
+      return visit(float{});
     case kFloat64:
-      return 8;
+      return visit(double{});
     default:
-      return 0;
+      return otherwise();
   }
+}
+
+/// Bytes of a number in CDR; 0: not a number.
+constexpr std::size_t size_of_number(std::uint8_t kind) {
+  static_assert(sizeof(bool) == 1, "the size of a boolean in CDR");
+  return with_number_type(
+      kind, [](auto zero) { return sizeof zero; }, [] { return std::size_t{0}; });
 }
 
 }  // namespace constrictor::dds::primitives

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -57,28 +58,14 @@ class JsonBuilder : public SampleVisitor {
     return value;
   }
   static Json one(std::uint8_t kind, const std::uint8_t*& at) {
-    switch (kind) {
-      case kBoolean:
-        return next<std::uint8_t>(at) != 0;
-      case kByte:
-        return next<std::uint8_t>(at);
-      case kInt16:
-        return next<std::int16_t>(at);
-      case kInt32:
-        return next<std::int32_t>(at);
-      case kInt64:
-        return next<std::int64_t>(at);
-      case kUint16:
-        return next<std::uint16_t>(at);
-      case kUint32:
-        return next<std::uint32_t>(at);
-      case kUint64:
-        return next<std::uint64_t>(at);
-      case kFloat32:
-        return real_json(static_cast<double>(next<float>(at)));
-      default:
-        return real_json(next<double>(at));
-    }
+    return with_number_type(
+        kind,
+        [&at]<class T>(T) {
+          if constexpr (std::is_same_v<T, bool>) return Json(next<std::uint8_t>(at) != 0);
+          else if constexpr (std::is_floating_point_v<T>) return real_json(static_cast<double>(next<T>(at)));
+          else return Json(next<T>(at));
+        },
+        [] { return Json(); });
   }
   static Json list(std::uint8_t kind, std::span<const std::uint32_t> dimensions, const std::uint8_t*& at) {
     Json made = Json::array();

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 #include "constrictor/text.hpp"
 #include "cyclone/primitives.hpp"
@@ -74,56 +75,34 @@ class Decoder {
     std::memcpy(&value, raw.data(), sizeof(T));
     return value;
   }
+  /// A value of the wire's type for T: a boolean is a byte.
+  template <class T>
+  T value_of() {
+    if constexpr (std::is_same_v<T, bool>) return number<std::uint8_t>() != 0;
+    else return number<T>();
+  }
   void primitive(std::uint8_t kind) {
-    switch (kind) {
-      case kBoolean:
-        return visitor_.boolean(number<std::uint8_t>() != 0);
-      case kByte:
-        return visitor_.natural(number<std::uint8_t>());
-      case kInt16:
-        return visitor_.whole(number<std::int16_t>());
-      case kInt32:
-        return visitor_.whole(number<std::int32_t>());
-      case kInt64:
-        return visitor_.whole(number<std::int64_t>());
-      case kUint16:
-        return visitor_.natural(number<std::uint16_t>());
-      case kUint32:
-        return visitor_.natural(number<std::uint32_t>());
-      case kUint64:
-        return visitor_.natural(number<std::uint64_t>());
-      case kFloat32:
-        return visitor_.real(static_cast<double>(number<float>()));
-      case kFloat64:
-        return visitor_.real(number<double>());
-      case kChar8:
-        return visitor_.text(std::string(1, static_cast<char>(number<std::uint8_t>())));
-      default:
-        damaged("a primitive type that is not decoded");
-    }
+    if (kind == kChar8) return visitor_.text(std::string(1, static_cast<char>(number<std::uint8_t>())));
+    with_number_type(
+        kind,
+        [this]<class T>(T) {
+          if constexpr (std::is_same_v<T, bool>) visitor_.boolean(value_of<T>());
+          else if constexpr (std::is_floating_point_v<T>) visitor_.real(static_cast<double>(value_of<T>()));
+          else if constexpr (std::is_signed_v<T>) visitor_.whole(value_of<T>());
+          else visitor_.natural(value_of<T>());
+        },
+        [] { damaged("a primitive type that is not decoded"); });
   }
   std::int64_t whole_number(std::uint8_t kind) {
-    switch (kind) {
-      case kBoolean:
-        return number<std::uint8_t>() != 0;
-      case kByte:
-      case kChar8:
-        return number<std::uint8_t>();
-      case kInt16:
-        return number<std::int16_t>();
-      case kInt32:
-        return number<std::int32_t>();
-      case kInt64:
-        return number<std::int64_t>();
-      case kUint16:
-        return number<std::uint16_t>();
-      case kUint32:
-        return number<std::uint32_t>();
-      case kUint64:
-        return static_cast<std::int64_t>(number<std::uint64_t>());
-      default:
-        damaged("an enumeration or union of a type that is not decoded");
-    }
+    if (kind == kChar8) return number<std::uint8_t>();
+    const auto refuse = []() -> std::int64_t { damaged("an enumeration or union of a type that is not decoded"); };
+    return with_number_type(
+        kind,
+        [this, refuse]<class T>(T) {
+          if constexpr (std::is_integral_v<T>) return static_cast<std::int64_t>(value_of<T>());
+          else return refuse();
+        },
+        refuse);
   }
   std::int64_t enumerator(const TypeNode& type) {
     const std::int64_t number = whole_number(type.primitive);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 #include "constrictor/constants.hpp"
 #include "constrictor/field_table.hpp"
@@ -129,35 +130,24 @@ class Encoder {
   }
 
   void primitive(std::uint8_t kind, const Json& value, bool given, const FieldEntry* field, const std::string& path) {
-    switch (kind) {
-      case kBoolean:
-        if (given && !value.is_boolean()) wrong(path, value, "true or false");
-        return put<std::uint8_t>(given && value.get<bool>() ? 1 : 0);
-      case kByte:
-        return whole<std::uint8_t>(value, given, field, path);
-      case kInt16:
-        return whole<std::int16_t>(value, given, field, path);
-      case kInt32:
-        return whole<std::int32_t>(value, given, field, path);
-      case kInt64:
-        return whole<std::int64_t>(value, given, field, path);
-      case kUint16:
-        return whole<std::uint16_t>(value, given, field, path);
-      case kUint32:
-        return whole<std::uint32_t>(value, given, field, path);
-      case kUint64:
-        return whole<std::uint64_t>(value, given, field, path);
-      case kFloat32:
-        return real<float>(value, given, field, path);
-      case kFloat64:
-        return real<double>(value, given, field, path);
-      case kChar8:
-        if (given && (!value.is_string() || value.get_ref<const std::string&>().size() != 1))
-          wrong(path, value, "a text of one character");
-        return put<char>(given ? value.get_ref<const std::string&>().front() : '\0');
-      default:
-        throw std::invalid_argument(named(path) + ": its type cannot be written");
+    if (kind == kChar8) {
+      if (given && (!value.is_string() || value.get_ref<const std::string&>().size() != 1))
+        wrong(path, value, "a text of one character");
+      return put<char>(given ? value.get_ref<const std::string&>().front() : '\0');
     }
+    with_number_type(
+        kind,
+        [&]<class T>(T) {
+          if constexpr (std::is_same_v<T, bool>) {
+            if (given && !value.is_boolean()) wrong(path, value, "true or false");
+            put<std::uint8_t>(given && value.get<bool>() ? 1 : 0);
+          } else if constexpr (std::is_floating_point_v<T>) {
+            real<T>(value, given, field, path);
+          } else {
+            whole<T>(value, given, field, path);
+          }
+        },
+        [&] { throw std::invalid_argument(named(path) + ": its type cannot be written"); });
   }
 
   void enumeration(const TypeNode& type, const Json& value, bool given, const std::string& path) {

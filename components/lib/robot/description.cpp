@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "configuration/xml_escaped.hpp"
 #include "robot/camera_mount.hpp"
 #include "robot/xml_text.hpp"
 

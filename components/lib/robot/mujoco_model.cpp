@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "configuration/xml_escaped.hpp"
 #include "robot/xml_text.hpp"
 
 namespace constrictor {

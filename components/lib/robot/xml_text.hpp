@@ -9,18 +9,6 @@
 
 namespace constrictor {
 
-/// Text for an attribute of XML.
-inline std::string xml_escaped(const std::string& text) {
-  std::string xml;
-  for (const char c : text) {
-    if (c == '&') xml += "&amp;";
-    else if (c == '<') xml += "&lt;";
-    else if (c == '"') xml += "&quot;";
-    else xml += c;
-  }
-  return xml;
-}
-
 class XmlText {
  public:
   /// Adds a line, indented by `depth` steps. Numbers are written so that they are read back unchanged.

@@ -7,6 +7,7 @@
 #include "barrier/topic_ops.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "faults/faulty_component.hpp"
 #include "recording/mcap_reader.hpp"
@@ -49,7 +50,7 @@ class ComponentReplay {
     copy_ = std::make_unique<RestoredCopy>(restored, reader);
     auto results = run(reader);
     if (const std::size_t missing = copy_->finish(); missing > 0 && !results.empty() && results[0].stopped.empty())
-      results[0].stopped = fmt::format("{} images could not be computed", missing);
+      results[0].stopped = fmt::format("{} could not be computed", counted(missing, "image"));
     return results;
   }
 
@@ -185,7 +186,7 @@ int replay_main(const std::vector<std::string>& arguments, const FindFactory& fi
     bool equal = true;
     for (const auto& result : restores ? restore_images(arguments[0], arguments[2], find)
                                        : replay_components(arguments[0], components, find, output)) {
-      fmt::print("{}: {} steps, {} messages", result.component, result.steps, result.messages);
+      fmt::print("{}: {}, {}", result.component, counted(result.steps, "step"), counted(result.messages, "message"));
       equal = equal && !result.difference && result.stopped.empty() && result.steps > 0;
       if (const auto& difference = result.difference) {
         fmt::print("; first difference: tick {}, topic {}", difference->tick, difference->topic);

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "component/device_owner.hpp"
+#include "configuration/counted.hpp"
 #include "cyclone/gathered_sends.hpp"
 #include "runtime/member_side.hpp"
 #include "runtime/version.hpp"
@@ -81,7 +82,8 @@ void MemberSide::finish() {
   // The ticks arrive once in a process, whichever of its members they are for.
   if (const std::string late = members_.front().jitter.histogram(); !late.empty()) context_.log.info("{}", late);
   if (const auto sent = dds::GatheredSends::counts(); sent.messages > 0)
-    context_.log.info("sent {} messages of its steps in {} datagrams", sent.messages, sent.datagrams);
+    context_.log.info("sent {} of its steps in {}", counted(sent.messages, "message"),
+                      counted(sent.datagrams, "datagram"));
 }
 
 }  // namespace constrictor

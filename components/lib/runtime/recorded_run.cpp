@@ -35,11 +35,6 @@ T number_of(const std::string& text) {
 
 }  // namespace
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 RecordedRun::RecordedRun(const fs::path& recording, const fs::path& output) : file_(recording), output_(output) {
   mcap::Reader reader(recording);
   std::map<std::string, std::string> attachments;

@@ -15,20 +15,6 @@
 
 namespace constrictor {
 
-/// A folder for the attached files and for what components write; its destructor removes it.
-class ScratchFolder {
- public:
-  /// Throws std::system_error.
-  ScratchFolder() : path_(new_temporary_folder("replay")) {}
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 class RecordedRun {
  public:
   /// Reads the whole file once. `output`: where components write; empty: into a folder that is removed. Throws
@@ -53,7 +39,7 @@ class RecordedRun {
 
   std::filesystem::path file_;
   std::filesystem::path output_;
-  ScratchFolder folder_;
+  TemporaryFolder folder_{"replay"};  ///< for the attached files and for what components write
   mcap::Texts entries_;
   std::filesystem::path scenario_;
   std::uint64_t seed_ = 0;

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -33,14 +34,19 @@ constexpr double kLeastDifference = 0.15;  // between two views of a board; see 
 
 bool stopped() { return g_signal != 0; }
 
-Board board_of(const Options& options) {
+/// The board that a value of --board describes; empty if there is none.
+std::optional<Board> board_in(const std::string& text) {
+  const auto accepted = [](int count) { return count >= 3 && count <= 50; };
   Board board;
   char rest = 0;
-  if (std::sscanf(options.board.c_str(), "%dx%d%c", &board.columns, &board.rows, &rest) != 2 || board.columns < 3 ||
-      board.rows < 3 || board.columns > 50 || board.rows > 50)
-    throw CLI::ValidationError("--board", fmt::format("found '{}', accepted COLUMNSxROWS of inner corners, for example "
-                                                      "9x6 for a board of 10 x 7 squares",
-                                                      options.board));
+  if (std::sscanf(text.c_str(), "%dx%d%c", &board.columns, &board.rows, &rest) != 2 || !accepted(board.columns) ||
+      !accepted(board.rows))
+    return std::nullopt;
+  return board;
+}
+
+Board board_of(const Options& options) {
+  Board board = board_in(options.board).value();
   board.square_m = options.square_m;
   return board;
 }
@@ -193,28 +199,40 @@ struct Sample {
   cv::Rect box;
 };
 
-Sample sample_of(const std::string& text) {
+constexpr std::array kSampleNames = {"green", "red", "blue", "yellow", "ground"};
+
+/// The sample that a value of --sample describes; empty if there is none.
+std::optional<Sample> sample_in(const std::string& text) {
   Sample sample;
   const auto equals = text.find('=');
   sample.name = text.substr(0, equals);
-  static const std::vector<std::string> kNames = {"green", "red", "blue", "yellow", "ground"};
   char rest = 0;
   const bool box =
       equals != std::string::npos && std::sscanf(text.c_str() + equals + 1, "%d,%d,%d,%d%c", &sample.box.x,
                                                  &sample.box.y, &sample.box.width, &sample.box.height, &rest) == 4;
-  if (!box || std::find(kNames.begin(), kNames.end(), sample.name) == kNames.end() || sample.box.width < 2 ||
-      sample.box.height < 2)
-    throw CLI::ValidationError(
-        "--sample", fmt::format("found '{}', accepted COLOUR=X,Y,WIDTH,HEIGHT in pixels with one of {}", text,
-                                fmt::join(kNames, ", ")));
+  if (!box || std::find(kSampleNames.begin(), kSampleNames.end(), sample.name) == kSampleNames.end() ||
+      sample.box.width < 2 || sample.box.height < 2)
+    return std::nullopt;
   return sample;
 }
 
 }  // namespace
 
+std::string wrong_board(const std::string& text) {
+  if (board_in(text)) return {};
+  return fmt::format(
+      "found '{}', accepted COLUMNSxROWS of inner corners, for example 9x6 for a board of 10 x 7 squares", text);
+}
+
+std::string wrong_sample(const std::string& text) {
+  if (sample_in(text)) return {};
+  return fmt::format("found '{}', accepted COLOUR=X,Y,WIDTH,HEIGHT in pixels with one of {}", text,
+                     fmt::join(kSampleNames, ", "));
+}
+
 int colours(const Options& options) {
   std::vector<Sample> boxes;
-  for (const auto& text : options.samples) boxes.push_back(sample_of(text));
+  for (const auto& text : options.samples) boxes.push_back(sample_in(text).value());
   std::optional<video::Rectifier> rectifier;
   if (!options.calibration.empty())
     rectifier.emplace(video::load_calibration(options.calibration, load_robot(options.robot).camera), 0, 0);
@@ -226,10 +244,8 @@ int colours(const Options& options) {
     if (rectifier) cv::cvtColor(rectifier->rectify(*picture), *picture, cv::COLOR_RGB2BGR);
     for (const auto& [name, box] : boxes) {
       if ((box & cv::Rect({}, picture->size())) != box)
-        throw CLI::ValidationError("--sample",
-                                   fmt::format("found a box of {} beyond the picture, accepted boxes within {} x "
-                                               "{} pixels",
-                                               name, picture->cols, picture->rows));
+        throw Failed(fmt::format("--sample: found a box of {} beyond the picture, accepted boxes within {} x {} pixels",
+                                 name, picture->cols, picture->rows));
       samples[name].add(*picture, box);
     }
   }

@@ -36,6 +36,10 @@ struct Options {
   std::vector<std::string> samples;
 };
 
+/// Why a value of --board or of --sample is not accepted; empty: it is.
+[[nodiscard]] std::string wrong_board(const std::string& text);
+[[nodiscard]] std::string wrong_sample(const std::string& text);
+
 int show(const Options& options);
 int calibrate(const Options& options);
 int mount(const Options& options);

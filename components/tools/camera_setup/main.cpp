@@ -31,7 +31,9 @@ void add_source(CLI::App& sub, Options& options) {
 }
 
 void add_board(CLI::App& sub, Options& options) {
-  sub.add_option("--board", options.board, "inner corners of the chessboard, COLUMNSxROWS")->capture_default_str();
+  sub.add_option("--board", options.board, "inner corners of the chessboard, COLUMNSxROWS")
+      ->capture_default_str()
+      ->check(wrong_board);
   sub.add_option("--square", options.square_m,
                  "[m] edge of one square of the chessboard, measured on the printed board")
       ->required()
@@ -87,7 +89,8 @@ int main(int argc, char** argv) {
          "--sample", options.samples,
          "COLOUR=X,Y,WIDTH,HEIGHT: a box in the picture that shows this colour only (green, red, blue, yellow, "
          "or ground for what has none); may be repeated")
-      ->required();
+      ->required()
+      ->check(wrong_sample);
   sub->add_option("--calibration", options.calibration, "calibration file: the boxes are then in the rectified picture")
       ->check(CLI::ExistingFile);
   sub->add_option("--out", options.out, "configuration of perception (YAML)")->required();
@@ -114,9 +117,6 @@ int main(int argc, char** argv) {
   } catch (const Failed& error) {
     fmt::print(stderr, "camera: {}\n", error.what());
     status = exit_status::kFailed;
-  } catch (const CLI::ValidationError& error) {  // of an option that a subcommand reads by itself
-    fmt::print(stderr, "camera: {}\n", error.what());
-    status = exit_status::kUsage;
   } catch (const ConfigurationError& error) {
     fmt::print(stderr, "camera: {}\n", error.what());
     status = exit_status::kConfiguration;

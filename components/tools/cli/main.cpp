@@ -8,9 +8,9 @@
 #include "cli/commands.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
-#include "configuration/configuration.hpp"
 #include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
+#include "runtime/report_exception.hpp"
 #include "runtime/version.hpp"
 #include "runtime/version_text.hpp"
 
@@ -56,11 +56,7 @@ int main(int argc, char** argv) {
   } catch (const cli::UsageError& error) {
     fmt::print(stderr, "constrictor: {}\n", error.what());
     return exit_status::kUsage;
-  } catch (const ConfigurationError& error) {
-    fmt::print(stderr, "constrictor: configuration: {}\n", error.what());
-    return exit_status::kConfiguration;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "constrictor: {}\n", error.what());
-    return exit_status::kSoftware;
+  } catch (...) {
+    return report_exception("constrictor");
   }
 }

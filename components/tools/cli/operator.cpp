@@ -23,12 +23,13 @@ RequestClientOptions operator_options(std::string source, std::chrono::milliseco
   return options;
 }
 
-int connect(RequestClient& client, const char* command) {
+int connect(RequestClient& client, const char* command, std::string* reason) {
   try {
     client.connect_or_throw(std::chrono::seconds(5));
     return exit_status::kOk;
   } catch (const CommandError& error) {
     std::fprintf(stderr, "%s: %s\n", command, error.what());
+    if (reason) *reason = error.what();
     return error.cause() == CommandError::Cause::kInterrupted ? interrupt_status() : exit_status::kWaitedTooLong;
   }
 }

@@ -14,8 +14,9 @@ namespace constrictor::cli {
 /// `detached` is true, authority lasts until a source releases it (for scripts).
 RequestClientOptions operator_options(std::string source, std::chrono::milliseconds lease = {}, bool detached = false);
 
-/// Connects and returns 0. If `input` does not answer, or at Ctrl-C, prints what to do and returns an exit status.
-int connect(RequestClient& client, const char* command);
+/// Connects and returns 0. If `input` does not answer, or at Ctrl-C, prints what to do and returns an exit status. The
+/// text goes also to `reason`, for the output of --json, if it is not null.
+int connect(RequestClient& client, const char* command, std::string* reason = nullptr);
 
 /// Prints why a request was not granted and what to do; `command` begins the message. Returns the exit status.
 int report_not_granted(RequestClient& client, RequestClient::Answer answer, const char* command);

@@ -112,24 +112,25 @@ class Refused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `param NAME`. With --json, a script reads from standard output why nothing was done, in the form of a refusal
-/// of `param set`, also after wrong usage and if there is no run.
+/// With --json, a script reads from standard output why nothing was done, in the form of a refusal of `param set`.
+void print_nothing_done(const std::string& name, const ParamOptions& options, const std::string& why) {
+  if (!options.view.json) return;
+  Json refusal;
+  if (name == "get") refusal["name"] = options.name;
+  refusal["refused"] = why;
+  fmt::print("{}\n", json_text(name == "get" ? refusal : Json::array({refusal}), 2));
+}
+
+/// Runs `param NAME`. What was thrown is printed also as JSON: wrong usage, and that there is no run.
 int with_json(const std::string& name, const ParamOptions& options, int (*run)(const ParamOptions&)) {
-  const auto print = [&](const std::exception& error) {
-    if (!options.view.json) return;
-    Json refusal;
-    if (name == "get") refusal["name"] = options.name;
-    refusal["refused"] = error.what();
-    fmt::print("{}\n", json_text(name == "get" ? refusal : Json::array({refusal}), 2));
-  };
   try {
     return run(options);
   } catch (const Refused& error) {
-    print(error);
+    print_nothing_done(name, options, error.what());
     if (!options.view.json) fmt::print(stderr, "param: {}\n", error.what());
     return exit_status::kFailed;
   } catch (const std::exception& error) {
-    print(error);
+    print_nothing_done(name, options, error.what());
     throw;  // main() prints it, and knows the exit status
   }
 }
@@ -160,7 +161,11 @@ int set_all(const ParamOptions& options, const std::vector<ParameterValue>& valu
   RequestClient client(find_domain(options.view.domain),
                        operator_options(unique_source("param"), 0ms, /*detached=*/true));
   ParameterSetter setter(client);
-  if (const int failed = connect(client, "param"); failed != exit_status::kOk) return failed;
+  std::string reason;
+  if (const int failed = connect(client, "param", &reason); failed != exit_status::kOk) {
+    print_nothing_done("set", options, reason);
+    return failed;
+  }
   Json json = Json::array();
   int status = exit_status::kOk;
   for (std::size_t i = 0; i < count && status == exit_status::kOk; ++i) {
@@ -177,7 +182,8 @@ int set_all(const ParamOptions& options, const std::vector<ParameterValue>& valu
                : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
                                                                     : exit_status::kWaitedTooLong;
       const bool refused = error.cause() == CommandError::Cause::kRefused;
-      if (refused) json.push_back({{"name", name}, {"value", value}, {"refused", error.what()}});
+      // A request without an answer is not refused: a run that is paused may still obey it.
+      json.push_back({{"name", name}, {"value", value}, {refused ? "refused" : "no_answer", error.what()}});
       if (!refused || !options.view.json)
         std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
       if (!refused) {

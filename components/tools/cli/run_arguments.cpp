@@ -7,6 +7,7 @@
 #include "cli/run_command.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/counted.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -131,8 +132,8 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
 int check_command(const RunOptions& options) {
   const LaunchPlan plan = make_launch_plan(options);
   check_components(options, plan);
-  fmt::print("no errors: scenario {}, robot {}, {} components\n", plan.manifest.scenario_file.string(),
-             plan.manifest.robot_file.string(), plan.roster.size());
+  fmt::print("no errors: scenario {}, robot {}, {}\n", plan.manifest.scenario_file.string(),
+             plan.manifest.robot_file.string(), counted(plan.roster.size(), "component"));
   for (const auto& process : plan.manifest.processes) {
     if (!process.program.empty())
       fmt::print("not checked: the configuration of {}, which program {} hosts\n", process.name(), process.program);

@@ -24,6 +24,7 @@
 #include "cli/swap.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/counted.hpp"
 #include "cyclone/run_token.hpp"
 #include "cyclone/security.hpp"
 #include "runtime/host.hpp"
@@ -77,10 +78,9 @@ class Launcher {
             [this](const auto&... process) { return hosts_.start(process...); }) {}
 
   int run() {
-    const auto processes = plan_.manifest.processes.size();
-    log_.say(fmt::format("run {}: {} seed {}, {} components in {} process{}, report in {}", claim_.domain(), scenario_,
-                         options_.seed, plan_.roster.size(), processes, processes == 1 ? "" : "es",
-                         report_dir_.string()));
+    log_.say(fmt::format("run {}: {} seed {}, {} in {}, report in {}", claim_.domain(), scenario_, options_.seed,
+                         counted(plan_.roster.size(), "component"),
+                         counted(plan_.manifest.processes.size(), "process", "processes"), report_dir_.string()));
     display_.print(
         fmt::format("  token {} (for programs on other hosts: put it into a file, see --token-file)", note_.token()));
     if (!options_.faults_file.empty())

@@ -46,17 +46,24 @@ struct TaskOptions {
 
 void print_json(const Json& json) { fmt::print("{}\n", json_text(json)); }
 
-int with_client(const TaskOptions& options, int (*use)(RequestClient&, const TaskOptions&)) {
-  RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
-  if (const int status = connect(client, "task"); status != exit_status::kOk) return status;
-  return use(client, options);
+/// The output of `task NAME --json` if nothing was done.
+void print_nothing_done(const std::string& name, const std::string& why) {
+  Json nothing = {{"result", "error"}};
+  if (name == "start") nothing = {{"started", nullptr}};
+  if (name == "cancel") nothing = {{"cancelled", false}};
+  nothing["reason"] = why;
+  print_json(nothing);
 }
 
-/// The output of `task NAME --json` if no task was started.
-Json nothing_done(const std::string& name) {
-  if (name == "start") return {{"started", nullptr}};
-  if (name == "cancel") return {{"cancelled", false}};
-  return {{"result", "error"}};
+/// Runs `use` for `task NAME`.
+int with_client(const std::string& name, const TaskOptions& options, int (*use)(RequestClient&, const TaskOptions&)) {
+  RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
+  std::string reason;
+  if (const int status = connect(client, "task", &reason); status != exit_status::kOk) {
+    if (options.wait.json) print_nothing_done(name, reason);
+    return status;
+  }
+  return use(client, options);
 }
 
 /// Runs `task NAME`. With --json, a script reads from standard output why nothing was done, also after wrong usage and
@@ -65,11 +72,7 @@ int with_json(const std::string& name, bool json, const std::function<int()>& wh
   try {
     return what();
   } catch (const std::exception& error) {
-    if (json) {
-      Json nothing = nothing_done(name);
-      nothing["reason"] = error.what();
-      print_json(nothing);
-    }
+    if (json) print_nothing_done(name, error.what());
     throw;  // main() prints it, and knows the exit status
   }
 }
@@ -144,7 +147,10 @@ int start(RequestClient& client, const TaskOptions& options) {
 int cancel(RequestClient& client, const TaskOptions& options) {
   const auto answer = client.wait_for_answer(client.move(msg::kMotionStand), 5s);
   const bool granted = answer == RequestClient::Answer::kGranted;
-  if (options.wait.json) print_json({{"cancelled", granted}, {"reason", granted ? "" : client.refusal()}});
+  const std::string why = answer == RequestClient::Answer::kRefused ? client.refusal()
+                          : answer == RequestClient::Answer::kNone  ? "no answer within 5 s"
+                                                                    : "interrupted before the answer";
+  if (options.wait.json) print_json({{"cancelled", granted}, {"reason", granted ? "" : why}});
   else if (granted) fmt::print("cancelled, the robot stands; `constrictor release` gives authority back\n");
   return report_not_granted(client, answer, "task");
 }
@@ -207,7 +213,7 @@ void add_task(CLI::App& app, Action& action) {
   auto* start_app =
       of_run(add("start", "start a task as an operator; authority stays until `constrictor release`", [options] {
         static_cast<void>(request_of(*options));  // reports wrong usage even if there is no run
-        return with_client(*options, start);
+        return with_client("start", *options, start);
       }));
   start_app->add_option("TASK", options->name, task_words())->required();
   const std::string colours = colour_words();
@@ -241,7 +247,7 @@ void add_task(CLI::App& app, Action& action) {
           "Ctrl-C",
           kRunStatuses)));
   of_run(add("cancel", "end the task that runs and stand still; authority stays until `constrictor release`",
-             [options] { return with_client(*options, cancel); }))
+             [options] { return with_client("cancel", *options, cancel); }))
       ->footer(help_footer("", {"constrictor task cancel && constrictor release"},
                            fmt::format("0 cancelled; 1 refused; {}; 75 no answer within 5 s;\n  130 interrupted by "
                                        "Ctrl-C",

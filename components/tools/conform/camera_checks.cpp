@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "configuration/counted.hpp"
 #include "conform/camera_conformance.hpp"
 #include "robot/camera_mount.hpp"
 
@@ -87,9 +88,8 @@ void CameraConformance::check_restart() {
   if (info_changed_ && fault.empty()) fault = "camera/info changes";
   if (before > 1) fault = fmt::format("the process has ended by itself, and is now incarnation {}", before);
   else if (fault.empty() && port_.incarnation() != before + 1) fault = "the process was not started again";
-  report_.judge("restart", !fault.empty(),
-                fault.empty() ? fmt::format("{} images of the new process", frames_.size() - first) : fault,
-                "connect again at the start, write camera/info first, and show nothing that was seen before");
+  report_.pass_unless("restart", fault, counted(frames_.size() - first, "image") + " of the new process",
+                      "connect again at the start, write camera/info first, and show nothing that was seen before");
 }
 
 void CameraConformance::tick() {
@@ -147,7 +147,7 @@ void CameraConformance::check_model() {
   const msg::CameraInfo& info = *info_;
   const bool late = info_tick_ > frames_.front().arrival_tick;
   report_.judge("info_once", late || info_changed_,
-                late ? fmt::format("{} ticks after the first image", info_tick_ - frames_.front().arrival_tick)
+                late ? counted(info_tick_ - frames_.front().arrival_tick, "tick") + " after the first image"
                      : fmt::format("{} messages{}", infos_, info_changed_ ? ", which differ" : ""),
                 "write camera/info once, in the step of the first image");
   std::string wrong;
@@ -162,10 +162,9 @@ void CameraConformance::check_model() {
         fmt::format("principal point ({:.1f}, {:.1f}) in {} x {} pixels", info.cx, info.cy, info.width, info.height);
   else if (!(std::abs(norm - 1.0) < 1e-3)) wrong = fmt::format("the quaternion of X_HC has the length {:.3f}", norm);
   else if (!(info.frame_period_s > 0.0)) wrong = fmt::format("frame_period_s {}", info.frame_period_s);
-  report_.judge(
-      "model", !wrong.empty(),
-      wrong.empty() ? fmt::format("{} x {} pixels, focal length {:.1f}", info.width, info.height, info.fx) : wrong,
-      "write focal lengths and centre in pixels (constrictor camera calibrate measures them)");
+  report_.pass_unless("model", wrong,
+                      fmt::format("{} x {} pixels, focal length {:.1f}", info.width, info.height, info.fx),
+                      "write focal lengths and centre in pixels (constrictor camera calibrate measures them)");
   const CameraModel& camera = robot_.camera;
   const double view_rad = info.fx > 0.0 ? 2.0 * std::atan(0.5 * info.width / info.fx) : 0.0;
   report_.judge("view", std::abs(view_rad - camera.horizontal_fov_rad) > profile_.view_rad,
@@ -192,10 +191,10 @@ void CameraConformance::check_frames() {
       wrong = fmt::format("{} x {} pixels in {} bytes, with {} x {} in camera/info", frame.width, frame.height,
                           frame.bytes, info.width, info.height);
   }
-  report_.judge("size", !wrong.empty(), wrong.empty() ? fmt::format("{} images", frames_.size()) : wrong,
-                "write width * height * 3 bytes, rows from the top, of the size in camera/info");
+  report_.pass_unless("size", wrong, counted(frames_.size(), "image"),
+                      "write width * height * 3 bytes, rows from the top, of the size in camera/info");
   if (frames_.size() < 3 || !(info.frame_period_s > 0.0))
-    return report_.fail("rate", fmt::format("{} images in {} s", frames_.size(), profile_.watch_s),
+    return report_.fail("rate", fmt::format("{} in {} s", counted(frames_.size(), "image"), profile_.watch_s),
                         "write an image every frame_period_s");
   const double passed_s = kTick_s * static_cast<double>(frames_.back().arrival_tick - frames_.front().arrival_tick);
   const double period_s = passed_s / static_cast<double>(frames_.size() - 1);
@@ -223,8 +222,7 @@ void CameraConformance::check_stamps() {
     shortest = std::min(shortest, frame.arrival_tick - frame.exposure_tick);
     longest = std::max(longest, frame.arrival_tick - frame.exposure_tick);
   }
-  report_.judge("stamps", !wrong.empty(), wrong.empty() ? "rising" : wrong,
-                "exposure_tick is the tick of the exposure, not of the message");
+  report_.pass_unless("stamps", wrong, "rising", "exposure_tick is the tick of the exposure, not of the message");
   const double most_s = kTick_s * static_cast<double>(longest),
                jitter_s = kTick_s * static_cast<double>(longest - shortest);
   report_.judge("latency", most_s > profile_.latency_s || jitter_s > profile_.jitter_s,
@@ -246,7 +244,7 @@ void CameraConformance::check_pictures() {
     equal = repeats ? equal + 1 : 1;
     most_equal = std::max(most_equal, equal);
   }
-  report_.judge("dark", !dark.empty(), dark.empty() ? "neither" : dark, "look at the lens cap, exposure and light");
+  report_.pass_unless("dark", dark, "neither", "look at the lens cap, exposure and light");
   report_.judge("frozen", most_equal > profile_.most_equal, fmt::format("{} equal images in a row", most_equal),
                 "the noise of any camera makes images different: the source repeats one");
 }

@@ -82,18 +82,14 @@ int concluded(const Options& options, const Report& report, const std::string& g
 
 int check_in_run(const Options& options, std::string (*manifest)(const Options&, const std::string&, const fs::path&),
                  const std::string& part) {
-  const fs::path folder = new_temporary_folder("conform");
-  bool found = false;
-  try {
-    if (options.profile.empty()) std::ofstream(folder / "profile.yaml") << "{}\n";
-    else fs::copy_file(options.profile, folder / "profile.yaml");
-    found = run_manifest(
-        manifest(options, part, folder), folder, [] { return g_signal != 0; }, print_line);
-  } catch (...) {
-    fs::remove_all(folder);
-    throw;
-  }
+  TemporaryFolder temporary("conform");
+  const fs::path& folder = temporary.path();
+  if (options.profile.empty()) std::ofstream(folder / "profile.yaml") << "{}\n";
+  else fs::copy_file(options.profile, folder / "profile.yaml");
+  const bool found = run_manifest(
+      manifest(options, part, folder), folder, [] { return g_signal != 0; }, print_line);
   if (!found) {
+    temporary.keep();
     std::ifstream log(folder / "log");
     fmt::print(stderr, "conform: the run has ended without results; {} has its logs, and it said:\n{}\n",
                folder.string(), std::string(std::istreambuf_iterator<char>(log), {}));
@@ -101,7 +97,6 @@ int check_in_run(const Options& options, std::string (*manifest)(const Options&,
   }
   const auto result = nlohmann::json::parse(std::ifstream(folder / "result.json"));
   if (!options.json.empty()) fs::copy_file(folder / "result.json", options.json, fs::copy_options::overwrite_existing);
-  fs::remove_all(folder);
   if (g_signal) return 128 + g_signal;
   return result.at("conforms").get<bool>() ? exit_status::kOk : exit_status::kFailed;
 }

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "configuration/counted.hpp"
+
 #include "conform/control_conformance.hpp"
 
 namespace constrictor::conform {
@@ -51,7 +53,7 @@ void ControlConformance::check_bend() {
   const msg::MotionStatus* state = last_state(first);
   const bool late = !echo_ticks || ControlHand::kPeriod_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
   report_.judge("echo", late,
-                echo_ticks ? fmt::format("after {} ticks", *echo_ticks)
+                echo_ticks ? "after " + counted(*echo_ticks, "tick")
                 : state    ? fmt::format("motion {} with the method '{}', not motion {} with 'bend'", state->motion_id,
                                          printable(text_of(state->method)), hand_.desired->motion_id)
                            : "no motion_status",
@@ -91,10 +93,9 @@ void ControlConformance::judge_posture(const std::vector<double>& shape_rad, con
   const double ratio = rms(reached_rad) / rms(shape_rad);
   const bool unit = ratio > kUnitFactor || ratio < 1.0 / kUnitFactor;
   if (unit) order.clear();  // angles near 0 resemble each other
-  report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,
-                "count the yaw joints from the head, pitch joints not included");
-  report_.judge("sign", !sign.empty(), sign.empty() ? "positive is left" : sign,
-                "invert the direction of these joints");
+  report_.pass_unless("order", order, "each joint by itself",
+                      "count the yaw joints from the head, pitch joints not included");
+  report_.pass_unless("sign", sign, "positive is left", "invert the direction of these joints");
   report_.judge("unit", unit, fmt::format("{:.2f} times the demanded angles", ratio), "write angles in radians");
   const bool wrong = !gain.empty() && order.empty() && !unit;
   report_.judge("gain", wrong, wrong ? gain : fmt::format("{:.2f} times the demanded angles", ratio),
@@ -131,8 +132,8 @@ void ControlConformance::judge_course(const Steps& steps, const std::vector<doub
   report_.judge("shape_rate", fastest_rad_s > kBendRate_rad_s * (1.0 + profile_.gain_tolerance),
                 fmt::format("{:.2f} rad/s, with {:.2f} rad/s demanded", fastest_rad_s, kBendRate_rad_s),
                 "limit the speed of each joint to shape_rate_rad_s");
-  report_.judge("done", !wrong.empty(), wrong.empty() ? "set at the end" : wrong,
-                "compare the setpoints with shape_rad; navigation waits for done");
+  report_.pass_unless("done", wrong, "set at the end",
+                      "compare the setpoints with shape_rad; navigation waits for done");
 }
 
 void ControlConformance::check_squeeze() {

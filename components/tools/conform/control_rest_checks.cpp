@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
 #include "conform/control_conformance.hpp"
 #include "conform/part_restart.hpp"
 
@@ -147,14 +148,14 @@ bool ControlConformance::check_arrival() {
   const msg::JointCommand* first = last_command(steps);
   const bool arrived = begun();
   report_.judge("arrives", !arrived,
-                arrived            ? fmt::format("after {} ticks", steps.size())
+                arrived            ? "after " + counted(steps.size(), "tick")
                 : first == nullptr ? fmt::format("no joint_command within {} s", profile_.patience_s)
                                    : fmt::format("no motion_status within {} s", profile_.patience_s),
                 "write both in every tick from the first joint_state on; the run refuses values that are not finite or "
                 "out of range, and its log names them");
   if (!arrived) return false;
   const bool right_count = first->joint_count == robot_.joints.size();
-  report_.judge("joint_count", !right_count, fmt::format("{} joints", first->joint_count),
+  report_.judge("joint_count", !right_count, counted(first->joint_count, "joint"),
                 fmt::format("write all {} joints of the robot, the one next to the head first", robot_.joints.size()));
   if (!right_count) return false;
   const msg::JointCommand begin = *first;

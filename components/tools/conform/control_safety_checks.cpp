@@ -182,13 +182,8 @@ void ControlConformance::check_epoch() {
     }
     return {};
   };
-  const std::string equal = fmt::format("{} ticks are equal", first.size());
-  const std::string differs = difference(play([] {}));
-  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
-                "read no clock, and draw random numbers only from a generator with the run's seed");
-  PartRestart restart(port_);
-  restart.judge(
-      report_, [&] { return difference(play([&] { restart.kill(); })); }, equal);
+  const Repeat repeat = [&](const std::function<void()>& disturb) { return difference(play(disturb)); };
+  judge_repetitions(report_, port_, repeat([] {}), repeat, fmt::format("{} ticks are equal", first.size()));
 }
 
 }  // namespace constrictor::conform

@@ -4,10 +4,9 @@
 #include <CLI/CLI.hpp>
 
 #include "configuration/command_line.hpp"
-#include "configuration/configuration.hpp"
 #include "conform/command.hpp"
 #include "conform/parts.hpp"
-#include "runtime/host.hpp"
+#include "runtime/report_exception.hpp"
 #include "runtime/version.hpp"
 
 namespace {
@@ -99,11 +98,7 @@ int main(int argc, char** argv) {
   const std::string part = app.get_subcommands().front()->get_name();
   try {
     return part == "plant" ? plant_command(options) : part_command(options, part);
-  } catch (const ConfigurationError& error) {
-    fmt::print(stderr, "conform: configuration: {}\n", error.what());
-    return exit_status::kConfiguration;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "conform: {}\n", error.what());
-    return exit_status::kSoftware;
+  } catch (...) {
+    return report_exception("conform");
   }
 }

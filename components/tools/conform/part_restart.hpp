@@ -1,8 +1,7 @@
-// The check "restart" of a part: its process is killed and started again while the same is played to it as before, and
-// its answers must be those of a part that was not killed.
+// The checks "repeatable" and "restart" of a part: the same inputs are played to it again. In the second check its
+// process is killed and started again meanwhile, and its answers must be those of a part that was not killed.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -11,23 +10,17 @@
 
 namespace constrictor::conform {
 
-class PartRestart {
- public:
-  explicit PartRestart(PartPort& port) : port_(port) {}
+/// Plays the inputs again, calls `disturb` between two ticks in their middle, and returns how the answers differ from
+/// the first ones; empty: they do not.
+using Repeat = std::function<std::string(const std::function<void()>& disturb)>;
 
-  /// To be called once, between two ticks.
-  void kill();
-  /// Makes the check. `play` plays the inputs, calls kill() in the middle, and returns how the answers differ from
-  /// those without a restart; empty: they do not. `equal`: what is then said of them.
-  void judge(Report& report, const std::function<std::string()>& play, const std::string& equal);
+/// Makes both checks. `differs`: the result of a repetition that was not disturbed. `equal`: what the report says of
+/// answers that do not differ. `todo`: what to do if the repetition differs.
+void judge_repetitions(
+    Report& report, PartPort& port, const std::string& differs, const Repeat& repeat, const std::string& equal,
+    const std::string& todo = "read no clock, and draw random numbers only from a generator with the run's seed");
 
- private:
-  PartPort& port_;
-  std::uint32_t before_ = 0;  ///< incarnation
-  std::string obstacle_;
-};
-
-/// The check in the list of a part's checks.
+/// The check "restart" in the list of a part's checks.
 [[nodiscard]] Check restart_check();
 
 }  // namespace constrictor::conform

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
 #include "conform/perception_conformance.hpp"
 
@@ -83,8 +84,8 @@ bool PerceptionConformance::check_arrival() {
   shown_ = hand_.show(scene, 10);
   const bool arrived = std::any_of(shown_.begin(), shown_.end(), [](const Seen& seen) { return seen.answered(); });
   report_.judge("arrives", !arrived,
-                arrived ? fmt::format("after {} ticks", shown_.front().answer_ticks)
-                        : fmt::format("no answer to {} images", shown_.size()),
+                arrived ? "after " + counted(shown_.front().answer_ticks, "tick")
+                        : "no answer to " + counted(shown_.size(), "image"),
                 "write both topics for each image, as soon as camera/info has arrived; the run refuses values that are "
                 "not finite or out of range, and its log names them");
   if (!arrived) return false;
@@ -117,15 +118,13 @@ bool PerceptionConformance::check_arrival() {
   report_.judge("every_image", answers + 1 < shown_.size(),
                 fmt::format("{} of {} images are answered once on each topic", answers, shown_.size()),
                 "answer each image, also if nothing is seen in it");
-  report_.judge("stamp", !stamp.empty(), stamp.empty() ? "that of the image" : stamp,
-                "copy CameraImage.exposure_tick; guidance takes the pose of that tick");
+  report_.pass_unless("stamp", stamp, "that of the image",
+                      "copy CameraImage.exposure_tick; guidance takes the pose of that tick");
   const double slowest_s = 0.02 * static_cast<double>(slowest_ticks);
   report_.judge("answer", slowest_s > profile_.answer_s, fmt::format("{:.2f} s at most", slowest_s),
                 fmt::format("be faster than {} s, or change answer_s of the profile", profile_.answer_s));
   if (pictures == 0) report_.skip("picture", "perception writes no perception/image");
-  else
-    report_.judge("picture", !picture.empty(), picture.empty() ? fmt::format("{} images", pictures) : picture,
-                  "draw into a copy of the image");
+  else report_.pass_unless("picture", picture, counted(pictures, "image"), "draw into a copy of the image");
   return true;
 }
 
@@ -140,7 +139,7 @@ void PerceptionConformance::check_nothing() {
         if (objects.blob_count > 0) seen = fmt::format("{} objects or zones", objects.blob_count);
       }
     }
-    report_.judge(name, !seen.empty(), seen.empty() ? "nothing is seen" : seen, todo);
+    report_.pass_unless(name, seen, "nothing is seen", todo);
   };
   SyntheticScene scene;
   sees_nothing("empty", scene, "set visible to false and blob_count to 0");
@@ -246,13 +245,11 @@ void PerceptionConformance::check_epoch() {
   const bool answered = first.back().answered() && second.back().answered();
   report_.judge("epoch", !answered, answered ? "images are answered" : "no answer in the new epoch",
                 "construct the component anew at each EpochStart");
-  const std::string equal = fmt::format("{} images give the same", first.size());
-  const std::string differs = difference(first, second);
-  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
-                "read no clock, use one thread, and draw random numbers only from a generator with the run's seed");
-  PartRestart restart(port_);
-  restart.judge(
-      report_, [&] { return difference(first, play([&] { restart.kill(); })); }, equal);
+  judge_repetitions(
+      report_, port_, difference(first, second),
+      [&](const std::function<void()>& disturb) { return difference(first, play(disturb)); },
+      fmt::format("{} images give the same", first.size()),
+      "read no clock, use one thread, and draw random numbers only from a generator with the run's seed");
 }
 
 }  // namespace constrictor::conform

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/perception_conformance.hpp"
 
 namespace constrictor::conform {
@@ -52,11 +54,9 @@ void PerceptionConformance::check_line() {
     if (std::abs(percept->offset_m + truth.offset_m) < profile_.line_m) sign = found;
     else if (!(std::abs(percept->offset_m - truth.offset_m) < profile_.line_m)) offset = found;
   }
-  report_.judge("line_sign", !sign.empty(), sign.empty() ? "positive is left" : sign,
-                "y of G points to the left; or the image is mirrored");
-  report_.judge("line_offset", !offset.empty(),
-                offset.empty() ? fmt::format("{:.3f} m wrong at most", largest_m) : offset,
-                "project the pixels onto the ground with X_HC, the attitude and the height of the head");
+  report_.pass_unless("line_sign", sign, "positive is left", "y of G points to the left; or the image is mirrored");
+  report_.pass_unless("line_offset", offset, fmt::format("{:.3f} m wrong at most", largest_m),
+                      "project the pixels onto the ground with X_HC, the attitude and the height of the head");
   for (const double turn : {0.3, -0.3}) {
     line = {};
     line.heading_rad = turn;
@@ -71,9 +71,8 @@ void PerceptionConformance::check_line() {
     if (!(error_rad < profile_.heading_rad))
       heading = fmt::format("{:.2f} rad, for a line that leads to {:.2f} rad", percept->heading_rad, turn);
   }
-  report_.judge("line_heading", !heading.empty(),
-                heading.empty() ? fmt::format("{:.3f} rad wrong at most", largest_rad) : heading,
-                "the angle from x of G to the line at the lookahead, positive left, in radians");
+  report_.pass_unless("line_heading", heading, fmt::format("{:.3f} rad wrong at most", largest_rad),
+                      "the angle from x of G to the line at the lookahead, positive left, in radians");
 }
 
 void PerceptionConformance::check_line_shape() {
@@ -104,14 +103,12 @@ void PerceptionConformance::check_line_shape() {
       if (off_m > profile_.line_m && points.empty())
         points = fmt::format("point {} at ({:.2f}, {:.2f}) m is not on the line", i, point.x(), point.y());
     }
-    if (percept->point_count < 3) points = fmt::format("{} points", percept->point_count);
+    if (percept->point_count < 3) points = counted(percept->point_count, "point");
   }
-  report_.judge("line_curvature", !curvature.empty(),
-                curvature.empty() ? fmt::format("{:.2f} 1/m, for a line of 1.20 1/m", first) : curvature,
-                "one by the radius of the line, positive where it bends left");
-  report_.judge("line_points", !points.empty(),
-                points.empty() ? fmt::format("{:.3f} m off at most", largest_m) : points,
-                "write the middle of the line in G: x ahead of the head's centre, y to the left, near to far");
+  report_.pass_unless("line_curvature", curvature, fmt::format("{:.2f} 1/m, for a line of 1.20 1/m", first),
+                      "one by the radius of the line, positive where it bends left");
+  report_.pass_unless("line_points", points, fmt::format("{:.3f} m off at most", largest_m),
+                      "write the middle of the line in G: x ahead of the head's centre, y to the left, near to far");
 }
 
 void PerceptionConformance::check_line_end() {
@@ -151,8 +148,8 @@ void PerceptionConformance::check_line_end() {
   percept = end_with(0.0, 0.15);
   if (sees(percept) && std::abs(percept->offset_m) > profile_.line_m)
     wrong = fmt::format("offset {:.3f} m of a line straight ahead, with a roll of 0.15 rad", percept->offset_m);
-  report_.judge("attitude", !wrong.empty(), wrong.empty() ? fmt::format("{:.3f} m wrong at most", largest_m) : wrong,
-                "keep the attitudes of the last ticks, and take that of CameraImage.exposure_tick");
+  report_.pass_unless("attitude", wrong, fmt::format("{:.3f} m wrong at most", largest_m),
+                      "keep the attitudes of the last ticks, and take that of CameraImage.exposure_tick");
 }
 
 void PerceptionConformance::check_line_colour() {
@@ -169,8 +166,7 @@ void PerceptionConformance::check_line_colour() {
     wrong = fmt::format("colour {} is named, while the task follows colour {}", percept->colour, msg::kColourRed);
   hand_.line_colour = msg::kColourBlue;
   hand_.wait(5);
-  report_.judge("line_colour", !wrong.empty(), wrong.empty() ? "that of the task" : wrong,
-                "read task/status.parameters.line_colour");
+  report_.pass_unless("line_colour", wrong, "that of the task", "read task/status.parameters.line_colour");
 }
 
 }  // namespace constrictor::conform

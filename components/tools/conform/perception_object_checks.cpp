@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/perception_conformance.hpp"
 
 namespace constrictor::conform {
@@ -44,15 +46,15 @@ void PerceptionConformance::check_objects() {
     const std::uint8_t found = percepts && percepts->blob_count > 0 ? percepts->blobs[0].colour : msg::kColourUnknown;
     if (found != paint) colour = fmt::format("colour {} for an object of colour {}", found, paint);
   }
-  report_.judge("object_colour", !colour.empty(), colour.empty() ? "green, red, yellow" : colour,
-                "images are RGB, red first; the numbers of the colours are in common.idl");
+  report_.pass_unless("object_colour", colour, "green, red, yellow",
+                      "images are RGB, red first; the numbers of the colours are in common.idl");
   std::string kind;
   percepts = objects_of(scene_with({at(msg::kColourGreen, 0.9, 0.0)}));
   if (blob(percepts, msg::kColourGreen, msg::kBlobObject) == nullptr) kind = "an object is not kBlobObject";
   percepts = objects_of(scene_with({{msg::kColourRed, 1.1, 0.1, 0.3, 0.0}}));
   if (blob(percepts, msg::kColourRed, msg::kBlobZone) == nullptr) kind = "a zone is not kBlobZone";
-  report_.judge("object_kind", !kind.empty(), kind.empty() ? "an object, a zone" : kind,
-                "what reaches above the horizon, or is too narrow for its depth, stands up");
+  report_.pass_unless("object_kind", kind, "an object, a zone",
+                      "what reaches above the horizon, or is too narrow for its depth, stands up");
 }
 
 void PerceptionConformance::check_bearing() {
@@ -71,11 +73,9 @@ void PerceptionConformance::check_bearing() {
     if (wanted_rad != 0.0 && std::abs(seen->bearing_rad + wanted_rad) < profile_.bearing_rad) sign = found;
     else if (!(error_rad < profile_.bearing_rad)) bearing = found;
   }
-  report_.judge("bearing_sign", !sign.empty(), sign.empty() ? "positive is left" : sign,
-                "positive bearings are on the left of x of G");
-  report_.judge("bearing", !bearing.empty(),
-                bearing.empty() ? fmt::format("{:.3f} rad wrong at most", largest_rad) : bearing,
-                "the angle at the head's centre, not at the camera, in radians");
+  report_.pass_unless("bearing_sign", sign, "positive is left", "positive bearings are on the left of x of G");
+  report_.pass_unless("bearing", bearing, fmt::format("{:.3f} rad wrong at most", largest_rad),
+                      "the angle at the head's centre, not at the camera, in radians");
 }
 
 void PerceptionConformance::check_size() {
@@ -100,12 +100,10 @@ void PerceptionConformance::check_size() {
   judge(at(msg::kColourGreen, 0.6, 0.1), msg::kBlobObject, "object");
   judge(at(msg::kColourGreen, 1.2, -0.2), msg::kBlobObject, "object");
   judge({msg::kColourRed, 1.1, 0.1, 0.3, 0.0}, msg::kBlobZone, "zone");
-  report_.judge("range", !range.empty(),
-                range.empty() ? fmt::format("{:.0f} % wrong at most", 100 * worst_range) : range,
-                "project the lower edge onto the ground; measure from the head's centre, in metres");
-  report_.judge("width", !width.empty(),
-                width.empty() ? fmt::format("{:.0f} % wrong at most", 100 * worst_width) : width,
-                "the width at that range, in metres");
+  report_.pass_unless("range", range, fmt::format("{:.0f} % wrong at most", 100 * worst_range),
+                      "project the lower edge onto the ground; measure from the head's centre, in metres");
+  report_.pass_unless("width", width, fmt::format("{:.0f} % wrong at most", 100 * worst_width),
+                      "the width at that range, in metres");
 }
 
 void PerceptionConformance::check_image_border() {
@@ -116,7 +114,7 @@ void PerceptionConformance::check_image_border() {
   for (int i = 1; i < count; ++i)
     sorted = sorted && percepts->blobs[i - 1].area_fraction >= percepts->blobs[i].area_fraction;
   report_.judge("largest_first", count != 2 || !sorted || percepts->blobs[0].colour != msg::kColourRed,
-                count != 2 ? fmt::format("{} objects, for two", count)
+                count != 2 ? counted(count, "object") + ", for two"
                            : fmt::format("{} and {} of the image", percepts->blobs[0].area_fraction,
                                          percepts->blobs[1].area_fraction),
                 "sort the blobs by area_fraction, the largest first");
@@ -130,8 +128,8 @@ void PerceptionConformance::check_image_border() {
     box = fmt::format("columns {} to {}, rows {} to {}, for an object at ({:.0f}, {:.0f})", seen->u_min, seen->u_max,
                       seen->v_min, seen->v_max, middle.x(), middle.y());
   }
-  report_.judge("box", !box.empty(), box.empty() ? "contains the object" : box,
-                "columns u from the left, rows v from the top, in pixels of the image");
+  report_.pass_unless("box", box, "contains the object",
+                      "columns u from the left, rows v from the top, in pixels of the image");
   // The border of a camera with a wide view cuts an object at 0.8 rad.
   const msg::CameraInfo model = hand_.camera().info();
   const double edge_rad = std::atan(0.5 * model.width / model.fx);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "component/task_parameters.hpp"
+#include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
 #include "conform/planner_conformance.hpp"
 
@@ -141,8 +142,8 @@ void PlannerConformance::check_end() {
   }
   if (mission_.sequence.size() < 2) report_.skip("rest", "the mission has one object");
   else
-    report_.judge("rest", !stuck.empty(), stuck.empty() ? fmt::format("{} objects", mission_.sequence.size()) : stuck,
-                  "go on with the next object of the mission, in the same way");
+    report_.pass_unless("rest", stuck, counted(mission_.sequence.size(), "object"),
+                        "go on with the next object of the mission, in the same way");
   if (!stuck.empty()) return;
   const msg::MissionStatus mission = hand_->missions().back();
   hand_->run(1.0);
@@ -168,8 +169,8 @@ void PlannerConformance::check_form() {
     if (const auto refusal = task_parameter_refusal(request.task, request.parameters, request.path); !refusal.empty())
       wrong = fmt::format("{}: {}", task_name(request.task), refusal);
   }
-  report_.judge("form", !wrong.empty(), wrong.empty() ? fmt::format("{} requests", hand_->requests().size()) : wrong,
-                "fill in the fields as idl/CLIENTS.md says; `input` refuses the request otherwise");
+  report_.pass_unless("form", wrong, counted(hand_->requests().size(), "request"),
+                      "fill in the fields as idl/CLIENTS.md says; `input` refuses the request otherwise");
   const auto& ticks = hand_->request_ticks();
   std::size_t most = 0;
   for (std::size_t from = 0, to = 0; to < ticks.size(); ++to) {
@@ -198,8 +199,8 @@ void PlannerConformance::check_form() {
                           before.object_index, before.recoveries);
     if (before.outcome != msg::kMissionRunning && now.outcome != before.outcome) wrong = "the outcome changes";
   }
-  report_.judge("status", !wrong.empty(), wrong.empty() ? fmt::format("{} messages", missions.size()) : wrong,
-                "write the state of the mission in every tick");
+  report_.pass_unless("status", wrong, counted(missions.size(), "message"),
+                      "write the state of the mission in every tick");
 }
 
 void PlannerConformance::check_epoch() {
@@ -238,13 +239,8 @@ void PlannerConformance::check_epoch() {
     }
     return {};
   };
-  const std::string equal = fmt::format("{} requests are equal", first.size());
-  const std::string differs = difference(play([] {}));
-  report_.judge("repeatable", !differs.empty(), differs.empty() ? equal : differs,
-                "read no clock, and draw random numbers only from a generator with the run's seed");
-  PartRestart restart(port_);
-  restart.judge(
-      report_, [&] { return difference(play([&] { restart.kill(); })); }, equal);
+  const Repeat repeat = [&](const std::function<void()>& disturb) { return difference(play(disturb)); };
+  judge_repetitions(report_, port_, repeat([] {}), repeat, fmt::format("{} requests are equal", first.size()));
 }
 
 }  // namespace constrictor::conform

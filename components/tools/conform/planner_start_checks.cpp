@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "configuration/configuration.hpp"
+#include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
 #include "conform/planner_conformance.hpp"
 
@@ -107,7 +108,7 @@ std::size_t PlannerConformance::requests_in(double seconds) {
 bool PlannerConformance::check_arrival() {
   const bool arrived = hand_->run(profile_.patience_s, [&] { return !hand_->missions().empty(); });
   report_.judge("arrives", !arrived,
-                arrived ? fmt::format("after {} ticks", hand_->ticks())
+                arrived ? "after " + counted(hand_->ticks(), "tick")
                         : fmt::format("no mission_status within {} s", profile_.patience_s),
                 "write mission_status in every tick");
   if (!arrived) return false;
@@ -161,11 +162,11 @@ void PlannerConformance::check_authority() {
   hand_->run(0.2);
   hand_->report(msg::kEventNone, msg::kGoalCancelled);
   const std::size_t meanwhile = requests_in(profile_.decide_s);
-  report_.judge("authority", meanwhile > 0, fmt::format("{} requests in {} s", meanwhile, profile_.decide_s),
+  report_.judge("authority", meanwhile > 0, fmt::format("{} in {} s", counted(meanwhile, "request"), profile_.decide_s),
                 "read authority, and request nothing while its level is above the planner's");
   hand_->give_authority(msg::kAuthorityNone);
   const std::size_t again = requests_in(profile_.repeat_s);
-  report_.judge("returns", again == 0, fmt::format("{} requests in {} s", again, profile_.repeat_s),
+  report_.judge("returns", again == 0, fmt::format("{} in {} s", counted(again, "request"), profile_.repeat_s),
                 "request the task of the present state anew when the level is none again");
   hand_->give_authority(msg::kAuthorityEmergencyStop, true);
   hand_->run(0.2);
@@ -177,7 +178,7 @@ void PlannerConformance::check_authority() {
   hand_->give_authority(msg::kAuthorityNone);
   const std::size_t resumed = requests_in(profile_.repeat_s);
   report_.judge("stop", stopped > 0 || resumed == 0,
-                stopped > 0 ? fmt::format("{} requests in {} s", stopped, profile_.decide_s)
+                stopped > 0 ? fmt::format("{} in {} s", counted(stopped, "request"), profile_.decide_s)
                             : fmt::format("none; {} after an operator has released authority", resumed),
                 "read authority.emergency_stop, and go on when an operator has returned authority");
 }

@@ -155,8 +155,9 @@ void PlantConformance::check_silence(std::size_t joint) {
   }
   if (later.empty()) wrong = "the joint states end with the commands";
   if (wrong.empty() && port_.abilities().sessions && !later.back().holding) wrong = "at rest, but holding is false";
-  report_.judge("silence", !wrong.empty(), wrong.empty() ? "the joints rest" : wrong,
-                "hold the measured posture 0.1 s after the last command, set holding, and go on writing joint states");
+  report_.pass_unless(
+      "silence", wrong, "the joints rest",
+      "hold the measured posture 0.1 s after the last command, set holding, and go on writing joint states");
   hand_.begin_at_posture();
 }
 
@@ -195,8 +196,9 @@ void PlantConformance::check_stop(std::size_t joint) {
   for (const double begin_s = port_.now_s(); port_.stopped() && port_.now_s() - begin_s < 5.0;)
     hand_.hold(profile_.period_s);
   if (wrong.empty() && port_.stopped()) wrong = "the stop stays in force after an operator has cleared it";
-  report_.judge("stop", !wrong.empty(), wrong.empty() ? "held until it was cleared" : wrong,
-                "obey emergency_stop and emergency_stop/cleared, and write emergency_stop/state (PlantGate does it)");
+  report_.pass_unless(
+      "stop", wrong, "held until it was cleared",
+      "obey emergency_stop and emergency_stop/cleared, and write emergency_stop/state (PlantGate does it)");
 }
 
 void PlantConformance::check_epoch(std::size_t joint) {

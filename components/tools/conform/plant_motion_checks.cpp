@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "configuration/counted.hpp"
 #include "conform/median.hpp"
 #include "conform/plant_conformance.hpp"
 
@@ -180,14 +181,14 @@ void PlantConformance::check_motions() {
   const auto list = [](const std::vector<std::size_t>& joints, const std::string& more, const std::string& fine) {
     return joints.empty() ? fine : names_of(joints) + more;
   };
-  const std::string moved_joints = fmt::format("{} joints moved", profile_.joints.size());
+  const std::string moved_joints = counted(profile_.joints.size(), "joint") + " moved";
   report_.judge("moves", !still.empty(), list(still, " did not move", moved_joints),
                 "check power, wiring, torque limit and the servo's number; a frozen measurement looks the same");
   // A joint that moves 57 times too far may still move when the next joint is commanded.
   if (!degrees.empty() && !order.empty()) report_.skip("order", "cannot be judged before the unit is right");
   else
-    report_.judge("order", !order.empty(), order.empty() ? "each joint by itself" : order,
-                  "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");
+    report_.pass_unless("order", order, "each joint by itself",
+                        "correct the order of the joints, or of their servo numbers; joint 0 is next to the head");
   report_.judge("sign", !negative.empty(), list(negative, " moved the other way", "the right way"),
                 "invert these joints' direction, for commands and measurements alike (yaw: positive is left, pitch: "
                 "positive is nose down)");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/plant_conformance.hpp"
 
 namespace constrictor::conform {
@@ -96,13 +98,13 @@ bool PlantConformance::check_samples(const std::vector<JointSample>& samples) {
     }
     if (!sample.fault.empty()) fault = sample.fault;
   }
-  report_.judge("joint_count", wrong_count != count || samples.empty(), fmt::format("{} joints", wrong_count),
+  report_.judge("joint_count", wrong_count != count || samples.empty(), counted(wrong_count, "joint"),
                 fmt::format("write {} joints, or name the right robot file (--robot)", count));
-  report_.judge("finite", !not_finite.empty(), not_finite.empty() ? "all values are finite" : not_finite,
-                "report `fault` instead of writing NaN when a joint cannot be measured");
-  report_.judge("range", !beyond.empty(), beyond.empty() ? "all angles are within their limits" : beyond,
-                "check unit (radians), zero and sign of this joint");
-  report_.judge("fault", !fault.empty(), fault.empty() ? "none" : fault, "repair what the plant reports");
+  report_.pass_unless("finite", not_finite, "all values are finite",
+                      "report `fault` instead of writing NaN when a joint cannot be measured");
+  report_.pass_unless("range", beyond, "all angles are within their limits",
+                      "check unit (radians), zero and sign of this joint");
+  report_.pass_unless("fault", fault, "none", "repair what the plant reports");
   return !report_.failed("joint_count") && !report_.failed("finite") && !report_.failed("range") &&
          !report_.failed("fault");
 }
@@ -125,10 +127,10 @@ void PlantConformance::check_stamps(const std::vector<JointSample>& samples) {
       stamps = fmt::format("{:.4g} s by the stamps while {:.2f} s passed", stamped_s, passed_s);
   }
   const auto lost = samples.empty() ? 0 : samples.back().number - samples.front().number + 1 - samples.size();
-  report_.judge("numbers", !numbers.empty(), numbers.empty() ? fmt::format("rising, {} lost", lost) : numbers,
-                "draw one random session when the process starts, and count its samples from 1");
-  report_.judge("stamps", !stamps.empty(), stamps.empty() ? "rising as time passes" : stamps,
-                "write the instant of each measurement, in nanoseconds of a clock that is never set");
+  report_.pass_unless("numbers", numbers, fmt::format("rising, {} lost", lost),
+                      "draw one random session when the process starts, and count its samples from 1");
+  report_.pass_unless("stamps", stamps, "rising as time passes",
+                      "write the instant of each measurement, in nanoseconds of a clock that is never set");
 }
 
 void PlantConformance::check_rate(const std::vector<JointSample>& samples) {
@@ -156,7 +158,7 @@ void PlantConformance::check_confirmation(const std::vector<JointSample>& sample
   const std::uint64_t behind = port_.number() - std::min(port_.number(), newest.confirmed_number);
   report_.judge(
       "confirms", !right || behind > bound,
-      right ? fmt::format("{} commands behind", behind)
+      right ? counted(behind, "command") + " behind"
             : fmt::format("session {:x}, that of the commands is {:x}", newest.confirmed_session, port_.session()),
       "copy session and sequence_number of the newest obeyed command into command_session and "
       "command_number");
@@ -184,9 +186,10 @@ void PlantConformance::check_imu() {
   if (wrong.empty() && !(error < profile_.gravity_m_s2))
     wrong = fmt::format("({:.2f}, {:.2f}, {:.2f}) m/s2 in the level frame", up[0], up[1], up[2]);
   if (wrong.empty() && !(rate_rad_s < 0.2)) wrong = fmt::format("{:.2f} rad/s on average at rest", rate_rad_s);
-  report_.judge("imu", !wrong.empty(), wrong.empty() ? fmt::format("{:.2f} m/s2 upwards", up[2]) : wrong,
-                "check axes (x forward, y left, z up), units (m/s2, rad/s) and sign: at rest the unit shows +9.81 "
-                "upwards");
+  report_.pass_unless(
+      "imu", wrong, fmt::format("{:.2f} m/s2 upwards", up[2]),
+      "check axes (x forward, y left, z up), units (m/s2, rad/s) and sign: at rest the unit shows +9.81 "
+      "upwards");
 }
 
 void PlantConformance::check_contacts() {
@@ -194,12 +197,11 @@ void PlantConformance::check_contacts() {
   std::string wrong;
   const int modules = static_cast<int>(robot_.joints.size()) + 1;
   for (const auto& one : hand_.contacts()) {
-    if (one.module_count != 0 && one.module_count != modules) wrong = fmt::format("{} modules", one.module_count);
+    if (one.module_count != 0 && one.module_count != modules) wrong = counted(one.module_count, "module");
     if (!one.finite) wrong = "a force that is not finite";
   }
-  report_.judge("contacts", !wrong.empty(),
-                wrong.empty() ? fmt::format("{} modules", hand_.contacts().back().module_count) : wrong,
-                fmt::format("write {} modules, or 0 if the sensors do not answer", modules));
+  report_.pass_unless("contacts", wrong, counted(hand_.contacts().back().module_count, "module"),
+                      fmt::format("write {} modules, or 0 if the sensors do not answer", modules));
 }
 
 double PlantConformance::strayed_rad(const std::vector<JointSample>& samples) const {

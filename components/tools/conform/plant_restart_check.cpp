@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configuration/counted.hpp"
+
 #include "conform/plant_conformance.hpp"
 
 namespace constrictor::conform {
@@ -61,7 +63,7 @@ std::string PlantConformance::restart_fault(const std::vector<double>& rest_rad,
   double strayed_rad = 0.0;
   for (const auto& sample : samples) {
     if (sample.position_rad.size() != rest_rad.size())
-      return fmt::format("{} joints after the restart", sample.position_rad.size());
+      return counted(sample.position_rad.size(), "joint") + " after the restart";
     for (std::size_t i = 0; i < rest_rad.size(); ++i) {
       const double far_rad = std::abs(sample.position_rad[i] - rest_rad[i]);
       if (std::isfinite(far_rad) && far_rad <= strayed_rad) continue;

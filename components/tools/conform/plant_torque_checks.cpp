@@ -75,12 +75,12 @@ void PlantConformance::check_torque_mode() {
       turns +=
           fmt::format("{}joint {} did not turn with {:.2f} Nm", turns.empty() ? "" : "; ", joint, pushed.demanded_nm);
   }
-  report_.judge("torque_turns", !turns.empty(),
-                turns.empty() ? fmt::format("with {:.2f} to {:.2f} Nm", least_nm, most_nm) : turns,
-                "exert torque_nm in the mode torque, with the sign of position_rad; if the joints need more torque, "
-                "raise torque.push_nm of the profile; a plant that exerts no torques on command: torque.mode: false");
-  report_.judge("torque_order", !order.empty(), order.empty() ? "each joint by itself" : order,
-                "correct the order of the joints in torque_nm; joint 0 is next to the head");
+  report_.pass_unless(
+      "torque_turns", turns, fmt::format("with {:.2f} to {:.2f} Nm", least_nm, most_nm),
+      "exert torque_nm in the mode torque, with the sign of position_rad; if the joints need more torque, "
+      "raise torque.push_nm of the profile; a plant that exerts no torques on command: torque.mode: false");
+  report_.pass_unless("torque_order", order, "each joint by itself",
+                      "correct the order of the joints in torque_nm; joint 0 is next to the head");
   const auto joint = static_cast<std::size_t>(profile_.joints.front());
   const double limit_nm = 0.25 * profile_.push_nm;
   const double found_nm = push_joint(joint, limit_nm).largest_nm;

@@ -34,6 +34,11 @@ class Report {
     if (failed) fail(name, found, todo);
     else pass(name, found);
   }
+  /// pass() with `right` if `wrong` is empty, fail() with what was wrong if not.
+  void pass_unless(const std::string& name, const std::string& wrong, const std::string& right,
+                   const std::string& todo) {
+    judge(name, !wrong.empty(), wrong.empty() ? right : wrong, todo);
+  }
 
   [[nodiscard]] const std::vector<Check>& checks() const { return checks_; }
   [[nodiscard]] const Check& check(const std::string& name) const;

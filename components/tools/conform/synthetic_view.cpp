@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "robot/camera_mount.hpp"
+#include "robot/pose_message.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -110,10 +111,7 @@ msg::CameraInfo SyntheticCamera::info() const {
   info.fx = info.fy = focal_pixels_;
   info.cx = 0.5 * model_.width;
   info.cy = 0.5 * model_.height;
-  const Eigen::Isometry3d X_HC = camera_mount(model_);
-  const Eigen::Quaterniond q(X_HC.linear());
-  const Vector3d p = X_HC.translation();
-  info.X_HC = {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+  info.X_HC = pose_message(camera_mount(model_));
   info.frame_period_s = period_s_;
   return info;
 }

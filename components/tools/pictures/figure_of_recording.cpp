@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "constrictor/constants.hpp"
 #include "pictures/picture_feed.hpp"
@@ -134,7 +135,7 @@ int make_figure(const FigureOptions& options) {
   if (!wrong.empty()) fmt::print(stderr, "figure: images are missing or differ from the run: {}\n", wrong);
   write_whole(options.output,
               figure::draw_figure(heading_of(story), rows, story.torques, kTorqueWindow_s, options.format, scale));
-  fmt::print("wrote {}: {} row{}, {:.1f} MB\n", options.output.string(), rows.size(), rows.size() == 1 ? "" : "s",
+  fmt::print("wrote {}: {}, {:.1f} MB\n", options.output.string(), counted(rows.size(), "row"),
              1e-6 * static_cast<double>(std::filesystem::file_size(options.output)));
   return exit_status::kOk;
 }

@@ -6,6 +6,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/progress_display.hpp"
+#include "configuration/counted.hpp"
 #include "pictures/film_drawer.hpp"
 #include "pictures/film_file.hpp"
 #include "pictures/picture_feed.hpp"
@@ -123,8 +124,8 @@ int make_film(const FilmOptions& options) {
     progress.print(fmt::format("film: {}; {} has the first {} of {} frames, up to {:.2f} s of the run", ended,
                                options.output.string(), film.frames(), times_s.size(), times_s[film.frames() - 1]));
   else
-    progress.print(fmt::format("wrote {}: {} frames, {}, {}, {:.1f} MB", options.output.string(), film.frames(),
-                               duration(shown_s), film.codec(),
+    progress.print(fmt::format("wrote {}: {}, {}, {}, {:.1f} MB", options.output.string(),
+                               counted(film.frames(), "frame"), duration(shown_s), film.codec(),
                                1e-6 * static_cast<double>(std::filesystem::file_size(options.output))));
   if (!wrong.empty()) progress.print("film: images are missing or differ from the run: " + wrong);
   return status;

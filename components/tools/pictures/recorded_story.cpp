@@ -7,12 +7,12 @@
 #include <map>
 
 #include "component/data_path.hpp"
+#include "configuration/temporary_folder.hpp"
 #include "constrictor/text.hpp"
 #include "constrictor/topics.hpp"
 #include "recording/mcap_reader.hpp"
 #include "recording/message_cdr.hpp"
 #include "robot/robot_model.hpp"
-#include "runtime/recorded_run.hpp"
 #include "runtime/version.hpp"
 
 namespace constrictor::pictures {
@@ -120,7 +120,7 @@ class StoryReader {
   }
 
   void complete(const std::string& library) {
-    ScratchFolder folder;
+    const TemporaryFolder folder("replay");
     fs::path robot_file = data_path("components/lib/robot/mamba.yaml");  // of a recording without its robot
     if (!robot_.empty()) {
       robot_file = folder.path() / "robot.yaml";

@@ -21,29 +21,10 @@ namespace py = pybind11;
 using Json = nlohmann::ordered_json;
 using namespace dds::primitives;
 
+/// `kind`: of a number.
 py::dtype dtype_of(std::uint8_t kind) {
-  switch (kind) {
-    case kBoolean:
-      return py::dtype::of<bool>();
-    case kByte:
-      return py::dtype::of<std::uint8_t>();
-    case kInt16:
-      return py::dtype::of<std::int16_t>();
-    case kInt32:
-      return py::dtype::of<std::int32_t>();
-    case kInt64:
-      return py::dtype::of<std::int64_t>();
-    case kUint16:
-      return py::dtype::of<std::uint16_t>();
-    case kUint32:
-      return py::dtype::of<std::uint32_t>();
-    case kUint64:
-      return py::dtype::of<std::uint64_t>();
-    case kFloat32:
-      return py::dtype::of<float>();
-    default:
-      return py::dtype::of<double>();
-  }
+  return with_number_type(
+      kind, []<class T>(T) { return py::dtype::of<T>(); }, [] { return py::dtype::of<double>(); });
 }
 
 /// Builds the Python object of a sample while it is decoded.

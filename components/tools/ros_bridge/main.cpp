@@ -18,6 +18,7 @@
 #include "ros_bridge/bridge.hpp"
 #include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
+#include "runtime/report_exception.hpp"
 #include "runtime/version_text.hpp"
 
 namespace {
@@ -119,11 +120,7 @@ int main(int argc, char** argv) {
   ::sigaction(SIGINT, &action, nullptr);
   try {
     return bridge_run(domain, options, robot);
-  } catch (const ConfigurationError& error) {
-    std::fprintf(stderr, "ros_bridge: configuration: %s\n", error.what());
-    return exit_status::kConfiguration;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "ros_bridge: %s\n", error.what());
-    return exit_status::kSoftware;
+  } catch (...) {
+    return report_exception("ros_bridge");
   }
 }

@@ -1,7 +1,6 @@
 // Measures control's gaits in the simulated world and draws them: a table, gaits.json and gaits.png.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/gaits/gait_trial.hpp"
+#include "bench/measure_main.hpp"
 #include "sim/figure/canvas.hpp"
-#include "support/project.hpp"
 
 namespace constrictor::gaits {
 namespace {
@@ -142,9 +141,8 @@ void draw(const std::filesystem::path& file, const std::vector<Row>& rows, const
   std::ofstream(file, std::ios::binary) << canvas.finish();
 }
 
-int measure(const std::filesystem::path& robot_file, const std::filesystem::path& output) {
+void measure(const std::filesystem::path& robot_file, const std::filesystem::path& output) {
   const RobotModel robot = load_robot(robot_file);
-  std::filesystem::create_directories(output);
   const std::vector<Row> all = rows();
   std::vector<Course> courses;
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -168,23 +166,13 @@ int measure(const std::filesystem::path& robot_file, const std::filesystem::path
   std::ofstream(output / "gaits.json") << json.dump(2) << '\n';
   draw(output / "gaits.png", all, courses);
   fmt::print("\ngaits: {} and {}\n", (output / "gaits.png").string(), (output / "gaits.json").string());
-  return 0;
 }
 
 }  // namespace
 }  // namespace constrictor::gaits
 
 int main(int argc, char** argv) {
-  CLI::App app("measure control's gaits in the simulated world and draw them");
-  std::string robot = constrictor::testing::robot_path("mamba");
-  std::string output = "build/gaits";
-  app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--output", output, "folder for gaits.png and gaits.json");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return constrictor::gaits::measure(robot, output);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "gaits: {}\n", error.what());
-    return 1;
-  }
+  return constrictor::bench::measure_main(argc, argv, "gaits",
+                                          "measure control's gaits in the simulated world and draw them",
+                                          "gaits.png and gaits.json", constrictor::gaits::measure);
 }

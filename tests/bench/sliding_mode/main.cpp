@@ -1,14 +1,13 @@
 // Measures sliding mode control beside the servos' own position control: a table, and sliding_mode.png.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "bench/measure_main.hpp"
 #include "bench/sliding_mode/tracking_trial.hpp"
 #include "sim/figure/canvas.hpp"
-#include "support/project.hpp"
 
 namespace constrictor::sliding_mode {
 namespace {
@@ -99,9 +98,8 @@ void draw(const std::filesystem::path& file, const std::vector<Row>& all, const 
   std::ofstream(file, std::ios::binary) << canvas.finish();
 }
 
-int measure(const std::filesystem::path& robot_file, const std::filesystem::path& output) {
+void measure(const std::filesystem::path& robot_file, const std::filesystem::path& output) {
   const RobotModel robot = load_robot(robot_file);
-  std::filesystem::create_directories(output);
   const std::vector<Row> all = rows();
   std::vector<Tracking> found;
   fmt::print(
@@ -116,23 +114,13 @@ int measure(const std::filesystem::path& robot_file, const std::filesystem::path
   }
   draw(output / "sliding_mode.png", all, found);
   fmt::print("\nsliding_mode: {}\n", (output / "sliding_mode.png").string());
-  return 0;
 }
 
 }  // namespace
 }  // namespace constrictor::sliding_mode
 
 int main(int argc, char** argv) {
-  CLI::App app("measure sliding mode control beside position control in the simulated world");
-  std::string robot = constrictor::testing::robot_path("mamba");
-  std::string output = "build/sliding_mode";
-  app.add_option("--robot", robot, "robot file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--output", output, "folder for sliding_mode.png");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return constrictor::sliding_mode::measure(robot, output);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sliding_mode: {}\n", error.what());
-    return 1;
-  }
+  return constrictor::bench::measure_main(argc, argv, "sliding_mode",
+                                          "measure sliding mode control beside position control in the simulated world",
+                                          "sliding_mode.png", constrictor::sliding_mode::measure);
 }

@@ -103,6 +103,12 @@ class OutsidePlant : public ExampleRun {
     output_ = conform.output() + conform.errors();
     return nlohmann::json::parse(std::ifstream(dir_ / "result.json"), nullptr, false);
   }
+  void keeps_the_contract(const std::string& name) {
+    const nlohmann::json result = conforms(name);
+    EXPECT_EQ(status_, 0) << output_;
+    ASSERT_TRUE(result.is_object()) << output_;
+    EXPECT_TRUE(result["conforms"].get<bool>()) << output_;
+  }
   int status_ = -1;
   std::string output_;
 };

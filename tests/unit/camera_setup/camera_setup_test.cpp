@@ -160,9 +160,15 @@ TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
   EXPECT_NE(text.find("reprojection error 0."), std::string::npos) << text;
   EXPECT_NEAR(video::load_calibration(out, CameraModel{}).fx, true_camera().fx, 3.0);
   EXPECT_NE(run({"show", "--source", source}, 0).find("640 x 480 pixels"), std::string::npos);
-  EXPECT_NE(
-      run({"calibrate", "--source", source, "--board", "8", "--square", "0.03", "--out", out}, 64).find("accepted"),
-      std::string::npos);
+  EXPECT_NE(run({"calibrate", "--source", source, "--board", "8", "--square", "0.03", "--out", out}, 64)
+                .find("--board: found '8', accepted COLUMNSxROWS"),
+            std::string::npos);
+  EXPECT_NE(run({"colours", "--source", source, "--sample", "blue=1,2", "--out", out}, 64)
+                .find("--sample: found 'blue=1,2', accepted COLOUR=X,Y,WIDTH,HEIGHT"),
+            std::string::npos);
+  EXPECT_NE(run({"colours", "--source", source, "--sample", "blue=630,2,20,20", "--out", out}, 1)
+                .find("--sample: found a box of blue beyond the picture"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -197,16 +197,22 @@ TEST(Map, CarriedObjectMovesWithTheBody) {
   EXPECT_NEAR(map.objects[0].x_m, object.x() + 0.5, 0.08);
 }
 
-TEST(Map, LineIsMappedOnceAndCorrectsThePose) {
-  Mapping m;
+/// A line parallel to the x axis of the head.
+msg::LinePercept line_ahead(double y_m) {
   msg::LinePercept line{};
   line.visible = true;
   line.colour = msg::kColourBlue;
   line.point_count = 32;
   for (int i = 0; i < 32; ++i) {
     line.x_m[i] = 0.1 + 0.025 * i;
-    line.y_m[i] = 0.05;
+    line.y_m[i] = y_m;
   }
+  return line;
+}
+
+TEST(Map, LineIsMappedOnceAndCorrectsThePose) {
+  Mapping m;
+  const msg::LinePercept line = line_ahead(0.05);
   for (int k = 0; k < 20; ++k) m.mapper.line(line, {}, k * 5, 0.02);
   EXPECT_GE(m.map().line_point_count, 12);
   EXPECT_LE(m.map().line_point_count, 20);
@@ -219,11 +225,7 @@ TEST(Map, LineIsMappedOnceAndCorrectsThePose) {
 
 TEST(Map, ALineLongerThanTheMessageIsPublishedFromBeginToEnd) {
   Mapping m;
-  msg::LinePercept line{};
-  line.visible = true;
-  line.colour = msg::kColourBlue;
-  line.point_count = 32;
-  for (int i = 0; i < 32; ++i) line.x_m[i] = 0.1 + 0.025 * i;
+  const msg::LinePercept line = line_ahead(0.0);
   // The robot drives along 60 m of line, which 512 points with a spacing of 0.05 m do not cover.
   for (int k = 0; k < 120; ++k) {
     m.mapper.line(line, {}, k * 5, 0.02);

@@ -11,6 +11,13 @@ using enum MissionState;
 
 class DeliveryTest : public PlannerTest {
  protected:
+  /// Begins another mission, in a world where nothing is known.
+  void forget() {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+  }
   /// Green is released, and the task ends.
   void release_green() {
     find_line();
@@ -86,10 +93,7 @@ TEST_F(DeliveryTest, AnObjectSeenOutsideItsZoneIsRetrievedAgain) {
 
 TEST_F(DeliveryTest, AtTheBorderTheLookEndsWithTheLikelierCase) {
   for (const double offset_m : {0.38, 0.42}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     release_green();
     for (int i = 0; i < 950; ++i) {  // inspect_s is 20 s
       map_dropped(msg::kColourGreen, offset_m);
@@ -150,10 +154,7 @@ TEST_F(DeliveryTest, AGlimpseOfAnObjectWhosePlaceIsUncertainIsNotASighting) {
 // The robot is so uncertain of its own place that nothing in its map is precise.
 TEST_F(DeliveryTest, AnUncertainObjectThatStaysInViewIsJudgedByTheMap) {
   for (const double offset_m : {0.1, 0.7}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     release_green();
     map_dropped(msg::kColourGreen, offset_m, 0.3);
     steps(20);

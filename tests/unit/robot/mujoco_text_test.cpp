@@ -93,7 +93,7 @@ TEST(MujocoText, IsXmlForAnyNameOfTheRobot) {
   RobotModel strange = robot("mamba");
   strange.name = "a<b> & \"c\"";
   const auto elements = elements_of(mujoco_model(strange));
-  EXPECT_EQ(elements.front().attributes.at("model"), "a&lt;b> &amp; &quot;c&quot;");
+  EXPECT_EQ(elements.front().attributes.at("model"), "a&lt;b&gt; &amp; &quot;c&quot;");
 }
 
 }  // namespace

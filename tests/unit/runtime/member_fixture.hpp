@@ -32,6 +32,14 @@ class MemberTest : public ::testing::Test {
     event.goal_id = 10 + number;
     member.on_sample(topics::kTaskEvent.id, sample_of(topics::kTaskEvent, number, event));
   }
+  /// A member that has all it needs for the step of the first tick: one joint state, and no event.
+  std::unique_ptr<Member> make_at_first_tick() {
+    auto member = make();
+    member->on_epoch(kEpoch, 1);
+    give_joints(*member, 1);
+    member->on_tick(tick_at(0, visible(1, 0)));
+    return member;
+  }
   /// Output hash after `ticks` steps of a member that nothing happened to.
   static std::array<std::uint8_t, 32> undisturbed_hash(std::int64_t ticks) {
     MemberRecord record;

@@ -40,10 +40,7 @@ TEST_F(MemberStepTest, AStepInAnotherThreadSeesOnlyWhatIsVisibleAtItsTick) {
 }
 
 TEST_F(MemberStepTest, TheFinalTickDuringAStepEndsItAfterTheStep) {
-  const auto member = make();
-  member->on_epoch(kEpoch, 1);
-  give_joints(*member, 1);
-  member->on_tick(tick_at(0, visible(1, 0)));
+  const auto member = make_at_first_tick();
   ASSERT_TRUE(member->begin_step());
   msg::Tick last = tick_at(1);
   last.final_tick = true;
@@ -57,10 +54,7 @@ TEST_F(MemberStepTest, TheFinalTickDuringAStepEndsItAfterTheStep) {
 }
 
 TEST_F(MemberStepTest, AResetDropsTheOutputsOfAStepInProgress) {
-  const auto member = make();
-  member->on_epoch(kEpoch, 1);
-  give_joints(*member, 1);
-  member->on_tick(tick_at(0, visible(1, 0)));
+  const auto member = make_at_first_tick();
   ASSERT_TRUE(member->begin_step());
   member->run_step();
   const EpochId next{kEpoch.run_id, kEpoch.epoch + 1};

@@ -115,10 +115,7 @@ TEST_F(MemberTest, ARestartedMemberContinuesWithTheSameOutputs) {
 }
 
 TEST_F(MemberTest, ADamagedCheckpointIsRejectedOrNamed) {
-  const auto first = make();
-  first->on_epoch(kEpoch, 1);
-  give_joints(*first, 1);
-  first->on_tick(tick_at(0, visible(1, 0)));
+  const auto first = make_at_first_tick();
   ASSERT_TRUE(first->try_step());
   const TickDone& step = record_.steps.back();
 

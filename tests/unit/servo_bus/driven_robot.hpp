@@ -51,6 +51,16 @@ class DrivenRobot : public ::testing::Test {
     run_ =
         std::make_unique<LocalRun>(std::vector<ComponentFactory>{make_servo_bus_factory(open), control}, setup, files);
   }
+  /// Starts the run with the command that relaxes the servos, which stays in force.
+  void start_relaxed() {
+    command_ = [](std::int64_t, msg::JointCommand& command) {
+      command.mode = msg::kServoRelaxed;
+      return true;
+    };
+    start();
+    ticks(20);
+    EXPECT_EQ(torques_on(), 0);
+  }
   void ticks(int count) {
     for (int i = 0; i < count; ++i) {
       bench_.pass_until(next_tick_ns_);

@@ -134,13 +134,7 @@ TEST_F(DrivenRobot, AbsurdAndMissingCommandsAreRefusedAndThePostureIsHeld) {
 }
 
 TEST_F(DrivenRobot, ARelaxedRobotDoesNotJumpWhenItsTorqueComesBack) {
-  command_ = [](std::int64_t, msg::JointCommand& command) {
-    command.mode = msg::kServoRelaxed;
-    return true;
-  };
-  start();
-  ticks(20);
-  EXPECT_EQ(torques_on(), 0);
+  start_relaxed();
   command_ = bend(0.3);
   double fastest_rad = 0.0;
   for (int i = 0; i < 40; ++i) {

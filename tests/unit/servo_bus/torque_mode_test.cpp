@@ -129,13 +129,7 @@ TEST_F(DrivenRobot, AServoWhoseBusIsSilentDoesNotPushOn) {
 }
 
 TEST_F(DrivenRobot, RelaxedJointsMayBePushedAndRelaxedAgain) {
-  command_ = [](std::int64_t, msg::JointCommand& command) {
-    command.mode = msg::kServoRelaxed;
-    return true;
-  };
-  start();
-  ticks(20);
-  EXPECT_EQ(torques_on(), 0);
+  start_relaxed();
   const double before_rad = true_angle_rad(2);
   const auto relaxed = command_;
   command_ = push(2, 1.5);

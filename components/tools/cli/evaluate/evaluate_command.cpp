@@ -18,6 +18,7 @@
 #include "cli/run_command.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
@@ -56,7 +57,7 @@ fs::path new_folder(const RunOptions& options) {
 void write_summary(const Evaluation& evaluation, const EvaluationRequest& request) {
   PageContent page;
   page.scenario = evaluation.scenario();
-  page.about = fmt::format("Constrictor {}, {} seeds, robot {}, manifest {}", kVersion, request.seeds.size(),
+  page.about = fmt::format("Constrictor {}, {}, robot {}, manifest {}", kVersion, counted(request.seeds.size(), "seed"),
                            request.run.robot.empty() ? "of the manifest" : request.run.robot, request.run.manifest);
   page.planned = evaluation.runs().size();
   page.variants = evaluation.variants();
@@ -85,8 +86,9 @@ int evaluate(const EvaluateOptions& given) {
   const std::string folder = evaluation.folder().string();
   int signal = 0;
   if (given.merge.empty()) {
-    fmt::print("evaluation of {}: {} runs, {} at a time, in {}\n", evaluation.scenario(),
-               (evaluation.runs().size() + request.shards - request.shard) / request.shards, request.jobs, folder);
+    fmt::print("evaluation of {}: {}, {} at a time, in {}\n", evaluation.scenario(),
+               counted((evaluation.runs().size() + request.shards - request.shard) / request.shards, "run"),
+               request.jobs, folder);
     ProgressDisplay display;
     signal = evaluation.carry_out([&](const std::string& line) { display.print(line); },
                                   [&](const std::string& line) { display.show_status(line); });
@@ -101,11 +103,10 @@ int evaluate(const EvaluateOptions& given) {
   const auto errors = static_cast<std::size_t>(
       std::count_if(results.begin(), results.end(), [](const MissionResult& result) { return result.error(); }));
   if (errors > 0) {
-    fmt::print(
-        stderr,
-        "{} run{} ended with an error, see run.log in the folder of each; the same command with --output {} does "
-        "them again\n",
-        errors, errors == 1 ? "" : "s", folder);
+    fmt::print(stderr,
+               "{} ended with an error, see run.log in the folder of each; the same command with --output {} does "
+               "them again\n",
+               counted(errors, "run"), folder);
   }
   return errors > 0 ? exit_status::kSoftware : exit_status::kOk;
 }

@@ -20,6 +20,7 @@
 #include "cli/signal_queue.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "runtime/host.hpp"
 
@@ -186,7 +187,7 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
     ++done;
     succeeded += result->success ? 1 : 0;
   }
-  if (done > 0) show(fmt::format("{} runs were done before, {} are left", done, due.size()));
+  if (done > 0) show(fmt::format("{} done before, {} left", counted(done, "run"), due.size()));
   const std::size_t before = done, all = done + due.size();
   const SignalQueue signals;
   const auto begin = Clock::now();

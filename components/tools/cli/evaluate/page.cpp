@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/evaluate/svg_chart.hpp"
+#include "configuration/xml_escaped.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -55,7 +56,7 @@ std::string overview(const std::vector<VariantSummary>& summaries) {
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td class=\"n\">{} m</td>"
         "<td class=\"n\">{}</td></tr>\n",
-        escaped(summary.name), summary.runs, summary.successes(), interval_text(summary.successes(), summary.runs),
+        xml_escaped(summary.name), summary.runs, summary.successes(), interval_text(summary.successes(), summary.runs),
         summary.false_successes, summary.errors, known(summary.sim_time_s.at(0.5), 1),
         known(summary.placement_m.at(0.5), 3), known(summary.placement_m.at(0.95), 3),
         known(summary.cost_of_transport.at(0.5), 2));
@@ -187,9 +188,10 @@ std::string run_rows(const PageContent& content, bool successes) {
     rows += fmt::format(
         "<tr><td><a href=\"{}/\">{}</a></td><td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td><td><code>{}</code></td></tr>\n",
-        escaped(result.folder.string()), result.seed, escaped(content.variants.at(result.variant).name),
-        successes ? "" : "bad", successes ? "succeeded" : escaped((result.error() ? "error: " : "") + result.reason),
-        known(result.sim_time_s, 1), known(worst_m, 2), result.recoveries, escaped(result.command));
+        xml_escaped(result.folder.string()), result.seed, xml_escaped(content.variants.at(result.variant).name),
+        successes ? "" : "bad",
+        successes ? "succeeded" : xml_escaped((result.error() ? "error: " : "") + result.reason),
+        known(result.sim_time_s, 1), known(worst_m, 2), result.recoveries, xml_escaped(result.command));
   }
   return rows;
 }
@@ -209,7 +211,7 @@ std::string make_page(const PageContent& content) {
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Evaluation of {0}</title>"
       "<style>{1}</style></head>\n<body><h1>Evaluation of {0}</h1>\n<p class=\"note\">{2}</p>\n",
-      escaped(content.scenario), kStyle, escaped(content.about));
+      xml_escaped(content.scenario), kStyle, xml_escaped(content.about));
   if (content.results.size() < content.planned) {
     html += fmt::format("<p class=\"bad\">{} of {} runs are done; the others are missing in all figures.</p>\n",
                         content.results.size(), content.planned);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "configuration/xml_escaped.hpp"
+
 namespace constrictor::cli {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kCurveLeft = 64, kCurveRight = 20, kCurveHeight = 300;
 std::string text(double x, double y, const std::string& words, const char* anchor = "start",
                  const std::string& more = {}) {
   return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}"{}>{}</text>)", x, y, anchor,
-                     more.empty() ? "" : " " + more, escaped(words));
+                     more.empty() ? "" : " " + more, xml_escaped(words));
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* style) {
@@ -27,7 +29,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* style) 
 
 std::string begin(const std::string& title, double height) {
   return fmt::format(R"(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">)", kWidth, height,
-                     escaped(title)) +
+                     xml_escaped(title)) +
          text(0, 16, title, "start", R"(class="title")");
 }
 
@@ -102,29 +104,6 @@ std::string draw(const Curve& curve, std::size_t colour, const Axis& x, const Ax
 const char* series_colour(std::size_t index) {
   static constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
   return kColours[index % kColours.size()];
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return result;
 }
 
 std::string bar_chart(const std::string& title, const std::vector<Bar>& bars, double full, const std::string& unit,

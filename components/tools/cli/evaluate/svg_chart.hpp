@@ -11,9 +11,6 @@ namespace constrictor::cli {
 /// Colours of series that colour-blind readers can distinguish. Source: M. Okabe and K. Ito, Color Universal Design.
 [[nodiscard]] const char* series_colour(std::size_t index);
 
-/// Text for HTML and SVG.
-[[nodiscard]] std::string escaped(const std::string& text);
-
 struct Bar {
   std::string name;
   double value = 0;      ///< from 0 to the chart's `full`

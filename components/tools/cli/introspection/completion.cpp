@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "cli/subcommands.hpp"
@@ -51,32 +52,13 @@ std::string typed(std::string list) {
   return words;
 }
 
-std::string topic_words() {
-  std::string words;
-  for (const auto& info : topics::kInfos) words += (words.empty() ? "" : " ") + std::string(info.name);
-  return words;
-}
-
-std::string type_words() {
-  std::string words;
-  std::vector<std::string_view> known;
+/// The different values of a column of the table of topics, in the order of its rows.
+std::string words_of(std::string_view TopicInfo::*column) {
+  std::vector<std::string_view> words;
   for (const auto& info : topics::kInfos) {
-    if (std::count(known.begin(), known.end(), info.type) > 0) continue;
-    known.push_back(info.type);
-    words += (words.empty() ? "" : " ") + std::string(info.type);
+    if (std::count(words.begin(), words.end(), info.*column) == 0) words.push_back(info.*column);
   }
-  return words;
-}
-
-std::string component_words() {
-  std::string words;
-  std::vector<std::string_view> known;
-  for (const auto& info : topics::kInfos) {
-    if (std::count(known.begin(), known.end(), info.writer) > 0) continue;
-    known.push_back(info.writer);
-    words += (words.empty() ? "" : " ") + std::string(info.writer);
-  }
-  return words;
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::string names_command(const std::string& kind) { return "constrictor list " + kind + " --names 2>/dev/null"; }
@@ -88,17 +70,17 @@ Values values_of_path(const std::string& path) {
   if (path == "task start") return {typed(task_words()), ""};
   if (path == "completion") return {"bash zsh fish", ""};
   if (path == "pace") return {"lockstep 1x 2x", ""};
-  if (path == "node info" || path == "host") return {component_words(), ""};
+  if (path == "node info" || path == "host") return {words_of(&TopicInfo::writer), ""};
   if (path == "list") return {"scenarios robots manifests components", ""};
   if (path == "run" || path == "check") return {"", names_command("scenarios")};
-  if (path == "topic find") return {type_words(), ""};
-  if (path.rfind("topic ", 0) == 0 && path != "topic list") return {topic_words(), ""};
+  if (path == "topic find") return {words_of(&TopicInfo::type), ""};
+  if (path.rfind("topic ", 0) == 0 && path != "topic list") return {words_of(&TopicInfo::name), ""};
   return {};
 }
 
 /// Values of an option. An option name has the same meaning in all subcommands.
 Values values_of_option(const std::string& name) {
-  if (name == "type") return {type_words(), ""};
+  if (name == "type") return {words_of(&TopicInfo::type), ""};
   if (name == "event") return {typed(event_words()), ""};
   if (name == "direction") return {typed(direction_words()), ""};
   if (name.size() > 7 && name.compare(name.size() - 7, 7, "-colour") == 0) return {typed(colour_words()), ""};
@@ -106,7 +88,7 @@ Values values_of_option(const std::string& name) {
   if (name == "goal") return {"any", ""};
   if (name == "manifest") return {"", names_command("manifests")};
   if (name == "robot") return {"", names_command("robots")};
-  if (name == "group") return {component_words(), ""};
+  if (name == "group") return {words_of(&TopicInfo::writer), ""};
   return {};
 }
 

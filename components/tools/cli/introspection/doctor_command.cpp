@@ -18,6 +18,7 @@
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
 #include "component/data_path.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/json.hpp"
 #include "cyclone/endpoint.hpp"
 #include "runtime/host.hpp"
@@ -143,8 +144,9 @@ nlohmann::ordered_json json_of(const Diagnosis& diagnosis) {
 }
 
 void tell(const Diagnosis& diagnosis) {
-  fmt::print("domain {}: {} processes, {} readers and writers\n", diagnosis.facts.domain,
-             diagnosis.facts.participants.size(), diagnosis.facts.endpoints.size());
+  fmt::print("domain {}: {}, {}\n", diagnosis.facts.domain,
+             counted(diagnosis.facts.participants.size(), "process", "processes"),
+             counted(diagnosis.facts.endpoints.size(), "reader or writer", "readers and writers"));
   for (const auto& finding : diagnosis.findings) tell(finding);
   if (diagnosis.findings.empty()) fmt::print("no fault found\n");
 }

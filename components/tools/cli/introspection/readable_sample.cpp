@@ -1,8 +1,12 @@
 #include "cli/introspection/readable_sample.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "cli/task_request.hpp"
+#include "client/goal_tracker.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/field_table.hpp"
 
@@ -46,5 +50,15 @@ void change_fields(Json& sample, std::string_view type, Arrays arrays) {
 }  // namespace
 
 void make_readable(Json& sample, const std::string& type, Arrays arrays) { change_fields(sample, type, arrays); }
+
+void name_goals(Json& sample) {
+  if (!sample.is_structured()) return;
+  for (const auto& [name, value] : sample.items()) {
+    // In a request, the field is already the number that the source has given to the goal.
+    const bool whole_id = name == "goal_id" && value.is_number_unsigned() && goal_level(value.get<std::uint64_t>()) > 0;
+    if (whole_id) value = fmt::format("{}, goal {}", value.get<std::uint64_t>(), goal_text(value.get<std::uint64_t>()));
+    else name_goals(value);
+  }
+}
 
 }  // namespace constrictor::cli

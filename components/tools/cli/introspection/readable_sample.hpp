@@ -15,4 +15,8 @@ enum class Arrays { kUsed, kWhole };
 /// define, or that does not fit its type, stays as it is.
 void make_readable(nlohmann::ordered_json& sample, const std::string& type, Arrays arrays);
 
+/// For people: adds to each id of a goal the number by which the commands name the goal, "844424930131970, goal 2". The
+/// sample, or a part of it, must be one of the project's own types.
+void name_goals(nlohmann::ordered_json& sample);
+
 }  // namespace constrictor::cli

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "configuration/counted.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/sha256.hpp"
 
@@ -56,7 +57,7 @@ void summarise_bytes(Json& sample, const dds::TypeNode& type) {
 
 void apply(Json& sample, const SampleView& view) {
   if (sample.is_array() && view.no_arrays) {
-    sample = fmt::format("<{} value{}>", sample.size(), sample.size() == 1 ? "" : "s");
+    sample = fmt::format("<{}>", counted(sample.size(), "value"));
   } else if (sample.is_structured()) {
     for (Json& part : sample) apply(part, view);
   } else if (sample.is_number_float() && view.precision) {

@@ -17,6 +17,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
@@ -110,8 +111,8 @@ std::string run_line(const RunNote& run, const RunView& view) {
     const auto& authority = *view.authority;
     std::string who = authority_text(authority);
     if (authority.refused_count > 0)
-      who += fmt::format("; {} request{} refused, the last one from {}: {}", authority.refused_count,
-                         authority.refused_count == 1 ? "" : "s", authority.refused_source, authority.refusal);
+      who += fmt::format("; {} refused, the last one from {}: {}", counted(authority.refused_count, "request"),
+                         authority.refused_source, authority.refusal);
     line += "\n" + wrapped(who, 0);
   }
   if (view.mission && *view.mission->reason)
@@ -221,7 +222,16 @@ void print_run(const RunNote& run) {
              run.report_dir.string());
 }
 
+/// A replay is no run, so that no command chooses it by itself.
+void print_replays() {
+  for (const auto domain : live_replays()) {
+    fmt::print("replay of a recording in DDS domain {0}: `constrictor dashboard --run {0}` shows and seeks it\n",
+               domain);
+  }
+}
+
 int status(const StatusOptions& options) {
+  if (!options.view.json && !options.view.domain) print_replays();
   const auto runs = live_runs();
   if (!options.view.json && !options.view.domain && runs.size() > 1) {
     for (const auto& run : runs) print_run(run);

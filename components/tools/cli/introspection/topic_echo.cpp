@@ -10,6 +10,7 @@
 #include "cli/introspection/sample_filter.hpp"
 #include "cli/introspection/topic_watch.hpp"
 #include "cli/usage.hpp"
+#include "constrictor/field_table.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/sha256.hpp"
 #include "cyclone/type_tree.hpp"
@@ -98,6 +99,7 @@ class Echo {
       json = std::move(*found);
     }
     apply(json, options_.shown);
+    if (!json_ && fields_of(type_)) name_goals(json);
     if (json_) fmt::print("{}\n", json_text(json));
     else if (json.is_object()) fmt::print("{}---\n", as_text(json));
     else fmt::print("{}\n", json.is_string() ? json.get<std::string>() : json_text(json));

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "cli/introspection/topic_watch.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/json.hpp"
 #include "recording/message_cdr.hpp"
 #include "runtime/host.hpp"
@@ -97,16 +98,16 @@ std::string amount(double bytes) {
 std::string rate_text(const Meter& meter) {
   std::string text = fmt::format("{:.2f} Hz", meter.wall.rate_hz());
   if (meter.robot.any()) text += fmt::format(" ({:.2f} Hz in the robot's time)", meter.robot.rate_hz());
-  return text + fmt::format(", {} samples, {:.1f} to {:.1f} ms apart, deviation {:.1f} ms; {:.0f} bytes each",
-                            meter.wall.samples, meter.interval_s.least * 1e3, meter.interval_s.greatest * 1e3,
-                            meter.interval_s.deviation() * 1e3, meter.size.mean);
+  return text + fmt::format(", {}, {:.1f} to {:.1f} ms apart, deviation {:.1f} ms; {:.0f} bytes each",
+                            counted(meter.wall.samples, "sample"), meter.interval_s.least * 1e3,
+                            meter.interval_s.greatest * 1e3, meter.interval_s.deviation() * 1e3, meter.size.mean);
 }
 
 std::string bandwidth_text(const Meter& meter) {
   std::string text = amount(meter.wall.bytes_per_s()) + "/s";
   if (meter.robot.any()) text += fmt::format(" ({}/s in the robot's time)", amount(meter.robot.bytes_per_s()));
-  return text + fmt::format(", {} samples of {} to {}, {} on average", meter.wall.samples, amount(meter.size.least),
-                            amount(meter.size.greatest), amount(meter.size.mean));
+  return text + fmt::format(", {} of {} to {}, {} on average", counted(meter.wall.samples, "sample"),
+                            amount(meter.size.least), amount(meter.size.greatest), amount(meter.size.mean));
 }
 
 int measure(const ViewOptions& view, const WatchOptions& options, std::string (*text_of)(const Meter&)) {
@@ -160,8 +161,8 @@ int delay_command(const ViewOptions& view, const WatchOptions& options) {
   Statistics delay;
   double told_s = 0.0;
   const auto tell = [&] {
-    fmt::print("delay {:.3f} ms, {:.3f} to {:.3f} ms, deviation {:.3f} ms, {} samples\n", delay.mean * 1e3,
-               delay.least * 1e3, delay.greatest * 1e3, delay.deviation() * 1e3, delay.count);
+    fmt::print("delay {:.3f} ms, {:.3f} to {:.3f} ms, deviation {:.3f} ms, {}\n", delay.mean * 1e3, delay.least * 1e3,
+               delay.greatest * 1e3, delay.deviation() * 1e3, counted(delay.count, "sample"));
     std::fflush(stdout);
   };
   Watcher watcher;

@@ -18,6 +18,7 @@
 #include "cli/usage.hpp"
 #include "client/source.hpp"
 #include "client/topic_publisher.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
@@ -118,8 +119,9 @@ int publish_once(TopicPublisher& publisher, const std::vector<std::uint8_t>& byt
   const bool command = publishes_commands(options.topic);
   for (int i = 1; command && i < kRepeats && sleep_until(Clock::now() + kRepeatEvery); ++i) publisher.write(bytes);
   const bool arrived = publisher.flush(kFlush);
-  fmt::print("published on {} for {} reader{}{}\n", options.topic, publisher.readers(),
-             publisher.readers() == 1 ? "" : "s", arrived ? "" : "; not every reader has confirmed it within 2 s");
+  fmt::print("published on {} for {}{}\n", options.topic,
+             counted(static_cast<std::uint64_t>(publisher.readers()), "reader"),
+             arrived ? "" : "; not every reader has confirmed it within 2 s");
   return exit_status::kOk;
 }
 
@@ -160,7 +162,7 @@ int pub_command(const ViewOptions& view_options, const PubOptions& options) {
     next += period;
   }
   static_cast<void>(publisher.flush(kFlush));
-  fmt::print("published {} message{} on {}\n", sent, sent == 1 ? "" : "s", options.topic);
+  fmt::print("published {} on {}\n", counted(sent, "message"), options.topic);
   return exit_status::kOk;
 }
 

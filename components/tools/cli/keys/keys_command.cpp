@@ -14,6 +14,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/counted.hpp"
 #include "cyclone/security.hpp"
 #include "runtime/host.hpp"
 
@@ -44,7 +45,7 @@ void issue(const fs::path& folder, const std::string& name, const Rights& rights
   write_key(own / "key.pem", *identity.key);
   write_certificate(own / "certificate.pem", *identity.certificate);
   write_text(own / "permissions.p7s", permissions.sign(permissions_document(subject_of(name), rights, days)));
-  fmt::print("  {:<24} writes {} topics, reads {}\n", name, rights.publish.size(), rights.subscribe.size());
+  fmt::print("  {:<24} writes {}, reads {}\n", name, counted(rights.publish.size(), "topic"), rights.subscribe.size());
 }
 
 int keys(const KeysOptions& options) {

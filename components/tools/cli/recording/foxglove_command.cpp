@@ -11,6 +11,7 @@
 #include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "recording/mcap_copy.hpp"
 #include "runtime/host.hpp"
@@ -101,8 +102,8 @@ int foxglove(const FoxgloveOptions& options) {
     CopyForViewers copy(recording, file.part());
     copy.make();
     file.complete();
-    ProgressDisplay().print(fmt::format("wrote {}: {:.1f} MB, with {} messages for viewers", options.output,
-                                        static_cast<double>(copy.size()) * 1e-6, copy.views()));
+    ProgressDisplay().print(fmt::format("wrote {}: {:.1f} MB, with {} for viewers", options.output,
+                                        static_cast<double>(copy.size()) * 1e-6, counted(copy.views(), "message")));
     if (copy.images() == 0)
       fmt::print(
           "it has no camera images, because the recording has none; `constrictor replay --restore` computes "

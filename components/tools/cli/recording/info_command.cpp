@@ -10,6 +10,7 @@
 #include "cli/recording/recording_text.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
 #include "recording/mcap_reader.hpp"
@@ -104,7 +105,7 @@ int show_info(const InfoOptions& options) {
   if (!summary.mission.empty()) fmt::print("mission {}\n", summary.mission);
   print_topics(summary);
   if (!summary.attachments.empty()) fmt::print("\nattachments:\n");
-  for (const auto& [name, bytes] : summary.attachments) fmt::print("  {} ({} bytes)\n", name, bytes);
+  for (const auto& [name, bytes] : summary.attachments) fmt::print("  {} ({})\n", name, counted(bytes, "byte"));
   if (!summary.events.empty()) fmt::print("\nevents:\n");
   for (const auto& event : summary.events) {
     fmt::print("  {:>8.2f} s  {}{}\n", event.time_s, event.text,
@@ -121,9 +122,10 @@ int recover_damaged(const fs::path& file) {
   const mcap::Recovered recovered = mcap::copy_undamaged(file, copy.part());
   fs::rename(file, kept);
   copy.complete();
-  fmt::print("{}: {} messages in {} chunks, {} bytes in {} place{} left out ({}); the damaged file is {}\n",
-             file.string(), recovered.messages, recovered.chunks, recovered.left_out_bytes, recovered.places,
-             recovered.places == 1 ? "" : "s", recovered.why, kept.string());
+  fmt::print("{}: {} in {}, {} in {} left out ({}); the damaged file is {}\n", file.string(),
+             counted(recovered.messages, "message"), counted(recovered.chunks, "chunk"),
+             counted(recovered.left_out_bytes, "byte"), counted(recovered.places, "place"), recovered.why,
+             kept.string());
   return exit_status::kOk;
 }
 
@@ -145,8 +147,8 @@ int recover(const std::string& name) {
   const std::uint64_t kept = reader.data_end();
   mcap::Writer writer(reader);
   writer.finish({{"recovered", {{"cut_bytes", std::to_string(before - std::min(before, kept))}, {"reason", why}}}});
-  fmt::print("{}: {} messages in {} chunks, {} bytes cut ({})\n", file, writer.contents().statistics.message_count,
-             writer.contents().chunks.size(), before - std::min(before, kept), why);
+  fmt::print("{}: {} in {}, {} cut ({})\n", file, counted(writer.contents().statistics.message_count, "message"),
+             counted(writer.contents().chunks.size(), "chunk"), counted(before - std::min(before, kept), "byte"), why);
   return exit_status::kOk;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/recording/key_input.hpp"
+#include "cli/recording/recording_text.hpp"
 #include "cli/recording/replay_control.hpp"
 #include "cli/recording/replayed_topics.hpp"
 #include "cli/recording/topic_pattern.hpp"
@@ -100,7 +101,7 @@ class Player {
 
   void report_end() {
     if (std::exchange(told_end_, true)) return;
-    fmt::print("{} messages of {} topics in DDS domain {}\n", count_, writers_.size(), claim_.domain());
+    fmt::print("{} in DDS domain {}\n", amount_text(count_, writers_.size()), claim_.domain());
     std::fflush(stdout);
   }
 

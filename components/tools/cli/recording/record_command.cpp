@@ -162,7 +162,7 @@ int record(const RecordOptions& options) {
     }
     if (now - told < 5s) continue;
     told = now;
-    fmt::print("{} messages of {} topics, {:.1f} MB\n", recorder.messages(), recorder.topics(),
+    fmt::print("{}, {:.1f} MB\n", amount_text(recorder.messages(), recorder.topics()),
                static_cast<double>(recorder.bytes()) * 1e-6);
     std::fflush(stdout);
   }

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include "configuration/counted.hpp"
 #include "runtime/recording_options.hpp"
 
 namespace constrictor::cli {
 
+std::string amount_text(std::uint64_t messages, std::size_t topics) {
+  return fmt::format("{} of {}", counted(messages, "message"), counted(topics, "topic"));
+}
+
 std::string describe_recording(const RecordingSummary& summary) {
-  std::string text = fmt::format("{} messages of {} topics, {:.1f} MB, {:.1f} s", summary.messages,
-                                 summary.topics.size(), static_cast<double>(summary.file_bytes) * 1e-6,
+  std::string text = fmt::format("{}, {:.1f} MB, {:.1f} s", amount_text(summary.messages, summary.topics.size()),
+                                 static_cast<double>(summary.file_bytes) * 1e-6,
                                  static_cast<double>(summary.end_ns - summary.start_ns) * 1e-9);
   const auto entry = [](const mcap::Texts& texts, const char* name) {
     const auto found = texts.find(name);

@@ -1,6 +1,8 @@
 // The summary of a recording as one sentence.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,7 +13,10 @@ namespace constrictor::cli {
 
 inline constexpr int kMissing = 1;  ///< exit status: the recording is not complete
 
-/// "84,123 messages of 40 topics, 12.3 MB, 120.0 s; nothing is missing".
+/// "84123 messages of 40 topics".
+[[nodiscard]] std::string amount_text(std::uint64_t messages, std::size_t topics);
+
+/// "84123 messages of 40 topics, 12.3 MB, 120.0 s; nothing is missing".
 [[nodiscard]] std::string describe_recording(const RecordingSummary& summary);
 
 /// The content of the recording in a report directory, for report.json; "text" is a line for people. Null: there is

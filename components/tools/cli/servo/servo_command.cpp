@@ -16,6 +16,7 @@
 #include "cli/servo/servo_access.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "configuration/counted.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -61,7 +62,7 @@ int scan(const ServoOptions& options) {
     const auto found = access.scan();
     count += found.size();
     if (found.empty()) continue;
-    fmt::print("{} at {} bit/s: {} device{}\n", options.port, baud, found.size(), found.size() == 1 ? "" : "s");
+    fmt::print("{} at {} bit/s: {}\n", options.port, baud, counted(found.size(), "device"));
     print_devices(access, found);
   }
   if (count > 0) return exit_status::kOk;

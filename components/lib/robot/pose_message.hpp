@@ -1,0 +1,16 @@
+// Poses in space as messages.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "constrictor/messages.hpp"
+
+namespace constrictor {
+
+inline msg::Pose3 pose_message(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+}
+
+}  // namespace constrictor
