@@ -1,86 +1,11 @@
 // The conductor, called directly: which members it accepts, when it sends a tick, which samples the tick makes visible,
 // and which reports of members it recognises as impossible.
-#include "barrier/conductor.hpp"
-
-#include <gtest/gtest.h>
-
 #include <limits>
 
-#include "barrier_fixture.hpp"
+#include "conductor_fixture.hpp"
 
 namespace constrictor::testing {
 namespace {
-
-constexpr std::uint8_t kEvents = topics::kTaskEvent.id;
-constexpr std::uint8_t kJoints = topics::kJointState.id;
-
-class ConductorTest : public ::testing::Test {
- protected:
-  static ConductorOptions options() {
-    ConductorOptions options;
-    options.run_id = kEpoch.run_id;
-    options.roster = {"physics", "navigation"};
-    options.plant = "physics";
-    options.idl_hash = "idl";
-    options.config_hash = "config";
-    options.numeric_profile = "profile";
-    return options;
-  }
-  static Hello hello(const std::string& component, std::uint32_t incarnation = 1) {
-    Hello hello;
-    hello.component = component;
-    hello.incarnation = incarnation;
-    hello.pid = 100 + static_cast<int>(incarnation);
-    hello.host = "here";
-    hello.idl_hash = "idl";
-    hello.config_hash = "config";
-    hello.component_hash = "own";
-    hello.numeric_profile = "profile";
-    hello.writes = component == "navigation" ? TopicSet::of(topics::kTaskEvent) : TopicSet::of(topics::kJointState);
-    return hello;
-  }
-  void begin() {
-    conductor_.on_hello(hello("physics"));
-    conductor_.on_hello(hello("navigation"));
-    conductor_.on_ready("physics", kEpoch, 1);
-    conductor_.on_ready("navigation", kEpoch, 1);
-  }
-  /// A step of navigation at tick `index` after which it has written `count` events.
-  static TickDone step(std::int64_t index, std::uint64_t count, std::uint32_t incarnation = 1) {
-    TickDone done;
-    done.component = "navigation";
-    done.epoch = kEpoch;
-    done.incarnation = incarnation;
-    done.index = index;
-    done.published = {{kEvents, count}};
-    done.state = "state after " + std::to_string(index);
-    done.written = {{kEvents, "event of " + std::to_string(index)}};
-    return done;
-  }
-  static TickDone plant_step(std::int64_t index) {
-    TickDone done;
-    done.component = "physics";
-    done.epoch = kEpoch;
-    done.index = index;
-    return done;
-  }
-  void tick() { conductor_.tick({{kJoints, static_cast<std::uint64_t>(conductor_.next_index() + 1)}}); }
-  /// Ticks 0 to `last`, with one event in each step.
-  void run_to(std::int64_t last) {
-    for (std::int64_t k = conductor_.next_index(); k <= last; ++k) {
-      ASSERT_TRUE(conductor_.may_tick()) << k;
-      tick();
-      conductor_.on_done(plant_step(k));
-      conductor_.on_done(step(k, static_cast<std::uint64_t>(k + 1)));
-    }
-  }
-  [[nodiscard]] std::string last_refusal() const {
-    return record_.refusals.empty() ? "" : record_.refusals.back().second;
-  }
-
-  ConductorRecord record_;
-  Conductor conductor_{options(), static_cast<ConductorSink&>(record_)};
-};
 
 TEST_F(ConductorTest, TheEpochBeginsWithTheLastHelloAndTicksWithTheLastReady) {
   conductor_.on_hello(hello("physics"));
@@ -174,23 +99,6 @@ TEST_F(ConductorTest, ARunThatIsOverTakesBackItsOwnProcessesAndNoOthers) {
   EXPECT_EQ(record_.resumes[0].index, 3);
 }
 
-TEST_F(ConductorTest, ARepeatedHelloIsAnsweredByTheSameResumeUntilTheMemberIsReady) {
-  begin();
-  run_to(3);
-  const Hello restarted = hello("navigation", 2);
-  for (int i = 0; i < 3; ++i) conductor_.on_hello(restarted);
-  ASSERT_EQ(record_.resumes.size(), 3u);
-  for (const Resume& resume : record_.resumes) {
-    EXPECT_EQ(resume.component, "navigation");
-    EXPECT_EQ(resume.incarnation, 2u);
-    EXPECT_EQ(resume.index, 3);
-    EXPECT_EQ(resume.state, record_.resumes[0].state);
-  }
-  conductor_.on_ready("navigation", kEpoch, 2);
-  conductor_.on_hello(restarted);
-  EXPECT_EQ(record_.resumes.size(), 3u) << "a member that is ready has received it";
-}
-
 TEST_F(ConductorTest, ImpossibleReportsAreRecognisedWithTheReason) {
   begin();
   run_to(3);
@@ -221,41 +129,6 @@ TEST_F(ConductorTest, MessagesOfAnotherRunOrOfAnUnknownIncarnationAreForeign) {
   EXPECT_TRUE(conductor_.foreign("navigation", {kEpoch.run_id + 1, 1}, 1));
   EXPECT_TRUE(conductor_.foreign("navigation", {kEpoch.run_id, 2}, 1));
   EXPECT_NE(conductor_.foreign("", kEpoch, 1).value_or("").find("accepted one of the roster"), std::string::npos);
-}
-
-TEST_F(ConductorTest, ARestartedMemberGetsItsLastStateAndAsManyOutputsAsTheTopicKeeps) {
-  begin();
-  const auto last = static_cast<std::int64_t>(topics::kTaskEvent.depth) + 5;
-  run_to(last);
-  conductor_.on_hello(hello("navigation", 2));
-  ASSERT_EQ(record_.resumes.size(), 1u);
-  const Resume& resume = record_.resumes[0];
-  EXPECT_EQ(resume.index, last);
-  EXPECT_EQ(resume.incarnation, 2u);
-  EXPECT_EQ(resume.state, "state after " + std::to_string(last));
-  ASSERT_EQ(resume.outputs.size(), topics::kTaskEvent.depth);
-  EXPECT_EQ(resume.outputs.back().bytes, "event of " + std::to_string(last));
-  EXPECT_FALSE(conductor_.may_tick()) << "the restarted member must send Ready again";
-  conductor_.on_ready("navigation", kEpoch, 2);
-  ASSERT_TRUE(conductor_.may_tick());
-  tick();
-  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 1)))
-      << "the message is from the dead incarnation";
-  EXPECT_TRUE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2)));
-  EXPECT_FALSE(conductor_.on_done(step(last + 1, static_cast<std::uint64_t>(last + 2), 2)))
-      << "the step was done before";
-}
-
-TEST_F(ConductorTest, AMemberWithoutCheckpointsCannotBeResumed) {
-  begin();
-  tick();
-  TickDone bare = step(0, 1);
-  bare.state.clear();
-  bare.written.clear();
-  conductor_.on_done(bare);
-  conductor_.on_hello(hello("navigation", 2));
-  EXPECT_EQ(last_refusal(), "it cannot be resumed: its TickDone carried no checkpoint");
-  EXPECT_EQ(conductor_.incarnation("navigation"), 1u);
 }
 
 TEST_F(ConductorTest, TheRunEndsWhenTheRequestBecomesVisibleOrAtTheLastTick) {
