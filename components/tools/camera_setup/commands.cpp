@@ -178,6 +178,12 @@ int mount(const Options& options) {
           fmt::format("the error is {:.3f} pixel, accepted at most {:g} (--largest-error); is the calibration that "
                       "of this camera? Nothing was written",
                       found.error_px, options.largest_error_px));
+    if (const std::string doubt = doubt_of_mount(found.X_HC, expected); !doubt.empty()) {
+      if (!options.accept_mount)
+        throw Failed(fmt::format(
+            "{} If the camera really is there, --accept-mount accepts the mount. Nothing was written", doubt));
+      fmt::print("careful: {}\n", doubt);
+    }
     lens.X_HC = found.X_HC;
     write(options.out.empty() ? fs::path(options.calibration) : options.out,
           calibration_text(lens, true, "constrictor camera calibrate and mount"));

@@ -33,6 +33,7 @@ struct Options {
   double largest_error_px = 1.0;
   std::vector<double> at_m;
   double yaw_deg = 0.0;
+  bool accept_mount = false;  ///< also a mount that is hardly plausible
   std::vector<std::string> samples;
 };
 
