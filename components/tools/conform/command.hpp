@@ -14,11 +14,10 @@
 namespace constrictor::conform {
 
 struct Options {
-  std::uint32_t domain = 0;
+  std::optional<std::uint32_t> domain;  ///< in which the part is already; not with a manifest
   std::uint16_t robot_id = 1;
   std::string robot = "mamba", profile, json, manifest;
-  std::string restart_command;            ///< ends the plant's process and starts it again; empty: not given
-  std::optional<std::uint32_t> observed;  ///< domain of a run that goes on, of a part that can be observed
+  std::string restart_command;  ///< ends the plant's process and starts it again; empty: not given
   bool yes = false, list = false, show_profile = false;
 };
 

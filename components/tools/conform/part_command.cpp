@@ -17,7 +17,7 @@ int observe(const Options& options, const PartKind& kind) {
   Report report(kind.checks(), [](const Check& check) { print_line(text_of(check)); });
   std::string gone;
   try {
-    ObserverPort port(*options.observed, [] { return signal_number() != 0; });
+    ObserverPort port(*options.domain, [] { return signal_number() != 0; });
     kind.run(port, setting, report);
   } catch (const PartGone& error) {
     gone = error.what();
@@ -30,16 +30,17 @@ int observe(const Options& options, const PartKind& kind) {
 int part_command(const Options& options, const std::string& part) {
   const PartKind& kind = part_kind(part);
   if (shown(options, kind.checks(), kind.profile(options.profile))) return exit_status::kOk;
-  if (options.observed && options.manifest.empty()) return observe(options, kind);
+  if (options.domain) return observe(options, kind);
   if (options.manifest.empty()) {
     fmt::print(stderr, "conform: found no --manifest, accepted one: the {} of this manifest is checked\n", part);
     return exit_status::kUsage;
   }
-  if (kind.moves_joints && !options.yes && !agreed(kind.what)) return exit_status::kUsage;
-  note_signals();
   const auto manifest = [](const Options& given, const std::string& name, const std::filesystem::path& folder) {
     return part_manifest(part_place(name), manifest_file(given.manifest), folder);
   };
+  static_cast<void>(manifest(options, part, {}));  // a wrong manifest is refused before the user is asked
+  if (kind.moves_joints && !options.yes && !agreed(kind.what)) return exit_status::kUsage;
+  note_signals();
   return check_in_run(options, manifest, part);
 }
 
