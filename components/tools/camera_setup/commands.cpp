@@ -52,7 +52,7 @@ FrameReader reader_of(const Options& options) {
 /// The next picture; prints what happens to the source meanwhile. Throws Failed if a live source gives none.
 std::optional<cv::Mat> next(FrameReader& reader) {
   auto picture = reader.next(kFrameBound, stopped);
-  for (const auto& line : reader.news()) fmt::print(stderr, "{}\n", line);
+  for (const auto& one : reader.news()) fmt::print(stderr, "{}\n", one.text);
   if (!picture && reader.live() && !stopped())
     throw Failed(
         fmt::format("no frame for {} s; `constrictor camera show` tries the source", kFrameBound.count() / 1000));
