@@ -82,12 +82,22 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
       fmt::format("check the {} of this manifest (a file, or a name as in `constrictor run`) in a run of "
                   "its own",
                   kind.name));
-  if (kind.observable) {
-    sub->add_option("--domain", options.domain,
-                    "instead of --manifest: only watch the run in this DDS domain; nothing is moved")
-        ->check(kDomains)
-        ->excludes(manifest);
-    sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
+  auto* domain = sub->add_option(
+      "--domain", options.domain,
+      kind.observable
+          ? std::string("instead of --manifest: only watch the run in this DDS domain; nothing is moved")
+          : fmt::format("instead of --manifest: serve a {} that you start yourself in this DDS domain, in which no run "
+                        "goes on; prints\nthe arguments with which it joins",
+                        kind.name));
+  domain->check(kDomains)->excludes(manifest);
+  sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
+      ->capture_default_str();
+  if (!kind.observable) {
+    sub->add_option("--patience", options.patience_s, "[s] time in which the part must join; with --domain")
+        ->capture_default_str()
+        ->check(number(1.0, 3600.0, "s"));
+    sub->add_option("--scenario", options.scenario,
+                    "scenario: a file, or a name as in `constrictor run`; with --domain")
         ->capture_default_str();
   }
   add_options(*sub, options);
@@ -97,8 +107,9 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
                   "to do. Ctrl-C ends\nthe run and names what was not checked.\n\n"
                   "EXAMPLES\n"
                   "  constrictor conform {} --manifest case_study{}\n"
+                  "  constrictor conform {} --domain 5\n"
                   "  constrictor conform {} --manifest mine.yaml --profile slow.yaml --json result.json\n\n{}",
-                  kind.what, kind.name, kind.moves_joints ? " --yes" : "", kind.name, kStatuses));
+                  kind.what, kind.name, kind.moves_joints ? " --yes" : "", kind.name, kind.name, kStatuses));
 }
 
 }  // namespace

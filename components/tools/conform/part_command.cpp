@@ -25,23 +25,43 @@ int observe(const Options& options, const PartKind& kind) {
   return concluded(options, report, gone);
 }
 
+/// Serves a part that a user starts in a domain: only the members around it are started here.
+int serve(const Options& options, const std::string& part) {
+  const ServedPart served{part_place(part), *options.domain, robot_file(options.robot), scenario_file(options.scenario),
+                          options.patience_s};
+  const std::string arguments = fmt::format("{}", fmt::join(joining_arguments(served), " "));
+  note_signals();
+  print_line(fmt::format("Start the {} within {:.0f} s, if it does not run yet, with these arguments:\n  {}", part,
+                         served.patience_s, arguments));
+  return check_in_run(options, [&](const std::filesystem::path& folder) {
+    return serve_part(
+        served, folder, [] { return signal_number() != 0; }, print_line);
+  });
+}
+
 }  // namespace
 
 int part_command(const Options& options, const std::string& part) {
   const PartKind& kind = part_kind(part);
   if (shown(options, kind.checks(), kind.profile(options.profile))) return exit_status::kOk;
-  if (options.domain) return observe(options, kind);
+  if (options.domain) return kind.observable ? observe(options, kind) : serve(options, part);
   if (options.manifest.empty()) {
-    fmt::print(stderr, "conform: found no --manifest, accepted one: the {} of this manifest is checked\n", part);
+    fmt::print(stderr,
+               "conform: found no --domain and no --manifest, accepted one of them: the {} in this "
+               "domain, or that of this manifest, is checked\n",
+               part);
     return exit_status::kUsage;
   }
-  const auto manifest = [](const Options& given, const std::string& name, const std::filesystem::path& folder) {
-    return part_manifest(part_place(name), manifest_file(given.manifest), folder);
+  const auto manifest = [&](const std::filesystem::path& folder) {
+    return part_manifest(part_place(part), manifest_file(options.manifest), folder);
   };
-  static_cast<void>(manifest(options, part, {}));  // a wrong manifest is refused before the user is asked
+  static_cast<void>(manifest({}));  // a wrong manifest is refused before the user is asked
   if (kind.moves_joints && !options.yes && !agreed(kind.what)) return exit_status::kUsage;
   note_signals();
-  return check_in_run(options, manifest, part);
+  return check_in_run(options, [&](const std::filesystem::path& folder) {
+    return run_manifest(
+        manifest(folder), folder, [] { return signal_number() != 0; }, print_line);
+  });
 }
 
 }  // namespace constrictor::conform

@@ -56,18 +56,23 @@ int plant_command(const Options& options) {
                "that of this manifest, is checked\n");
     return exit_status::kUsage;
   }
-  const auto manifest = [](const Options& given, const std::string&, const std::filesystem::path& folder) {
-    return plant_manifest(manifest_file(given.manifest), folder);
+  const auto manifest = [&](const std::filesystem::path& folder) {
+    return plant_manifest(manifest_file(options.manifest), folder);
   };
   // A wrong manifest is refused before the user is asked.
-  if (!options.domain) static_cast<void>(manifest(options, "plant", {}));
+  if (!options.domain) static_cast<void>(manifest({}));
   const std::string warning = fmt::format(
       "This moves {} joints, one after the other, by {:.2f} rad at {:.2f} rad/s, sends commands that must be ignored, "
       "and\nrelaxes the joints for a second. Lay the robot on flat ground and keep a hand at the power switch.",
       profile.joints.size(), profile.amplitude_rad, profile.rate_rad_s);
   if (!options.yes && !agreed(warning)) return exit_status::kUsage;
   note_signals();
-  if (!options.domain) return check_in_run(options, manifest, "plant");
+  if (!options.domain) {
+    return check_in_run(options, [&](const std::filesystem::path& folder) {
+      return run_manifest(
+          manifest(folder), folder, [] { return signal_number() != 0; }, print_line);
+    });
+  }
   Report report(plant_checks(), [](const Check& check) { print_line(text_of(check)); });
   std::string gone;
   try {
