@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -29,6 +30,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kFrameBound = 5000ms;       // longest wait for a frame of a live source
 constexpr double kSteady_px = 0.7;         // a board that moves less between two frames is held still
+constexpr auto kNoBoardEvery = 1s;         // between two lines on a board that is not in view
 constexpr double kLeastDifference = 0.15;  // between two views of a board; see Pose2
 
 bool stopped() { return g_signal != 0; }
@@ -147,11 +149,47 @@ int calibrate(const Options& options) {
   return exit_status::kOk;
 }
 
+namespace {
+
+/// Of a live source without a board in view: prints once a second what the camera shows, and gives up after a time.
+class NoBoard {
+ public:
+  NoBoard(const Board& board, double within_s) : board_(board), within_s_(within_s) {}
+
+  /// Throws Failed when the time is over.
+  void look(const cv::Mat& picture) {
+    ++pictures_;
+    const auto now = Clock::now();
+    const double waited_s = std::chrono::duration<double>(now - begin_).count();
+    if (waited_s > within_s_)
+      throw Failed(
+          fmt::format("found no board of {} x {} corners within {:g} s (--within): is the whole board in the picture, "
+                      "flat and in good light, and are the numbers of --board right? Nothing was written",
+                      board_.columns, board_.rows, within_s_));
+    if (now < next_) return;
+    next_ = now + kNoBoardEvery;
+    const cv::Scalar mean = cv::mean(picture);
+    fmt::print("no board of {} x {} corners in view: {} pictures of {} x {} pixels, mean brightness {:.0f} of 255\n",
+               board_.columns, board_.rows, pictures_, picture.cols, picture.rows, (mean[0] + mean[1] + mean[2]) / 3);
+    std::fflush(stdout);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Board board_;
+  double within_s_;
+  int pictures_ = 0;
+  Clock::time_point begin_ = Clock::now(), next_ = begin_;
+};
+
+}  // namespace
+
 int mount(const Options& options) {
   const Board board = board_of(options);
   const RobotModel robot = load_robot(options.robot);
   video::CameraCalibration lens = video::load_calibration(options.calibration, robot.camera);
   FrameReader reader = reader_of(options);
+  NoBoard no_board(board, options.within_s);
   const BoardOnGround place{options.at_m[0], options.at_m[1], options.yaw_deg * std::numbers::pi / 180.0};
   while (!stopped()) {
     const auto picture = next(reader);
@@ -160,7 +198,10 @@ int mount(const Options& options) {
     const auto scaled = lens.scaled_to(picture->cols, picture->rows);
     const auto corners = find_board_on_ground(*picture, board, place, scaled, robot.module_radius_m, expected);
     if (!corners) {
-      if (reader.live()) continue;
+      if (reader.live()) {
+        no_board.look(*picture);
+        continue;
+      }
       throw Failed("the board is not in the picture, or not wholly");
     }
     const MountResult found = find_mount(*corners, board, place, scaled, robot.module_radius_m, expected);

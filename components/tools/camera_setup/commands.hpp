@@ -33,6 +33,7 @@ struct Options {
   double largest_error_px = 1.0;
   std::vector<double> at_m;
   double yaw_deg = 0.0;
+  double within_s = 60.0;     ///< in which a live source must show the board on the ground
   bool accept_mount = false;  ///< also a mount that is hardly plausible
   std::vector<std::string> samples;
 };

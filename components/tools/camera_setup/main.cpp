@@ -81,6 +81,9 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(number(-180.0, 180.0, "degrees"));
   sub->add_option("--robot", options.robot, "robot file")->check(CLI::ExistingFile);
+  sub->add_option("--within", options.within_s, "[s] time in which a live source must show the board")
+      ->capture_default_str()
+      ->check(number(1.0, 3600.0, "s"));
   sub->add_flag("--accept-mount", options.accept_mount,
                 "write also a mount that is far from the head, or from the mount of the robot file");
   sub->add_option("--out", options.out, "calibration file with the mount (default: that of --calibration)");

@@ -1,6 +1,7 @@
 // Lens and mount from drawn pictures of a board, whose camera is known.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <fstream>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -189,6 +190,30 @@ TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
             std::string::npos);
   mount("6x5", "0.04", {}, 0);
   EXPECT_NE(content().find("mount:"), std::string::npos) << content();
+}
+
+/// A live source that needs no camera.
+const std::string kPipeline =
+    "videotestsrc is-live=true pattern=ball ! video/x-raw,width=320,height=240,framerate=10/1 ! videoconvert ! appsink";
+
+TEST(CameraSetup, AMountWithoutABoardInViewSaysWhatItSeesAndEnds) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "camera.yaml").string();
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  std::ofstream(file) << video::calibration_text(video::calibration_of(robot.camera), false, "this test");
+  const auto mount = [&](const std::string& within) {
+    return Process({program("camera_setup"), "mount", "--source", kPipeline, "--calibration", file, "--at", "0.36,0",
+                    "--board", "6x5", "--square", "0.04", "--within", within});
+  };
+  Process bounded = mount("3");
+  EXPECT_EQ(bounded.wait(60s), 1) << bounded.errors();
+  EXPECT_NE(bounded.output().find("no board of 6 x 5 corners in view: 1 pictures of 320 x 240"), std::string::npos)
+      << bounded.output();
+  EXPECT_NE(bounded.errors().find("within 3 s (--within)"), std::string::npos) << bounded.errors();
+  Process stopped = mount("600");
+  ASSERT_TRUE(stopped.wait_for("no board", 30s)) << stopped.errors();
+  stopped.signal(SIGINT);
+  EXPECT_EQ(stopped.wait(30s), 128 + SIGINT) << stopped.errors();
 }
 
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
