@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -61,6 +64,16 @@ std::optional<cv::Mat> next(FrameReader& reader) {
   return picture;
 }
 
+/// Throws Failed if the file cannot be written: before the work whose result it shall hold. An older file stays.
+void require_writable(const fs::path& file) {
+  if (fs::is_directory(file)) throw Failed(fmt::format("--out: found the folder {}, accepted a file", file.string()));
+  const NewFile probe(file);  // removes its part
+  errno = 0;
+  if (!std::ofstream(probe.part()))
+    throw Failed(fmt::format("--out: cannot write {}: {}; does its folder exist, and may you write there?",
+                             file.string(), std::strerror(errno)));
+}
+
 void write(const fs::path& file, const std::string& text) {
   try {
     write_whole(file, text);
@@ -98,6 +111,7 @@ int show(const Options& options) {
 
 int calibrate(const Options& options) {
   const Board board = board_of(options);
+  require_writable(options.out);
   FrameReader reader = reader_of(options);
   if (reader.live())
     fmt::print(
@@ -188,6 +202,8 @@ int mount(const Options& options) {
   const Board board = board_of(options);
   const RobotModel robot = load_robot(options.robot);
   video::CameraCalibration lens = video::load_calibration(options.calibration, robot.camera);
+  const fs::path out = options.out.empty() ? fs::path(options.calibration) : options.out;
+  require_writable(out);
   FrameReader reader = reader_of(options);
   NoBoard no_board(board, options.within_s);
   const BoardOnGround place{options.at_m[0], options.at_m[1], options.yaw_deg * std::numbers::pi / 180.0};
@@ -226,8 +242,7 @@ int mount(const Options& options) {
       fmt::print("careful: {}\n", doubt);
     }
     lens.X_HC = found.X_HC;
-    write(options.out.empty() ? fs::path(options.calibration) : options.out,
-          calibration_text(lens, true, "constrictor camera calibrate and mount"));
+    write(out, calibration_text(lens, true, "constrictor camera calibrate and mount"));
     return exit_status::kOk;
   }
   return 128 + g_signal;
@@ -262,6 +277,7 @@ Sample sample_of(const std::string& text) {
 int colours(const Options& options) {
   std::vector<Sample> boxes;
   for (const auto& text : options.samples) boxes.push_back(sample_of(text));
+  require_writable(options.out);
   std::optional<video::Rectifier> rectifier;
   if (!options.calibration.empty())
     rectifier.emplace(video::load_calibration(options.calibration, load_robot(options.robot).camera), 0, 0);

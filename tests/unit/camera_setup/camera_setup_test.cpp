@@ -216,6 +216,27 @@ TEST(CameraSetup, AMountWithoutABoardInViewSaysWhatItSeesAndEnds) {
   EXPECT_EQ(stopped.wait(30s), 128 + SIGINT) << stopped.errors();
 }
 
+TEST(CameraSetup, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "camera.yaml").string();
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  std::ofstream(file) << video::calibration_text(video::calibration_of(robot.camera), false, "this test");
+  const std::string nowhere = (folder.path() / "no_such_folder" / "out.yaml").string();
+  for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
+           {"calibrate", "--square", "0.03", "--out", nowhere},
+           {"calibrate", "--square", "0.03", "--out", folder.path().string()},
+           {"mount", "--square", "0.03", "--calibration", file, "--at", "0.36,0", "--out", nowhere},
+           {"colours", "--sample", "blue=0,0,9,9", "--out", nowhere}}) {
+    words.insert(words.begin(), program("camera_setup"));
+    words.insert(words.end(), {"--source", kPipeline});
+    Process process(std::move(words));
+    EXPECT_EQ(process.wait(20s), 1) << process.output() << process.errors();
+    EXPECT_NE(process.errors().find("--out: "), std::string::npos) << process.errors();
+    EXPECT_EQ((process.output() + process.errors()).find("320 x 240"), std::string::npos) << "the source was opened";
+  }
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+}
+
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
   const TemporaryFolder folder;
   const auto place = folder.path() / "pictures";
