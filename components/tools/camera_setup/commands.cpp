@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -74,6 +76,16 @@ void require_writable(const fs::path& file) {
                              file.string(), std::strerror(errno)));
 }
 
+/// Throws CLI::ValidationError if no picture can be written under this name.
+void require_picture_name(const fs::path& file) {
+  static const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end() || !cv::haveImageWriter(ending))
+    throw CLI::ValidationError("--out", fmt::format("found '{}', accepted a name with one of the endings {}",
+                                                    file.string(), fmt::join(kEndings, ", ")));
+}
+
 void write(const fs::path& file, const std::string& text) {
   try {
     write_whole(file, text);
@@ -86,6 +98,10 @@ void write(const fs::path& file, const std::string& text) {
 }  // namespace
 
 int show(const Options& options) {
+  if (!options.out.empty()) {
+    require_picture_name(options.out);
+    require_writable(options.out);
+  }
   FrameReader reader = reader_of(options);
   cv::Mat picture;
   for (int i = 0; i < (reader.live() ? 20 : 1) && !stopped(); ++i) {
@@ -103,7 +119,7 @@ int show(const Options& options) {
   fmt::print("\n");
   if (!options.out.empty()) {
     if (!cv::imwrite(options.out.string(), picture))
-      throw Failed(fmt::format("--out: cannot write {}, accepted a file such as picture.png", options.out.string()));
+      throw Failed(fmt::format("--out: cannot write {}: is the disk full?", options.out.string()));
     fmt::print("wrote {}\n", options.out.string());
   }
   return exit_status::kOk;

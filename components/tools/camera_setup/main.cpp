@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
     return sub;
   };
   CLI::App* sub = add("show", "try a source: size, rate, brightness; save a picture", show);
-  sub->add_option("--out", options.out, "file for the last picture");
+  sub->add_option("--out", options.out, "file for the last picture: .png, .jpg, .bmp, .tif or .webp");
   sub = add("calibrate", "find the model of the lens with a chessboard", calibrate);
   add_board(*sub, options);
   sub->add_option("--views", options.views, "how many views of a live source are collected")

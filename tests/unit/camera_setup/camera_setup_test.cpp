@@ -237,6 +237,22 @@ TEST(CameraSetup, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
   EXPECT_FALSE(std::filesystem::exists(file + ".part"));
 }
 
+TEST(CameraSetup, ShowWritesPicturesAndRefusesOtherEndings) {
+  const TemporaryFolder folder;
+  const auto show = [&](const std::string& name, int status) -> std::string {
+    Process process({program("camera_setup"), "show", "--source", kPipeline, "--out", (folder.path() / name).string()});
+    EXPECT_EQ(process.wait(60s), status) << process.output() << process.errors();
+    return process.output() + process.errors();
+  };
+  for (const char* name : {"pic.foo", "pic"}) {
+    const std::string text = show(name, 64);
+    EXPECT_NE(text.find("accepted a name with one of the endings .png, .jpg"), std::string::npos) << text;
+    EXPECT_EQ(text.find("OpenCV"), std::string::npos) << text;
+  }
+  show("pic.PNG", 0);
+  EXPECT_EQ(cv::imread((folder.path() / "pic.PNG").string()).size(), cv::Size(320, 240));
+}
+
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
   const TemporaryFolder folder;
   const auto place = folder.path() / "pictures";
