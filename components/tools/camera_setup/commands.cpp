@@ -56,13 +56,17 @@ FrameReader reader_of(const Options& options) {
   return {video::parse_source(options.source, fs::current_path(), fs::current_path()), options.device};
 }
 
-/// The next picture; prints what happens to the source meanwhile. Throws Failed if a live source gives none.
+/// The next picture; prints what happens to the source meanwhile. Throws VideoError if a live source gives none.
 std::optional<cv::Mat> next(FrameReader& reader) {
   auto picture = reader.next(kFrameBound, stopped);
   for (const auto& one : reader.news()) fmt::print(stderr, "{}\n", one.text);
   if (!picture && reader.live() && !stopped())
-    throw Failed(
-        fmt::format("no frame for {} s; `constrictor camera show` tries the source", kFrameBound.count() / 1000));
+    throw video::VideoError(fmt::format(
+        "{} for {} s: {}", reader.counters().openings == 0 ? "the source could not be opened" : "no frame",
+        kFrameBound.count() / 1000,
+        reader.counters().failures > 0
+            ? "the reason is above; is the name of --source right, and is the camera switched on and connected?"
+            : "the source does not answer; does another program use it, and does a player such as ffplay show it?"));
   return picture;
 }
 

@@ -253,6 +253,16 @@ TEST(CameraSetup, ShowWritesPicturesAndRefusesOtherEndings) {
   EXPECT_EQ(cv::imread((folder.path() / "pic.PNG").string()).size(), cv::Size(320, 240));
 }
 
+TEST(CameraSetup, ASourceThatCannotBeOpenedHasAStatusOfItsOwn) {
+  const TemporaryFolder folder;
+  for (const char* source : {"http://127.0.0.1:9/stream", "/dev/video_that_is_not_there"}) {
+    Process process({program("camera_setup"), "show", "--source", source});
+    EXPECT_EQ(process.wait(60s), 70) << process.errors();
+    EXPECT_NE(process.errors().find("the source could not be opened for 5 s"), std::string::npos) << process.errors();
+    EXPECT_EQ(process.errors().find("constrictor camera show"), std::string::npos) << process.errors();
+  }
+}
+
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
   const TemporaryFolder folder;
   const auto place = folder.path() / "pictures";
