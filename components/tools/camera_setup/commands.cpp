@@ -118,8 +118,9 @@ int show(const Options& options) {
   const cv::Scalar mean = cv::mean(picture);
   fmt::print("{} x {} pixels, mean brightness {:.0f} of 255", picture.cols, picture.rows,
              (mean[0] + mean[1] + mean[2]) / 3);
-  if (reader.live())
-    fmt::print(", {:.1f} frames in a second, {} missing of {}", counters.rate_hz, counters.missing, counters.frames);
+  if (reader.live()) fmt::print(", {:.1f} frames in a second", counters.rate_hz);
+  // Without an expected rate, nothing tells how many frames there should have been.
+  if (reader.live() && options.rate_given) fmt::print(", {} missing of {}", counters.missing, counters.frames);
   fmt::print("\n");
   if (!options.out.empty()) {
     if (!cv::imwrite(options.out.string(), picture))

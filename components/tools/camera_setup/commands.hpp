@@ -24,6 +24,7 @@ class Failed : public std::runtime_error {
 struct Options {
   std::string source;
   video::DeviceRequest device;
+  bool rate_given = false;  ///< the rate in `device` is what the user expects; false: it is only a request
   std::string board = "9x6";
   double square_m = 0.025;
   std::filesystem::path out;

@@ -21,8 +21,15 @@ void add_source(CLI::App& sub, Options& options) {
   sub.add_option("--source", options.source,
                  "device, address, pipeline of GStreamer, file NAME.url, video, picture, or folder of pictures")
       ->required();
-  sub.add_option("--rate", options.device.frame_rate_hz, "[Hz] frames in a second of a live source")
-      ->capture_default_str()
+  sub.add_option_function<double>(
+         "--rate",
+         [&options](double rate_hz) {
+           options.device.frame_rate_hz = rate_hz;
+           options.rate_given = true;
+         },
+         "[Hz] frames in a second that a live source should send; without it, 30 is asked of a device and `show` "
+         "counts "
+         "no\nmissing frames")
       ->check(number(0.5, 240.0, "Hz"));
   sub.add_option("--width", options.device.width, "[pixel] width of the pictures of a device; 0: the device chooses")
       ->check(whole_number(0, 4096));

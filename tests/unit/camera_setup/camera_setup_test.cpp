@@ -253,6 +253,22 @@ TEST(CameraSetup, ShowWritesPicturesAndRefusesOtherEndings) {
   EXPECT_EQ(cv::imread((folder.path() / "pic.PNG").string()).size(), cv::Size(320, 240));
 }
 
+TEST(CameraSetup, ShowCountsMissingFramesOnlyOfARateThatIsGiven) {
+  const auto show = [&](std::vector<std::string> more) -> std::string {
+    std::vector<std::string> words = {program("camera_setup"), "show", "--source", kPipeline};
+    words.insert(words.end(), more.begin(), more.end());
+    Process process(std::move(words));
+    EXPECT_EQ(process.wait(60s), 0) << process.errors();
+    return process.output();
+  };
+  const std::string measured = show({});
+  EXPECT_NE(measured.find("frames in a second"), std::string::npos) << measured;
+  EXPECT_EQ(measured.find("missing"), std::string::npos) << measured;
+  const std::string expected = show({"--rate", "30"});  // the source sends 10 in a second
+  EXPECT_NE(expected.find(" missing of "), std::string::npos) << expected;
+  EXPECT_EQ(expected.find(" 0 missing"), std::string::npos) << expected;
+}
+
 TEST(CameraSetup, ASourceThatCannotBeOpenedHasAStatusOfItsOwn) {
   const TemporaryFolder folder;
   for (const char* source : {"http://127.0.0.1:9/stream", "/dev/video_that_is_not_there"}) {
