@@ -1,5 +1,7 @@
 // `constrictor conform` refuses what is not one part, before it moves or asks anything; and serves parts that a user
 // starts by hand.
+#include <csignal>
+
 #include "cyclone/domain_claim.hpp"
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
@@ -66,6 +68,15 @@ TEST_P(PartStartedByHand, IsServedInItsDomain) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, PartStartedByHand, ::testing::Values("perception", "planner"),
                          [](const auto& one) { return std::string(one.param); });
+
+TEST_F(ConformCommand, ServesNoPartInTheDomainOfARun) {
+  Process run = start({"run", "--manifest", "case_study", "--pace", "1x", "--report", (dir_ / "run").string()});
+  ASSERT_TRUE(eventually([&] { return domain() != 0; }, 60s)) << run.output();
+  EXPECT_EQ(command({"conform", "control", "--domain", std::to_string(domain())}), exit_status::kUsage) << output_;
+  EXPECT_NE(output_.find("found a run in domain"), std::string::npos) << output_;
+  run.signal(SIGINT);
+  EXPECT_TRUE(run.wait(60s).has_value());
+}
 
 TEST_F(ConformCommand, NamesThePartThatNobodyHasStarted) {
   const DomainClaim claim;

@@ -1,10 +1,17 @@
 // `constrictor conform control`, and those of the other members of a run.
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 #include "conform/command.hpp"
 #include "conform/manifest_run.hpp"
 #include "conform/observer_port.hpp"
 #include "conform/parts.hpp"
+#include "constrictor/messages.hpp"
+#include "constrictor/topics.hpp"
+#include "cyclone/domain.hpp"
+#include "cyclone/endpoint.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::conform {
@@ -25,12 +32,29 @@ int observe(const Options& options, const PartKind& kind) {
   return concluded(options, report, gone);
 }
 
+/// Whether a run goes on in the domain: whether a process writes ticks there.
+bool run_goes_on(std::uint32_t domain) {
+  constexpr int kMost = 20;  // times 50 ms, for the discovery
+  const dds::Domain joined(domain);
+  const auto ticks = dds::Reader<msg::Tick>::observer(joined.participant(), barrier_topics::kTick.name);
+  for (int i = 0; i < kMost && signal_number() == 0; ++i) {
+    if (ticks.writers() > 0) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
 /// Serves a part that a user starts in a domain: only the members around it are started here.
 int serve(const Options& options, const std::string& part) {
   const ServedPart served{part_place(part), *options.domain, robot_file(options.robot), scenario_file(options.scenario),
                           options.patience_s};
   const std::string arguments = fmt::format("{}", fmt::join(joining_arguments(served), " "));
   note_signals();
+  if (run_goes_on(*options.domain)) {
+    fmt::print(stderr, "conform: found a run in domain {}, accepted a domain without one; end the run first\n",
+               *options.domain);
+    return exit_status::kUsage;
+  }
   print_line(fmt::format("Start the {} within {:.0f} s, if it does not run yet, with these arguments:\n  {}", part,
                          served.patience_s, arguments));
   return check_in_run(options, [&](const std::filesystem::path& folder) {
