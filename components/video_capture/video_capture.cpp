@@ -15,6 +15,8 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kRecordEvery_ticks = 50;
+constexpr int kMostLogLines = 10;  // in one period of the log: a camera may come and go all the time
+constexpr std::int64_t kLogPeriod_ticks = 500;
 
 video::VideoSource source_of(const VideoCaptureConfig& config, const Setup& setup) {
   try {
@@ -49,7 +51,8 @@ VideoCapture::VideoCapture(Wiring& wiring, const Setup& setup, video::OpenVideo 
       source_(open ? video::VideoSource{video::SourceKind::kNetwork, "test://", {}} : source_of(config_, setup)),
       rectifier_(rectifier_of(config_, setup)),
       open_(std::move(open)),
-      record_(setup.output_dir) {
+      record_(setup.output_dir),
+      log_(setup.log) {
   if (source_.live()) return;
   try {
     files_ = std::make_unique<video::PictureFiles>(source_, config_.repeat);
@@ -59,9 +62,20 @@ VideoCapture::VideoCapture(Wiring& wiring, const Setup& setup, video::OpenVideo 
   }
 }
 
-void VideoCapture::refuse(const std::string& line) {
-  wiring_.count_refusal(line);
-  record_.add_news(line);
+void VideoCapture::report(const Tick& tick, const video::News& news) {
+  record_.add_news(news.text);
+  if (tick.index < log_begin_tick_ || tick.index >= log_begin_tick_ + kLogPeriod_ticks) {  // also after a reset
+    if (log_left_out_ > 0) log_.warning("{} more lines on the camera were left out; see camera.json", log_left_out_);
+    log_begin_tick_ = tick.index;
+    log_lines_ = log_left_out_ = 0;
+  }
+  if (log_lines_ == kMostLogLines) {
+    ++log_left_out_;
+    return;
+  }
+  ++log_lines_;
+  if (news.is_good) log_.info("{}", news.text);
+  else log_.warning("{}", news.text);
 }
 
 void VideoCapture::publish(const Tick& tick, const cv::Mat& bgr, std::int64_t exposure_tick) {
@@ -72,7 +86,14 @@ void VideoCapture::publish(const Tick& tick, const cv::Mat& bgr, std::int64_t ex
   } catch (const std::invalid_argument& error) {
     misfit = error.what();
   }
-  if (misfit != last_misfit_ && !misfit.empty()) refuse("camera/image: " + misfit);
+  if (misfit != last_misfit_) {
+    if (misfit.empty()) {
+      report(tick, {"camera/image: frames have a size that is accepted again", true});
+    } else {
+      wiring_.count_refusal("camera/image: " + misfit);
+      report(tick, {"camera/image: " + misfit, false});
+    }
+  }
   last_misfit_ = misfit;
   if (rgb == nullptr) return;
   if (state_.published == 0) {
@@ -106,7 +127,8 @@ void VideoCapture::step_file(const Tick& tick) {
     const cv::Mat& bgr = files_->at(number);
     if (!bgr.empty()) publish(tick, bgr, tick.index);
   } catch (const video::VideoError& error) {
-    refuse(error.what());
+    wiring_.count_refusal(error.what());
+    report(tick, {error.what(), false});
   }
 }
 
@@ -117,14 +139,18 @@ void VideoCapture::step_live(const Tick& tick) {
         open_, video::LiveSettings{config_.frame_rate_hz, config_.retry_s, config_.gone_after_s});
   }
   const auto frame = live_->take();
-  for (const auto& line : live_->take_news()) refuse(line);
+  for (const auto& news : live_->take_news()) report(tick, news);
   if (frame) {
     const double age_s = static_cast<double>(frame->age_ns) * 1e-9 + config_.delay_s;
     if (age_s > config_.late_after_s) {
       ++state_.late;
-      refuse(fmt::format("camera/image: found a frame of {:.2f} s ago, accepted at most {:.2f} s (stream.late_after_s)",
-                         age_s, config_.late_after_s));
+      const std::string reason =
+          fmt::format("camera/image: found a frame of {:.2f} s ago, accepted at most {:.2f} s (stream.late_after_s)",
+                      age_s, config_.late_after_s);
+      wiring_.count_refusal(reason);
+      if (!std::exchange(was_late_, true)) report(tick, {reason, false});
     } else {
+      if (std::exchange(was_late_, false)) report(tick, {"camera/image: frames arrive in time again", true});
       record_.add_duration(frame->age_ns);
       publish(tick, frame->bgr, std::max<std::int64_t>(0, tick.index - std::llround(age_s / tick.period_s())));
     }

@@ -40,7 +40,8 @@ class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureC
   void step_live(const Tick& tick);
   void step_file(const Tick& tick);
   void publish(const Tick& tick, const cv::Mat& bgr, std::int64_t exposure_tick);
-  void refuse(const std::string& line);
+  /// Adds news to camera.json and to the log. The log gets a bounded number of lines.
+  void report(const Tick& tick, const video::News& news);
 
   video::VideoSource source_;
   video::Rectifier rectifier_;
@@ -48,6 +49,10 @@ class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureC
   std::unique_ptr<video::LiveVideo> live_;      ///< from the first step
   std::unique_ptr<video::PictureFiles> files_;  ///< null: the source is live
   CaptureRecord record_;
+  bool was_late_ = false;                 ///< the last frame was too old
+  std::int64_t log_begin_tick_ = 0;       ///< of the present period of the log
+  int log_lines_ = 0, log_left_out_ = 0;  ///< in this period
+  Log log_;
   std::string last_misfit_;  ///< why the last frame was not an image of this camera; empty: it was one
   Output<msg::CameraInfo> info_ = wiring_.output(topics::kCameraInfo);
   Output<msg::CameraImage> image_ = wiring_.output(topics::kCameraImage);

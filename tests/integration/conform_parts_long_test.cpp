@@ -111,7 +111,9 @@ TEST_F(ConformParts, AnInterruptEndsTheRunAndNamesWhatWasNotChecked) {
 
 TEST_F(ConformParts, RefusesWhatItCannotCheck) {
   EXPECT_EQ(command({"conform", "control"}), exit_status::kUsage);
-  EXPECT_NE(output_.find("accepted one: the control of this manifest"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("accepted one of them: the control in this domain, or that of this manifest"),
+            std::string::npos)
+      << output_;
   EXPECT_EQ(command(conform("control", "emulated_camera_only.yaml")), exit_status::kConfiguration) << output_;
   write("no_control.yaml",
         "plant: physics\nrobot: components/lib/robot/mamba.yaml\n"

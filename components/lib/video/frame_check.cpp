@@ -24,7 +24,7 @@ std::uint64_t fingerprint(const cv::Mat& image) {
 
 }  // namespace
 
-std::string FrameCheck::look(const cv::Mat& bgr) {
+std::optional<News> FrameCheck::look(const cv::Mat& bgr) {
   const std::uint64_t now = fingerprint(bgr);
   equal_ = now == fingerprint_ ? equal_ + 1 : 1;
   fingerprint_ = now;
@@ -32,11 +32,18 @@ std::string FrameCheck::look(const cv::Mat& bgr) {
   frozen_ = equal_ >= kFrozenAfter;
   const cv::Scalar mean = cv::mean(bgr);
   black_ = (mean[0] + mean[1] + mean[2]) / 3.0 < kBlackBelow;
-  if (black_ != was_black)
-    return black_ ? "the image is black: is the lens covered, or the light off?" : "the image is no longer black";
-  if (frozen_ != was_frozen)
-    return frozen_ ? fmt::format("the camera is frozen: {} equal frames", equal_) : "the camera is no longer frozen";
-  return {};
+  std::optional<News> news;
+  if (black_ != was_black) {
+    news.emplace();
+    news->is_good = !black_;
+    news->text = black_ ? "the image is black: is the lens covered, or the light off?" : "the image is no longer black";
+  } else if (frozen_ != was_frozen) {
+    news.emplace();
+    news->is_good = !frozen_;
+    news->text =
+        frozen_ ? fmt::format("the camera is frozen: {} equal frames", equal_) : "the camera is no longer frozen";
+  }
+  return news;
 }
 
 }  // namespace constrictor::video

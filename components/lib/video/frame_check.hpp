@@ -3,15 +3,21 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
 namespace constrictor::video {
 
+/// What has happened to a source.
+struct News {
+  std::string text;      ///< one line, for people
+  bool is_good = false;  ///< the source works, or works again; false: something is wrong
+};
+
 class FrameCheck {
  public:
-  /// Looks at the next frame. Returns a line for people when the camera begins or ceases to be frozen or black; empty:
-  /// nothing has changed.
-  std::string look(const cv::Mat& bgr);
+  /// Looks at the next frame. Returns news when the camera begins or ceases to be frozen or black.
+  std::optional<News> look(const cv::Mat& bgr);
 
   [[nodiscard]] bool frozen() const { return frozen_; }
   [[nodiscard]] bool black() const { return black_; }

@@ -9,7 +9,6 @@
 #include <thread>
 #include <utility>
 
-#include "video/frame_check.hpp"
 #include "video/frame_clock.hpp"
 
 namespace constrictor::video {
@@ -31,8 +30,11 @@ struct LiveVideo::Shared {
   void read(VideoInput& input);
   /// False if the thread must end.
   bool pause();
-  void tell(std::string_view line) {  // needs the lock
-    if (!line.empty() && news.size() < kMostNews) news.emplace_back(line);
+  void tell(std::string_view text, bool is_good) {  // needs the lock
+    if (news.size() == kMostNews) return;
+    News& one = news.emplace_back();
+    one.text = text;
+    one.is_good = is_good;
   }
 
   const OpenVideo open;
@@ -42,7 +44,7 @@ struct LiveVideo::Shared {
   bool stop = false;
   bool ended = false;
   LiveCounters counters;
-  std::vector<std::string> news;
+  std::vector<News> news;
   std::optional<std::pair<cv::Mat, std::int64_t>> newest;  ///< and when it was sent
   std::int64_t last_frame_ns = clock_ns();
   bool gone = false;
@@ -65,7 +67,7 @@ void LiveVideo::Shared::read(VideoInput& input) {
     if (!arrived) return;
     const auto stamp = input.stamp_ns();
     const FrameClock::Verdict verdict = stamp ? clock.on_stamped_frame(*stamp) : clock.on_frame(began_ns, ended_ns);
-    const std::string change = check.look(bgr);
+    const auto change = check.look(bgr);
     const std::lock_guard lock(mutex);
     if (stop) return;
     ++counters.frames;
@@ -73,9 +75,9 @@ void LiveVideo::Shared::read(VideoInput& input) {
     counters.frozen = check.frozen();
     counters.black = check.black();
     counters.rate_hz = 1e9 / static_cast<double>(std::max<std::int64_t>(1, clock.period_ns()));
-    tell(change);
+    if (change) tell(change->text, change->is_good);
     last_frame_ns = ended_ns;
-    if (std::exchange(gone, false)) tell("frames arrive again");
+    if (std::exchange(gone, false)) tell("frames arrive again", true);
     if (!verdict.fresh) {
       ++counters.stale;
       continue;
@@ -102,12 +104,12 @@ void LiveVideo::Shared::run() {
         ++counters.openings;
         counters.connected = true;
         counters.description = input->description();
-        tell(counters.description);
-        for (const auto& remark : input->remarks()) tell(remark);
+        tell(counters.description, true);
+        for (const auto& remark : input->remarks()) tell(remark, false);
         last_error.clear();
       } else {
         ++counters.failures;
-        if (error != last_error) tell(error);  // a repeated reason is not reported again
+        if (error != last_error) tell(error, false);  // a repeated reason is not reported again
         last_error = error;
       }
     }
@@ -116,13 +118,13 @@ void LiveVideo::Shared::run() {
         read(*input);
       } catch (const std::exception& failure) {
         const std::lock_guard lock(mutex);
-        tell(failure.what());
+        tell(failure.what(), false);
       }
       input.reset();
       const std::lock_guard lock(mutex);
       if (stop) break;
       counters.connected = counters.frozen = counters.black = false;
-      tell("the stream has ended or is silent: it is opened again");
+      tell("the stream has ended or is silent: it is opened again", false);
     }
     if (!pause()) break;
   }
@@ -149,7 +151,7 @@ std::optional<LiveFrame> LiveVideo::take() {
   const double silent_s = static_cast<double>(now - shared_->last_frame_ns) * 1e-9;
   if (!shared_->gone && silent_s > shared_->settings.gone_after_s) {
     shared_->gone = true;
-    shared_->tell(fmt::format("no frame for {:.1f} s: the camera is gone", silent_s));
+    shared_->tell(fmt::format("no frame for {:.1f} s: the camera is gone", silent_s), false);
   }
   if (!shared_->newest) return {};
   LiveFrame frame{std::move(shared_->newest->first), now - shared_->newest->second};
@@ -162,7 +164,7 @@ LiveCounters LiveVideo::counters() const {
   return shared_->counters;
 }
 
-std::vector<std::string> LiveVideo::take_news() {
+std::vector<News> LiveVideo::take_news() {
   const std::lock_guard lock(shared_->mutex);
   return std::exchange(shared_->news, {});
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "video/frame_check.hpp"
 #include "video/video_device.hpp"
 
 namespace constrictor::video {
@@ -48,8 +49,8 @@ class LiveVideo {
   /// The newest fresh frame, once.
   [[nodiscard]] std::optional<LiveFrame> take();
   [[nodiscard]] LiveCounters counters() const;
-  /// Texts on the events since the last call, one line each, the oldest first; at most kMostNews.
-  [[nodiscard]] std::vector<std::string> take_news();
+  /// The events since the last call, the oldest first; at most kMostNews.
+  [[nodiscard]] std::vector<News> take_news();
   /// [ns] since some fixed point.
   [[nodiscard]] std::int64_t now_ns() const;
 

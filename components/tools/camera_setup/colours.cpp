@@ -14,6 +14,7 @@ constexpr double kOutside = 0.02;                                // share of the
 constexpr double kLeastMargin_deg = 12.0;                        // hues drift with the light
 constexpr double kUsualChroma = 0.075, kUsualSaturation = 0.33;  // defaults of perception
 constexpr double kLeastChroma = 0.02, kLeastSaturation = 0.08;
+constexpr double kMostSpread_deg = 60.0;  // the colours that are taught are at most about 120 degrees apart
 constexpr const char* kGround = "ground";
 
 double wrapped_deg(double angle) { return angle - 360.0 * std::floor(angle / 360.0); }
@@ -36,6 +37,20 @@ double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+/// Throws std::invalid_argument if the pixels have no colour. The hue of grey pixels is noise, or 0 (red).
+void require_colour(const std::string& name, const ColourSample::Statistics& seen) {
+  if (seen.chroma < kLeastChroma || seen.saturation < kLeastSaturation)
+    throw std::invalid_argument(
+        fmt::format("{}: found chroma {:.3f} and saturation {:.2f}, accepted at least {:.3f} and {:.2f}: the box shows "
+                    "grey, white or black; is it wholly on its colour?",
+                    name, seen.chroma, seen.saturation, kLeastChroma, kLeastSaturation));
+  if (seen.spread_deg > kMostSpread_deg)
+    throw std::invalid_argument(fmt::format(
+        "{}: found hues that differ by {:.0f} degrees from their mean, accepted at most {:.0f}: the box shows several "
+        "colours; is it wholly on its colour?",
+        name, seen.spread_deg, kMostSpread_deg));
 }
 
 }  // namespace
@@ -86,6 +101,7 @@ ColourResult teach_colours(const std::map<std::string, ColourSample>& samples) {
       ground_saturation = seen.highest_saturation;
       continue;
     }
+    require_colour(name, seen);
     chroma = std::min(chroma, seen.chroma);
     saturation = std::min(saturation, seen.saturation);
     ranges.push_back({name, seen, std::max(1.5 * seen.spread_deg, kLeastMargin_deg)});
@@ -117,7 +133,9 @@ ColourResult teach_colours(const std::map<std::string, ColourSample>& samples) {
   const double min_chroma = threshold(kUsualChroma, kLeastChroma, chroma, std::min(ground_chroma, chroma));
   const double min_saturation =
       threshold(kUsualSaturation, kLeastSaturation, saturation, std::min(ground_saturation, saturation));
-  if (samples.contains(kGround) && ground_chroma >= min_chroma && ground_saturation >= min_saturation)
+  // The palest colour counts, too: a threshold is never below its least value, but a colour may be.
+  if (samples.contains(kGround) && ground_chroma >= std::min(min_chroma, chroma) &&
+      ground_saturation >= std::min(min_saturation, saturation))
     throw std::invalid_argument(
         fmt::format("ground: found chroma {:.3f} and saturation {:.2f}, as much as the palest colour has ({:.3f}, "
                     "{:.2f}): choose stronger colours or white light",

@@ -36,7 +36,8 @@ struct ColourResult {
 };
 
 /// `samples`: by the name of the colour (green, red, blue, yellow); the name `ground` stands for everything that has
-/// none. Throws std::invalid_argument if two colours, or a colour and the ground, cannot be distinguished.
+/// none. Throws std::invalid_argument if a sample of a colour is grey or shows several hues, or if two colours, or a
+/// colour and the ground, cannot be distinguished.
 [[nodiscard]] ColourResult teach_colours(const std::map<std::string, ColourSample>& samples);
 
 }  // namespace constrictor::camera_setup

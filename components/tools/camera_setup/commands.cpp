@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -11,10 +12,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "camera_setup/colours.hpp"
-#include "camera_setup/frame_reader.hpp"
+#include "camera_setup/command_steps.hpp"
 #include "camera_setup/lens.hpp"
 #include "camera_setup/mount.hpp"
-#include "configuration/whole_file.hpp"
 #include "robot/camera_mount.hpp"
 #include "runtime/host.hpp"
 #include "video/rectifier.hpp"
@@ -28,11 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kFrameBound = 5000ms;       // longest wait for a frame of a live source
 constexpr double kSteady_px = 0.7;         // a board that moves less between two frames is held still
+constexpr auto kNoBoardEvery = 1s;         // between two lines on a board that is not in view
 constexpr double kLeastDifference = 0.15;  // between two views of a board; see Pose2
-
-bool stopped() { return g_signal != 0; }
 
 /// The board that a value of --board describes; empty if there is none.
 std::optional<Board> board_in(const std::string& text) {
@@ -51,32 +49,10 @@ Board board_of(const Options& options) {
   return board;
 }
 
-FrameReader reader_of(const Options& options) {
-  return {video::parse_source(options.source, fs::current_path(), fs::current_path()), options.device};
-}
-
-/// The next picture; prints what happens to the source meanwhile. Throws Failed if a live source gives none.
-std::optional<cv::Mat> next(FrameReader& reader) {
-  auto picture = reader.next(kFrameBound, stopped);
-  for (const auto& line : reader.news()) fmt::print(stderr, "{}\n", line);
-  if (!picture && reader.live() && !stopped())
-    throw Failed(
-        fmt::format("no frame for {} s; `constrictor camera show` tries the source", kFrameBound.count() / 1000));
-  return picture;
-}
-
-void write(const fs::path& file, const std::string& text) {
-  try {
-    write_whole(file, text);
-  } catch (const std::runtime_error& error) {
-    throw Failed(error.what());
-  }
-  fmt::print("wrote {}\n", file.string());
-}
-
 }  // namespace
 
 int show(const Options& options) {
+  if (!options.out.empty()) require_writable(options.out);
   FrameReader reader = reader_of(options);
   cv::Mat picture;
   for (int i = 0; i < (reader.live() ? 20 : 1) && !stopped(); ++i) {
@@ -89,12 +65,13 @@ int show(const Options& options) {
   const cv::Scalar mean = cv::mean(picture);
   fmt::print("{} x {} pixels, mean brightness {:.0f} of 255", picture.cols, picture.rows,
              (mean[0] + mean[1] + mean[2]) / 3);
-  if (reader.live())
-    fmt::print(", {:.1f} frames in a second, {} missing of {}", counters.rate_hz, counters.missing, counters.frames);
+  if (reader.live()) fmt::print(", {:.1f} frames in a second", counters.rate_hz);
+  // Without an expected rate, nothing tells how many frames there should have been.
+  if (reader.live() && options.rate_given) fmt::print(", {} missing of {}", counters.missing, counters.frames);
   fmt::print("\n");
   if (!options.out.empty()) {
     if (!cv::imwrite(options.out.string(), picture))
-      throw Failed(fmt::format("--out: cannot write {}, accepted a file such as picture.png", options.out.string()));
+      throw Failed(fmt::format("--out: cannot write {}: is the disk full?", options.out.string()));
     fmt::print("wrote {}\n", options.out.string());
   }
   return exit_status::kOk;
@@ -102,6 +79,7 @@ int show(const Options& options) {
 
 int calibrate(const Options& options) {
   const Board board = board_of(options);
+  require_writable(options.out);
   FrameReader reader = reader_of(options);
   if (reader.live())
     fmt::print(
@@ -153,11 +131,49 @@ int calibrate(const Options& options) {
   return exit_status::kOk;
 }
 
+namespace {
+
+/// Of a live source without a board in view: prints once a second what the camera shows, and gives up after a time.
+class NoBoard {
+ public:
+  NoBoard(const Board& board, double within_s) : board_(board), within_s_(within_s) {}
+
+  /// Throws Failed when the time is over.
+  void look(const cv::Mat& picture) {
+    ++pictures_;
+    const auto now = Clock::now();
+    const double waited_s = std::chrono::duration<double>(now - begin_).count();
+    if (waited_s > within_s_)
+      throw Failed(
+          fmt::format("found no board of {} x {} corners within {:g} s (--within): is the whole board in the picture, "
+                      "flat and in good light, and are the numbers of --board right? Nothing was written",
+                      board_.columns, board_.rows, within_s_));
+    if (now < next_) return;
+    next_ = now + kNoBoardEvery;
+    const cv::Scalar mean = cv::mean(picture);
+    fmt::print("no board of {} x {} corners in view: {} pictures of {} x {} pixels, mean brightness {:.0f} of 255\n",
+               board_.columns, board_.rows, pictures_, picture.cols, picture.rows, (mean[0] + mean[1] + mean[2]) / 3);
+    std::fflush(stdout);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Board board_;
+  double within_s_;
+  int pictures_ = 0;
+  Clock::time_point begin_ = Clock::now(), next_ = begin_;
+};
+
+}  // namespace
+
 int mount(const Options& options) {
   const Board board = board_of(options);
   const RobotModel robot = load_robot(options.robot);
   video::CameraCalibration lens = video::load_calibration(options.calibration, robot.camera);
+  const fs::path out = options.out.empty() ? fs::path(options.calibration) : options.out;
+  require_writable(out);
   FrameReader reader = reader_of(options);
+  NoBoard no_board(board, options.within_s);
   const BoardOnGround place{options.at_m[0], options.at_m[1], options.yaw_deg * std::numbers::pi / 180.0};
   while (!stopped()) {
     const auto picture = next(reader);
@@ -166,7 +182,10 @@ int mount(const Options& options) {
     const auto scaled = lens.scaled_to(picture->cols, picture->rows);
     const auto corners = find_board_on_ground(*picture, board, place, scaled, robot.module_radius_m, expected);
     if (!corners) {
-      if (reader.live()) continue;
+      if (reader.live()) {
+        no_board.look(*picture);
+        continue;
+      }
       throw Failed("the board is not in the picture, or not wholly");
     }
     const MountResult found = find_mount(*corners, board, place, scaled, robot.module_radius_m, expected);
@@ -184,9 +203,14 @@ int mount(const Options& options) {
           fmt::format("the error is {:.3f} pixel, accepted at most {:g} (--largest-error); is the calibration that "
                       "of this camera? Nothing was written",
                       found.error_px, options.largest_error_px));
+    if (const std::string doubt = doubt_of_mount(found.X_HC, expected); !doubt.empty()) {
+      if (!options.accept_mount)
+        throw Failed(fmt::format(
+            "{} If the camera really is there, --accept-mount accepts the mount. Nothing was written", doubt));
+      fmt::print("careful: {}\n", doubt);
+    }
     lens.X_HC = found.X_HC;
-    write(options.out.empty() ? fs::path(options.calibration) : options.out,
-          calibration_text(lens, true, "constrictor camera calibrate and mount"));
+    write(out, calibration_text(lens, true, "constrictor camera calibrate and mount"));
     return exit_status::kOk;
   }
   return 128 + g_signal;
@@ -233,6 +257,7 @@ std::string wrong_sample(const std::string& text) {
 int colours(const Options& options) {
   std::vector<Sample> boxes;
   for (const auto& text : options.samples) boxes.push_back(sample_in(text).value());
+  require_writable(options.out);
   std::optional<video::Rectifier> rectifier;
   if (!options.calibration.empty())
     rectifier.emplace(video::load_calibration(options.calibration, load_robot(options.robot).camera), 0, 0);

@@ -24,6 +24,7 @@ class Failed : public std::runtime_error {
 struct Options {
   std::string source;
   video::DeviceRequest device;
+  bool rate_given = false;  ///< the rate in `device` is what the user expects; false: it is only a request
   std::string board = "9x6";
   double square_m = 0.025;
   std::filesystem::path out;
@@ -33,12 +34,16 @@ struct Options {
   double largest_error_px = 1.0;
   std::vector<double> at_m;
   double yaw_deg = 0.0;
+  double within_s = 60.0;     ///< in which a live source must show the board on the ground
+  bool accept_mount = false;  ///< also a mount that is hardly plausible
   std::vector<std::string> samples;
 };
 
 /// Why a value of --board or of --sample is not accepted; empty: it is.
 [[nodiscard]] std::string wrong_board(const std::string& text);
 [[nodiscard]] std::string wrong_sample(const std::string& text);
+/// For a picture that is to be written: its name must end in the name of a format.
+[[nodiscard]] std::string wrong_picture_name(const std::string& file);
 
 int show(const Options& options);
 int calibrate(const Options& options);

@@ -21,8 +21,8 @@ class FrameReader {
   /// The next picture, BGR; of a live source the newest one that was not given yet. Waits for it, at most `bound` or
   /// until `stop` returns true. Empty: there is none.
   [[nodiscard]] std::optional<cv::Mat> next(std::chrono::milliseconds bound, const std::function<bool()>& stop);
-  /// Texts on the events of a live source, one line each.
-  [[nodiscard]] std::vector<std::string> news() { return live_ ? live_->take_news() : std::vector<std::string>{}; }
+  /// The events of a live source since the last call.
+  [[nodiscard]] std::vector<video::News> news() { return live_ ? live_->take_news() : std::vector<video::News>{}; }
   [[nodiscard]] video::LiveCounters counters() const { return live_ ? live_->counters() : video::LiveCounters{}; }
 
  private:

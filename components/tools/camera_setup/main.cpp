@@ -21,8 +21,15 @@ void add_source(CLI::App& sub, Options& options) {
   sub.add_option("--source", options.source,
                  "device, address, pipeline of GStreamer, file NAME.url, video, picture, or folder of pictures")
       ->required();
-  sub.add_option("--rate", options.device.frame_rate_hz, "[Hz] frames in a second of a live source")
-      ->capture_default_str()
+  sub.add_option_function<double>(
+         "--rate",
+         [&options](double rate_hz) {
+           options.device.frame_rate_hz = rate_hz;
+           options.rate_given = true;
+         },
+         "[Hz] frames in a second that a live source should send; without it, 30 is asked of a device and `show` "
+         "counts "
+         "no\nmissing frames")
       ->check(number(0.5, 240.0, "Hz"));
   sub.add_option("--width", options.device.width, "[pixel] width of the pictures of a device; 0: the device chooses")
       ->check(whole_number(0, 4096));
@@ -60,7 +67,8 @@ int main(int argc, char** argv) {
     return sub;
   };
   CLI::App* sub = add("show", "try a source: size, rate, brightness; save a picture", show);
-  sub->add_option("--out", options.out, "file for the last picture");
+  sub->add_option("--out", options.out, "file for the last picture: .png, .jpg, .bmp, .tif or .webp")
+      ->check(wrong_picture_name);
   sub = add("calibrate", "find the model of the lens with a chessboard", calibrate);
   add_board(*sub, options);
   sub->add_option("--views", options.views, "how many views of a live source are collected")
@@ -83,6 +91,11 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(number(-180.0, 180.0, "degrees"));
   sub->add_option("--robot", options.robot, "robot file")->check(CLI::ExistingFile);
+  sub->add_option("--within", options.within_s, "[s] time in which a live source must show the board")
+      ->capture_default_str()
+      ->check(number(1.0, 3600.0, "s"));
+  sub->add_flag("--accept-mount", options.accept_mount,
+                "write also a mount that is far from the head, or from the mount of the robot file");
   sub->add_option("--out", options.out, "calibration file with the mount (default: that of --calibration)");
   sub = add("colours", "teach colours from a picture", colours);
   sub->add_option(

@@ -1,5 +1,7 @@
 #include "camera_setup/mount.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -89,6 +91,26 @@ MountResult find_mount(const Corners& corners, const Board& board, const BoardOn
   }
   best.error_px = cv::norm(seen, corners, cv::NORM_L2) / std::sqrt(static_cast<double>(seen.size()));
   return best;
+}
+
+std::string doubt_of_mount(const Eigen::Isometry3d& X_HC, const Eigen::Isometry3d& expected) {
+  constexpr const char* kCauses =
+      "is --square the edge of one square in metres, are the numbers of --board in the right order (the rows lie "
+      "across "
+      "the robot), and is --at measured from the centre of the head?";
+  const double away_m = X_HC.translation().norm();
+  if (!(away_m <= kFarthestFromHead_m))
+    return fmt::format("found a camera {:.3f} m from the centre of the head, accepted at most {:g} m: {}", away_m,
+                       kFarthestFromHead_m, kCauses);
+  const double moved_m = (X_HC.translation() - expected.translation()).norm();
+  const double turned_deg =
+      Eigen::AngleAxisd(expected.linear().transpose() * X_HC.linear()).angle() * 180.0 / std::numbers::pi;
+  if (!(moved_m <= kLargestMove_m) || !(turned_deg <= kLargestTurn_deg))
+    return fmt::format(
+        "found a mount {:.3f} m and {:.1f} degrees from that of the robot file, accepted at most {:g} m and {:g} "
+        "degrees: {}",
+        moved_m, turned_deg, kLargestMove_m, kLargestTurn_deg, kCauses);
+  return {};
 }
 
 }  // namespace constrictor::camera_setup

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <string>
 
 #include "camera_setup/board.hpp"
 #include "video/calibration.hpp"
@@ -33,5 +34,14 @@ struct MountResult {
 [[nodiscard]] MountResult find_mount(const Corners& corners, const Board& board, const BoardOnGround& place,
                                      const video::CameraCalibration& lens, double head_height_m,
                                      const Eigen::Isometry3d& expected);
+
+inline constexpr double kFarthestFromHead_m = 0.3;
+inline constexpr double kLargestMove_m = 0.1;
+inline constexpr double kLargestTurn_deg = 30.0;
+
+/// Why this mount is hardly that of the camera: it is far from the head's centre, or differs much from the `expected`
+/// mount. Empty: it is plausible. A wrong size of the squares or a wrong order of the board's numbers fits the picture
+/// as well as the right one, so that the pixel error does not show it.
+[[nodiscard]] std::string doubt_of_mount(const Eigen::Isometry3d& X_HC, const Eigen::Isometry3d& expected);
 
 }  // namespace constrictor::camera_setup

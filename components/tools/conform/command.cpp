@@ -11,7 +11,6 @@
 
 #include "component/data_path.hpp"
 #include "configuration/temporary_folder.hpp"
-#include "conform/manifest_run.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::conform {
@@ -34,6 +33,10 @@ void note_signals() {
 
 fs::path robot_file(const std::string& name) {
   return is_path(name) ? fs::path(name) : data_path("components/lib/robot/" + name + ".yaml");
+}
+
+fs::path scenario_file(const std::string& name) {
+  return is_path(name) ? fs::absolute(name) : data_path("sim/scenarios/" + name + ".yaml");
 }
 
 fs::path manifest_file(const std::string& name) {
@@ -80,14 +83,12 @@ int concluded(const Options& options, const Report& report, const std::string& g
   return report.conforms() ? exit_status::kOk : exit_status::kFailed;
 }
 
-int check_in_run(const Options& options, std::string (*manifest)(const Options&, const std::string&, const fs::path&),
-                 const std::string& part) {
+int check_in_run(const Options& options, const std::function<bool(const fs::path&)>& run) {
   TemporaryFolder temporary("conform");
   const fs::path& folder = temporary.path();
   if (options.profile.empty()) std::ofstream(folder / "profile.yaml") << "{}\n";
   else fs::copy_file(options.profile, folder / "profile.yaml");
-  const bool found = run_manifest(
-      manifest(options, part, folder), folder, [] { return g_signal != 0; }, print_line);
+  const bool found = run(folder);
   if (!found) {
     temporary.keep();
     std::ifstream log(folder / "log");

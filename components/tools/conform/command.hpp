@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +15,11 @@
 namespace constrictor::conform {
 
 struct Options {
-  std::uint32_t domain = 0;
+  std::optional<std::uint32_t> domain;  ///< in which the part is already; not with a manifest
   std::uint16_t robot_id = 1;
-  std::string robot = "mamba", profile, json, manifest;
-  std::string restart_command;            ///< ends the plant's process and starts it again; empty: not given
-  std::optional<std::uint32_t> observed;  ///< domain of a run that goes on, of a part that can be observed
+  std::string robot = "mamba", scenario = "case_study", profile, json, manifest;
+  double patience_s = 60.0;     ///< in which a part that is started by hand must join
+  std::string restart_command;  ///< ends the plant's process and starts it again; empty: not given
   bool yes = false, list = false, show_profile = false;
 };
 
@@ -29,6 +30,8 @@ void note_signals();
 
 /// The robot file with this path or name.
 [[nodiscard]] std::filesystem::path robot_file(const std::string& name);
+/// The scenario file with this path or name.
+[[nodiscard]] std::filesystem::path scenario_file(const std::string& name);
 /// The manifest with this path or name.
 [[nodiscard]] std::filesystem::path manifest_file(const std::string& name);
 void print_line(const std::string& line);
@@ -41,11 +44,9 @@ void print_line(const std::string& line);
 /// Prints the summary, writes the file of --json, and returns the exit status. `gone`: why the checks have ended early.
 [[nodiscard]] int concluded(const Options& options, const Report& report, const std::string& gone);
 
-/// Checks the part in a run that `manifest(folder)` describes, and returns the exit status.
-[[nodiscard]] int check_in_run(const Options& options,
-                               std::string (*manifest)(const Options&, const std::string& part,
-                                                       const std::filesystem::path& folder),
-                               const std::string& part);
+/// Checks the part in a run that `run(folder)` makes, and returns the exit status. `run` returns false if there is no
+/// result.
+[[nodiscard]] int check_in_run(const Options& options, const std::function<bool(const std::filesystem::path&)>& run);
 
 // The subcommands. Each returns the exit status; they throw ConfigurationError.
 [[nodiscard]] int plant_command(const Options& options);

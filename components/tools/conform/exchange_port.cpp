@@ -30,7 +30,8 @@ struct ExchangePort::Operator {
   RunControlClient control;
 };
 
-ExchangePort::ExchangePort(std::string part, std::uint32_t domain) : part_(std::move(part)), domain_(domain) {}
+ExchangePort::ExchangePort(std::string part, std::uint32_t domain, bool is_served)
+    : part_(std::move(part)), domain_(domain), is_served_(is_served) {}
 
 ExchangePort::~ExchangePort() = default;
 
@@ -122,7 +123,10 @@ std::uint64_t ExchangePort::refused() { return fresh_status().process.refused();
 
 std::uint32_t ExchangePort::incarnation() { return fresh_status().process.incarnation(); }
 
-std::string ExchangePort::restart() { return client().process.kill(); }
+std::string ExchangePort::restart() {
+  if (is_served_) return "the part was started by hand: a part of a manifest is started again";
+  return client().process.kill();
+}
 
 void ExchangePort::end() {
   const std::lock_guard lock(mutex_);

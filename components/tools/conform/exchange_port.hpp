@@ -18,7 +18,8 @@ namespace constrictor::conform {
 
 class ExchangePort final : public PartPort, public StandBoard {
  public:
-  ExchangePort(std::string part, std::uint32_t domain);
+  /// `is_served`: the user has started the part by hand, and nobody would start it again.
+  ExchangePort(std::string part, std::uint32_t domain, bool is_served = false);
   ~ExchangePort() override;
 
   void begin_epoch() override;
@@ -46,6 +47,7 @@ class ExchangePort final : public PartPort, public StandBoard {
 
   std::string part_;
   std::uint32_t domain_;
+  bool is_served_;
   std::unique_ptr<Operator> operator_;
   std::mutex mutex_;
   std::condition_variable changed_;

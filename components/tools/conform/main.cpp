@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 
 #include "configuration/command_line.hpp"
 #include "conform/command.hpp"
@@ -18,7 +19,19 @@ constexpr const char* kStatuses =
     "EXIT STATUS\n"
     "  0 it conforms; 1 a check failed or was not made; 64 wrong usage, or not agreed; 78 a file is wrong; 130 "
     "Ctrl-C\n\n"
-    "ENVIRONMENT\n  CONSTRICTOR_DOMAIN, CYCLONEDDS_URI";
+    "ENVIRONMENT\n  CONSTRICTOR_DOMAIN (of a plant, without --domain and --manifest), CYCLONEDDS_URI";
+
+const CLI::Validator kDomains = whole_number(0, 229);
+
+/// The domain that the environment names; it is not an alternative to an option, but what holds without one.
+std::optional<std::uint32_t> domain_of_environment() {
+  const char* text = std::getenv("CONSTRICTOR_DOMAIN");
+  if (!text || !*text) return {};
+  std::string number = text;
+  if (const std::string error = kDomains(number); !error.empty())
+    throw ConfigurationError("CONSTRICTOR_DOMAIN: " + error);
+  return static_cast<std::uint32_t>(std::stoul(number));
+}
 
 /// The options that all parts have.
 void add_options(CLI::App& sub, Options& options) {
@@ -33,13 +46,13 @@ void add_options(CLI::App& sub, Options& options) {
 void add_plant(CLI::App& app, Options& options) {
   CLI::App* sub = app.add_subcommand(
       "plant", "check a process that drives joints on the topics hardware/*, or the plant of a manifest");
-  sub->add_option("--domain", options.domain, "DDS domain in which the process writes; no plant_relay may be there")
-      ->envname("CONSTRICTOR_DOMAIN")
-      ->check(whole_number(0, 229));
-  sub->add_option(
-      "--manifest", options.manifest,
-      "instead of --domain: check the plant of this manifest (a file, or a name as in `constrictor run`) in a run of "
-      "its own");
+  auto* domain = sub->add_option("--domain", options.domain,
+                                 "DDS domain in which the process writes; no plant_relay may be there");
+  domain->check(kDomains);
+  sub->add_option("--manifest", options.manifest,
+                  "instead of --domain: check the plant of this manifest (a file, or a name as in `constrictor run`) "
+                  "in a run of its own")
+      ->excludes(domain);
   sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`")->capture_default_str();
   sub->add_option("--robot-id", options.robot_id, "number of the robot: the robot_id in the samples of the process")
       ->capture_default_str();
@@ -63,15 +76,27 @@ void add_plant(CLI::App& app, Options& options) {
 
 void add_part(CLI::App& app, Options& options, const PartKind& kind) {
   CLI::App* sub = app.add_subcommand(kind.name, kind.summary);
-  sub->add_option("--manifest", options.manifest,
-                  fmt::format("check the {} of this manifest (a file, or a name as in `constrictor run`) in a run of "
-                              "its own",
-                              kind.name));
-  if (kind.observable) {
-    sub->add_option("--domain", options.observed,
-                    "instead of --manifest: only watch the run in this DDS domain; nothing is moved")
-        ->check(whole_number(0, 229));
-    sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
+  auto* manifest = sub->add_option(
+      "--manifest", options.manifest,
+      fmt::format("check the {} of this manifest (a file, or a name as in `constrictor run`) in a run of "
+                  "its own",
+                  kind.name));
+  auto* domain = sub->add_option(
+      "--domain", options.domain,
+      kind.observable
+          ? std::string("instead of --manifest: only watch the run in this DDS domain; nothing is moved")
+          : fmt::format("instead of --manifest: serve a {} that you start yourself in this DDS domain, in which no run "
+                        "goes on; prints\nthe arguments with which it joins",
+                        kind.name));
+  domain->check(kDomains)->excludes(manifest);
+  sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
+      ->capture_default_str();
+  if (!kind.observable) {
+    sub->add_option("--patience", options.patience_s, "[s] time in which the part must join; with --domain")
+        ->capture_default_str()
+        ->check(number(1.0, 3600.0, "s"));
+    sub->add_option("--scenario", options.scenario,
+                    "scenario: a file, or a name as in `constrictor run`; with --domain")
         ->capture_default_str();
   }
   add_options(*sub, options);
@@ -81,8 +106,9 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
                   "to do. Ctrl-C ends\nthe run and names what was not checked.\n\n"
                   "EXAMPLES\n"
                   "  constrictor conform {} --manifest case_study{}\n"
+                  "  constrictor conform {} --domain 5\n"
                   "  constrictor conform {} --manifest mine.yaml --profile slow.yaml --json result.json\n\n{}",
-                  kind.what, kind.name, kind.moves_joints ? " --yes" : "", kind.name, kStatuses));
+                  kind.what, kind.name, kind.moves_joints ? " --yes" : "", kind.name, kind.name, kStatuses));
 }
 
 }  // namespace
@@ -97,6 +123,7 @@ int main(int argc, char** argv) {
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
   const std::string part = app.get_subcommands().front()->get_name();
   try {
+    if (part == "plant" && options.manifest.empty() && !options.domain) options.domain = domain_of_environment();
     return part == "plant" ? plant_command(options) : part_command(options, part);
   } catch (...) {
     return report_exception("conform");

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     const LaunchedChecks launched = launched_checks(argc, argv);
     if (!part) throw std::invalid_argument("found no environment variable CONSTRICTOR_CONFORM_PART");
     const PartKind& kind = part_kind(part);
-    ExchangePort port(part, launched.domain);
+    ExchangePort port(part, launched.domain, std::getenv("CONSTRICTOR_CONFORM_SERVED") != nullptr);
     std::thread checks;
     if (launched.takes_part)
       checks = start_checks(

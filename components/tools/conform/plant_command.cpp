@@ -50,30 +50,41 @@ int plant_command(const Options& options) {
   PlantProfile profile = load_parameters<PlantProfile>(options.profile);
   profile.adapt_to(robot);
   if (shown(options, plant_checks(), profile.describe())) return exit_status::kOk;
+  if (!options.domain && options.manifest.empty()) {
+    fmt::print(stderr,
+               "conform: found no --domain and no --manifest, accepted one of them: the plant in this DDS domain, or "
+               "that of this manifest, is checked\n");
+    return exit_status::kUsage;
+  }
+  const auto manifest = [&](const std::filesystem::path& folder) {
+    return plant_manifest(manifest_file(options.manifest), folder);
+  };
+  // A wrong manifest is refused before the user is asked.
+  if (!options.domain) static_cast<void>(manifest({}));
   const std::string warning = fmt::format(
       "This moves {} joints, one after the other, by {:.2f} rad at {:.2f} rad/s, sends commands that must be ignored, "
       "and\nrelaxes the joints for a second. Lay the robot on flat ground and keep a hand at the power switch.",
       profile.joints.size(), profile.amplitude_rad, profile.rate_rad_s);
   if (!options.yes && !agreed(warning)) return exit_status::kUsage;
   note_signals();
-  if (!options.manifest.empty()) {
-    const auto manifest = [](const Options& given, const std::string&, const std::filesystem::path& folder) {
-      return plant_manifest(manifest_file(given.manifest), folder);
-    };
-    return check_in_run(options, manifest, "plant");
+  if (!options.domain) {
+    return check_in_run(options, [&](const std::filesystem::path& folder) {
+      return run_manifest(
+          manifest(folder), folder, [] { return signal_number() != 0; }, print_line);
+    });
   }
   Report report(plant_checks(), [](const Check& check) { print_line(text_of(check)); });
   std::string gone;
   try {
     HardwarePort port(
-        options.domain, profile.period_s, options.robot_id, [] { return signal_number() != 0; },
+        *options.domain, profile.period_s, options.robot_id, [] { return signal_number() != 0; },
         [&] { return restart_plant(options, profile.restart_within_s); });
     port.advance({});
     if (port.commanded_by_others()) {
       fmt::print(stderr,
                  "conform: found another process that writes hardware/joint_command in domain {} (plant_relay?); end "
                  "its run first\n",
-                 options.domain);
+                 *options.domain);
       return exit_status::kUsage;
     }
     PlantConformance(port, robot, profile, report).run();

@@ -1,14 +1,17 @@
 // Lens and mount from drawn pictures of a board, whose camera is known.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
 #include "camera_setup/lens.hpp"
 #include "camera_setup/mount.hpp"
+#include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "drawn_board.hpp"
 #include "robot/camera_mount.hpp"
+#include "robot/robot_model.hpp"
 #include "support/process.hpp"
 
 namespace constrictor::testing {
@@ -103,6 +106,19 @@ TEST(Board, IsNotFoundWhereThereIsNone) {
   EXPECT_FALSE(camera_setup::find_board(pictures()[0], Board{9, 6, 0.03}).has_value());
 }
 
+/// A board as a person lays it down before a head whose centre is `height_m` above the ground: its rows run to the
+/// right, its columns towards the robot.
+Eigen::Isometry3d board_on_ground(const Board& board, const camera_setup::BoardOnGround& place, double height_m) {
+  Eigen::Isometry3d X_HB = Eigen::Isometry3d::Identity();
+  X_HB.linear().col(0) = Vector3d(0, -1, 0);
+  X_HB.linear().col(1) = Vector3d(-1, 0, 0);
+  X_HB.linear().col(2) = Vector3d(0, 0, -1);
+  X_HB.linear() = AngleAxisd(place.yaw_rad, Vector3d::UnitZ()).toRotationMatrix() * X_HB.linear();
+  const Vector3d middle(0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
+  X_HB.translation() = Vector3d(place.x_m, place.y_m, -height_m) - X_HB.linear() * middle;
+  return X_HB;
+}
+
 TEST(Mount, IsFoundFromABoardOnTheGround) {
   CameraModel model;
   model.p_HC = {0.06, 0.0, 0.05};
@@ -116,14 +132,7 @@ TEST(Mount, IsFoundFromABoardOnTheGround) {
   const Board board{6, 5, 0.04};  // the camera is low: it sees a board on the ground from the side
   for (const double yaw : {0.0, 20.0, -35.0}) {
     const camera_setup::BoardOnGround place{0.36, 0.01, yaw * kDegree};
-    // The board as a person lays it down: its rows run to the right, its columns towards the robot.
-    Eigen::Isometry3d X_HB = Eigen::Isometry3d::Identity();
-    X_HB.linear().col(0) = Vector3d(0, -1, 0);
-    X_HB.linear().col(1) = Vector3d(-1, 0, 0);
-    X_HB.linear().col(2) = Vector3d(0, 0, -1);
-    X_HB.linear() = AngleAxisd(yaw * kDegree, Vector3d::UnitZ()).toRotationMatrix() * X_HB.linear();
-    const Vector3d middle(0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
-    X_HB.translation() = Vector3d(place.x_m, place.y_m, -height_m) - X_HB.linear() * middle;
+    const Eigen::Isometry3d X_HB = board_on_ground(board, place, height_m);
     const cv::Mat picture = painter().draw(board, X_HC.inverse() * X_HB);
     const auto corners = camera_setup::find_board_on_ground(picture, board, place, lens, height_m, expected);
     ASSERT_TRUE(corners.has_value()) << yaw;
@@ -131,7 +140,55 @@ TEST(Mount, IsFoundFromABoardOnTheGround) {
     EXPECT_LT((found.X_HC.translation() - X_HC.translation()).norm(), 0.002) << yaw;
     EXPECT_LT(AngleAxisd(found.X_HC.linear().transpose() * X_HC.linear()).angle(), 0.4 * kDegree) << yaw;
     EXPECT_LT(found.error_px, 0.3);
+    EXPECT_EQ(camera_setup::doubt_of_mount(found.X_HC, expected), "");
   }
+}
+
+TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  const auto lens = video::calibration_of(robot.camera);
+  const Board board{6, 5, 0.04};
+  const camera_setup::BoardOnGround place{0.36, 0.0, 0.0};
+  const Eigen::Isometry3d X_HB = board_on_ground(board, place, robot.module_radius_m);
+  const TemporaryFolder folder;
+  const std::string picture = (folder.path() / "board.png").string(), file = (folder.path() / "camera.yaml").string();
+  ASSERT_TRUE(cv::imwrite(picture, BoardPainter(lens).draw(board, camera_mount(robot.camera).inverse() * X_HB)));
+  const std::string before = video::calibration_text(lens, false, "this test");
+  std::ofstream(file) << before;
+  const auto content = [&]() -> std::string {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  };
+  const auto mount = [&](const std::string& numbers, const std::string& square, std::vector<std::string> more,
+                         int status) -> std::string {
+    std::vector<std::string> words = {program("camera_setup"),
+                                      "mount",
+                                      "--source",
+                                      picture,
+                                      "--calibration",
+                                      file,
+                                      "--at",
+                                      "0.36,0",
+                                      "--board",
+                                      numbers,
+                                      "--square",
+                                      square};
+    words.insert(words.end(), more.begin(), more.end());
+    Process process(std::move(words));
+    EXPECT_EQ(process.wait(60s), status) << process.output() << process.errors();
+    return process.output() + process.errors();
+  };
+  const std::string size = mount("6x5", "0.4", {}, 1);
+  EXPECT_NE(size.find("m from the centre of the head, accepted at most 0.3 m"), std::string::npos) << size;
+  EXPECT_NE(size.find("--square"), std::string::npos) << size;
+  const std::string order = mount("5x6", "0.04", {}, 1);
+  EXPECT_NE(order.find("numbers of --board in the right order"), std::string::npos) << order;
+  EXPECT_EQ(content(), before) << "nothing was written";
+  const std::string other = (folder.path() / "other.yaml").string();
+  EXPECT_NE(mount("6x5", "0.4", {"--accept-mount", "--out", other}, 0).find("careful: found a camera"),
+            std::string::npos);
+  mount("6x5", "0.04", {}, 0);
+  EXPECT_NE(content().find("mount:"), std::string::npos) << content();
 }
 
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {

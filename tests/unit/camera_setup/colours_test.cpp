@@ -71,6 +71,15 @@ TEST(TaughtColours, AHueAroundRedIsNoProblem) {
   EXPECT_NE(teach_colours(found).yaml.find("red: {from_deg: 34"), std::string::npos) << teach_colours(found).yaml;
 }
 
+std::string refusal(const std::map<std::string, ColourSample>& samples) {
+  try {
+    static_cast<void>(teach_colours(samples));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
 TEST(TaughtColours, RefusesWhatCannotBeToldApart) {
   auto found = samples();
   found["yellow"].add(patch("green", 3), {0, 0, 20, 20});
@@ -79,6 +88,18 @@ TEST(TaughtColours, RefusesWhatCannotBeToldApart) {
   pale["blue"].add(patch("ground", 1), {0, 0, 20, 20});
   pale["ground"].add(patch("ground", 2), {0, 0, 20, 20});
   EXPECT_THROW(static_cast<void>(teach_colours(pale)), std::invalid_argument);
+  pale["blue"] = {};
+  pale["blue"].add(cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(128)), {0, 0, 20, 20});
+  pale["ground"] = {};
+  pale["ground"].add(cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(128)), {0, 0, 20, 20});
+  EXPECT_NE(refusal(pale).find("blue: found chroma 0.000"), std::string::npos) << refusal(pale);
+  pale.erase("ground");
+  EXPECT_NE(refusal(pale).find("the box shows grey"), std::string::npos) << "also without a sample of the ground";
+  cv::Mat two(20, 20, CV_8UC3, kPaints.at("blue"));
+  two.rowRange(0, 10).setTo(kPaints.at("red"));
+  std::map<std::string, ColourSample> mixed;
+  mixed["blue"].add(two, {0, 0, 20, 20});
+  EXPECT_NE(refusal(mixed).find("several colours"), std::string::npos) << refusal(mixed);
   std::map<std::string, ColourSample> none;
   none["ground"].add(patch("ground", 2), {0, 0, 20, 20});
   EXPECT_THROW(static_cast<void>(teach_colours(none)), std::invalid_argument);

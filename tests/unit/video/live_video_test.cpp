@@ -91,7 +91,8 @@ class LiveVideoTest : public ::testing::Test {
   bool told(const std::string& text) {
     return eventually([&] {
       static_cast<void>(video_->take());
-      for (const auto& line : video_->take_news()) news_ += line + "\n";
+      for (const auto& one : video_->take_news()) (one.is_good ? good_ : bad_) += one.text + "\n";
+      news_ = good_ + bad_;
       return news_.find(text) != std::string::npos;
     });
   }
@@ -101,7 +102,7 @@ class LiveVideoTest : public ::testing::Test {
 
   Script script_;
   std::unique_ptr<LiveVideo> video_;
-  std::string news_;
+  std::string news_, good_, bad_;  ///< all that was told, that which is good, and that which is not
 };
 
 TEST_F(LiveVideoTest, GivesEachFrameOnceAndOnlyTheNewest) {
@@ -118,6 +119,8 @@ TEST_F(LiveVideoTest, GivesEachFrameOnceAndOnlyTheNewest) {
 TEST_F(LiveVideoTest, TellsWhatTheDeviceDidNotObey) {
   EXPECT_TRUE(told("a scripted camera"));
   EXPECT_TRUE(told("it has no focus"));
+  EXPECT_NE(good_.find("a scripted camera"), std::string::npos) << "a connection is good news";
+  EXPECT_NE(bad_.find("it has no focus"), std::string::npos);
 }
 
 TEST_F(LiveVideoTest, OpensASourceThatEndedAgain) {
@@ -145,6 +148,8 @@ TEST_F(LiveVideoTest, TriesUntilTheSourceIsThereAndSaysTheReasonOnce) {
   script_.frame(30);
   EXPECT_EQ(take(), 30);
   EXPECT_TRUE(told("frames arrive again"));
+  EXPECT_NE(bad_.find("the camera is gone"), std::string::npos);
+  EXPECT_NE(good_.find("frames arrive again"), std::string::npos);
 }
 
 TEST_F(LiveVideoTest, NoticesAFrozenAndABlackCamera) {
@@ -158,6 +163,10 @@ TEST_F(LiveVideoTest, NoticesAFrozenAndABlackCamera) {
   EXPECT_TRUE(video_->counters().black);
   script_.frame(90);
   EXPECT_TRUE(told("no longer black"));
+  for (const char* bad : {"the camera is frozen", "the image is black"})
+    EXPECT_NE(bad_.find(bad), std::string::npos) << bad;
+  for (const char* good : {"no longer frozen", "no longer black"})
+    EXPECT_NE(good_.find(good), std::string::npos) << good;
 }
 
 TEST(LiveVideo, EndsInTimeAlthoughTheSourceDoesNotAnswer) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <fstream>
@@ -90,6 +91,7 @@ class VideoCaptureTest : public ::testing::Test {
     constrictor::Setup setup;
     setup.robot_file = data_path("components/lib/robot/mamba.yaml");
     setup.output_dir = folder_.path();
+    setup.log = Log("camera", folder_.path() / "log");
     const video::OpenVideo open = [camera = camera_] { return std::make_unique<HandFed::Input>(camera); };
     const ComponentFactory plant{"physics",
                                  [](Wiring&, const constrictor::Setup&) { return std::make_unique<Ticker>(); }};
@@ -114,6 +116,17 @@ class VideoCaptureTest : public ::testing::Test {
     return eventually([&] {
       run_->advance(1);
       return images_.size() >= count;
+    });
+  }
+  /// The lines of the log.
+  [[nodiscard]] std::string log() const {
+    std::ifstream file(folder_.path() / "log");
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  bool logged(const std::string& text) {
+    return eventually([&] {
+      run_->advance(1);
+      return log().find(text) != std::string::npos;
     });
   }
   [[nodiscard]] std::string refusals() { return run_->member("camera").counters().last_refusal; }
@@ -215,6 +228,35 @@ TEST_F(VideoCaptureTest, RefusesLateFramesAndFramesOfAnotherCamera) {
   EXPECT_TRUE(images_.empty());
   camera_->send(320, 240);
   EXPECT_TRUE(images(1)) << "it goes on with good frames";
+  EXPECT_NE(log().find("warning camera: camera/image: found a frame of"), std::string::npos) << log();
+  EXPECT_NE(log().find("info camera: camera/image: frames arrive in time again"), std::string::npos) << log();
+}
+
+TEST_F(VideoCaptureTest, LogsHowTheCameraIsAndCountsNoRefusalOfAHealthyOne) {
+  start("stream: {gone_after_s: 0.1}", true);
+  EXPECT_TRUE(logged("info camera: a camera fed by hand")) << log();
+  EXPECT_TRUE(logged("warning camera: no frame for")) << log();
+  camera_->send(320, 240);
+  EXPECT_TRUE(logged("info camera: frames arrive again")) << log();
+  EXPECT_EQ(run_->member("camera").counters().refused, 0U) << refusals();
+}
+
+TEST_F(VideoCaptureTest, BoundsTheLinesOfTheLog) {
+  start("stream: {late_after_s: 0.3}", true);
+  for (std::uint64_t i = 1; i <= 20; ++i) {  // late and in time, one after the other
+    camera_->send(320, 240, i % 2 == 1 ? 400'000'000 : 0);
+    if (i % 2 == 0) {
+      ASSERT_TRUE(images(i / 2)) << log();
+    } else {
+      ASSERT_TRUE(eventually([&] {
+        run_->advance(1);
+        return run_->member("camera").counters().refused == (i + 1) / 2;
+      })) << i;
+    }
+    if (run_->tick() > 400) break;  // a slow computer: the first period would end
+  }
+  const std::string lines = log();
+  EXPECT_LE(std::count(lines.begin(), lines.end(), '\n'), 10) << lines;
 }
 
 TEST_F(VideoCaptureTest, WritesHowTheCameraIs) {
