@@ -5,6 +5,7 @@
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <sstream>
+#include <utility>
 
 #include "component/data_path.hpp"
 #include "component/default_robot.hpp"
@@ -50,9 +51,11 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       rates_rad_s_(robot_.joints.size()),
       torques_nm_(robot_.joints.size()) {}
 
-ServoBus::~ServoBus() {
-  if (!started_) return;
-  if (config_.torque_off_at_exit) servos_.release();
+ServoBus::~ServoBus() { release(); }
+
+void ServoBus::release() {
+  if (!started_ || std::exchange(released_, true)) return;
+  for (const auto& line : servos_.release(config_.torque_off_at_exit)) log_.warning("{}", line);
 }
 
 void ServoBus::start() {

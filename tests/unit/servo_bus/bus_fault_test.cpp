@@ -168,12 +168,14 @@ TEST_F(BusFault, AnUnpluggedAdapterStopsTheServosByTheirWatchdogs) {
 }
 
 TEST_F(BusFault, ASuccessorFindsTheServosLockedAndMovesNothing) {
-  start_swinging("servo: {torque_off_at_exit: false}");  // as if the process were killed
+  start_swinging();
   bench_.pass_until(bench_.now_ns + 300'000'000);
   next_tick_ns_ = bench_.now_ns;
   EXPECT_EQ(bench_.robot->servo(11).get("bus_watchdog"), -1);
   EXPECT_EQ(torques_on(), 23) << "the torque stays on";
+  bench_.unplugged = true;  // a process that was killed has not released its servos
   run_->restart("servo_bus");
+  bench_.unplugged = false;
   const auto before = posture();
   ticks(100);
   EXPECT_EQ(mode(), GateMode::kStopped);
