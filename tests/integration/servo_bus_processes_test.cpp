@@ -115,7 +115,7 @@ class ServoBusProcesses : public CliFixture {
     EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(run_dir_ / "bus0")));
   }
 
-  const std::filesystem::path run_dir_ = dir_ / "run";
+  std::filesystem::path run_dir_ = dir_ / "run";
   const std::filesystem::path boards_dir_ = dir_ / "boards";
 };
 
@@ -215,6 +215,61 @@ TEST_F(ServoBusProcesses, GoesOnWithoutAnAdapterAndTakesItBack) {
   teleop.signal(SIGINT);
   teleop.wait(10s);
   end(launcher);
+}
+
+// The servos stay powered between the runs: their emulator is no part of them.
+TEST_F(ServoBusProcesses, AnOrderlyEndLeavesNoTrippedWatchdogAndAKillDoes) {
+  Process servos({program("servo_emulator"), "--output", boards_dir_.string()});
+  ASSERT_TRUE(servos.wait_for("servos answer", 20s)) << servos.errors();
+  const auto text_of = [](const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return std::string{std::istreambuf_iterator<char>(stream), {}};
+  };
+  std::string bus = text_of(source_path("deploy/buses/mamba_emulated.yaml"));
+  for (const std::string name : {"bus0", "bus1"})
+    bus.replace(bus.find("device: " + name) + 8, 4, (boards_dir_ / name).string());
+  write("bus.yaml", bus);
+  const auto configure = [this](const std::string& watchdog_s) {
+    write("patient.yaml", "servo: {watchdog_s: " + watchdog_s + "}\nbus_file: " + (dir_ / "bus.yaml").string() + "\n");
+  };
+  std::string manifest = text_of(source_path("deploy/emulated_servos.yaml"));
+  const auto beside = manifest.find("\nbeside:") + 1;
+  manifest.erase(beside, manifest.find("processes:") - beside);
+  write("alone.yaml", manifest);
+  const auto begin = [&](const std::string& name) {
+    run_dir_ = dir_ / name;
+    return run({}, (dir_ / "alone.yaml").string());
+  };
+  const auto scan = [&] {
+    EXPECT_EQ(command({"servo", "scan", "--port", (boards_dir_ / "bus0").string()}), exit_status::kOk) << output_;
+    return output_;
+  };
+
+  configure("0.1");  // as by default
+  Process first = begin("first");
+  ASSERT_TRUE(eventually([&] { return joints(23, 0); }, 30s)) << first.output() << first.errors();
+  end(first);
+  EXPECT_EQ(scan().find("torque on"), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("watchdog tripped"), std::string::npos) << output_;
+
+  configure("2");
+  Process second = begin("second");
+  ASSERT_TRUE(eventually([&] { return joints(23, 0); }, 30s)) << second.output() << second.errors();
+  EXPECT_FALSE(tripped());
+  second.signal(SIGKILL);
+  second.wait(20s);
+  ASSERT_TRUE(eventually([&] { return processes().empty(); }));
+  run_dir_ = boards_dir_;            // the notes of the emulator
+  EXPECT_LT(motion_rad(2.5), 0.02);  // the time of the watchdogs, in which nobody asks the servos
+  EXPECT_NE(scan().find("torque on, error: none, watchdog tripped"), std::string::npos) << output_;
+
+  Process third = begin("third");
+  ASSERT_TRUE(eventually([&] { return joints(23, 0); }, 30s)) << third.output() << third.errors();
+  EXPECT_TRUE(tripped()) << "the start does not clear it";
+  EXPECT_EQ(command({"clear-stop"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(eventually([&] { return !tripped(); }));
+  end(third);
+  EXPECT_EQ(scan().find("watchdog tripped"), std::string::npos) << output_;
 }
 
 TEST_F(ServoBusProcesses, RefusesAPaceThatServosCannotFollow) {
