@@ -189,7 +189,8 @@ std::vector<std::size_t> JointServos::clear(const Register& reg, std::vector<std
         };
         // In an answer to Sync Read, the servos behind a silent one are silent, too. At last each is asked by itself.
         if (i + 1 < kTries) bus.sync_read(reg.address, reg.bytes, ids[port], use);
-        else for (const std::uint8_t id : ids[port]) use(id, bus.read(id, reg.address, reg.bytes, 1));
+        else
+          for (const std::uint8_t id : ids[port]) use(id, bus.read(id, reg.address, reg.bytes, 1));
       });
     }
   }
@@ -202,11 +203,11 @@ std::vector<std::string> JointServos::release(bool torque_off) {
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (torque_off) {
     for (const std::size_t joint : clear(plan_.model.at("torque_enable"), all))
-      failed.push_back(fmt::format("{} has not confirmed that its torque is off: switch its power off", name_of(joint)));
+      failed.push_back(
+          fmt::format("{} has not confirmed that its torque is off: switch its power off", name_of(joint)));
   } else {
-    std::erase_if(all, [&](std::size_t joint) {
-      return joints_[joint].reading.watchdog == dynamixel::kWatchdogTripped;
-    });
+    std::erase_if(all,
+                  [&](std::size_t joint) { return joints_[joint].reading.watchdog == dynamixel::kWatchdogTripped; });
   }
   for (const std::size_t joint : clear(plan_.model.at("bus_watchdog"), all))
     failed.push_back(fmt::format("{} has not confirmed that its watchdog is off", name_of(joint)));
