@@ -66,8 +66,8 @@ class JointServos {
   void unlock();
   /// Why the servos at a port are asked with Sync Read, and not with Fast Sync Read; empty: they are not.
   [[nodiscard]] std::string slow_because(std::size_t port) const;
-  /// Texts on the events since the last call, one line each.
-  [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+  /// The events since the last call.
+  [[nodiscard]] std::vector<BusNews> take_news() { return std::exchange(news_, {}); }
 
  private:
   struct Joint {
@@ -127,7 +127,7 @@ class JointServos {
   std::uint16_t goal_bytes_ = 0;
   std::uint16_t state_bytes_ = 0;
   std::size_t next_lost_ = 0;  ///< joint at which the search for a lost servo goes on
-  std::vector<std::string> news_;
+  std::vector<BusNews> news_;
 };
 
 }  // namespace constrictor

@@ -6,6 +6,7 @@
 #include "component/device_owner.hpp"
 #include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
+#include "servo_bus/bus_news.hpp"
 #include "servo_bus/bus_record.hpp"
 #include "servo_bus/joint_servos.hpp"
 #include "servo_bus/sensor_boards.hpp"
@@ -43,7 +44,8 @@ class ServoBus final : public Plant, public DeviceOwner {
   void measure();
   void write_joints(double elapsed_s);
   void report_news();
-  void report(const std::string& line);
+  /// Good news are no refusals.
+  void report(const BusNews& news);
   void look_for_stuck_joints(std::span<const JointSetpoint> goals);
 
   Wiring& wiring_;
@@ -55,6 +57,7 @@ class ServoBus final : public Plant, public DeviceOwner {
   JointServos servos_;
   SensorBoards boards_;
   BusRecord record_;
+  NewsLog news_log_;
   PlantGate gate_;
   StuckWatch stuck_;
   std::vector<double> angles_rad_, rates_rad_s_, torques_nm_;  ///< by joint; the torques are low-pass filtered

@@ -266,6 +266,10 @@ TEST_F(ServoBusProcesses, AnOrderlyEndLeavesNoTrippedWatchdogAndAKillDoes) {
   Process third = begin("third");
   ASSERT_TRUE(eventually([&] { return joints(23, 0); }, 30s)) << third.output() << third.errors();
   EXPECT_TRUE(tripped()) << "the start does not clear it";
+  EXPECT_EQ(command({"doctor"}), exit_status::kFailed) << output_;
+  EXPECT_NE(output_.find("emergency stop of bus_watchdog"), std::string::npos) << output_;
+  EXPECT_EQ(command({"log", run_dir_.string(), "--component", "servo_bus", "--level", "warning"}), exit_status::kOk);
+  EXPECT_NE(output_.find("has stopped: its bus was silent"), std::string::npos) << output_;
   EXPECT_EQ(command({"clear-stop"}), exit_status::kOk) << output_;
   EXPECT_TRUE(eventually([&] { return !tripped(); }));
   end(third);
