@@ -29,6 +29,7 @@ class ServoBus final : public Plant, public DeviceOwner {
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
   [[nodiscard]] std::string device_status() const override { return record_.summary(); }
+  [[nodiscard]] bool needs_real_time() const override { return true; }
   /// Switches the torque off, if the configuration says so, and then the watchdogs.
   void release_device() override { release(); }
   /// Gate, stops and the last posture.

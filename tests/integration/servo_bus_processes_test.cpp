@@ -282,5 +282,22 @@ TEST_F(ServoBusProcesses, RefusesAPaceThatServosCannotFollow) {
   EXPECT_NE(launcher.errors().find("accepted realtime"), std::string::npos) << launcher.errors();
 }
 
+TEST_F(ServoBusProcesses, RefusesARunWithoutRealTimeBeforeAServoHasTorque) {
+  std::ifstream original(source_path("deploy/emulated_servos.yaml"));
+  std::string manifest{std::istreambuf_iterator<char>(original), {}};
+  manifest.erase(manifest.find("real_time: true"), 15);
+  write("fast.yaml", manifest);
+  Process launcher = run({}, (dir_ / "fast.yaml").string());
+  EXPECT_EQ(launcher.wait(20s), exit_status::kConfiguration);
+  EXPECT_NE(launcher.errors().find("accepted `real_time: true` in the manifest"), std::string::npos)
+      << launcher.errors();
+  EXPECT_FALSE(std::filesystem::exists(run_dir_));
+  // The driver refuses it also where no launcher has checked the run.
+  Process driver({program("servo_bus"), "--plant", "servo_bus", "--domain", "100", "--output", dir_.string()});
+  EXPECT_EQ(driver.wait(20s), exit_status::kConfiguration);
+  EXPECT_NE(driver.errors().find("servo_bus drives a device that cannot be faster than the clock"), std::string::npos)
+      << driver.errors();
+}
+
 }  // namespace
 }  // namespace constrictor::testing

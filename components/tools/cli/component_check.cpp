@@ -114,6 +114,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   arguments.insert(arguments.end(), mission.begin(), mission.end());
   arguments.insert(arguments.end(),
                    {"--plant", plan.manifest.plant, "--roster", fmt::format("{}", fmt::join(plan.roster, ","))});
+  if (plan.manifest.real_time || options.pace == "realtime") arguments.emplace_back("--realtime");
   const auto latencies = latency_arguments(plan.manifest);
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
