@@ -53,6 +53,16 @@ TEST(Emulators, NameTheirRelease) {
   }
 }
 
+TEST(ProgramsOfComponents, NameTheComponentThatTheyHost) {  // what `constrictor swap` shows
+  Process process({program("servo_bus"), "camera", "--check"});
+  EXPECT_EQ(process.wait(20s), exit_status::kConfiguration);
+  EXPECT_NE(
+      process.errors().find("servo_bus: found the component camera, accepted servo_bus: this program hosts nothing "
+                            "else"),
+      std::string::npos)
+      << process.errors();
+}
+
 TEST_F(ServoCommand, OneEmulatorUsesAFolder) {
   const auto second = [this] {
     return Process({program("servo_emulator"), "--bus", (dir_ / "bus.yaml").string(), "--output", dir_.string()});
