@@ -28,17 +28,17 @@ void BusPorts::open_all(double patience_s) {
   for (std::size_t i = 0; i < ports_.size(); ++i) open(i, patience_s);
 }
 
-void BusPorts::open_present(std::vector<std::string>& news) {
+void BusPorts::open_present(std::vector<BusNews>& news) {
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     try {
       open(i, 0.0);
     } catch (const serial::PortError& error) {
-      news.emplace_back(error.what());
+      news.push_back({error.what()});
     }
   }
 }
 
-bool BusPorts::reopen(std::size_t index, std::vector<std::string>& news) {
+bool BusPorts::reopen(std::size_t index, std::vector<BusNews>& news) {
   if (masters_[index]) return true;
   if (++waited_[index] % kReopenEvery != 0) return false;
   try {
@@ -47,7 +47,7 @@ bool BusPorts::reopen(std::size_t index, std::vector<std::string>& news) {
     return false;  // the reason is known since the port was closed
   }
   masters_[index]->set_return_delay(0.0);  // the devices were set to it before the first tick
-  news.push_back(fmt::format("port {} is back", ports_[index].device));
+  news.push_back({fmt::format("port {} is back", ports_[index].device), true});
   return true;
 }
 

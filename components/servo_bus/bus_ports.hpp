@@ -9,6 +9,7 @@
 
 #include "dynamixel/bus_plan.hpp"
 #include "serial/bus_master.hpp"
+#include "servo_bus/bus_news.hpp"
 
 namespace constrictor {
 
@@ -22,23 +23,23 @@ class BusPorts {
   /// Opens all ports, and waits for each for at most `patience_s`. Throws serial::PortError.
   void open_all(double patience_s);
   /// Opens the ports that are there now, and waits for none. Notes in `news` which ports are not.
-  void open_present(std::vector<std::string>& news);
+  void open_present(std::vector<BusNews>& news);
   [[nodiscard]] std::size_t size() const { return ports_.size(); }
   [[nodiscard]] const dynamixel::BusPort& port(std::size_t index) const { return ports_[index]; }
   [[nodiscard]] bool is_open(std::size_t index) const { return masters_[index] != nullptr; }
   /// Tries to open a port that is gone, at most at every 25th call, and never waits for it: a tick must not, because
   /// the watchdogs of the devices at the other ports run. Returns whether it is open now. Notes in `news` when it is
   /// back.
-  bool reopen(std::size_t index, std::vector<std::string>& news);
+  bool reopen(std::size_t index, std::vector<BusNews>& news);
   /// Calls `use(BusMaster&)` if the port is open. If the port disappears meanwhile, closes it, and notes the reason in
   /// `news`.
   template <class Use>
-  void with(std::size_t index, std::vector<std::string>& news, Use&& use) {
+  void with(std::size_t index, std::vector<BusNews>& news, Use&& use) {
     if (!masters_[index]) return;
     try {
       use(*masters_[index]);
     } catch (const serial::PortError& error) {
-      news.emplace_back(error.what());
+      news.push_back({error.what()});
       close(index);
     }
   }

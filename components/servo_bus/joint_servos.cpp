@@ -133,7 +133,7 @@ void JointServos::lose(std::size_t index, const std::string& why) {
   joint.reading.torque_nm = 0.0;
   joint.reading.torque_on = false;
   joint.reading.watchdog = 0;
-  news_.push_back(fmt::format("{} {}; the robot holds", name_of(index), why));
+  news_.push_back({fmt::format("{} {}; the robot holds", name_of(index), why)});
 }
 
 void JointServos::judge(std::size_t index) {
@@ -147,13 +147,14 @@ void JointServos::judge(std::size_t index) {
   if (joint.reading.voltage_v <= 0.0) return lose(index, "was started anew (its power failed?)");
   const bool tripped = joint.reading.watchdog == dynamixel::kWatchdogTripped;
   if (tripped && !joint.reported_lock)
-    news_.push_back(fmt::format("{} has stopped: its bus was silent for longer than servo.watchdog_s", name_of(index)));
+    news_.push_back(
+        {fmt::format("{} has stopped: its bus was silent for longer than servo.watchdog_s", name_of(index))});
   joint.reported_lock = tripped;
   const std::uint8_t errors = joint.reading.hardware_errors;
   if (errors != joint.reported_errors && errors != 0)
-    news_.push_back(fmt::format("{} reports {} ({} C, {:.1f} V)", name_of(index),
-                                dynamixel::hardware_error_text(errors), joint.reading.temperature_c,
-                                joint.reading.voltage_v));
+    news_.push_back(
+        {fmt::format("{} reports {} ({} C, {:.1f} V)", name_of(index), dynamixel::hardware_error_text(errors),
+                     joint.reading.temperature_c, joint.reading.voltage_v)});
   joint.reported_errors = errors;
   const bool off = errors != 0 && !joint.reading.torque_on;
   if (off && joint.state == ServoState::kReady && config_.reboot_on_error && joint.reboots < kMostReboots) {
@@ -186,8 +187,8 @@ void JointServos::look_for_one_lost() {
       bus.set_slack(config_.answer_slack_s);
       if (!answers) return;
       const std::string why = bring_up(bus, joint).why;
-      if (why.empty()) news_.push_back(fmt::format("{} is back", name_of(index)));
-      else if (why != joint.reported_failure) news_.push_back(fmt::format("{}: {}", name_of(index), why));
+      if (why.empty()) news_.push_back({fmt::format("{} is back", name_of(index)), true});
+      else if (why != joint.reported_failure) news_.push_back({fmt::format("{}: {}", name_of(index), why)});
       joint.reported_failure = why;
     });
     return;

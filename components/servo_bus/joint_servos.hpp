@@ -47,8 +47,11 @@ class JointServos {
   /// Sends the setpoints, one for each joint. A torque limit of 0 switches the torque of a joint off. A joint in torque
   /// mode gets the current of its torque as its limit, and a goal ahead of it in the direction of the torque.
   void command(std::span<const JointSetpoint> setpoints);
-  /// Switches the torque of all servos off.
-  void release();
+  /// Switches the torque of all servos off, unless `torque_off` is false, and then their watchdogs: a watchdog that is
+  /// armed would trip in the silence that follows, and stop the next run. A servo that keeps its torque and whose
+  /// watchdog has tripped stays locked, because it might move. Returns the servos that have not confirmed it, one line
+  /// each.
+  [[nodiscard]] std::vector<std::string> release(bool torque_off);
 
   [[nodiscard]] const JointReading& reading(std::size_t joint) const { return joints_[joint].reading; }
   [[nodiscard]] ServoState state(std::size_t joint) const { return joints_[joint].state; }
@@ -63,8 +66,8 @@ class JointServos {
   void unlock();
   /// Why the servos at a port are asked with Sync Read, and not with Fast Sync Read; empty: they are not.
   [[nodiscard]] std::string slow_because(std::size_t port) const;
-  /// Texts on the events since the last call, one line each.
-  [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+  /// The events since the last call.
+  [[nodiscard]] std::vector<BusNews> take_news() { return std::exchange(news_, {}); }
 
  private:
   struct Joint {
@@ -107,6 +110,9 @@ class JointServos {
   };
   [[nodiscard]] StartProblem bring_up(serial::BusMaster& bus, Joint& joint);
   void configure(serial::BusMaster& bus, const Joint& joint, bool tripped);
+  /// Writes 0 to a register of these joints, at all ports at once, until each servo has confirmed it or has been asked
+  /// three times. Returns the joints whose servos have not.
+  [[nodiscard]] std::vector<std::size_t> clear(const dynamixel::Register& reg, std::vector<std::size_t> joints);
   void make_blocks();
 
   const dynamixel::BusPlan& plan_;
@@ -121,7 +127,7 @@ class JointServos {
   std::uint16_t goal_bytes_ = 0;
   std::uint16_t state_bytes_ = 0;
   std::size_t next_lost_ = 0;  ///< joint at which the search for a lost servo goes on
-  std::vector<std::string> news_;
+  std::vector<BusNews> news_;
 };
 
 }  // namespace constrictor

@@ -167,22 +167,51 @@ void JointServos::unlock() {
   }
 }
 
-void JointServos::release() {
-  const std::uint16_t address = plan_.model.at("torque_enable").address;
-  for (std::size_t port = 0; port < ports_.size(); ++port) {
-    ports_.with(port, news_, [&](BusMaster& bus) {
-      for (int i = 0; i < kTries; ++i) {
-        const Bytes ids = plan_.servo_ids(port);
-        if (ids.empty()) return;
-        bus.sync_write(address, 1, ids, Bytes(ids.size(), 0));
-        std::size_t off = 0;
-        bus.sync_read(address, 1, ids, [&](std::uint8_t, const Answer& answer) {
-          if (answer.good() && answer.data[0] == 0) ++off;
-        });
-        if (off == ids.size()) return;
-      }
-    });
+std::vector<std::size_t> JointServos::clear(const Register& reg, std::vector<std::size_t> joints) {
+  const Bytes zeros(reg.bytes, 0);
+  for (int i = 0; i < kTries && !joints.empty(); ++i) {
+    std::vector<Bytes> ids(ports_.size());
+    for (const std::size_t joint : joints) ids[joints_[joint].servo.port].push_back(joints_[joint].servo.id);
+    // No servo waits until those at another port have confirmed.
+    for (std::size_t port = 0; port < ports_.size(); ++port) {
+      if (ids[port].empty()) continue;
+      Bytes data;
+      for (std::size_t k = 0; k < ids[port].size(); ++k) data.insert(data.end(), zeros.begin(), zeros.end());
+      ports_.with(port, news_, [&](BusMaster& bus) { bus.sync_write(reg.address, reg.bytes, ids[port], data); });
+    }
+    for (std::size_t port = 0; port < ports_.size(); ++port) {
+      ports_.with(port, news_, [&](BusMaster& bus) {
+        const auto use = [&](std::uint8_t id, const Answer& answer) {
+          if (!answer.good() || answer.data != zeros) return;
+          std::erase_if(joints, [&](std::size_t joint) {
+            return joints_[joint].servo.port == port && joints_[joint].servo.id == id;
+          });
+        };
+        // In an answer to Sync Read, the servos behind a silent one are silent, too. At last each is asked by itself.
+        if (i + 1 < kTries) bus.sync_read(reg.address, reg.bytes, ids[port], use);
+        else
+          for (const std::uint8_t id : ids[port]) use(id, bus.read(id, reg.address, reg.bytes, 1));
+      });
+    }
   }
+  return joints;
+}
+
+std::vector<std::string> JointServos::release(bool torque_off) {
+  std::vector<std::string> failed;
+  std::vector<std::size_t> all(joints_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (torque_off) {
+    for (const std::size_t joint : clear(plan_.model.at("torque_enable"), all))
+      failed.push_back(
+          fmt::format("{} has not confirmed that its torque is off: switch its power off", name_of(joint)));
+  } else {
+    std::erase_if(all,
+                  [&](std::size_t joint) { return joints_[joint].reading.watchdog == dynamixel::kWatchdogTripped; });
+  }
+  for (const std::size_t joint : clear(plan_.model.at("bus_watchdog"), all))
+    failed.push_back(fmt::format("{} has not confirmed that its watchdog is off", name_of(joint)));
+  return failed;
 }
 
 }  // namespace constrictor

@@ -58,8 +58,9 @@ void SensorBoards::note(const char* what, std::size_t port, Watched& board, bool
   const bool missing = board.misses >= (board.missing ? 1 : kMissingAfter);
   if (missing == board.missing) return;
   board.missing = missing;
-  news_.push_back(fmt::format("{} at {} {}", what, ports_.port(port).device,
-                              missing ? "does not answer (power, cable, id?)" : "answers again"));
+  news_.push_back({fmt::format("{} at {} {}", what, ports_.port(port).device,
+                               missing ? "does not answer (power, cable, id?)" : "answers again"),
+                   !missing});
 }
 
 bool SensorBoards::skip(const Watched& board) { return board.missing && ++skipped_ % kAskEvery != 0; }

@@ -26,8 +26,8 @@ class SensorBoards {
   /// [rad] yaw of the board at the first reading, which a successor needs; NaN before it.
   [[nodiscard]] double start_yaw_rad() const { return start_yaw_rad_; }
   void set_start_yaw(double yaw_rad) { start_yaw_rad_ = yaw_rad; }
-  /// Texts on the events since the last call, one line each.
-  [[nodiscard]] std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+  /// The events since the last call.
+  [[nodiscard]] std::vector<BusNews> take_news() { return std::exchange(news_, {}); }
 
  private:
   struct Watched {
@@ -45,7 +45,7 @@ class SensorBoards {
   double start_yaw_rad_ = std::numeric_limits<double>::quiet_NaN();
   Watched imu_;
   Watched contacts_;
-  std::vector<std::string> news_;
+  std::vector<BusNews> news_;
 };
 
 }  // namespace constrictor

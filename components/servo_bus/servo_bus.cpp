@@ -5,6 +5,7 @@
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <sstream>
+#include <utility>
 
 #include "component/data_path.hpp"
 #include "component/default_robot.hpp"
@@ -44,35 +45,39 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       servos_(plan_, robot_, config_, ports_),
       boards_(plan_, ports_),
       record_(setup.output_dir),
+      news_log_(setup.log),
       gate_(wiring, robot_, config_.command),
       stuck_(robot_.joints.size(), config_.stuck_ticks()),
       angles_rad_(robot_.joints.size()),
       rates_rad_s_(robot_.joints.size()),
       torques_nm_(robot_.joints.size()) {}
 
-ServoBus::~ServoBus() {
-  if (!started_) return;
-  if (config_.torque_off_at_exit) servos_.release();
+ServoBus::~ServoBus() { release(); }
+
+void ServoBus::release() {
+  if (!started_ || std::exchange(released_, true)) return;
+  for (const auto& line : servos_.release(config_.torque_off_at_exit)) log_.warning("{}", line);
+  for (const auto& news : servos_.take_news()) log_.warning("{}", news.text);  // a port is gone
 }
 
 void ServoBus::start() {
   // A successor must not give up the run, and must be quicker than the watchdogs of the servos that do answer: what is
   // missing now is lost, and may come back.
-  std::vector<std::string> missing;
+  std::vector<BusNews> missing;
   try {
     if (continued_) ports_.open_present(missing);
     else ports_.open_all(config_.port_patience_s);
   } catch (const serial::PortError& error) {
     throw ConfigurationError(error.what());
   }
-  for (const auto& line : missing) report(line);
+  for (const auto& news : missing) report(news);
   const std::vector<std::string> failed = servos_.start(continued_ ? 0.0 : config_.servo_patience_s);
   if (!failed.empty() && !continued_)
     throw ConfigurationError(
         fmt::format("{} of {} servos cannot be started (`constrictor servo scan` shows which servos "
                     "answer):\n  {}",
                     failed.size(), servos_.count(), fmt::join(failed, "\n  ")));
-  for (const auto& line : failed) wiring_.count_refusal(line);
+  for (const auto& line : failed) report({line});
   for (std::size_t port = 0; port < ports_.size(); ++port) {
     if (const std::string why = servos_.slow_because(port); !why.empty())
       log_.info("port {}: the servos are asked with Sync Read, which takes longer: {}", ports_.port(port).device, why);
@@ -86,23 +91,24 @@ void ServoBus::measure() {
 }
 
 void ServoBus::report_news() {
-  for (const auto& news : {servos_.take_news(), boards_.take_news()}) {
-    for (const auto& line : news) report(line);
+  for (const auto& list : {servos_.take_news(), boards_.take_news()}) {
+    for (const auto& news : list) report(news);
   }
 }
 
-void ServoBus::report(const std::string& line) {
-  wiring_.count_refusal(line);
-  record_.add_news(line);
+void ServoBus::report(const BusNews& news) {
+  if (!news.is_good) wiring_.count_refusal(news.text);
+  news_log_.write(news);
+  record_.add_news(news.text);
 }
 
 void ServoBus::look_for_stuck_joints(std::span<const JointSetpoint> goals) {
   for (const auto& [joint, stuck, goal_rad] : stuck_.look(goals, angles_rad_)) {
     const std::string name = servos_.name_of(joint);
-    report(stuck
-               ? fmt::format("{} does not move, although its goal moved by {:.2f} rad in {:g} s: is the joint blocked?",
-                             name, goal_rad, config_.stuck_after_s)
-               : name + " moves again");
+    if (!stuck) report({name + " moves again", true});
+    else
+      report({fmt::format("{} does not move, although its goal moved by {:.2f} rad in {:g} s: is the joint blocked?",
+                          name, goal_rad, config_.stuck_after_s)});
   }
 }
 
@@ -126,6 +132,7 @@ void ServoBus::sample(const Tick& tick) {
   measure();
   const auto imu = boards_.imu();
   const msg::ContactState contacts = boards_.contacts();
+  news_log_.at(tick.index);
   bus_time_ns_ = before_ns == 0 ? 0 : ports_.now_ns() - before_ns;
   report_news();
   if (servos_.locked() && !locked_) {

@@ -6,6 +6,7 @@
 #include "component/device_owner.hpp"
 #include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
+#include "servo_bus/bus_news.hpp"
 #include "servo_bus/bus_record.hpp"
 #include "servo_bus/joint_servos.hpp"
 #include "servo_bus/sensor_boards.hpp"
@@ -18,7 +19,7 @@ class ServoBus final : public Plant, public DeviceOwner {
   /// Reads the robot, the configuration and the bus file; opens no port. Throws ConfigurationError. `open`: replaces
   /// the serial ports in tests.
   ServoBus(Wiring& wiring, const Setup& setup, OpenPort open = nullptr);
-  /// Switches the torque off, if the configuration says so.
+  /// As release_device().
   ~ServoBus() override;
 
   /// Reads the servos and the sensors. The first call opens the ports and starts the servos, which moves nothing.
@@ -28,6 +29,9 @@ class ServoBus final : public Plant, public DeviceOwner {
   void step(const Tick& tick) override;
   [[nodiscard]] std::int64_t period_ns() const override { return config_.period_ns(); }
   [[nodiscard]] std::string device_status() const override { return record_.summary(); }
+  [[nodiscard]] bool needs_real_time() const override { return true; }
+  /// Switches the torque off, if the configuration says so, and then the watchdogs.
+  void release_device() override { release(); }
   /// Gate, stops and the last posture.
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;
@@ -37,10 +41,12 @@ class ServoBus final : public Plant, public DeviceOwner {
 
  private:
   void start();
+  void release();
   void measure();
   void write_joints(double elapsed_s);
   void report_news();
-  void report(const std::string& line);
+  /// Good news are no refusals.
+  void report(const BusNews& news);
   void look_for_stuck_joints(std::span<const JointSetpoint> goals);
 
   Wiring& wiring_;
@@ -52,10 +58,12 @@ class ServoBus final : public Plant, public DeviceOwner {
   JointServos servos_;
   SensorBoards boards_;
   BusRecord record_;
+  NewsLog news_log_;
   PlantGate gate_;
   StuckWatch stuck_;
   std::vector<double> angles_rad_, rates_rad_s_, torques_nm_;  ///< by joint; the torques are low-pass filtered
   bool started_ = false;
+  bool released_ = false;
   bool continued_ = false;        ///< this process continues the run of its predecessor
   bool locked_ = false;           ///< a stop was ordered because a watchdog has tripped
   bool held_ = false;             ///< the posture is held because a servo is missing

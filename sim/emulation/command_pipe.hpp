@@ -9,7 +9,8 @@ namespace constrictor::emulation {
 
 class CommandPipe {
  public:
-  /// Replaces the file. Throws std::system_error.
+  /// Makes the pipe, in place of an older file, and locks it as long as this process runs: one emulator of a name uses
+  /// a folder. Throws ConfigurationError if another one does, and std::system_error.
   explicit CommandPipe(std::filesystem::path file);
   ~CommandPipe();
   CommandPipe(const CommandPipe&) = delete;
@@ -20,6 +21,8 @@ class CommandPipe {
   void read(const std::function<void(const std::string& line)>& use);
 
  private:
+  /// Makes, opens and locks the pipe; false if it must be tried again.
+  [[nodiscard]] bool claim();
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::string text_;

@@ -41,6 +41,8 @@ struct Options {
 void emulate(const Options& options, const Log& log) {
   const dynamixel::BusPlan plan = dynamixel::load_bus_plan(options.bus, data_path("components/lib/dynamixel/models"));
   fs::create_directories(options.output);
+  // Before any other file: the folder may belong to an emulator that runs.
+  emulation::CommandPipe commands(options.output / "servo_emulator.commands");
   EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
   WorldFile world(options.output / "world.jsonl", robot.world(), options.note_every_s);
   emulation::SharedWorldWriter shared(options.output / "world.state");
@@ -54,7 +56,6 @@ void emulate(const Options& options, const Log& log) {
                       options.bus.string(), port.device));
     terminals.push_back(std::make_unique<PseudoTerminal>(options.output / port.device));
   }
-  emulation::CommandPipe commands(options.output / "servo_emulator.commands");
   log.info("{} servos answer at {} ports in {}", plan.joints.size(), terminals.size(), options.output.string());
 
   // Real servos answer in time however busy the computer is.

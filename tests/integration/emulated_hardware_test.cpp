@@ -44,6 +44,13 @@ TEST_F(EmulatedHardware, SeesReportsEachFaultOfTheCameraAndEndsInOrder) {
   EXPECT_GE(refused_by_perception, 1) << "perception refuses the images of a frozen camera";
 }
 
+TEST_F(EmulatedHardware, AGroupThatAProgramCannotHostIsRefusedBeforeTheRun) {
+  Process launcher = run("line", {"--in-process"});
+  EXPECT_EQ(launcher.wait(30s), 78) << launcher.output();
+  EXPECT_NE(launcher.errors().find("leave out --in-process"), std::string::npos) << launcher.errors();
+  EXPECT_FALSE(std::filesystem::exists(run_dir_));
+}
+
 TEST_F(EmulatedHardware, AFileOfFaultsBreaksAndMendsItsDevices) {
   write("faults.yaml",
         "faults:\n"

@@ -1,4 +1,6 @@
 // `constrictor servo` on the pseudo-terminals of emulated servos.
+#include <csignal>
+
 #include "integration/cli_fixture.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version.hpp"
@@ -29,6 +31,17 @@ class ServoCommand : public CliFixture {
   }
   [[nodiscard]] bool says(const std::string& text) const { return output_.find(text) != std::string::npos; }
 
+  /// Gives the emulator a command, and waits until it has obeyed.
+  void order(const std::string& order) {
+    std::ofstream(dir_ / "servo_emulator.commands") << order << std::endl;
+    EXPECT_TRUE(emulator_->wait_for("obeys '" + order + "'", 20s)) << emulator_->errors();
+  }
+  [[nodiscard]] int count(const std::string& text) const {
+    int found = 0;
+    for (auto at = output_.find(text); at != std::string::npos; at = output_.find(text, at + 1)) ++found;
+    return found;
+  }
+
   std::optional<Process> emulator_;
 };
 
@@ -38,6 +51,40 @@ TEST(Emulators, NameTheirRelease) {
     EXPECT_EQ(process.wait(20s), exit_status::kOk);
     EXPECT_EQ(process.output(), std::string(name) + " " + kVersion + "\n");
   }
+}
+
+TEST(ProgramsOfComponents, NameTheComponentThatTheyHost) {  // what `constrictor swap` shows
+  Process process({program("servo_bus"), "camera", "--check"});
+  EXPECT_EQ(process.wait(20s), exit_status::kConfiguration);
+  EXPECT_NE(
+      process.errors().find("servo_bus: found the component camera, accepted servo_bus: this program hosts nothing "
+                            "else"),
+      std::string::npos)
+      << process.errors();
+}
+
+TEST_F(ServoCommand, OneEmulatorUsesAFolder) {
+  const auto second = [this] {
+    return Process({program("servo_emulator"), "--bus", (dir_ / "bus.yaml").string(), "--output", dir_.string()});
+  };
+  const auto port = std::filesystem::read_symlink(dir_ / "bus0");
+  Process refused = second();
+  EXPECT_EQ(refused.wait(20s), exit_status::kConfiguration) << refused.errors();
+  EXPECT_NE(refused.errors().find("servo_emulator.commands belongs to an emulator that runs"), std::string::npos)
+      << refused.errors();
+  EXPECT_EQ(std::filesystem::read_symlink(dir_ / "bus0"), port);
+  EXPECT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  order("voltage 3 11.5");
+
+  emulator_->signal(SIGKILL);
+  emulator_->wait(20s);
+  emulator_ = second();
+  EXPECT_TRUE(emulator_->wait_for("servos answer", 20s)) << emulator_->errors();
+  order("voltage 3 11.5");
+  EXPECT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  emulator_->signal(SIGTERM);
+  EXPECT_EQ(emulator_->wait(20s), exit_status::kOk);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "servo_emulator.commands"));
 }
 
 TEST_F(ServoCommand, ScanListsWhoAnswersAtWhichBaudRate) {
@@ -62,6 +109,64 @@ TEST_F(ServoCommand, TheTorqueIsSwitchedWithoutAJump) {
   EXPECT_EQ(servo({"scan"}), exit_status::kOk);
   EXPECT_TRUE(says("id   5  xm540_w150, firmware 46, position 2048, 12.0 V, 25 C, torque off")) << output_;
   EXPECT_TRUE(says("id   6  xm540_w150, firmware 46, position 2048, 12.0 V, 25 C, torque on")) << output_;
+}
+
+TEST_F(ServoCommand, TheTorqueOfAllServosGoesOffWhateverAServoReports) {
+  ASSERT_EQ(servo({"torque", "on", "--all"}), exit_status::kOk) << output_;
+  order("error 8 1");
+  order("id 3 3");  // it has the id of another servo now
+  ASSERT_EQ(servo({"torque", "off", "--all"}), exit_status::kOk) << output_;
+  order("heal 3");
+  ASSERT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  EXPECT_EQ(count("torque off"), 23) << output_;
+
+  ASSERT_EQ(servo({"torque", "on", "--all"}), exit_status::kOk) << output_;
+  order("damage 0 0.05");  // most questions are asked three times without an answer that can be used
+  EXPECT_EQ(servo({"torque", "off", "--all"}), exit_status::kSoftware) << output_;
+  EXPECT_TRUE(says("have not confirmed that their torque is off")) << output_;
+  order("mend 0");
+  ASSERT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  EXPECT_EQ(count("torque off"), 23) << output_;
+}
+
+TEST_F(ServoCommand, AServoThatIsSilentDoesNotKeepTheOthersUnderTorque) {
+  ASSERT_EQ(servo({"torque", "on", "--all"}), exit_status::kOk) << output_;
+  order("silent 0");
+  ASSERT_EQ(servo({"torque", "off", "--all"}), exit_status::kOk) << output_;
+  EXPECT_EQ(count("torque off"), 22) << output_;
+  EXPECT_EQ(servo({"torque", "off", "--id", "1"}), exit_status::kSoftware) << output_;
+  EXPECT_TRUE(says("no answer")) << output_;
+}
+
+TEST_F(ServoCommand, TwoServosWithOneIdAreNamedAndNotChanged) {
+  order("id 3 5");  // the servo with id 4 takes that of the next one
+  EXPECT_EQ(servo({"scan"}), exit_status::kFailed) << output_;
+  EXPECT_TRUE(says("24 devices")) << output_;
+  EXPECT_TRUE(says("id   5  two devices answer with id 5: disconnect one of them")) << output_;
+  EXPECT_TRUE(says("id  23  xm540_w150, firmware 46, position 2048")) << "the scan goes on: " << output_;
+  for (const auto& refused : std::vector<std::vector<std::string>>{{"id", "--id", "5", "--to", "50"},
+                                                                   {"baud", "--id", "5", "--to", "57600"},
+                                                                   {"limits", "--id", "5", "--current", "1"},
+                                                                   {"limits", "--all", "--current", "1"},
+                                                                   {"zero", "--id", "5"},
+                                                                   {"torque", "on", "--id", "5"},
+                                                                   {"torque", "on", "--all"}}) {
+    EXPECT_EQ(servo(refused), exit_status::kSoftware) << refused[0] << ": " << output_;
+    EXPECT_TRUE(says("two devices answer with id 5")) << refused[0] << ": " << output_;
+  }
+  EXPECT_EQ(servo({"zero", "--id", "6"}), exit_status::kOk) << output_;
+  order("heal 3");
+  EXPECT_EQ(servo({"scan"}), exit_status::kOk) << output_;
+  EXPECT_EQ(count("torque off"), 23) << output_;
+  EXPECT_EQ(servo({"limits", "--all"}), exit_status::kOk) << output_;
+  EXPECT_FALSE(says("current 1.00 A")) << output_;
+}
+
+TEST_F(ServoCommand, AServoThatCannotBeReadDoesNotEndTheScan) {
+  order("damage 0 0.05");
+  EXPECT_EQ(servo({"scan"}), exit_status::kFailed) << output_;
+  EXPECT_TRUE(says("unreadable: ")) << output_;
+  EXPECT_GT(count("  id "), 12) << output_;
 }
 
 TEST_F(ServoCommand, AnIdIsChangedOnlyToOneThatNobodyHas) {
@@ -94,6 +199,9 @@ TEST_F(ServoCommand, LimitsAreShownSetAndRefused) {
   EXPECT_TRUE(says("--current (register current_limit): found 9 A, accepted 0 to 5.50643 A")) << output_;
   EXPECT_EQ(servo({"limits", "--id", "3", "--temperature", "900"}), exit_status::kUsage);
   EXPECT_TRUE(says("--temperature (register temperature_limit): found 900 C, accepted 0 to 100 C")) << output_;
+  EXPECT_EQ(servo({"limits", "--id", "3", "--current", "1", "--temperature", "250"}), exit_status::kUsage);
+  EXPECT_EQ(servo({"limits", "--id", "3"}), exit_status::kOk) << output_;
+  EXPECT_TRUE(says("servo 3: current 2.50 A, temperature 80 C")) << "neither was written: " << output_;
   EXPECT_EQ(servo({"limits", "--id", "100"}), exit_status::kSoftware);
   EXPECT_TRUE(says("found inertial unit")) << output_;
 }

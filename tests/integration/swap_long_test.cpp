@@ -49,6 +49,8 @@ TEST_F(SwapTest, RefusesWhatWouldEndTheRun) {
   EXPECT_EQ(command({"swap", "camera", "--program", "video_capture", "--config", wrong}), exit_status::kConfiguration);
   EXPECT_NE(output_.find("accepted /dev/videoN"), std::string::npos) << output_;
   EXPECT_EQ(command({"swap", "camera", "--program", "no_such_program"}), exit_status::kConfiguration) << output_;
+  EXPECT_EQ(command({"swap", "camera", "--program", "servo_bus"}), exit_status::kConfiguration) << output_;
+  EXPECT_NE(output_.find("servo_bus: found the component camera, accepted servo_bus"), std::string::npos) << output_;
   EXPECT_EQ(command({"swap", "physics", "--program", "video_capture"}), exit_status::kUsage) << output_;
   EXPECT_EQ(command({"swap", "nobody", "--program", "video_capture"}), exit_status::kUsage) << output_;
   EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;

@@ -101,6 +101,9 @@ class Member {
   [[nodiscard]] bool ended() const { return ended_; }
   /// True after the final tick as long as a restarted member lacks inputs of its last step, which it needs to end.
   [[nodiscard]] bool concluding() const { return concludes_at_.has_value(); }
+  /// Puts the device of the component to rest, if it owns one. No step may be in progress, and none may follow. The
+  /// final tick does the same.
+  void release_device();
   /// Ends a member that is concluding() with the inputs that have arrived.
   void conclude_anyway();
   /// Tick of the last finished step; -1 before the first.

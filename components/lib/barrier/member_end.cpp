@@ -3,10 +3,16 @@
 
 #include "barrier/member.hpp"
 #include "component/concluding.hpp"
+#include "component/device_owner.hpp"
 
 namespace constrictor {
 
+void Member::release_device() {
+  if (auto* owner = dynamic_cast<DeviceOwner*>(component_.get())) owner->release_device();
+}
+
 void Member::conclude(const msg::Tick final_tick) {
+  release_device();
   auto* concluding = last_done_ < 0 ? nullptr : dynamic_cast<Concluding*>(component_.get());
   if (concluding && resumed_) {
     // No step of this incarnation has shown the component its inputs: they must arrive again.

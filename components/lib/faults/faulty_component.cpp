@@ -103,6 +103,13 @@ class Faulty : public Base, public Concluding, public DeviceOwner {
     const auto* owner = dynamic_cast<const DeviceOwner*>(inner_.get());
     return owner ? owner->device_status() : std::string();
   }
+  [[nodiscard]] bool needs_real_time() const override {
+    const auto* owner = dynamic_cast<const DeviceOwner*>(inner_.get());
+    return owner && owner->needs_real_time();
+  }
+  void release_device() override {
+    if (auto* owner = dynamic_cast<DeviceOwner*>(inner_.get())) owner->release_device();
+  }
 
  protected:
   std::string name_;

@@ -10,6 +10,7 @@
 #include "barrier/history_depth.hpp"
 #include "component/client_requests.hpp"
 #include "component/data_path.hpp"
+#include "component/device_owner.hpp"
 #include "component/hardware_link.hpp"
 
 namespace constrictor {
@@ -85,6 +86,15 @@ std::vector<std::string> topics_of_components(const HostOptions& options,
   return lines;
 }
 
+std::string pace_violation(const HostOptions& options, const Component& plant) {
+  const auto* owner = dynamic_cast<const DeviceOwner*>(&plant);
+  if (options.realtime || !owner || !owner->needs_real_time()) return {};
+  return fmt::format(
+      "--pace: found a run that does not follow the wall clock, accepted `real_time: true` in the manifest, or --pace "
+      "realtime: {} drives a device that cannot be faster than the clock",
+      options.plant);
+}
+
 std::vector<std::string> check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories) {
   std::vector<std::string> errors;
   std::set<std::string> reported;
@@ -95,6 +105,9 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
       UnconnectedWiring wiring;
       const auto component = factory.create(wiring, setup);
       const auto latency = options.latency_ticks.find(factory.name);
+      if (factory.name == options.plant) {
+        if (auto why = pace_violation(options, *component); !why.empty()) errors.push_back(std::move(why));
+      }
       wiring.hello.component = factory.name;
       wiring.hello.timing = component->timing();
       if (latency != options.latency_ticks.end())

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "component/component.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor {
@@ -19,5 +20,8 @@ namespace constrictor {
 /// TOPIC". Topics of the barrier aside, which every process uses. Throws what the components' constructors throw.
 std::vector<std::string> topics_of_components(const HostOptions& options,
                                               const std::vector<ComponentFactory>& factories);
+
+/// Why the plant cannot take part in a run at this pace; empty: it can.
+[[nodiscard]] std::string pace_violation(const HostOptions& options, const Component& plant);
 
 }  // namespace constrictor

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "component/data_path.hpp"
@@ -96,7 +97,14 @@ void add_scheduling_options(CLI::App& app, Scheduling& scheduling) {
 int component_main(int argc, char** argv, ComponentFactory factory, const Scheduling& usual) {
   ensure_numeric_environment(argv);  // before a word is left out: it may start the program again
   // The launcher starts a program that a manifest names as `PROGRAM NAME OPTIONS`.
-  const int named = argc > 1 && argv[1] == factory.name ? 1 : 0;
+  const int named = argc > 1 && argv[1][0] != '-' ? 1 : 0;
+  if (named != 0 && argv[1] != factory.name) {
+    fmt::print(stderr,
+               "{}: found the component {}, accepted {}: this program hosts nothing else (if the launcher has grouped "
+               "it: leave out --in-process, and --group with {})\n",
+               std::filesystem::path(argv[0]).filename().string(), argv[1], factory.name, factory.name);
+    return exit_status::kConfiguration;
+  }
   return host_main(argc - named, argv + named, {std::move(factory)}, usual);
 }
 

@@ -78,6 +78,10 @@ void MemberSide::publish_last_statuses() {
 }
 
 void MemberSide::finish() {
+  // First of all: a servo whose torque is on stops with a tripped watchdog when its bus is silent.
+  for (auto& local : members_) {
+    if (!local.member->stepping()) local.member->release_device();
+  }
   publish_last_statuses();
   // The ticks arrive once in a process, whichever of its members they are for.
   if (const std::string late = members_.front().jitter.histogram(); !late.empty()) context_.log.info("{}", late);

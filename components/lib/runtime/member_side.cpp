@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "barrier/plant_topics.hpp"
+#include "configuration/configuration.hpp"
 #include "cyclone/gathered_sends.hpp"
+#include "runtime/component_check.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/config_hash.hpp"
 #include "runtime/numeric_profile.hpp"
@@ -45,6 +47,11 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
   }
   if (plant_ && !dynamic_cast<Plant*>(&plant_->component())) {
     throw std::runtime_error(fmt::format("--plant: found '{}', accepted a component that is a plant", options.plant));
+  }
+  // Before the first message: a plant that takes part in no tick touches no device.
+  if (plant_) {
+    if (const std::string why = pace_violation(options, plant_->component()); !why.empty())
+      throw ConfigurationError(why);
   }
   make_endpoints();
   make_threads();

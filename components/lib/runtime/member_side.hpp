@@ -75,7 +75,7 @@ class MemberSide : private MemberSink {
   void report_waiting(const Member& waiter, const std::string& topic, const std::string& writer, std::int64_t tick,
                       std::uint64_t have, std::uint64_t want);
   void publish_last_statuses();
-  /// Sends the last status of each member.
+  /// Puts the devices of the members to rest, and sends the last status of each member.
   void finish();
   /// Whether the component is in this process.
   [[nodiscard]] bool hosts(const std::string& component) const;

@@ -89,6 +89,14 @@ std::vector<std::pair<std::uint8_t, Answer>> BusMaster::ping_all() {
   return found;
 }
 
+void BusMaster::write_all(std::uint16_t address, ByteView data) {
+  question_.clear();
+  dynamixel::put_write(question_, dynamixel::kBroadcast, address, data);
+  ++counters_.questions;
+  counters_.bytes_sent += question_.size();
+  port_->write(question_);
+}
+
 void BusMaster::sync_write(std::uint16_t address, std::uint16_t count, ByteView ids, ByteView data) {
   question_.clear();
   dynamixel::put_sync_write(question_, address, count, ids, data);

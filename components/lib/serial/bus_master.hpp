@@ -53,6 +53,8 @@ class BusMaster {
   Answer reboot(std::uint8_t id, int tries = 1);
   /// All devices that answer a broadcast Ping within the time that 253 devices may need.
   std::vector<std::pair<std::uint8_t, Answer>> ping_all();
+  /// The same bytes to all devices, also to those that are not known. No device answers.
+  void write_all(std::uint16_t address, dynamixel::ByteView data);
   /// Needs no answer.
   void sync_write(std::uint16_t address, std::uint16_t count, dynamixel::ByteView ids, dynamixel::ByteView data);
 

@@ -101,6 +101,11 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
       components.push_back(component);
     }
   }
+  // A program for one component cannot host a group.
+  for (const auto& process : plan.manifest.processes) {
+    const bool own = process.host.empty() && program_groups().contains(process.program);
+    if (own && process.components.size() > 1) check_program(options, plan, process, process.program, {});
+  }
   if (components.empty()) return;
   std::vector<std::string> arguments = {fmt::format("{}", fmt::join(components, ",")),
                                         "--check",
@@ -114,6 +119,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   arguments.insert(arguments.end(), mission.begin(), mission.end());
   arguments.insert(arguments.end(),
                    {"--plant", plan.manifest.plant, "--roster", fmt::format("{}", fmt::join(plan.roster, ","))});
+  if (plan.manifest.real_time || options.pace == "realtime") arguments.emplace_back("--realtime");
   const auto latencies = latency_arguments(plan.manifest);
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
@@ -125,12 +131,18 @@ void check_program(const RunOptions& options, const LaunchPlan& plan, const Proc
                    const std::string& program, const std::filesystem::path& config) {
   require_program(program, "--program");
   const std::string component = process.components.front();
-  std::vector<std::string> arguments = {component,    "--check",
-                                        "--robot",    plan.manifest.robot_file.string(),
-                                        "--scenario", plan.manifest.scenario_file.string(),
-                                        "--seed",     std::to_string(options.seed),
-                                        "--plant",    plan.manifest.plant,
-                                        "--roster",   fmt::format("{}", fmt::join(plan.roster, ","))};
+  std::vector<std::string> arguments = {fmt::format("{}", fmt::join(process.components, ",")),
+                                        "--check",
+                                        "--robot",
+                                        plan.manifest.robot_file.string(),
+                                        "--scenario",
+                                        plan.manifest.scenario_file.string(),
+                                        "--seed",
+                                        std::to_string(options.seed),
+                                        "--plant",
+                                        plan.manifest.plant,
+                                        "--roster",
+                                        fmt::format("{}", fmt::join(plan.roster, ","))};
   if (!config.empty()) arguments.insert(arguments.end(), {"--config", component + "=" + config.string()});
   expect_clean(run_host(std::move(arguments), program));
 }

@@ -64,7 +64,8 @@ struct LaunchPlan {
 [[nodiscard]] LaunchPlan make_launch_plan(const RunOptions& options);
 
 /// Lets the components that constrictor_host hosts read all of their files, in one process that joins no run.
-/// Components with a program of their own are not checked. Throws ConfigurationError with one line for each component
+/// Components with a program of their own are not checked, but whether a program of this project can host its group of
+/// components is. Throws ConfigurationError with one line for each component
 /// whose files are wrong.
 void check_components(const RunOptions& options, const LaunchPlan& plan);
 

@@ -28,7 +28,6 @@
 #include "cyclone/run_token.hpp"
 #include "cyclone/security.hpp"
 #include "runtime/host.hpp"
-#include "runtime/run_store.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -123,12 +122,13 @@ class Launcher {
   [[nodiscard]] bool ended_in_order() const { return killed_.empty() && supervisor_.failure().empty(); }
   /// Removes the checkpoints of a run that ended in order. If it did not, says how to continue it.
   void note_end() {
+    const bool begun = resumed_ || observer_.view().tick >= 0;
     if (ended_in_order()) {
       record_.over = true;
       write_record();
       remove_checkpoints(report_dir_);
-    } else if (fs::exists(report_dir_ / RunStore::kFile) ||
-               (!plan_.manifest.host_of_plant().empty() && !options_.no_checkpoints)) {
+    } else if ((begun || supervisor_.failure_status() != exit_status::kConfiguration) &&
+               is_continuable(plan_.manifest, report_dir_, !options_.no_checkpoints)) {
       display_.print(fmt::format("to continue this run: constrictor run --resume {}", report_dir_.string()));
     }
   }
@@ -285,9 +285,9 @@ int run_command(const RunOptions& given) {
     options.view = given.view;
     options.view_port = given.view_port;
   }
-  const fs::path folder = resumed ? given.resume_dir : options.report_dir;
-  if (fs::is_directory(folder)) lock = lock_run(folder);  // before anything in it is changed
+  if (fs::is_directory(options.report_dir)) lock = lock_run(options.report_dir);  // before anything in it is changed
   LaunchPlan plan = make_launch_plan(options);
+  if (resumed) require_continuable(plan.manifest);
   check_components(options, plan);
   if (!options.secure.empty()) use_keys(options.secure, plan);
   try {

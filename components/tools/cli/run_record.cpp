@@ -112,6 +112,20 @@ Descriptor lock_run(const fs::path& folder) {
   return lock;
 }
 
+bool is_continuable(const LaunchManifest& manifest, const fs::path& folder, bool checkpoints) {
+  if (!manifest.beside.empty()) return false;
+  return fs::exists(folder / RunStore::kFile) || (!manifest.host_of_plant().empty() && checkpoints);
+}
+
+void require_continuable(const LaunchManifest& manifest) {
+  if (manifest.beside.empty()) return;
+  throw ConfigurationError(fmt::format(
+      "--resume: found a run with {} beside it, accepted a run without programs beside it: the emulated "
+      "world has ended with the launcher, and the robot of a new one is not where the run has left it. Start "
+      "a new run",
+      manifest.beside.front().program));
+}
+
 std::string prepare_checkpoint(const fs::path& folder) {
   const fs::path path = folder / RunStore::kFile;
   const fs::path copy = folder / RunStore::kCopy;

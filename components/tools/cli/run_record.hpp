@@ -39,4 +39,10 @@ std::string prepare_checkpoint(const std::filesystem::path& folder);
 /// Removes the checkpoints of a run that is over.
 void remove_checkpoints(const std::filesystem::path& folder);
 
+/// Whether a run that did not end in order can be continued. `checkpoints`: it keeps some.
+[[nodiscard]] bool is_continuable(const LaunchManifest& manifest, const std::filesystem::path& folder,
+                                  bool checkpoints);
+/// Throws ConfigurationError if the run has programs beside it: their state has ended with their launcher.
+void require_continuable(const LaunchManifest& manifest);
+
 }  // namespace constrictor::cli

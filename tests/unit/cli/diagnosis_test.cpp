@@ -64,6 +64,23 @@ std::string on_interface(const std::string& attributes, const std::string& more 
          "</General></Domain></CycloneDDS>";
 }
 
+TEST(Diagnosis, NamesALatchedStopAndItsSource) {
+  Facts facts = sound();
+  facts.stops.emplace_back();
+  facts.stops.back().robot_id = 1;
+  EXPECT_TRUE(diagnose(facts).empty()) << "it is not latched";
+  facts.stops.back().stopped = true;
+  facts.stops.back().since_tick = 12;
+  std::snprintf(facts.stops.back().source, sizeof facts.stops.back().source, "bus_watchdog");
+  const auto found = diagnose(facts);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].fault.name(), "latched stop");
+  EXPECT_NE(found[0].what.find("robot 1 holds its posture since tick 12 because of the emergency stop of bus_watchdog"),
+            std::string::npos)
+      << found[0].what;
+  EXPECT_NE(found[0].cure.find("constrictor clear-stop"), std::string::npos);
+}
+
 TEST(Diagnosis, FindsNoFaultInACorrectRun) { EXPECT_EQ(faults(sound()), Names{}); }
 
 TEST(Diagnosis, NamesTheDomainOfTheRunIfTheExaminedDomainIsEmpty) {

@@ -55,6 +55,36 @@ TEST_F(BusFault, APulledCableStopsTheRobotUntilItIsPluggedIn) {
   expect_swinging_again(80);
 }
 
+TEST_F(BusFault, EventsAreLoggedOnceAndGoodNewsAreNoRefusals) {
+  start_swinging();
+  ASSERT_EQ(bench_.robot->command("cable 0 19"), "");
+  ticks(20);
+  EXPECT_EQ(logged(msg::kLogWarning, "does not answer (power, cable, id, baud rate?)"), 3);
+  const std::uint64_t refused = run_->member("servo_bus").counters().refused;
+  ASSERT_EQ(bench_.robot->command("mend 0"), "");
+  ticks(40);
+  EXPECT_EQ(logged(msg::kLogInfo, "is back"), 3) << "servos";
+  EXPECT_EQ(logged(msg::kLogWarning, "is back"), 0);
+  EXPECT_EQ(run_->member("servo_bus").counters().refused, refused) << last_refusal();
+}
+
+TEST(NewsLog, WritesABoundedNumberOfLines) {
+  const TemporaryFolder folder;
+  const Log log("servo_bus", folder.path() / "log");
+  std::vector<std::string> lines;
+  log.forward([&](const LogRecord& record) { lines.push_back(record.text); });
+  NewsLog news(log);
+  for (std::int64_t tick = 0; tick < 500; ++tick) {
+    news.at(tick);
+    news.write({"servo 1 is lost"});
+  }
+  EXPECT_EQ(lines.size(), 30u);
+  news.at(500);
+  EXPECT_EQ(lines.back(), "470 more events were left out; servo_bus.json shows the newest ones");
+  news.write({"servo 1 is back", true});
+  EXPECT_EQ(lines.back(), "servo 1 is back");
+}
+
 TEST_F(BusFault, OneServoThatIsSilentStopsTheRobot) {
   start_swinging();
   ASSERT_EQ(bench_.robot->command("silent 6"), "");
@@ -75,7 +105,8 @@ TEST_F(BusFault, AStuckJointIsNamedAndTheRobotGoesOn) {
   EXPECT_EQ(mode(), GateMode::kObeying);
   ASSERT_EQ(bench_.robot->command("heal 6"), "");
   ticks(110);
-  EXPECT_NE(last_refusal().find("servo 7 of joint 6 at bus0 moves again"), std::string::npos) << last_refusal();
+  EXPECT_EQ(logged(msg::kLogInfo, "servo 7 of joint 6 at bus0 moves again"), 1);
+  EXPECT_EQ(last_refusal().find("moves again"), std::string::npos) << "good news are no refusals: " << last_refusal();
 }
 
 TEST(StuckWatch, AJointThatAGraspHoldsIsNotStuck) {
@@ -168,12 +199,14 @@ TEST_F(BusFault, AnUnpluggedAdapterStopsTheServosByTheirWatchdogs) {
 }
 
 TEST_F(BusFault, ASuccessorFindsTheServosLockedAndMovesNothing) {
-  start_swinging("servo: {torque_off_at_exit: false}");  // as if the process were killed
+  start_swinging();
   bench_.pass_until(bench_.now_ns + 300'000'000);
   next_tick_ns_ = bench_.now_ns;
   EXPECT_EQ(bench_.robot->servo(11).get("bus_watchdog"), -1);
   EXPECT_EQ(torques_on(), 23) << "the torque stays on";
+  bench_.unplugged = true;  // a process that was killed has not released its servos
   run_->restart("servo_bus");
+  bench_.unplugged = false;
   const auto before = posture();
   ticks(100);
   EXPECT_EQ(mode(), GateMode::kStopped);

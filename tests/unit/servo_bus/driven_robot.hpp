@@ -38,6 +38,8 @@ class DrivenRobot : public ::testing::Test {
   void start(const std::string& config = "") {
     std::ofstream(config_.path() / "servo_bus.yaml") << config << "\n";
     constrictor::Setup setup;
+    log_.forward([this](const LogRecord& record) { logged_.push_back(record); });
+    setup.log = log_;
     setup.robot_file = kProject / "components/lib/robot/mamba.yaml";
     const OpenPort open = [this](const dynamixel::BusPort& port, double patience_s) {
       patience_s_.push_back(patience_s);
@@ -97,7 +99,16 @@ class DrivenRobot : public ::testing::Test {
     };
   }
 
+  /// The lines of the driver's log with this level that contain this text.
+  [[nodiscard]] int logged(std::uint8_t level, const std::string& text) const {
+    return static_cast<int>(std::count_if(logged_.begin(), logged_.end(), [&](const LogRecord& line) {
+      return line.level == level && line.text.find(text) != std::string::npos;
+    }));
+  }
+
   const TemporaryFolder config_;
+  const Log log_{"servo_bus", config_.path() / "servo_bus.log"};
+  std::vector<LogRecord> logged_;
   dynamixel::BusPlan plan_;
   Bench bench_;
   CommandAt command_;

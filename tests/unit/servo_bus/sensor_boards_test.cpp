@@ -85,7 +85,7 @@ TEST_F(Boards, AnOrientationThatIsNoneIsNotPublished) {
   static_cast<void>(boards_.imu());
   const auto news = boards_.take_news();
   ASSERT_EQ(news.size(), 1u) << "three ticks without a measurement";
-  EXPECT_NE(news[0].find("the inertial unit at bus0 does not answer"), std::string::npos) << news[0];
+  EXPECT_NE(news[0].text.find("the inertial unit at bus0 does not answer"), std::string::npos) << news[0].text;
 }
 
 TEST_F(Boards, ARobotWithoutContactSensorsSaysSo) { EXPECT_EQ(boards_.contacts().module_count, 0); }

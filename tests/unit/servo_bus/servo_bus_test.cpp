@@ -162,15 +162,6 @@ TEST_F(DrivenRobot, AnEmergencyStopIsObeyedAtOnce) {
   EXPECT_TRUE(run_->latest(topics::kStopState)->stopped);
 }
 
-TEST_F(DrivenRobot, TheTorqueIsOffWhenTheProcessEndsInOrder) {
-  command_ = bend(0.1);
-  start();
-  ticks(20);
-  EXPECT_EQ(torques_on(), 23);
-  run_.reset();
-  EXPECT_EQ(torques_on(), 0);
-}
-
 TEST_F(DrivenRobot, OneRoundTakesTheTimeOfItsBytes) {
   command_ = bend(0.1);
   start();

@@ -176,6 +176,20 @@ void check_qos(const Facts& facts, Findings& found) {
   }
 }
 
+void check_stops(const Facts& facts, Findings& found) {
+  for (const auto& stop : facts.stops) {
+    if (!stop.stopped) continue;
+    const std::string source = stop.source;
+    const bool watchdog = source == "bus_watchdog";
+    found.push_back(
+        {"latched stop",
+         fmt::format("robot {} holds its posture since tick {} because of the emergency stop of {}{}", stop.robot_id,
+                     stop.since_tick, source.empty() ? "an unknown source" : source,
+                     watchdog ? ": the bus of its servos was silent, and they have locked their goals" : ""),
+         "look at the robot, and then: constrictor clear-stop (it starts no motion)"});
+  }
+}
+
 }  // namespace
 
 std::string Fault::anchor() const {
@@ -193,6 +207,7 @@ std::vector<Finding> diagnose(const Facts& facts) {
   check_idl(facts, found);
   check_qos(facts, found);
   check_buffers(facts, found);
+  check_stops(facts, found);
   return found;
 }
 

@@ -29,12 +29,13 @@ struct Facts {
   std::uint64_t receive_buffer_max_bytes = 0;  ///< net.core.rmem_max; 0: unknown
   std::vector<dds::Participant> participants;
   std::vector<dds::Endpoint> endpoints;
-  std::vector<msg::Hello> hellos;  ///< all Hello messages that writers keep for late readers
-  std::string idl_hash;            ///< of this program
+  std::vector<msg::Hello> hellos;       ///< all Hello messages that writers keep for late readers
+  std::string idl_hash;                 ///< of this program
+  std::vector<msg::StopState> stops{};  ///< the newest of each robot
 };
 
 /// The faults that `doctor` can find, in the order of deploy/TROUBLESHOOTING.md, which has a section for each.
-inline constexpr std::array<std::string_view, 19> kFaultNames{"empty domain",
+inline constexpr std::array<std::string_view, 20> kFaultNames{"empty domain",
                                                               "wrong domain",
                                                               "unreadable configuration",
                                                               "wrong interface",
@@ -46,6 +47,7 @@ inline constexpr std::array<std::string_view, 19> kFaultNames{"empty domain",
                                                               "differing QoS",
                                                               "differing type",
                                                               "no DDS",
+                                                              "latched stop",
                                                               "no address",
                                                               "host silent",
                                                               "port in use",

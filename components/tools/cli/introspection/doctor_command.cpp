@@ -30,6 +30,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kFaults = 1;
+constexpr auto kStopStateBound = 1500ms;  // the plant repeats it once a second, unless the run is paused
 
 std::vector<NetworkInterface> interfaces() {
   std::vector<NetworkInterface> list;
@@ -68,7 +69,16 @@ std::uint64_t receive_buffer_max() {
   return bytes;
 }
 
+/// Takes the newest state of the stops of each robot.
+void take_stops(const dds::Reader<msg::StopState>& reader, Facts& facts) {
+  reader.take([&](const msg::StopState& state) {
+    std::erase_if(facts.stops, [&](const auto& older) { return older.robot_id == state.robot_id; });
+    facts.stops.push_back(state);
+  });
+}
+
 void look(const DomainView& view, Facts& facts) {
+  const auto stops = dds::Reader<msg::StopState>::member(view.participant(), std::string(topics::kStopState.name));
   view.settle(2500ms);
   facts.participants = view.discovery().participants();
   facts.endpoints = view.discovery().endpoints();
@@ -78,6 +88,13 @@ void look(const DomainView& view, Facts& facts) {
     if (!facts.hellos.empty() && i > 10) break;
     std::this_thread::sleep_for(20ms);
   }
+  const bool stoppable = std::any_of(facts.endpoints.begin(), facts.endpoints.end(), [](const auto& endpoint) {
+    return endpoint.writer && endpoint.topic == topics::kStopState.name;
+  });
+  const auto give_up = std::chrono::steady_clock::now() + kStopStateBound;
+  for (take_stops(stops, facts); stoppable && facts.stops.empty() && std::chrono::steady_clock::now() < give_up;
+       take_stops(stops, facts))
+    std::this_thread::sleep_for(20ms);
 }
 
 struct Diagnosis {

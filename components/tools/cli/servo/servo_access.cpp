@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
@@ -14,7 +17,8 @@
 namespace constrictor::cli {
 namespace {
 
-constexpr double kSlack_s = 0.02;  // no control loop waits for these commands
+constexpr double kSlack_s = 0.02;                              // no control loop waits for these commands
+constexpr auto kBetweenOrders = std::chrono::milliseconds(5);  // noise may damage one, and not the next one
 
 std::map<std::uint16_t, dynamixel::ServoModel> load_models() {
   std::map<std::uint16_t, dynamixel::ServoModel> models;
@@ -28,6 +32,10 @@ std::map<std::uint16_t, dynamixel::ServoModel> load_models() {
 }
 
 }  // namespace
+
+std::string two_devices(std::uint8_t id) {
+  return fmt::format("two devices answer with id {}: disconnect one of them, and give the other one another id", id);
+}
 
 std::string FoundServo::model_name() const {
   if (model) return model->name;
@@ -51,10 +59,57 @@ FoundServo ServoAccess::describe(std::uint8_t id, const serial::Answer& answer) 
 }
 
 std::vector<FoundServo> ServoAccess::scan() {
-  std::vector<FoundServo> found;
-  for (const auto& [id, answer] : bus_.ping_all()) found.push_back(describe(id, answer));
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  return found;
+  std::map<std::uint8_t, FoundServo> found;
+  const auto damages = [this] { return bus_.line().crc_errors + bus_.line().malformed; };
+  for (int i = 0; i < kTries; ++i) {
+    const std::uint64_t before = damages();
+    std::map<std::uint8_t, int> answers;  // of this round
+    for (const auto& [id, answer] : bus_.ping_all()) {
+      FoundServo& device = found.try_emplace(id, describe(id, answer)).first->second;
+      device.devices = std::max(device.devices, ++answers[id]);
+    }
+    if (damages() == before) break;
+  }
+  std::vector<FoundServo> devices;
+  for (const auto& [id, device] : found) devices.push_back(device);
+  return devices;
+}
+
+namespace {
+
+void require_single(const FoundServo& device, const std::string& port) {
+  if (device.devices == 1) return;
+  throw std::runtime_error(fmt::format("{}: {}", port, two_devices(device.id)));
+}
+
+}  // namespace
+
+std::vector<FoundServo> ServoAccess::single_servos() {
+  std::vector<FoundServo> servos = scan();
+  for (const FoundServo& device : servos) require_single(device, port_);
+  std::erase_if(servos, [](const FoundServo& one) { return one.model == nullptr; });
+  if (servos.empty()) throw std::runtime_error(fmt::format("no servo answers at {}", port_));
+  return servos;
+}
+
+FoundServo ServoAccess::find_single(std::uint8_t id) {
+  for (const FoundServo& device : scan()) {
+    if (device.id == id) require_single(device, port_);
+  }
+  return find(id);
+}
+
+void ServoAccess::order_torque_off(std::optional<std::uint8_t> id) {
+  std::set<std::uint16_t> addresses;
+  for (const auto& [number, model] : models_) addresses.insert(model.at("torque_enable").address);
+  const dynamixel::Bytes off = {0};
+  for (int i = 0; i < kTries; ++i) {
+    for (const std::uint16_t address : addresses) {
+      if (id) bus_.sync_write(address, 1, dynamixel::Bytes{*id}, off);
+      else bus_.write_all(address, off);
+    }
+    std::this_thread::sleep_for(kBetweenOrders);
+  }
 }
 
 FoundServo ServoAccess::find(std::uint8_t id) {

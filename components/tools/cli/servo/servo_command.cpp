@@ -3,20 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <memory>
-#include <numbers>
-#include <optional>
-#include <thread>
 
-#include "cli/interrupt.hpp"
-#include "cli/servo/servo_access.hpp"
+#include "cli/servo/servo_options.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
-#include "configuration/counted.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -24,90 +17,9 @@ namespace {
 
 using dynamixel::kBaudRates;
 
-struct ServoOptions {
-  std::string port;
-  std::uint32_t baud = 4'000'000;
-  bool every_baud = false;
-  std::optional<int> id;
-  bool all = false;
-  std::string state;                               ///< of `torque`: on or off
-  std::uint32_t to_baud = 0;                       ///< of `baud`
-  int to = 0;                                      ///< of `id`
-  std::optional<double> current_a, temperature_c;  ///< of `limits`
-  int rounds = 0;                                  ///< of `monitor`; 0: until it is interrupted
-};
-
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-
-void print_devices(ServoAccess& access, const std::vector<FoundServo>& found) {
-  for (const FoundServo& device : found) {
-    if (!device.model) {
-      fmt::print("  id {:3}  {}\n", device.id, device.model_name());
-      continue;
-    }
-    const auto errors = static_cast<std::uint8_t>(access.read(device, "hardware_error_status"));
-    fmt::print("  id {:3}  {}, firmware {}, position {}, {:.1f} V, {} C, torque {}, error: {}\n", device.id,
-               device.model_name(), device.firmware, access.read(device, "present_position"),
-               static_cast<double>(access.read(device, "present_input_voltage")) * device.model->voltage_unit_v,
-               access.read(device, "present_temperature"), access.read(device, "torque_enable") != 0 ? "on" : "off",
-               dynamixel::hardware_error_text(errors));
-  }
-}
-
-int scan(const ServoOptions& options) {
-  std::size_t count = 0;
-  for (const std::uint32_t baud : kBaudRates) {
-    if (!options.every_baud && baud != options.baud) continue;
-    ServoAccess access(options.port, baud);
-    const auto found = access.scan();
-    count += found.size();
-    if (found.empty()) continue;
-    fmt::print("{} at {} bit/s: {}\n", options.port, baud, counted(found.size(), "device"));
-    print_devices(access, found);
-  }
-  if (count > 0) return exit_status::kOk;
-  fmt::print(stderr, "servo scan: no servo answers at {} with {}. Is the power on, and the cable plugged in? {}\n",
-             options.port, options.every_baud ? "any baud rate" : fmt::format("{} bit/s", options.baud),
-             options.every_baud ? "Do two servos have the same id? Connect one at a time." : "Try --every-baud.");
-  return exit_status::kFailed;
-}
-
-/// The servos that --id or --all names. Throws UsageError if both or neither is given.
-std::vector<FoundServo> chosen(ServoAccess& access, const ServoOptions& options) {
-  if (options.id.has_value() == options.all) throw UsageError("servo: found both or neither, accepted --id N or --all");
-  if (options.id) return {access.find(static_cast<std::uint8_t>(*options.id))};
-  std::vector<FoundServo> servos = access.scan();
-  std::erase_if(servos, [](const FoundServo& one) { return one.model == nullptr; });
-  if (servos.empty()) throw std::runtime_error(fmt::format("no servo answers at {}", options.port));
-  return servos;
-}
-
-int torque(const ServoOptions& options) {
-  ServoAccess access(options.port, options.baud);
-  for (const FoundServo& servo : chosen(access, options)) {
-    const auto errors = static_cast<std::uint8_t>(access.read(servo, "hardware_error_status"));
-    if (options.state == "off") {
-      access.write(servo, "torque_enable", 0);
-      access.write(servo, "bus_watchdog", 0);
-    } else if (access.read(servo, "torque_enable") == 0) {
-      if ((errors & access.read(servo, "shutdown")) != 0)
-        throw std::runtime_error(
-            fmt::format("servo {}: it has shut down with {}: let it cool down, remove the load, and "
-                        "switch its power off and on",
-                        servo.id, dynamixel::hardware_error_text(errors)));
-      access.write(servo, "bus_watchdog", 0);
-      // It must not jump to an old goal.
-      access.write(servo, "goal_position", access.read(servo, "present_position"));
-      access.write(servo, "torque_enable", 1);
-    }
-    fmt::print("servo {}: torque {}\n", servo.id, options.state);
-  }
-  return exit_status::kOk;
-}
-
-/// The servo of `id` and `baud`. Throws if it does not answer or its EEPROM is locked.
+/// The servo of `id` and `baud`. Throws if it does not answer, shares its id, or its EEPROM is locked.
 FoundServo unlocked_servo(ServoAccess& access, const ServoOptions& options) {
-  const FoundServo servo = access.find(static_cast<std::uint8_t>(*options.id));
+  const FoundServo servo = access.find_single(static_cast<std::uint8_t>(*options.id));
   if (access.read(servo, "torque_enable") == 0) return servo;
   throw std::runtime_error(
       fmt::format("servo {}: its torque is on, and its EEPROM is locked; first: constrictor servo "
@@ -147,64 +59,52 @@ int change_baud(const ServoOptions& options) {
   return exit_status::kOk;
 }
 
+/// A value that is to be written to a register of a servo.
+struct Change {
+  FoundServo servo;
+  const char* name;
+  std::int64_t units;
+};
+
 int limits(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
-  for (const FoundServo& servo : chosen(access, options)) {
+  const std::vector<FoundServo> servos = chosen_servos(access, options);
+  // All values of all servos are checked before the first one is written.
+  std::vector<Change> changes;
+  for (const FoundServo& servo : servos) {
     const auto set = [&](const char* option, const char* name, double value, double unit, const char* symbol) {
       const auto& reg = servo.model->at(name);
-      const std::int64_t units = std::llround(value / unit);
-      if (units < reg.min || units > reg.max)
+      const double units = std::round(value / unit);
+      if (!(units >= static_cast<double>(reg.min) && units <= static_cast<double>(reg.max)))
         throw UsageError(fmt::format("servo limits: {} (register {}): found {:g} {}, accepted {:g} to {:g} {}", option,
                                      name, value, symbol, static_cast<double>(reg.min) * unit,
                                      static_cast<double>(reg.max) * unit, symbol));
-      if (access.read(servo, "torque_enable") != 0)
-        throw std::runtime_error(
-            fmt::format("servo {}: its torque is on, and its EEPROM is locked; first switch it off", servo.id));
-      access.write(servo, name, units);
+      changes.push_back({servo, name, std::llround(units)});
     };
     if (options.current_a) set("--current", "current_limit", *options.current_a, servo.model->current_unit_a, "A");
     if (options.temperature_c) set("--temperature", "temperature_limit", *options.temperature_c, 1.0, "C");
+    if (!changes.empty() && access.read(servo, "torque_enable") != 0)
+      throw std::runtime_error(
+          fmt::format("servo {}: its torque is on, and its EEPROM is locked; first switch it off", servo.id));
+  }
+  for (const auto& [servo, name, units] : changes) access.write(servo, name, units);
+  for (const FoundServo& servo : servos)
     fmt::print("servo {}: current {:.2f} A, temperature {} C, velocity {:.2f} rad/s, position {} to {} steps\n",
                servo.id, static_cast<double>(access.read(servo, "current_limit")) * servo.model->current_unit_a,
                access.read(servo, "temperature_limit"),
                static_cast<double>(access.read(servo, "velocity_limit")) * servo.model->velocity_unit_rad_s,
                access.read(servo, "min_position_limit"), access.read(servo, "max_position_limit"));
-  }
   return exit_status::kOk;
 }
 
 int zero(const ServoOptions& options) {
   ServoAccess access(options.port, options.baud);
   fmt::print("# For the bus file, if each joint is at its angle 0 now:\njoints:\n");
-  for (const FoundServo& servo : chosen(access, options)) {
+  for (const FoundServo& servo : chosen_servos(access, options)) {
     if (access.read(servo, "torque_enable") != 0)
       throw std::runtime_error(
           fmt::format("servo {}: its torque is on: switch it off and lay the joint straight by hand", servo.id));
     fmt::print("  - {{id: {}, zero_steps: {}}}\n", servo.id, access.read(servo, "present_position"));
-  }
-  return exit_status::kOk;
-}
-
-int monitor(const ServoOptions& options) {
-  ServoAccess access(options.port, options.baud);
-  const std::vector<FoundServo> servos = chosen(access, options);
-  catch_interrupts();
-  for (int round = 0; interrupt_signal() == 0 && (options.rounds == 0 || round < options.rounds); ++round) {
-    if (round > 0) std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    fmt::print("{:>4} {:>9} {:>8} {:>8} {:>6} {:>5} {:>4}  error\n", "id", "steps", "degrees", "ampere", "V", "C",
-               "on");
-    for (const FoundServo& servo : servos) {
-      const auto steps = access.read(servo, "present_position");
-      const double angle_rad = static_cast<double>(steps - 2048) * kTurn_rad / servo.model->steps_per_turn;
-      const auto errors = static_cast<std::uint8_t>(access.read(servo, "hardware_error_status"));
-      fmt::print("{:>4} {:>9} {:>8.1f} {:>8.3f} {:>6.1f} {:>5} {:>4}  {}\n", servo.id, steps,
-                 angle_rad * 360.0 / kTurn_rad,
-                 static_cast<double>(access.read(servo, "present_current")) * servo.model->current_unit_a,
-                 static_cast<double>(access.read(servo, "present_input_voltage")) * servo.model->voltage_unit_v,
-                 access.read(servo, "present_temperature"), access.read(servo, "torque_enable"),
-                 dynamixel::hardware_error_text(errors));
-    }
-    std::fflush(stdout);
   }
   return exit_status::kOk;
 }
@@ -231,7 +131,7 @@ CLI::App* add(CLI::App& group, const std::string& name, const std::string& what,
 void add_servo(CLI::App& app, Action& action) {
   auto options = std::make_shared<ServoOptions>();
   CLI::App* group = add_group(app, "servo", "commission the servos at a serial port");
-  add(*group, "scan", "list the devices that answer", action, false, options, scan)
+  add(*group, "scan", "list the devices that answer", action, false, options, scan_servos)
       ->add_flag("--every-baud", options->every_baud, "try every baud rate (6 s)");
   CLI::App* id = add(*group, "id", "give a servo another id", action, false, options, change_id);
   id->add_option("--id", options->id, "present id")->required()->check(CLI::Range(0, 252));
@@ -243,11 +143,11 @@ void add_servo(CLI::App& app, Action& action) {
   limit->add_option("--current", options->current_a, "[A] limit of the current, and so of the torque");
   limit->add_option("--temperature", options->temperature_c, "[C] temperature at which the servo shuts down");
   add(*group, "zero", "print the present positions as zero_steps for the bus file", action, true, options, zero);
-  CLI::App* on_off =
-      add(*group, "torque", "switch the torque on (the servo stays where it is) or off", action, true, options, torque);
+  CLI::App* on_off = add(*group, "torque", "switch the torque on (the servo stays where it is) or off", action, true,
+                         options, switch_torque);
   on_off->add_option("STATE", options->state, "on or off")->required()->check(one_of({"on", "off"}));
   add(*group, "monitor", "show position, current, voltage and temperature twice a second", action, true, options,
-      monitor)
+      monitor_servos)
       ->add_option("--rounds", options->rounds, "how often; 0: until Ctrl+C")
       ->check(CLI::Range(0, 1'000'000));
   const std::string footer = help_footer(
@@ -256,7 +156,9 @@ void add_servo(CLI::App& app, Action& action) {
       {"constrictor servo scan --port /dev/ttyUSB0 --every-baud",
        "constrictor servo id --port /dev/ttyUSB0 --id 1 --to 7",
        "constrictor servo torque off --port /dev/ttyUSB0 --all", "constrictor servo monitor --port /dev/ttyUSB0 --all"},
-      "0 done; 1 no servo answers; 64 wrong usage; 70 the port or a servo refuses, with the reason", kDataEnvironment);
+      "0 done; 1 no servo answers, one cannot be read, or two have one id; 64 wrong usage; 70 the port or a servo\n"
+      "  refuses, with the reason",
+      kDataEnvironment);
   group->footer(footer);
   for (CLI::App* sub : group->get_subcommands({})) sub->footer(footer);
 }
