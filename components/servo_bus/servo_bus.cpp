@@ -16,6 +16,7 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kRecordEvery_ticks = 50;
+constexpr int kMostLogLines = 30;  // in a window of NewsLog
 
 dynamixel::BusPlan plan_of(const ServoBusConfig& config, const RobotModel& robot) {
   const std::filesystem::path file = data_path(config.bus_file);
@@ -45,7 +46,7 @@ ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
       servos_(plan_, robot_, config_, ports_),
       boards_(plan_, ports_),
       record_(setup.output_dir),
-      news_log_(setup.log),
+      news_log_(setup.log, kMostLogLines, "more events were left out; servo_bus.json shows the newest ones"),
       gate_(wiring, robot_, config_.command),
       stuck_(robot_.joints.size(), config_.stuck_ticks()),
       angles_rad_(robot_.joints.size()),
@@ -98,7 +99,7 @@ void ServoBus::report_news() {
 
 void ServoBus::report(const BusNews& news) {
   if (!news.is_good) wiring_.count_refusal(news.text);
-  news_log_.write(news);
+  news_log_.write(news.text, news.is_good);
   record_.add_news(news.text);
 }
 

@@ -4,9 +4,9 @@
 
 #include "component/component.hpp"
 #include "component/device_owner.hpp"
+#include "log/news_log.hpp"
 #include "plant/pace_check.hpp"
 #include "plant/plant_gate.hpp"
-#include "servo_bus/bus_news.hpp"
 #include "servo_bus/bus_record.hpp"
 #include "servo_bus/joint_servos.hpp"
 #include "servo_bus/sensor_boards.hpp"

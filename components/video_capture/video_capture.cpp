@@ -15,8 +15,7 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kRecordEvery_ticks = 50;
-constexpr int kMostLogLines = 10;  // in one period of the log: a camera may come and go all the time
-constexpr std::int64_t kLogPeriod_ticks = 500;
+constexpr int kMostLogLines = 10;  // in a window of NewsLog: a camera may come and go all the time
 
 video::VideoSource source_of(const VideoCaptureConfig& config, const Setup& setup) {
   try {
@@ -52,7 +51,7 @@ VideoCapture::VideoCapture(Wiring& wiring, const Setup& setup, video::OpenVideo 
       rectifier_(rectifier_of(config_, setup)),
       open_(std::move(open)),
       record_(setup.output_dir),
-      log_(setup.log) {
+      news_log_(setup.log, kMostLogLines, "more lines on the camera were left out; see camera.json") {
   if (source_.live()) return;
   try {
     files_ = std::make_unique<video::PictureFiles>(source_, config_.repeat);
@@ -64,18 +63,8 @@ VideoCapture::VideoCapture(Wiring& wiring, const Setup& setup, video::OpenVideo 
 
 void VideoCapture::report(const Tick& tick, const video::News& news) {
   record_.add_news(news.text);
-  if (tick.index < log_begin_tick_ || tick.index >= log_begin_tick_ + kLogPeriod_ticks) {  // also after a reset
-    if (log_left_out_ > 0) log_.warning("{} more lines on the camera were left out; see camera.json", log_left_out_);
-    log_begin_tick_ = tick.index;
-    log_lines_ = log_left_out_ = 0;
-  }
-  if (log_lines_ == kMostLogLines) {
-    ++log_left_out_;
-    return;
-  }
-  ++log_lines_;
-  if (news.is_good) log_.info("{}", news.text);
-  else log_.warning("{}", news.text);
+  news_log_.at(tick.index);
+  news_log_.write(news.text, news.is_good);
 }
 
 void VideoCapture::publish(const Tick& tick, const cv::Mat& bgr, std::int64_t exposure_tick) {

@@ -6,6 +6,7 @@
 
 #include "component/component.hpp"
 #include "component/device_owner.hpp"
+#include "log/news_log.hpp"
 #include "robot/robot_model.hpp"
 #include "video/live_video.hpp"
 #include "video/picture_files.hpp"
@@ -49,10 +50,8 @@ class VideoCapture : public ConfiguredComponent<VideoCaptureState, VideoCaptureC
   std::unique_ptr<video::LiveVideo> live_;      ///< from the first step
   std::unique_ptr<video::PictureFiles> files_;  ///< null: the source is live
   CaptureRecord record_;
-  bool was_late_ = false;                 ///< the last frame was too old
-  std::int64_t log_begin_tick_ = 0;       ///< of the present period of the log
-  int log_lines_ = 0, log_left_out_ = 0;  ///< in this period
-  Log log_;
+  bool was_late_ = false;  ///< the last frame was too old
+  NewsLog news_log_;
   std::string last_misfit_;  ///< why the last frame was not an image of this camera; empty: it was one
   Output<msg::CameraInfo> info_ = wiring_.output(topics::kCameraInfo);
   Output<msg::CameraImage> image_ = wiring_.output(topics::kCameraImage);

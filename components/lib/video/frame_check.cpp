@@ -32,18 +32,14 @@ std::optional<News> FrameCheck::look(const cv::Mat& bgr) {
   frozen_ = equal_ >= kFrozenAfter;
   const cv::Scalar mean = cv::mean(bgr);
   black_ = (mean[0] + mean[1] + mean[2]) / 3.0 < kBlackBelow;
-  std::optional<News> news;
-  if (black_ != was_black) {
-    news.emplace();
-    news->is_good = !black_;
-    news->text = black_ ? "the image is black: is the lens covered, or the light off?" : "the image is no longer black";
-  } else if (frozen_ != was_frozen) {
-    news.emplace();
-    news->is_good = !frozen_;
-    news->text =
-        frozen_ ? fmt::format("the camera is frozen: {} equal frames", equal_) : "the camera is no longer frozen";
-  }
-  return news;
+  if (black_ != was_black)
+    return News{black_ ? "the image is black: is the lens covered, or the light off?" : "the image is no longer black",
+                !black_};
+  if (frozen_ != was_frozen)
+    return News{
+        frozen_ ? fmt::format("the camera is frozen: {} equal frames", equal_) : "the camera is no longer frozen",
+        !frozen_};
+  return {};
 }
 
 }  // namespace constrictor::video

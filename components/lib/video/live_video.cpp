@@ -31,10 +31,7 @@ struct LiveVideo::Shared {
   /// False if the thread must end.
   bool pause();
   void tell(std::string_view text, bool is_good) {  // needs the lock
-    if (news.size() == kMostNews) return;
-    News& one = news.emplace_back();
-    one.text = text;
-    one.is_good = is_good;
+    if (news.size() < kMostNews) news.push_back({std::string(text), is_good});
   }
 
   const OpenVideo open;

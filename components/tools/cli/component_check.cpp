@@ -57,6 +57,23 @@ HostOutput run_host(std::vector<std::string> arguments, const std::string& progr
   return {*host.poll(), last_lines(output.path(), 0, kMostLines)};
 }
 
+/// The arguments with which a program checks these components for the run that is planned.
+std::vector<std::string> check_arguments(const RunOptions& options, const LaunchPlan& plan,
+                                         const std::vector<std::string>& components) {
+  return {fmt::format("{}", fmt::join(components, ",")),
+          "--check",
+          "--robot",
+          plan.manifest.robot_file.string(),
+          "--scenario",
+          plan.manifest.scenario_file.string(),
+          "--seed",
+          std::to_string(options.seed),
+          "--plant",
+          plan.manifest.plant,
+          "--roster",
+          fmt::format("{}", fmt::join(plan.roster, ","))};
+}
+
 /// Throws what a failed check has found.
 void expect_clean(const HostOutput& output) {
   if (output.exit.clean()) return;
@@ -107,18 +124,9 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
     if (own && process.components.size() > 1) check_program(options, plan, process, process.program, {});
   }
   if (components.empty()) return;
-  std::vector<std::string> arguments = {fmt::format("{}", fmt::join(components, ",")),
-                                        "--check",
-                                        "--robot",
-                                        plan.manifest.robot_file.string(),
-                                        "--scenario",
-                                        plan.manifest.scenario_file.string(),
-                                        "--seed",
-                                        std::to_string(options.seed)};
+  std::vector<std::string> arguments = check_arguments(options, plan, components);
   const auto mission = mission_arguments(plan.manifest);
   arguments.insert(arguments.end(), mission.begin(), mission.end());
-  arguments.insert(arguments.end(),
-                   {"--plant", plan.manifest.plant, "--roster", fmt::format("{}", fmt::join(plan.roster, ","))});
   if (plan.manifest.real_time || options.pace == "realtime") arguments.emplace_back("--realtime");
   const auto latencies = latency_arguments(plan.manifest);
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
@@ -131,18 +139,7 @@ void check_program(const RunOptions& options, const LaunchPlan& plan, const Proc
                    const std::string& program, const std::filesystem::path& config) {
   require_program(program, "--program");
   const std::string component = process.components.front();
-  std::vector<std::string> arguments = {fmt::format("{}", fmt::join(process.components, ",")),
-                                        "--check",
-                                        "--robot",
-                                        plan.manifest.robot_file.string(),
-                                        "--scenario",
-                                        plan.manifest.scenario_file.string(),
-                                        "--seed",
-                                        std::to_string(options.seed),
-                                        "--plant",
-                                        plan.manifest.plant,
-                                        "--roster",
-                                        fmt::format("{}", fmt::join(plan.roster, ","))};
+  std::vector<std::string> arguments = check_arguments(options, plan, process.components);
   if (!config.empty()) arguments.insert(arguments.end(), {"--config", component + "=" + config.string()});
   expect_clean(run_host(std::move(arguments), program));
 }

@@ -68,23 +68,6 @@ TEST_F(BusFault, EventsAreLoggedOnceAndGoodNewsAreNoRefusals) {
   EXPECT_EQ(run_->member("servo_bus").counters().refused, refused) << last_refusal();
 }
 
-TEST(NewsLog, WritesABoundedNumberOfLines) {
-  const TemporaryFolder folder;
-  const Log log("servo_bus", folder.path() / "log");
-  std::vector<std::string> lines;
-  log.forward([&](const LogRecord& record) { lines.push_back(record.text); });
-  NewsLog news(log);
-  for (std::int64_t tick = 0; tick < 500; ++tick) {
-    news.at(tick);
-    news.write({"servo 1 is lost"});
-  }
-  EXPECT_EQ(lines.size(), 30u);
-  news.at(500);
-  EXPECT_EQ(lines.back(), "470 more events were left out; servo_bus.json shows the newest ones");
-  news.write({"servo 1 is back", true});
-  EXPECT_EQ(lines.back(), "servo 1 is back");
-}
-
 TEST_F(BusFault, OneServoThatIsSilentStopsTheRobot) {
   start_swinging();
   ASSERT_EQ(bench_.robot->command("silent 6"), "");
