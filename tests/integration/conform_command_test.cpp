@@ -44,6 +44,14 @@ TEST_F(ConformCommand, RefusesAMissingManifestBeforeItAsks) {
   }
 }
 
+TEST_F(ConformCommand, AnInterruptEndsTheRunAndNamesWhatWasNotChecked) {
+  Process process = start({"conform", "control", "--manifest", "case_study"});
+  ASSERT_TRUE(process.wait_for("echo", 60s)) << process.output() << process.errors();
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait(60s), 128 + SIGINT) << process.output() << process.errors();
+  EXPECT_NE(process.output().find("not checked: "), std::string::npos) << process.output() << process.errors();
+}
+
 /// Starts the part as a user does: with the printed line of arguments, in a shell.
 class PartStartedByHand : public ConformCommand, public ::testing::WithParamInterface<const char*> {};
 

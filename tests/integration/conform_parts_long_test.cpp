@@ -101,14 +101,6 @@ TEST_F(ConformParts, AnObserverOfARunMovesNothing) {
   EXPECT_TRUE(run.wait(60s).has_value());
 }
 
-TEST_F(ConformParts, AnInterruptEndsTheRunAndNamesWhatWasNotChecked) {
-  Process process = start(conform("control", "case_study"));
-  ASSERT_TRUE(process.wait_for("echo", 60s)) << process.output() << process.errors();
-  process.signal(SIGINT);
-  EXPECT_EQ(process.wait(60s), 128 + SIGINT) << process.output() << process.errors();
-  EXPECT_NE(process.output().find("not checked: "), std::string::npos) << process.output() << process.errors();
-}
-
 TEST_F(ConformParts, RefusesWhatItCannotCheck) {
   EXPECT_EQ(command({"conform", "control"}), exit_status::kUsage);
   EXPECT_NE(output_.find("accepted one of them: the control in this domain, or that of this manifest"),

@@ -18,7 +18,7 @@ namespace constrictor::cli {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kBound = 30s;  // longest time that constrictor_host may take; normally 0.1 s
+constexpr auto kBound = 30s;  // longest time that a program may take; normally 0.1 s
 constexpr std::size_t kMostLines = 100;
 
 /// A file in memory for the output of a process.
@@ -42,16 +42,16 @@ struct HostOutput {
 };
 
 /// Runs a program of this build to its end, by default constrictor_host. Throws std::runtime_error if it does not end
-/// within kBound.
-HostOutput run_host(std::vector<std::string> arguments, const std::string& program = "constrictor_host") {
+/// within kBound. variables are NAME=VALUE, as in a process's `environment` of a manifest.
+HostOutput run_program(std::vector<std::string> arguments, const std::string& program = "constrictor_host",
+                       const std::vector<std::string>& variables = {}) {
   arguments.insert(arguments.begin(), (program_folder() / program).string());
   const MemoryFile output;
-  ChildProcess host(arguments, run_environment(), output.path());
+  ChildProcess host(arguments, with_variables(run_environment(), variables), output.path());
   const auto end = std::chrono::steady_clock::now() + kBound;
   while (!host.poll()) {
     if (std::chrono::steady_clock::now() > end)
-      throw std::runtime_error(
-          fmt::format("constrictor_host {} did not end within {} s", arguments[1], kBound.count()));
+      throw std::runtime_error(fmt::format("{} {} did not end within {} s", program, arguments[1], kBound.count()));
     std::this_thread::sleep_for(1ms);
   }
   return {*host.poll(), last_lines(output.path(), 0, kMostLines)};
@@ -91,17 +91,17 @@ std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& 
   for (const auto& component : process.components) {
     if (process.program.empty()) require_component(component);
   }
-  const HostOutput output = run_host(
+  const HostOutput output = run_program(
       {fmt::format("{}", fmt::join(process.components, ",")), "--topics", "--robot", plan.manifest.robot_file.string(),
        "--scenario", plan.manifest.scenario_file.string(), "--seed", std::to_string(options.seed)},
-      program);
+      program, process.environment);
   if (output.exit.clean()) return output.lines;
   throw ConfigurationError(fmt::format("{} --topics {}: {}\n  {}", program, process.name(), output.exit.describe(),
                                        fmt::join(output.lines, "\n  ")));
 }
 
 std::vector<std::string> ask_host(const std::string& option) {
-  const HostOutput output = run_host({option});
+  const HostOutput output = run_program({option});
   if (!output.exit.clean()) throw std::runtime_error("constrictor_host " + option + ": " + output.exit.describe());
   return output.lines;
 }
@@ -132,7 +132,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
   arguments.insert(arguments.end(), configs.begin(), configs.end());
-  expect_clean(run_host(std::move(arguments)));
+  expect_clean(run_program(std::move(arguments)));
 }
 
 void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,
@@ -141,7 +141,7 @@ void check_program(const RunOptions& options, const LaunchPlan& plan, const Proc
   const std::string component = process.components.front();
   std::vector<std::string> arguments = check_arguments(options, plan, process.components);
   if (!config.empty()) arguments.insert(arguments.end(), {"--config", component + "=" + config.string()});
-  expect_clean(run_host(std::move(arguments), program));
+  expect_clean(run_program(std::move(arguments), program, process.environment));
 }
 
 }  // namespace constrictor::cli
