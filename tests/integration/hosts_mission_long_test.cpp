@@ -62,6 +62,33 @@ TEST_F(HostsMission, ARunWhoseLauncherIsKilledIsContinuedWithTheSameResult) {
   expect_nothing_left(2);
 }
 
+// The whole case study. CONSTRICTOR_LINKS ("0/0 10/0.01": round trip in ms / loss) chooses other networks, and
+// CONSTRICTOR_MISSION another scenario. The speed is only printed, because it depends on the machine.
+TEST_F(HostsMission, TheCaseStudyHasTheResultOfOneProcessOverALossyLink) {
+  make_two();
+  const char* mission = std::getenv("CONSTRICTOR_MISSION");
+  const char* links = std::getenv("CONSTRICTOR_LINKS");
+  const std::string scenario = mission ? mission : "case_study";
+  const std::string expected = one(scenario);
+  ASSERT_EQ(report("one").value("success", false), true) << report("one").value("reason", "");
+  std::istringstream list(links ? links : "10/0.01");
+  char slash = 0;
+  double loss = 0.0;
+  for (int round_trip_ms = 0; list >> round_trip_ms >> slash >> loss;) {
+    const std::string jitter = round_trip_ms == 0 ? " 0" : " 1";
+    hosts_->network("delay " + std::to_string(round_trip_ms / 2) + jitter);
+    hosts_->network("loss " + std::to_string(loss));
+    Process run = constrictor("run " + scenario + " --manifest two.yaml --report two");
+    EXPECT_EQ(run.wait(1200s), 0) << run.output() << run.errors();
+    const auto json = report("two");
+    EXPECT_EQ(json.value("state_hash", "none"), expected) << round_trip_ms << " ms, loss " << loss;
+    std::printf("round trip %2d ms, loss %.2f: %.1f s simulated in %.1f s\n", round_trip_ms, loss,
+                json.value("sim_time_s", 0.0), json.value("wall_time_s", 0.0));
+    std::fflush(stdout);
+  }
+  expect_nothing_left(2);
+}
+
 // CONSTRICTOR_MISSION and CONSTRICTOR_SEEDS ("1 2 3") choose other missions. At real-time pace a tick that control
 // leaves out is an overrun; on a busy host the load itself causes some, so that the figure is only printed.
 TEST_F(HostsMission, AtRealTimePacePerceptionAndPlannerMayBe50MsAway) {
