@@ -62,6 +62,20 @@ TEST_F(HostsMission, ARunWhoseLauncherIsKilledIsContinuedWithTheSameResult) {
   expect_nothing_left(2);
 }
 
+TEST_F(HostsMission, AHostThatRebootsComesBackIntoTheRun) {
+  make_two();
+  const std::string expected = one("--max-sim-time 20");
+  Process run = constrictor("run --manifest two.yaml --max-sim-time 20 --report two");
+  ASSERT_TRUE(eventually([&] { return newest_tick() > 300; }, 120s)) << run.output() << run.errors();
+  hosts_->reboot(2, 20);
+  ASSERT_EQ(run.wait(300s), 1) << run.output() << run.errors();  // the mission is not over after 20 s
+  EXPECT_GE(report("two").value("wall_time_s", 0.0), 20.0) << "the reboot was in the run";
+  EXPECT_EQ(report("two").value("state_hash", "a"), expected) << run.output() << run.errors();
+  Process diff = constrictor("diff one two");
+  EXPECT_EQ(diff.wait(30s), 0) << diff.output();
+  expect_nothing_left(2);
+}
+
 // The whole case study. CONSTRICTOR_LINKS ("0/0 10/0.01": round trip in ms / loss) chooses other networks, and
 // CONSTRICTOR_MISSION another scenario. The speed is only printed, because it depends on the machine.
 TEST_F(HostsMission, TheCaseStudyHasTheResultOfOneProcessOverALossyLink) {

@@ -70,6 +70,17 @@ class NamespaceHosts {
     const std::string line = command + "\n";
     EXPECT_EQ(::write(control_, line.data(), line.size()), static_cast<ssize_t>(line.size()));
   }
+  /// Ends all processes of a host except the first one, as a failure of its power does; empties its /run, and cuts the
+  /// network for so many seconds.
+  void reboot(int host, int seconds) const {
+    network("blackout " + std::to_string(seconds));
+    for (const pid_t process : processes(host, "")) {
+      if (std::to_string(process) != pid(host)) ::kill(process, SIGKILL);
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(folder(host) / "run")) {
+      if (entry.path().filename() != "sshd") std::filesystem::remove_all(entry.path());
+    }
+  }
   /// The processes of a host whose command line contains `text`, as pids of the test's namespace.
   [[nodiscard]] std::vector<pid_t> processes(int host, const std::string& text) const {
     const auto own = std::filesystem::read_symlink("/proc/" + pid(host) + "/ns/pid");

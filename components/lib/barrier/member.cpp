@@ -277,7 +277,8 @@ void Member::finish_step() {
   if (!is_plant_) done.written = std::exchange(written_, {});
   ticks_.erase(step.tick.index);
   sink_.done(done);
-  if (step.final_tick) conclude(*step.final_tick);
+  if (step.final_tick) concludes_at_ = step.final_tick;
+  if (concludes_at_) conclude(*concludes_at_);
 }
 
 }  // namespace constrictor

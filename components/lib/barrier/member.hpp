@@ -99,12 +99,13 @@ class Member {
   [[nodiscard]] bool has_due_tick() const { return !stepping() && due() != nullptr; }
   /// True after the run's final tick and the last step.
   [[nodiscard]] bool ended() const { return ended_; }
-  /// True after the final tick as long as a restarted member lacks inputs of its last step, which it needs to end.
+  /// True after the final tick as long as steps before it are due, or a restarted member lacks inputs of its last step.
   [[nodiscard]] bool concluding() const { return concludes_at_.has_value(); }
   /// Puts the device of the component to rest, if it owns one. No step may be in progress, and none may follow. The
   /// final tick does the same.
   void release_device();
-  /// Ends a member that is concluding() with the inputs that have arrived.
+  /// Ends a member that is concluding() with the steps that it has done and the inputs that have arrived. Does nothing
+  /// while a step is in progress.
   void conclude_anyway();
   /// Tick of the last finished step; -1 before the first.
   [[nodiscard]] std::int64_t last_done() const { return last_done_; }
@@ -140,9 +141,13 @@ class Member {
   void refuse_from_component(const std::string& reason);
   void build(std::uint64_t seed);
   void replay_early();
-  /// Ends the member, at once or as soon as the inputs of its last step have arrived again. By value, because it
-  /// resets concludes_at_.
+  /// Ends the member, at once or as soon as its last step is done and the inputs of that step have arrived again. By
+  /// value, because it resets concludes_at_.
   void conclude(msg::Tick final_tick);
+  /// Whether steps before the final tick are still to be done. At real-time pace, those whose ticks have arrived.
+  [[nodiscard]] bool is_behind(const msg::Tick& final_tick) const;
+  /// The part of conclude() that follows the last step.
+  void finish(const msg::Tick& final_tick);
   [[nodiscard]] const msg::Tick* due() const;
   void skip_to_newest();
   void write(OutputPort& port, const void* message);
@@ -174,7 +179,7 @@ class Member {
   std::int64_t last_done_ = -1;
   std::int64_t newest_tick_ = -1;
   bool ended_ = false;
-  std::optional<msg::Tick> concludes_at_{};  ///< the final tick, while the inputs of the last step are missing
+  std::optional<msg::Tick> concludes_at_{};  ///< the final tick, while concluding()
   bool end_requested_ = false;
   std::optional<Step> step_;
   bool measuring_ = false;

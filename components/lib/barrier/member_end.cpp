@@ -13,6 +13,18 @@ void Member::release_device() {
 
 void Member::conclude(const msg::Tick final_tick) {
   release_device();
+  // A member with latency may be behind. It does its last steps, so that the result does not depend on how far.
+  if (is_behind(final_tick)) concludes_at_ = final_tick;
+  else finish(final_tick);
+}
+
+bool Member::is_behind(const msg::Tick& final_tick) const {
+  if (final_tick.realtime) return !ticks_.empty();
+  const std::int64_t last = final_tick.index - 1;  // no component steps in the final tick
+  return last >= 0 && last_done_ < last - last % timing_.period;
+}
+
+void Member::finish(const msg::Tick& final_tick) {
   auto* concluding = last_done_ < 0 ? nullptr : dynamic_cast<Concluding*>(component_.get());
   if (concluding && resumed_) {
     // No step of this incarnation has shown the component its inputs: they must arrive again.
@@ -31,18 +43,21 @@ void Member::conclude(const msg::Tick final_tick) {
 }
 
 void Member::conclude_anyway() {
-  if (!concludes_at_) return;
+  if (!concludes_at_ || step_) return;
+  ticks_.clear();
   resumed_ = false;
-  conclude(*concludes_at_);
+  finish(msg::Tick{*concludes_at_});
 }
 
 MissingInput Member::missing() const {
-  if (concludes_at_) {
+  const bool behind = concludes_at_ && is_behind(*concludes_at_);
+  if (concludes_at_ && !behind) {
     for (const auto& input : inputs_) {
       if (!input->complete_again()) return {last_done_, &input->topic(), input->newest(), input->consumed()};
     }
   }
   const msg::Tick* tick = due();
+  if (!tick && behind) return {last_done_ < 0 ? 0 : last_done_ + timing_.period, nullptr, 0, 0};
   if (!tick) return {newest_tick_ + 1, nullptr, 0, 0};
   for (const auto& input : inputs_) {
     if (input->complete(*tick)) continue;

@@ -241,10 +241,11 @@ bool MemberSide::all_ended() const {
 
 void MemberSide::conclude_anyway() {
   for (auto& local : members_) {
-    if (!local.member->concluding()) continue;
+    if (!local.member->concluding() || local.member->stepping()) continue;
     const MissingInput missing = local.member->missing();
-    context_.log.warning("{} ends without its last samples of {}: none has arrived since the member was restarted",
-                         local.member->name(), missing.topic ? missing.topic->name : "an input");
+    context_.log.warning("{} ends after its step in tick {}, without the last samples of {}: they have not arrived",
+                         local.member->name(), local.member->last_done(),
+                         missing.topic ? missing.topic->name : "an input");
     local.member->conclude_anyway();
   }
 }

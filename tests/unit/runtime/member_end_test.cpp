@@ -124,6 +124,55 @@ TEST_F(MemberEnd, InputsThatNeverArriveCanBeGivenUp) {
   EXPECT_EQ(seen.last_tick, 2);
 }
 
+// A member with latency may have steps to do when the final tick arrives. How many is a matter of chance, and must not
+// show in the result.
+TEST_F(MemberEnd, AComponentThatIsBehindDoesItsLastStepsBeforeItConcludes) {
+  Seen seen;
+  const auto member = after_three_steps(seen);
+  member->on_tick(tick_at(3, visible(4, 4)));
+  member->on_tick(tick_at(4, visible(5, 5)));
+  member->on_tick(final_tick(5));
+  EXPECT_FALSE(member->ended());
+  EXPECT_TRUE(member->concluding());
+  EXPECT_FALSE(member->try_step());
+  EXPECT_EQ(member->missing().tick, 3);
+  EXPECT_EQ(member->missing().topic->id, topics::kJointState.id);
+  for (const std::uint64_t number : {4, 5}) {
+    give_joints(*member, number);
+    EXPECT_FALSE(member->ended());
+    give_event(*member, number);
+    EXPECT_TRUE(member->try_step());
+  }
+  EXPECT_TRUE(member->ended());
+  EXPECT_FALSE(member->concluding());
+  EXPECT_EQ(record_.steps.back().index, 4);
+  EXPECT_EQ(seen, (Seen{0.005, 4, 1, 4})) << "as if it had never been behind";
+}
+
+// Ticks of a restarted plant and of its predecessor come from two writers, in an order that is arbitrary.
+TEST_F(MemberEnd, ATickThatArrivesAfterTheFinalOneIsNotLeftOut) {
+  Seen seen;
+  const auto member = after_three_steps(seen);
+  member->on_tick(final_tick(4));
+  EXPECT_TRUE(member->concluding());
+  EXPECT_EQ(member->missing().tick, 3);
+  member->on_tick(tick_at(3, visible(3, 3)));
+  EXPECT_TRUE(member->try_step());
+  EXPECT_TRUE(member->ended());
+  EXPECT_EQ(seen.last_tick, 3);
+}
+
+TEST_F(MemberEnd, StepsWhoseInputsNeverArriveCanBeGivenUp) {
+  Seen seen;
+  const auto member = after_three_steps(seen);
+  member->on_tick(tick_at(3, visible(4, 4)));
+  member->on_tick(final_tick(4));
+  ASSERT_TRUE(member->concluding());
+  member->conclude_anyway();
+  EXPECT_TRUE(member->ended());
+  EXPECT_EQ(seen.last_tick, 2);
+}
+
 TEST_F(MemberEnd, AResetEndsTheWaitForInputs) {
   Seen seen;
   const auto member = restarted(seen);

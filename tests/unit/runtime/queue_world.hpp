@@ -171,11 +171,7 @@ class QueueWorld : private ConductorSink {
   static std::string key(const Node& from, const std::string& topic, const std::string& to) {
     return from.member->name() + "." + std::to_string(from.member->incarnation()) + ">" + topic + ">" + to;
   }
-  static bool can_step(const Member& member) {
-    const MissingInput missing = member.missing();
-    return missing.topic == nullptr && missing.tick >= 0 && member.in_epoch() && !member.ended() &&
-           missing.tick <= member.newest_tick();
-  }
+  static bool can_step(const Member& member) { return member.has_due_tick() && member.missing().topic == nullptr; }
   Node& find(const std::string& name) {
     for (auto& node : nodes_)
       if (node->member->name() == name) return *node;
