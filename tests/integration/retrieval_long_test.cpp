@@ -39,14 +39,14 @@ TEST_F(MissionRun, GraspsAnObjectAgainAfterItWasPulledOutOfTheBody) {
   EXPECT_TRUE(report_["objects"][0]["in_zone"]) << report_["objects"];
 }
 
-// A person takes the object when the robot has just seen it, and puts it down out of view. The map gives the empty
-// place up, so that the robot does not grasp there, and the robot finds the object at its new place.
+// A person takes the object when the robot has just begun to approach it, and puts it down out of view. The map gives
+// the empty place up, so that the robot does not grasp there, and the robot finds the object at its new place.
 TEST_F(MissionRun, FindsAnObjectAgainThatAPersonHasMovedOutOfView) {
   std::ifstream file(source_path("sim/scenarios/short.yaml"));
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t noise = text.find("\nnoise:");
   ASSERT_NE(noise, std::string::npos);
-  text.insert(noise, "\nperturbations:\n  - {object: 0, at_s: 2.5, moved_m: [-0.7, 1.2]}\n");
+  text.insert(noise, "\nperturbations:\n  - {object: 0, at_s: 3.1, moved_m: [-0.7, 1.2]}\n");
   ASSERT_NO_FATAL_FAILURE(succeeds(scenario(text), 400.0));
   EXPECT_TRUE(report_["objects"][0]["in_zone"]) << report_["objects"];
   EXPECT_TRUE(std::isfinite(event_s("object_lost"))) << report_["events"];
