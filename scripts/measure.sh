@@ -1,5 +1,6 @@
 # shellcheck shell=bash
-# Sourced by gaits.sh and sliding_mode.sh: builds and starts a program that measures in the simulated world.
+# Sourced by gaits.sh, peg_fields.sh and sliding_mode.sh: builds and starts a program that measures in the simulated
+# world.
 
 # measure NAME ARGUMENTS: starts measure_NAME with --robot FILE and --output DIR, by default build/NAME. --help prints
 # the comment at the beginning of the script.

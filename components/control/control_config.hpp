@@ -12,8 +12,8 @@ namespace constrictor {
 
 /// The methods that move the body along a path, by the values of `drive.method`.
 inline const std::vector<std::string>& drive_methods() {
-  static const std::vector<std::string> names{"undulation", "sidewinding", "rolling",
-                                              "pitch_wave", "concertina",  "sliding_mode"};
+  static const std::vector<std::string> names{"undulation", "sidewinding",  "rolling",       "pitch_wave",
+                                              "concertina", "sliding_mode", "obstacle_aided"};
   return names;
 }
 
@@ -30,6 +30,17 @@ inline const std::vector<std::string>& sliding_inertias() {
   static const std::vector<std::string> names{"whole_body", "each_joint"};
   return names;
 }
+
+/// Parameters of the method "obstacle_aided"; methods/obstacle_aided.cpp explains the law.
+struct ObstacleParameters {
+  double swing_rad = 0.0;
+  double path_m = 0.0;
+  double bend_nm = 0.0;
+  double avoid_rad = 0.0;
+  double engaged_n = 0.0;
+  double alone_s = 0.0;
+  double search_s = 0.0;
+};
 
 struct ControlConfig : ParameterSet {
   std::uint8_t drive_method = add(drive_method, "drive.method", 0, drive_methods(), kWhileRunning,
@@ -81,6 +92,21 @@ struct ControlConfig : ParameterSet {
           "Share of the modules' mass that the law counts with: a body lighter than this share swings"),
       add(sliding.inertia, "sliding_mode.inertia", 0, sliding_inertias(), kWhileRunning,
           "Inertia that the law knows: of the whole body, or of each joint by itself")};
+  ObstacleParameters obstacles{
+      add(obstacles.swing_rad, "obstacle_aided.swing_rad", 1.4, "rad", {0.1, 1.5}, kWhileRunning,
+          "Amplitude of the head's heading when the robot moves among obstacles"),
+      add(obstacles.path_m, "obstacle_aided.path_m", 2.0, "m", {0.3, 10.0}, kWhileRunning,
+          "The head swings once more for each such length by which the shape has moved along the body"),
+      add(obstacles.bend_nm, "obstacle_aided.bend_nm", 10.0, "Nm", {0.1, 100.0}, kWhileRunning,
+          "Torque of a joint when the angles in front of it and behind it differ by 1 rad"),
+      add(obstacles.avoid_rad, "obstacle_aided.avoid_rad", 0.8, "rad", {0.0, 1.5}, kWhileRunning,
+          "Angle by which the head turns away from an obstacle that stops it"),
+      add(obstacles.engaged_n, "obstacle_aided.engaged_n", 5.0, "N", {0.0, 1000.0}, kWhileRunning,
+          "Forward force of all obstacles together below which the robot counts as not supported by them"),
+      add(obstacles.alone_s, "obstacle_aided.alone_s", 3.0, "s", {0.1, 1000.0}, kWhileRunning,
+          "Time without support after which the robot moves sideways to find other obstacles"),
+      add(obstacles.search_s, "obstacle_aided.search_s", 2.0, "s", {0.1, 100.0}, kWhileRunning,
+          "Time for which it moves sideways")};
   double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
   double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.2, "rad/s", {0.001, 2.0}, kWhileRunning,

@@ -15,18 +15,19 @@ MethodDriver::MethodDriver(const RobotModel& robot, const MethodTrial& trial)
   if (!method_) throw std::invalid_argument("control has no method '" + trial.method + "'");
   set_text(desired_.method, trial.method);
   desired_.frequency_hz = trial.frequency_hz;
-  desired_.amplitude_rad = 0.5;
-  desired_.wavelength_m = 1.07;
+  desired_.amplitude_rad = trial.amplitude_rad;
+  desired_.wavelength_m = trial.wavelength_m;
   desired_.curvature_1_m = trial.curvature_1_m;
   if (!method_->accepts(desired_, chain_)) throw std::invalid_argument(trial.method + " does not accept the trial");
 }
 
-std::vector<JointSetpoint> MethodDriver::step(const JointArray& angle_rad, const JointArray& rate_rad_s) {
+std::vector<JointSetpoint> MethodDriver::step(const JointArray& angle_rad, const JointArray& rate_rad_s,
+                                              const Perceived& around, const JointArray& measured_nm) {
   const std::size_t n = robot_.joints.size();
   if (!started_ || torque_mode_) limit_.position_rad = angle_rad;
   const JointArray commanded_rad = limit_.position_rad;
-  const MethodInput input{robot_,          chain_, trial_.config, desired_,   angle_rad, JointArray{}, commanded_rad,
-                          trial_.period_s, {},     rate_rad_s,    exerted_nm_};
+  const MethodInput input{robot_,        chain_,          trial_.config, desired_,   angle_rad,  measured_nm,
+                          commanded_rad, trial_.period_s, around,        rate_rad_s, exerted_nm_};
   if (!started_) method_->start(input, body_);
   started_ = true;
   Setpoints wanted;

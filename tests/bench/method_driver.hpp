@@ -17,6 +17,8 @@ struct MethodTrial {
   double period_s = 0.02;  ///< control tick
   double frequency_hz = 0.5;
   double curvature_1_m = 0.0;  ///< of the path
+  double amplitude_rad = 0.5;
+  double wavelength_m = 1.07;
 };
 
 class MethodDriver {
@@ -25,8 +27,10 @@ class MethodDriver {
   /// not accept the trial.
   MethodDriver(const RobotModel& robot, const MethodTrial& trial);
 
-  /// The setpoints that the method demands for the measured angles [rad] and rates [rad/s] of the joints.
-  std::vector<JointSetpoint> step(const JointArray& angle_rad, const JointArray& rate_rad_s);
+  /// The setpoints that the method demands for the measured angles [rad] and rates [rad/s] of the joints. `around`:
+  /// what the method perceives; `measured_nm`: measured torques of the joints.
+  std::vector<JointSetpoint> step(const JointArray& angle_rad, const JointArray& rate_rad_s,
+                                  const Perceived& around = {}, const JointArray& measured_nm = {});
   /// [rad] The angles that the method wanted in the last step, before the limiter.
   [[nodiscard]] const JointArray& wanted_rad() const { return wanted_rad_; }
 
