@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "constrictor/constants.hpp"
 
@@ -30,6 +31,8 @@ void ObjectLedger::on_mission(const msg::MissionStatus& mission) {
   if (sequence.size() < mission.object_count) sequence.resize(mission.object_count, msg::kColourUnknown);
   if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown)
     sequence[mission.object_index] = mission.colour;
+  // A planner may look once more at an object that it has delivered before; this is no attempt.
+  if (std::string_view(mission.state) == "inspect drop") return;
   const bool same = !attempted.empty() && attempted.back() == mission.object_index;
   if (mission.object_index >= sequence.size() || same) return;
   std::erase(attempted, mission.object_index);

@@ -27,6 +27,7 @@ struct Story {
   std::int64_t mission_end_tick = 420;
   std::uint8_t mission_end = msg::kMissionSucceeded;  ///< what the planner announces then
   std::uint16_t objects_in_mission = 2;
+  std::int64_t looks_again_tick = 1'000'000;  ///< from this tick on the planner looks at its first object again
   double line_length_m = 10.0;
   bool truth = true;                        ///< whether the plant publishes ground truth
   std::int64_t torn_from_tick = 1'000'000;  ///< from this tick on images have fewer bytes than their size requires
@@ -192,7 +193,8 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
   members.push_back(scripted("planner", {1, 1}, [story](Wiring& wiring) {
     return [story, out = wiring.output(topics::kMissionStatus)](const Tick& tick) {
       msg::MissionStatus mission{};
-      const bool second = tick.index > 200;
+      const bool again = tick.index >= story.looks_again_tick;
+      const bool second = tick.index > 200 && !again;
       mission.outcome = tick.index >= story.mission_end_tick ? story.mission_end : msg::kMissionRunning;
       if (mission.outcome == msg::kMissionFailed)
         std::snprintf(mission.reason, sizeof mission.reason, "more than 60 recoveries");
@@ -203,6 +205,7 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       mission.recoveries = tick.index > 230 ? 1 : 0;
       std::snprintf(mission.state, sizeof mission.state, "%s",
                     tick.index < 60 ? "follow_line"
+                    : again         ? "inspect drop"
                     : second        ? "retrieve_second"
                                     : "retrieve_first");
       out.write(mission);
