@@ -147,7 +147,7 @@ TEST(Report, DoesNotSucceedInTheWrongOrder) {
 
 TEST(Report, AnotherLookAtADeliveredObjectIsNoAttempt) {
   Story story;
-  story.looks_again_tick = 400;
+  story.looks_again_tick = 401;
   EXPECT_EQ(report_of(story).mission["success"], true);
 }
 

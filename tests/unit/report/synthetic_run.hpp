@@ -174,6 +174,7 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
     return [story, status = wiring.output(topics::kTaskStatus),
             events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
       msg::TaskStatus task{};
+      task.carrying = (tick.index > 120 && tick.index <= 200) || (tick.index > 320 && tick.index <= 400);
       task.task = tick.index >= 20 && tick.index < 380 ? msg::kTaskFollowLine : msg::kTaskDrop;
       task.goal_state = msg::kGoalRunning;
       task.parameters.timeout_s = std::nan("");
@@ -205,7 +206,6 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       mission.recoveries = tick.index > 230 ? 1 : 0;
       std::snprintf(mission.state, sizeof mission.state, "%s",
                     tick.index < 60 ? "follow_line"
-                    : again         ? "inspect drop"
                     : second        ? "retrieve_second"
                                     : "retrieve_first");
       out.write(mission);
