@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace constrictor::guidance {
 namespace {
@@ -10,6 +12,28 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kMaxHits = 1000;
 constexpr std::int64_t kTentativeTicks = 150;  // unconfirmed landmarks that are not seen for this long are discarded
+constexpr double kNear_m = 0.7;                // an object whose range cannot be seen is nearer than this
+constexpr double kCutShare = 0.25;  // of the radius: error of the centre of an object that the image's border cuts
+
+/// Distance [m] and bearing [rad] of the centre of a round object of which the border of the image cuts one side. The
+/// centre of the visible part is not the object's centre, and lies on the same side of it in each image. But the side
+/// that is in view touches the line of sight, and the range is the one of the near edge in the middle of the part.
+std::pair<double, double> centre_of_cut(const msg::Blob& blob, double radius_m) {
+  constexpr int kSteps = 8;
+  const double part_m = std::isfinite(blob.width_m) ? 0.5 * blob.width_m : 0.0;
+  const double half_rad = std::asin(std::clamp(part_m / (blob.range_m + part_m), 0.0, 1.0));
+  const double side = blob.cut_left ? 1.0 : -1.0;  // of the hidden part
+  const double seen_rad = blob.bearing_rad - side * half_rad;
+  double distance_m = blob.range_m + radius_m, bearing_rad = blob.bearing_rad;
+  for (int i = 0; i < kSteps; ++i) {
+    bearing_rad = seen_rad + side * std::asin(std::min(radius_m / distance_m, 1.0));
+    const double aside_rad = wrap_angle_by_shift(bearing_rad - blob.bearing_rad);
+    const double aside_m = distance_m * std::sin(aside_rad);
+    const double depth_m = std::sqrt(std::max(0.0, radius_m * radius_m - aside_m * aside_m));
+    distance_m = (blob.range_m + depth_m) / std::max(0.5, std::cos(aside_rad));
+  }
+  return {distance_m, bearing_rad};
+}
 
 }  // namespace
 
@@ -58,15 +82,32 @@ void FieldMapper::create(const msg::Blob& blob, const Eigen::Vector2d& z, const 
   state_.landmarks.push_back(landmark);
 }
 
+double FieldMapper::known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const {
+  const Eigen::Vector2d p_M = to_parent(filter_.pose(), z);
+  double radius_m = kDefaultRadius_m, nearest_m = config_.merge_m;
+  for (const Landmark& landmark : state_.landmarks) {
+    if (landmark.colour != blob.colour || landmark.kind != blob.kind || !(landmark.radius_m > 0.0)) continue;
+    const double apart_m = (position(landmark) - p_M).norm();
+    if (apart_m >= nearest_m) continue;
+    nearest_m = apart_m;
+    radius_m = landmark.radius_m;
+  }
+  return radius_m;
+}
+
 void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used) {
   const bool whole = !blob.cut_left && !blob.cut_right;
-  const double radius_m = std::isfinite(blob.width_m) && whole ? 0.5 * blob.width_m : kDefaultRadius_m;
-  const double distance_m = blob.range_m + radius_m;
-  const Eigen::Vector2d sight = along(blob.bearing_rad), across = left(blob.bearing_rad);
+  double radius_m = std::isfinite(blob.width_m) && whole ? 0.5 * blob.width_m : kDefaultRadius_m;
+  double distance_m = blob.range_m + radius_m, bearing_rad = blob.bearing_rad;
+  if (!whole) {
+    radius_m = known_radius_m(blob, to_parent(exposure, distance_m * along(bearing_rad)));
+    std::tie(distance_m, bearing_rad) = centre_of_cut(blob, radius_m);
+  }
+  const Eigen::Vector2d sight = along(bearing_rad), across = left(bearing_rad);
   const Eigen::Vector2d z = to_parent(exposure, distance_m * sight);
-  // If the image's border cuts the object, the blob's centre is not the object's centre.
-  const double range_sd = config_.range_sd_m + config_.range_sd_1_m * distance_m * distance_m;
-  const double across_sd = config_.bearing_sd_rad * distance_m + 0.01 + (whole ? 0.0 : radius_m);
+  const double cut_sd = whole ? 0.0 : kCutShare * radius_m;
+  const double range_sd = config_.range_sd_m + config_.range_sd_1_m * distance_m * distance_m + cut_sd;
+  const double across_sd = config_.bearing_sd_rad * distance_m + 0.01 + cut_sd;
   Eigen::Matrix2d noise =
       range_sd * range_sd * sight * sight.transpose() + across_sd * across_sd * across * across.transpose();
   noise *= config_.inflation;
@@ -126,7 +167,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
 void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick) {
   // The blob has no range, or its centre is out of view. It belongs to a landmark of its colour that is nearby and in
   // the same direction.
-  const double farthest_m = std::isfinite(blob.range_m) ? config_.max_range_m : 0.7;
+  const double farthest_m = std::isfinite(blob.range_m) ? config_.max_range_m : kNear_m;
   for (Landmark& landmark : state_.landmarks) {
     if (landmark.colour != blob.colour || landmark.kind != blob.kind || landmark.carried) continue;
     const Eigen::Vector2d p = exposure.to_local(filter_.pose().to_local(position(landmark)));
@@ -144,7 +185,7 @@ void FieldMapper::objects(const msg::ObjectPercepts& percepts, const PlanarPose&
     if (blob.kind == msg::kBlobUndecided || !std::isfinite(blob.bearing_rad)) continue;
     // The visible part of a zone that the image's border cuts says little of where the zone's centre is.
     const bool part = blob.kind == msg::kBlobZone && (blob.cut_left || blob.cut_right);
-    if (!std::isfinite(blob.range_m) || part) {
+    if (!std::isfinite(blob.range_m) || part || (blob.cut_left && blob.cut_right)) {
       glimpse(blob, exposure, tick);
     } else if (blob.range_m < config_.max_range_m) {
       place(blob, exposure, tick, used);

@@ -44,6 +44,8 @@ class FieldMapper {
   /// Updates, moves or creates the landmark of a blob with a range. `used` marks the landmarks that already have a blob
   /// in this image.
   void place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used);
+  /// [m] radius of the landmark that a blob at `z` (in the head's frame) may belong to.
+  [[nodiscard]] double known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const;
   /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
   void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);

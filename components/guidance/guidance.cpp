@@ -53,6 +53,12 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
       input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
   }
+  if (config_.slope_time_s > 0.0) {
+    state_.slope.learn(q, input.dt_s / config_.slope_time_s);
+    input.downhill = turned(state_.slope.downhill(config_.level_rad), -input.yaw_rad);
+  } else {
+    state_.slope = {};
+  }
   const guidance::HeadStep step = guidance::advance_odometry(state_.odometry, model_, config_.odometry, input);
   state_.last_tick = tick.index;
 

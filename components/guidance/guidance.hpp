@@ -8,12 +8,14 @@
 #include "component/parameters.hpp"
 #include "component/robot_views.hpp"
 #include "guidance/field_mapper.hpp"
+#include "robot/ground_slope.hpp"
 
 namespace constrictor {
 
 struct GuidanceState {
   std::int64_t last_tick = 0;  ///< tick of the joints and of the IMU sample that were used last
   guidance::OdometryState odometry;
+  GroundSlope slope;
   guidance::PoseFilterState filter;
   /// Poses from dead reckoning alone, one per tick, the oldest first. They give the motion between two ticks,
   /// independently of later corrections by the filter.
@@ -24,7 +26,7 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, odometry, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
+    archive(last_tick, odometry, slope, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
             parameters);
   }
 };

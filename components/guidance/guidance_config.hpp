@@ -60,6 +60,11 @@ struct GuidanceConfig : ParameterSet {
   double speed_window_s = add(speed_window_s, "odometry.speed_window_s", 1.5, "s", {0.1, 2.0}, kWhileRunning,
                               "Time over which the published speed is averaged; about a gait period");
 
+  double slope_time_s = add(slope_time_s, "ground.slope_time_s", 4.0, "s", {0.0, 600.0}, kWhileRunning,
+                            "Time constant of the mean that finds the slope; 0: the ground is level");
+  double level_rad = add(level_rad, "ground.level_rad", 0.015, "rad", {0.0, 0.3}, kWhileRunning,
+                         "Ground that is inclined by less than this counts as level");
+
   double bearing_sd_rad = add(bearing_sd_rad, "landmarks.bearing_sd_rad", 0.02, "rad", {1e-3, 1.0}, kWhileRunning,
                               "Standard deviation of a percept's bearing");
   double range_sd_m = add(range_sd_m, "landmarks.range_sd_m", 0.015, "m", {1e-3, 1.0}, kWhileRunning,

@@ -124,7 +124,8 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
 
   // First compute the velocity without friction, then the velocity with friction.
   const double inertia = mass_kg / input.dt_s;
-  const Eigen::Vector2d free = turned({state.vx_m_s, state.vy_m_s}, -half_turn) + input.push_n / inertia;
+  const Eigen::Vector2d free = turned({state.vx_m_s, state.vy_m_s}, -half_turn) + input.push_n / inertia +
+                               kGravity_m_s2 * input.dt_s * input.downhill;
   Eigen::Vector2d velocity = free;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::Matrix2d A = inertia * Eigen::Matrix2d::Identity();

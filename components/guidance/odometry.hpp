@@ -46,10 +46,11 @@ struct GroundForce {
 struct OdometryInput {
   const double* joint_rad = nullptr;  ///< angles of all joints, head to tail; finite
   const double* joint_rad_s = nullptr;
-  double yaw_rad = 0.0;              ///< yaw of the IMU; finite
-  std::vector<double> load_n;        ///< normal force on each module; empty: the weight is spread evenly
-  std::vector<GroundForce> ground;   ///< of each module; empty: not measured, the estimates of friction stay
-  Eigen::Vector2d push_n{0.0, 0.0};  ///< sum of the contact forces, except those of the ground; in the head's frame
+  double yaw_rad = 0.0;                ///< yaw of the IMU; finite
+  std::vector<double> load_n;          ///< normal force on each module; empty: the weight is spread evenly
+  std::vector<GroundForce> ground;     ///< of each module; empty: not measured, the estimates of friction stay
+  Eigen::Vector2d push_n{0.0, 0.0};    ///< sum of the contact forces, except those of the ground; in the head's frame
+  Eigen::Vector2d downhill{0.0, 0.0};  ///< gravity along the ground, as a share of it; in the head's frame
   double dt_s = 0.02;
 };
 
@@ -61,7 +62,8 @@ struct HeadStep {
 
 /// One step of the body's balance of momentum in the plane with Coulomb friction under each module, as a convex
 /// problem: the velocity V of the centre of mass minimises
-///   M |V - V_before - push dt / M|^2 / (2 dt) + sum_i N_i (mu_across |v_i across| + mu_along |v_i along|),
+///   M |V - V_before - (push / M + g downhill) dt|^2 / (2 dt) + sum_i N_i (mu_across |v_i across| + mu_along |v_i
+///   along|),
 /// where v_i, the velocity of each end of a module, is V plus what the joints and the measured turn add (implicit Euler
 /// on the dissipation potential; solved by iteratively reweighted least squares). With high friction across the body,
 /// the modules hardly slip sideways; without friction, the centre of mass keeps its velocity. The coefficients mu are

@@ -78,24 +78,33 @@ int GripSense::touching_modules(const std::vector<Touch>& touches) const {
   return static_cast<int>(std::count(touching.begin(), touching.end(), true));
 }
 
-Eigen::Vector2d GripSense::held_object_H(const std::vector<PlanarPose>& body, double radius_m) const {
-  // The apex A is the middle joint of the base. The mouth of the U lies in the mean direction of its arms.
-  const std::size_t apex = base_joints_[base_joints_.size() / 2];
-  const Eigen::Vector2d p_HA = body[apex].p - 0.5 * robot_.module_length_m * body[apex].forward();
+Eigen::Vector2d GripSense::mouth(const std::vector<PlanarPose>& body) const {
   Eigen::Vector2d mouth{0.0, 0.0};
   for (std::size_t m = 0; m < body.size(); ++m) {
     if (m < base_joints_.front()) mouth += body[m].forward();
     if (m > base_joints_.back() + 1) mouth -= body[m].forward();
   }
-  if (mouth.norm() < 1e-6) mouth = {1.0, 0.0};
-  return p_HA + (radius_m + robot_.module_radius_m) * mouth.normalized();
+  if (mouth.norm() < 1e-6) return {1.0, 0.0};
+  return mouth.normalized();
 }
 
-double GripSense::held_aside_m(const Grip& grip, bool feels) const {
+double GripSense::mouth_rad(const std::vector<PlanarPose>& body) const {
+  const Eigen::Vector2d direction = mouth(body);
+  return std::atan2(direction.y(), direction.x());
+}
+
+Eigen::Vector2d GripSense::held_object_H(const std::vector<PlanarPose>& body, double radius_m) const {
+  // The apex A is the middle joint of the base.
+  const std::size_t apex = base_joints_[base_joints_.size() / 2];
+  const Eigen::Vector2d p_HA = body[apex].p - 0.5 * robot_.module_length_m * body[apex].forward();
+  return p_HA + (radius_m + robot_.module_radius_m) * mouth(body);
+}
+
+Eigen::Vector2d GripSense::held_place_H(const Grip& grip, bool feels) const {
   msg::JointState posture{};
   for (std::size_t k = 0; k < yaw_joints_.size(); ++k) posture.position_rad[yaw_joints_[k]] = grip.shape_rad[k];
   for (const std::size_t j : base_joints_) posture.position_rad[j] -= grip.side * margin_rad(feels);
-  return held_object_H(planar_body(robot_, posture), grip.radius_m).y();
+  return held_object_H(planar_body(robot_, posture), grip.radius_m);
 }
 
 std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip,

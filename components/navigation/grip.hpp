@@ -63,9 +63,11 @@ class GripSense {
   [[nodiscard]] int touching_modules(const std::vector<Touch>& touches) const;
   /// Centre of an object of this radius that touches the base, in the head's frame.
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<PlanarPose>& body, double radius_m) const;
-  /// [m] lateral distance of the held object from the head's course while the U drives straight, positive left. The
-  /// object keeps the base from closing by the margin of hold_shape.
-  [[nodiscard]] double held_aside_m(const Grip& grip, bool feels) const;
+  /// [rad] Direction in the head's frame to which the mouth of the U points, which is the mean direction of its arms.
+  [[nodiscard]] double mouth_rad(const std::vector<PlanarPose>& body) const;
+  /// [m] Place of the held object in the head's frame while the U drives straight. The object keeps the base from
+  /// closing by the margin of hold_shape.
+  [[nodiscard]] Eigen::Vector2d held_place_H(const Grip& grip, bool feels) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with each joint of the base closed by a margin
   /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object.
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
@@ -81,6 +83,8 @@ class GripSense {
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
 
  private:
+  /// Unit vector to which the mouth of the U points, in the head's frame.
+  [[nodiscard]] Eigen::Vector2d mouth(const std::vector<PlanarPose>& body) const;
   /// [rad] by which each joint of the base is commanded to close further than the object lets it.
   [[nodiscard]] double margin_rad(bool feels) const {
     return feels ? config_.hold_margin_rad : config_.unfelt_margin_rad;

@@ -223,10 +223,14 @@ struct DropConfig : NavigationSection {
                        "Distance that the object slides after the wave stops");
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the course this far ahead");
+  double crab_filter_s = add(crab_filter_s, "crab_filter_s", 4.0, "s", {0.02, 600.0}, kWhileRunning,
+                             "Time constant of the low-pass on the angle between the course and the U on a slope");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
   double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
   Gait back = add(back, "back", {1.1, 0.5, 1.07}, kAtStart, "Gait by which the open U leaves the object");
+  PidGains back_steering =
+      add(back_steering, "back_steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance from the object [m]");
   double back_m =
       add(back_m, "back_m", 1.05, "m", bounds::kLength, kAtStart, "Distance by which the robot backs off afterwards");
   double back_timeout_s =

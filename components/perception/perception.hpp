@@ -8,8 +8,8 @@
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
-#include "perception/ground_slope.hpp"
 #include "perception/line_and_blob_detector.hpp"
+#include "robot/ground_slope.hpp"
 
 namespace constrictor {
 
@@ -30,7 +30,7 @@ struct PerceptionState {
   std::uint64_t fingerprint = 0;   ///< of the last image
   int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
   perception::ObjectSizes sizes;   ///< from the images so far
-  perception::GroundSlope slope;
+  GroundSlope slope;
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {

@@ -6,6 +6,7 @@
 
 #include "constrictor/constants.hpp"
 #include "planner/mission_planner.hpp"
+#include "robot/landmarks.hpp"
 
 namespace constrictor {
 
@@ -22,6 +23,7 @@ void MissionPlanner::note_drops(const PlannerInputs& inputs) {
     if (event->event != msg::kEventDroppingDone) continue;
     if (event->goal_id >> 48 == msg::kAuthorityPlanner) {
       memory_.dropped = true;
+      memory_.rechecked = 0;
       memory_.dropped_handle = event->object_handle;
       continue;
     }
@@ -68,7 +70,13 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.placed.push_back({memory_.object_index, memory_.dropped_handle, newest, inputs.tick, 0.0});
   memory_.dropped = false;
   memory_.released_tick = -1;
-  if (!choose_object()) return end_of_sequence();
+  const std::uint16_t last = memory_.object_index;
+  if (!choose_object()) {
+    memory_.object_index = last;
+    if (inspect_doubtful(inputs)) return kInspect;
+    choose_object();
+    return end_of_sequence();
+  }
   // An object that the robot has pushed off its zone is near.
   return (memory_.displaced >> memory_.object_index & 1u) != 0 ? kSearchObject : kTurnRound;
 }
@@ -82,22 +90,68 @@ bool MissionPlanner::at_last_object() const {
 
 void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double elapsed_s) {
   constexpr double kNoticed_s = 0.4;
-  constexpr double kNear_m = 1.6;  // an object of this colour that is farther from the zone is another one
-  if (!inputs.map) return;
   const auto off_zone = [&](PlacedObject& object) {
-    const std::uint8_t colour = config_.sequence[object.index];
-    bool all = true;  // all objects of this colour are delivered: an object that appears now is one of them
-    for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
-    constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
-    if (!all && object.handle == 0) return false;
-    const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick, true};
-    const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
-    const bool outside = view.verdict == Delivery::kOutside && view.offset_m < kNear_m;
+    const bool outside = placed_object(object, inputs).verdict == Delivery::kOutside;
     object.outside_s = outside ? object.outside_s + elapsed_s : 0.0;
     return object.outside_s > kNoticed_s;
   };
   const auto gone = std::find_if(memory_.placed.begin(), memory_.placed.end(), off_zone);
-  if (gone == memory_.placed.end()) return;
+  if (gone != memory_.placed.end()) take_back(gone);
+}
+
+DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const PlannerInputs& inputs) const {
+  constexpr double kNear_m = 1.6;  // an object of this colour that is farther from the zone is another one
+  const std::uint8_t colour = config_.sequence[object.index];
+  bool all = true;  // all objects of this colour are delivered: an object that appears now is one of them
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
+  constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
+  if (!inputs.map || (!all && object.handle == 0)) return {};
+  const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick, true};
+  const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
+  return view.offset_m < kNear_m ? view : DeliveryView{};
+}
+
+bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs) {
+  const auto doubtful = [&](const PlacedObject& object) {
+    if (object.index == memory_.object_index || (memory_.rechecked >> object.index & 1u) != 0 || !inputs.map)
+      return false;
+    // Of two objects of one colour, the map may have taken one for the other: a look proves nothing.
+    const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), config_.sequence[object.index]);
+    if (alike > 1) return false;
+    const auto landmarks = landmarks_of(*inputs.map);
+    const bool touched = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
+      return object.handle != 0 && landmark.handle == object.handle && landmark.sd_m > config_.seen_sd_m;
+    });
+    const Delivery verdict = placed_object(object, inputs).verdict;
+    return touched || verdict == Delivery::kOutside || verdict == Delivery::kUncertain;
+  };
+  const auto found = std::find_if(memory_.placed.begin(), memory_.placed.end(), doubtful);
+  if (found == memory_.placed.end()) return false;
+  const std::uint32_t bit = std::uint32_t{1} << found->index;
+  memory_.rechecked |= bit;
+  memory_.delivered &= ~bit;
+  memory_.object_index = found->index;
+  memory_.dropped = true;
+  memory_.dropped_handle = found->handle;
+  memory_.newest_handle = found->newest_handle;
+  memory_.released_tick = inputs.tick;  // only images from now on count
+  memory_.placed.erase(found);
+  memory_.failures = 0;
+  memory_.side = msg::kDirectionNone;
+  memory_.entered_s = memory_.active_s;
+  memory_.requested = false;
+  return true;
+}
+
+bool MissionPlanner::inspects_again(const PlannerInputs& inputs) const {
+  if ((memory_.rechecked >> memory_.object_index & 1u) == 0 || !inputs.map) return false;
+  const auto landmarks = landmarks_of(*inputs.map);
+  return std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
+    return landmark.kind == msg::kBlobObject && landmark.handle == memory_.dropped_handle;
+  });
+}
+
+void MissionPlanner::take_back(PlacedObjects::iterator gone) {
   memory_.delivered &= ~(std::uint32_t{1} << gone->index);
   memory_.displaced |= std::uint32_t{1} << gone->index;
   memory_.placed.erase(gone);

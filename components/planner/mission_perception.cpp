@@ -153,6 +153,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
         parameters.direction = memory_.side == msg::kDirectionLeft ? msg::kDirectionRight : msg::kDirectionLeft;
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
+      if (memory_.state == kInspect && inspects_again(inputs)) parameters.object_handle = memory_.dropped_handle;
       break;
   }
   return wanted;

@@ -55,6 +55,8 @@ struct PlacedObject {
   }
 };
 
+using PlacedObjects = std::vector<PlacedObject>;
+
 /// The whole state of the planner.
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
@@ -79,7 +81,8 @@ struct MissionMemory {
   bool dropped = false;                     ///< the planner's drop is done, and its result is not yet decided
   std::uint16_t dropped_handle = 0;         ///< of the dropped object; 0: unknown
   std::uint16_t newest_handle = 0;          ///< highest handle of the map at the release
-  std::vector<PlacedObject> placed;         ///< the delivered objects
+  PlacedObjects placed;                     ///< the delivered objects
+  std::uint32_t rechecked = 0;              ///< bit i: the robot has looked at object i again since the newest drop
   std::uint32_t displaced = 0;              ///< bit i: object i was delivered, and was then pushed off its zone
   std::int64_t released_tick = -1;  ///< last tick in which the body still held the object of the newest drop; -1: none
   std::uint16_t recoveries = 0;
@@ -108,7 +111,8 @@ struct MissionMemory {
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
-            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way);
+            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way,
+            rechecked);
   }
 };
 
@@ -152,6 +156,16 @@ class MissionPlanner {
   [[nodiscard]] MissionState delivered(const PlannerInputs& inputs);
   /// Counts a delivered object as undelivered again when the map has shown it outside its zone for a while.
   void watch_placed_objects(const PlannerInputs& inputs, double elapsed_s);
+  /// The verdict on a delivered object as the map shows it now; kUnseen if no image has shown it since.
+  [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs) const;
+  /// Before the mission ends: selects a delivered object for another look if the map is not certain that it is still on
+  /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop, and only
+  /// if the mission has no other object of its colour. False if there is no such object.
+  [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs);
+  /// Whether the object in question is one that was delivered before and that the map has.
+  [[nodiscard]] bool inspects_again(const PlannerInputs& inputs) const;
+  /// Counts a delivered object as undelivered again.
+  void take_back(PlacedObjects::iterator gone);
   /// Whether all objects but the present one are delivered; false in a mission with one object.
   [[nodiscard]] bool at_last_object() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;

@@ -26,10 +26,12 @@ ZoneVerdict judge_zone(const msg::SceneDescription& scene, const msg::WorldState
 
 void ObjectLedger::start(const msg::SceneDescription& scene) { objects.resize(scene.object_count); }
 
-void ObjectLedger::on_mission(const msg::MissionStatus& mission) {
+void ObjectLedger::on_mission(const msg::MissionStatus& mission, bool carrying) {
   if (sequence.size() < mission.object_count) sequence.resize(mission.object_count, msg::kColourUnknown);
   if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown)
     sequence[mission.object_index] = mission.colour;
+  // A planner may look at an object or search for it without bringing it to a zone; this is no attempt.
+  if (!carrying) return;
   const bool same = !attempted.empty() && attempted.back() == mission.object_index;
   if (mission.object_index >= sequence.size() || same) return;
   std::erase(attempted, mission.object_index);

@@ -36,10 +36,11 @@ struct ObjectLedger {
   std::vector<ObjectRecord> objects;     ///< in the order of the scene
   std::int32_t held = -1;                ///< index of the object in the robot's grip; -1: none
   std::vector<std::uint8_t> sequence;    ///< colours in the mission's order; kColourUnknown: not yet announced
-  std::vector<std::uint16_t> attempted;  ///< indices of the sequence in the order of their last attempts
+  std::vector<std::uint16_t> attempted;  ///< indices of the sequence in the order in which they were last carried
 
   void start(const msg::SceneDescription& scene);
-  void on_mission(const msg::MissionStatus& mission);
+  /// `carrying`: the robot holds an object.
+  void on_mission(const msg::MissionStatus& mission, bool carrying);
   /// A grasp counts only if an object of the event's colour is at most 0.05 m from the body.
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
   /// The reasons, in words, why the mission is not complete; empty if it is complete. A mission is complete if every

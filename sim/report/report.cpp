@@ -133,7 +133,7 @@ void Report::follow_effort(const Tick& tick) {
 
 void Report::follow_mission(const Tick& tick) {
   if (!mission_ || !mission_.fresh() || state_.mission != msg::kMissionRunning) return;
-  state_.ledger.on_mission(*mission_);
+  state_.ledger.on_mission(*mission_, task_ && task_->carrying);
   state_.recoveries = mission_->recoveries;
   if (state_.mission_state != mission_->state) {
     state_.mission_state = mission_->state;

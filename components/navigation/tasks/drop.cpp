@@ -3,11 +3,9 @@
 // The body sweeps the ground when it turns later; what was dropped must be out of its reach.
 #include <algorithm>
 #include <array>
-#include <cereal/types/array.hpp>
-#include <cereal/types/deque.hpp>
 #include <cmath>
-#include <deque>
 
+#include "navigation/held_motion.hpp"
 #include "navigation/motions.hpp"
 #include "navigation/steering.hpp"
 
@@ -16,54 +14,19 @@ namespace {
 
 enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten, kClear };
 
-/// The place of the held object in the map. The gait shakes the object, so its place is averaged over whole periods of
-/// the gait: the mean over the last period lies half a period back, and the way from the mean over the period before
-/// leads from there to the present.
-class ShakenPlace {
- public:
-  void observe(double time_s, const Eigen::Vector2d& p_M, double period_s) {
-    samples_.push_back({time_s, p_M.x(), p_M.y()});
-    while (samples_.front()[0] < time_s - 2.0 * period_s) samples_.pop_front();
-  }
-  /// [m] present place in M.
-  [[nodiscard]] Eigen::Vector2d place(double period_s) const {
-    const Means means = means_of(period_s);
-    return means.two_periods ? Eigen::Vector2d(means.last + 0.5 * (means.last - means.before)) : means.last;
-  }
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(samples_);
-  }
-
- private:
-  struct Means {
-    Eigen::Vector2d last, before;  ///< [m] over the last period, and over the period before it
-    bool two_periods;
-  };
-  [[nodiscard]] Means means_of(double period_s) const {
-    std::array<Eigen::Vector2d, 2> sum{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-    std::array<int, 2> count{0, 0};
-    for (const auto& [time_s, x_m, y_m] : samples_) {
-      const std::size_t older = time_s < samples_.back()[0] - period_s ? 1 : 0;
-      sum[older] += Eigen::Vector2d(x_m, y_m);
-      ++count[older];
-    }
-    const bool two_periods = samples_.back()[0] - samples_.front()[0] > 1.9 * period_s;
-    return {sum[0] / count[0], sum[1] / std::max(1, count[1]), two_periods};
-  }
-  std::deque<std::array<double, 3>> samples_;  ///< (time [s], x, y [m] in M), oldest first
-};
-
 struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;  ///< heading in M of the straight course over the zone
   bool course_fixed = false;
   SteeringState steering;
-  ShakenPlace object;
-  PlanarPose from;  ///< the head when the phase began
+  HeldMotion object;
+  PlanarPose from;                 ///< the head when the phase began
+  Eigen::Vector2d p_MO{0.0, 0.0};  ///< where the object was let go
+  SteeringState back;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, from);
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, from, p_MO.x(), p_MO.y(),
+            back);
   }
 };
 
@@ -107,17 +70,21 @@ class Drop : public StatefulTask<DropState> {
     const double period_s = gait_period_s(present_gait(input.config, grip));
     const double now_s = input.tick.time_s();
     const Eigen::Vector2d p_HO = input.grip_sense.held_object_H(input.body, grip.radius_m);
-    state_.object.observe(now_s, input.X_MH.to_parent(p_HO), period_s);
-    const Eigen::Vector2d p_MO = state_.object.place(period_s);
+    const double mouth_rad = input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body);
+    state_.object.observe(now_s, input.X_MH.to_parent(p_HO), mouth_rad, period_s, config.crab_filter_s);
+    const Eigen::Vector2d p_MO = state_.object.place();
     // The object follows the head and cuts corners. The course is therefore the straight line from the object through
-    // the zone's centre, and the head drives parallel to it, at the object's lateral distance from the head.
+    // the zone's centre, and the head drives parallel to it. Its lateral distance is the one from the point by which
+    // the robot steers to the object while the U drives along the course, turned by the crab angle.
     const Eigen::Vector2d d = state_.p_MZ - p_MO;
     if (d.norm() > config.fix_course_m || !state_.course_fixed) {
       state_.course_rad = std::atan2(d.y(), d.x());
       state_.course_fixed = true;
     }
     const PlanarPose X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
-    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, -input.grip_sense.held_aside_m(grip, input.feels)});
+    const Eigen::Vector2d p_HO_held = input.grip_sense.held_place_H(grip, input.feels);
+    const double aside_m = steered_aside_m(p_HO_held, config.lookahead_m, state_.object.crab_rad());
+    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, aside_m});
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
@@ -137,6 +104,7 @@ class Drop : public StatefulTask<DropState> {
     output.phase = "stop";
     stand(grip, output);
     if (state_.phase_s < kSlides_s) return;
+    state_.p_MO = input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m));
     grip.carrying = false;  // on purpose: no loss is reported
     enter(input, kOpen);
   }
@@ -165,7 +133,15 @@ class Drop : public StatefulTask<DropState> {
     const DropConfig& config = input.config.drop;
     output.phase = "back off";
     const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
-    undulate_on(gentle(config.back, input.config, grip), 0.0, -1.0, shape, input.grip_sense.yaw_joint_count(), output);
+    // The object must stay in the middle between the arms, or an arm pushes it: on a slope the body slides downhill
+    // while it backs off. The arms bend towards the object, like a path that leads there.
+    const PlanarPose X_MU{input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m)),
+                          input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
+    const Gait gait = gentle(config.back, input.config, grip);
+    const Steering steering(config.back_steering);
+    steering.observe(input.tick.time_s(), X_MU.to_local(state_.p_MO).y(), gait_period_s(gait), state_.back);
+    undulate_on(gait, steering.curvature(input.tick.dt_s(), state_.back), -1.0, shape,
+                input.grip_sense.yaw_joint_count(), output);
     if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s)
       enter(input, kStraighten);
   }

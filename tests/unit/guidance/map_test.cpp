@@ -146,6 +146,44 @@ TEST(Map, APartOfAZoneAtTheImagesBorderMovesNeitherTheZoneNorThePose) {
   EXPECT_LT(m.filter.pose().p.norm(), 1e-6);
 }
 
+/// What the camera shows of a disc at `p` of which it sees only the azimuths below `border_rad`: the range is the one
+/// of the near edge in the middle of the visible part, the width that of a disc between the visible sides.
+msg::Blob cut_disc(const Eigen::Vector2d& p, double radius_m, double border_rad) {
+  const double centre_rad = std::atan2(p.y(), p.x()), half_rad = std::asin(radius_m / p.norm());
+  const double right_rad = centre_rad - half_rad, left_rad = std::min(centre_rad + half_rad, border_rad);
+  const double middle_rad = 0.5 * (left_rad + right_rad);
+  const Eigen::Vector2d sight(std::cos(middle_rad), std::sin(middle_rad));
+  const double along_m = sight.dot(p), squared_m2 = radius_m * radius_m - (p.squaredNorm() - along_m * along_m);
+  const double range_m = along_m - std::sqrt(squared_m2);
+  const double sine = std::sin(0.5 * (left_rad - right_rad));
+  msg::Blob blob{};
+  blob.colour = msg::kColourGreen;
+  blob.kind = msg::kBlobObject;
+  blob.bearing_rad = middle_rad;
+  blob.range_m = range_m;
+  blob.width_m = 2.0 * range_m * sine / (1.0 - sine);
+  blob.cut_left = true;
+  return blob;
+}
+
+TEST(Map, APartOfAnObjectAtTheImagesBorderShowsWhereItsCentreIs) {
+  for (const double visible : {0.15, 0.5, 0.9}) {  // share of the width
+    Mapping s;
+    const Eigen::Vector2d p(0.6, 0.35);
+    const double radius_m = 0.1, half_rad = std::asin(radius_m / p.norm());
+    s.filter.predict(Eigen::Vector2d(0.0, 0.0), 0.0, Eigen::Vector3d(0.01, 0.01, 1e-6).asDiagonal());
+    s.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, p.x(), p.y(), radius_m)}, 10);
+    s.filter.predict(Eigen::Vector2d(0.0, 0.0), 0.0, Eigen::Vector3d(0.01, 0.01, 1e-6).asDiagonal());
+    const double border_rad = std::atan2(p.y(), p.x()) + (2.0 * visible - 1.0) * half_rad;
+    s.see({cut_disc(p, radius_m, border_rad)}, 200);
+    EXPECT_LT(s.filter.pose().p.norm(), 0.01) << "the pose stays, although it is uncertain; visible: " << visible;
+    const msg::FieldMap map = s.map();
+    ASSERT_EQ(map.object_count, 1);
+    EXPECT_LT(std::hypot(map.objects[0].x_m - p.x(), map.objects[0].y_m - p.y()), 0.01);
+    EXPECT_NEAR(map.objects[0].radius_m, radius_m, 0.005);
+  }
+}
+
 TEST(Map, PushedObjectDoesNotMoveThePose) {
   Mapping m;
   m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());

@@ -24,6 +24,7 @@ struct Case {
   const char* name;
   OpenLoopGait gait;
   double friction_along = 0.05, friction_across = 0.5;
+  double grade = 0.0, uphill_rad = 0.0;  ///< slope of the ground, relative to the first heading
 };
 
 double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
@@ -34,6 +35,9 @@ TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
   const Case& c = GetParam();
   const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   Scenario scenario;
+  const double angle_rad = std::atan(c.grade);
+  const Eigen::Vector3d uphill(std::cos(c.uphill_rad), std::sin(c.uphill_rad), 0.0);
+  scenario.gravity_m_s2 = -9.81 * (std::sin(angle_rad) * uphill + std::cos(angle_rad) * Eigen::Vector3d::UnitZ());
   RobotModel on_ground = robot;
   on_ground.friction_along = c.friction_along;
   on_ground.friction_across = c.friction_across;
@@ -69,6 +73,8 @@ TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
       ground = {ground.along_n + force.x(), ground.across_n + force.y(), ground.normal_n + force.z()};
     }
     for (const GroundForce& ground : input.ground) input.load_n.push_back(ground.normal_n);
+    const Eigen::Vector3d g = world.module_pose(0).linear().transpose() * scenario.gravity_m_s2 / 9.81;
+    input.downhill = g.head<2>();
     if (k == 0) input.load_n.clear();  // no contact has been measured yet
     const HeadStep step = advance_odometry(state, blind, kConfig, input);
     filter.predict(step.step_m, step.turn_rad, Eigen::Matrix3d::Zero());
@@ -96,7 +102,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"backwards", {0.5, -0.7, 1.07, 0.0}},
                       Case{"slowly right on rough ground", {0.4, 0.6, 1.07, -0.4}, 0.06, 0.6},
                       Case{"creeping", {0.35, 0.4, 1.07, 0.0}}, Case{"half the ratio", {}, 0.1, 0.5},
-                      Case{"twice the ratio", {}, 0.025, 0.5}, Case{"twice the friction", {}, 0.1, 1.0}),
+                      Case{"twice the ratio", {}, 0.025, 0.5}, Case{"twice the friction", {}, 0.1, 1.0},
+                      Case{"across a slope", {}, 0.05, 0.5, 0.03, 1.57}, Case{"uphill", {}, 0.05, 0.5, 0.03, 0.0},
+                      Case{"backwards across a slope", {0.5, -0.7, 1.07, 0.0}, 0.05, 0.5, 0.04, -1.57},
+                      Case{"in a curve on a slope", {0.6, 1.1, 1.07, 0.5}, 0.05, 0.5, 0.03, 2.0}),
     [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });
 
 }  // namespace

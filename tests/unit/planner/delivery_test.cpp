@@ -172,43 +172,6 @@ TEST_F(DeliveryTest, AnUncertainObjectThatIsOnlyGlimpsedIsSearchedFor) {
   EXPECT_EQ(memory_.state, kSearchObject);
 }
 
-// The robot pushed the green object off its zone while it carried the red one, and the mission was called a success.
-TEST_F(DeliveryTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain) {
-  find_line();
-  fetch(msg::kColourGreen);
-  carry();
-  drop(msg::kColourGreen);
-  ASSERT_EQ(memory_.delivered, 1u);
-  face(0.0);
-  find_line();
-  fetch(msg::kColourRed);
-  carry();
-  release(msg::kColourRed);
-  succeed(msg::kEventDroppingDone);
-  ASSERT_EQ(memory_.state, kInspect);
-  const auto show = [this](double green_offset_m) {
-    map_dropped(msg::kColourRed, 0.1);
-    map_.object_count = 4;
-    map_.objects[2] = map_.objects[0];
-    map_.objects[3] = map_.objects[1];
-    map_.objects[2].colour = map_.objects[3].colour = msg::kColourGreen;
-    map_.objects[2].handle = 3;
-    map_.objects[3].handle = 9;  // a new landmark: the object is too far from its old place
-    map_.objects[2].y_m = map_.objects[3].y_m = pose_.y_m + 1.0;
-    map_.objects[3].x_m += green_offset_m;
-  };
-  for (int i = 0; i < 70 && memory_.state == kInspect; ++i) {
-    show(0.7);
-    step();
-  }
-  EXPECT_EQ(memory_.state, kSearchObject);
-  EXPECT_EQ(memory_.object_index, 0) << "green once more";
-  EXPECT_EQ(memory_.delivered, 2u);
-  EXPECT_EQ(memory_.recoveries, 1);
-  succeed(msg::kEventObjectFound);
-  EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
-}
-
 TEST_F(DeliveryTest, AnotherObjectOfTheColourFarFromTheZoneIsNotTakenForTheDeliveredOne) {
   find_line();
   fetch(msg::kColourGreen);

@@ -1,10 +1,13 @@
-// Where a delivered object is that the robot may have pushed off its zone.
+// Where a delivered object is that the robot may have pushed off its zone, and what the planner does then.
 #include <gtest/gtest.h>
 
 #include "planner/delivery.hpp"
+#include "scripted_planner.hpp"
 
 namespace constrictor {
 namespace {
+
+using enum MissionState;
 
 constexpr double kSeenSd_m = 0.12, kZoneRadius_m = 0.3;
 
@@ -46,6 +49,82 @@ TEST_F(MovedObjectTest, IsWhereItWasSeenLast) {
 TEST_F(MovedObjectTest, AGlimpseCountsOnlyIfItIsClearlyOutsideOfTheZone) {
   EXPECT_EQ(with_another(0.8, 0.2), Delivery::kOnZone) << "2.5 standard deviations outside";
   EXPECT_EQ(with_another(1.2, 0.2), Delivery::kOutside) << "4.5 standard deviations outside";
+}
+
+class PushedObjectTest : public PlannerTest {
+ protected:
+  /// Green is delivered; red is released, and the robot looks at it.
+  void deliver_green_and_release_red() {
+    find_line();
+    fetch(msg::kColourGreen);
+    carry();
+    drop(msg::kColourGreen);
+    ASSERT_EQ(memory_.delivered, 1u);
+    face(0.0);
+    find_line();
+    fetch(msg::kColourRed);
+    carry();
+    release(msg::kColourRed);
+    succeed(msg::kEventDroppingDone);
+    ASSERT_EQ(memory_.state, kInspect);
+  }
+  /// Red is in the middle of its zone; green is `offset_m` from the centre of its own, which has a radius of 0.4 m.
+  void map_red_and_green(double offset_m, double sd_m) {
+    map_dropped(msg::kColourRed, 0.1);
+    map_.object_count = 4;
+    map_.objects[2] = map_.objects[0];
+    map_.objects[3] = map_.objects[1];
+    map_.objects[2].colour = map_.objects[3].colour = msg::kColourGreen;
+    map_.objects[2].handle = 3;
+    map_.objects[3].handle = 9;  // a new landmark: the object is too far from its old place
+    map_.objects[2].y_m = map_.objects[3].y_m = pose_.y_m + 1.0;
+    map_.objects[3].x_m = pose_.x_m + offset_m;
+    map_.objects[3].sd_m = sd_m;
+  }
+};
+
+// The robot pushed the green object off its zone while it carried the red one, and the mission was called a success.
+TEST_F(PushedObjectTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain) {
+  deliver_green_and_release_red();
+  for (int i = 0; i < 70 && memory_.state == kInspect; ++i) {
+    map_red_and_green(0.8, 0.03);
+    step();
+  }
+  EXPECT_EQ(memory_.state, kSearchObject);
+  EXPECT_EQ(memory_.object_index, 0) << "green once more";
+  EXPECT_EQ(memory_.delivered, 2u);
+  EXPECT_EQ(memory_.recoveries, 1);
+  succeed(msg::kEventObjectFound);
+  EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
+}
+
+// The robot touched the green object while it carried the red one, so that its place is uncertain at the end.
+TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThatItTouched) {
+  for (const double offset_m : {0.1, 0.7}) {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+    deliver_green_and_release_red();
+    memory_.placed.at(0).handle = 9;  // as navigation reports it
+    for (int i = 0; i < 70 && memory_.object_index == 1; ++i) {
+      map_red_and_green(0.1, 0.2);
+      step();
+    }
+    ASSERT_EQ(memory_.state, kInspect);
+    EXPECT_EQ(memory_.delivered, 2u);
+    map_red_and_green(0.1, 0.2);
+    step();
+    EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
+    EXPECT_EQ(last_.parameters.object_handle, 9) << "another object in view proves nothing";
+    for (int i = 0; i < 200 && memory_.state == kInspect; ++i) {
+      map_red_and_green(offset_m, 0.03);
+      step();
+    }
+    EXPECT_EQ(memory_.state, offset_m < 0.4 ? kDone : kSearchObject) << offset_m;
+    EXPECT_EQ(memory_.delivered, offset_m < 0.4 ? 3u : 2u);
+    EXPECT_EQ(memory_.recoveries, offset_m < 0.4 ? 0 : 1);
+  }
 }
 
 }  // namespace

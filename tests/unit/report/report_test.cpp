@@ -145,6 +145,12 @@ TEST(Report, DoesNotSucceedInTheWrongOrder) {
   EXPECT_EQ(mission["reason"], "red was dropped out of order");
 }
 
+TEST(Report, AnotherLookAtADeliveredObjectIsNoAttempt) {
+  Story story;
+  story.looks_again_tick = 401;
+  EXPECT_EQ(report_of(story).mission["success"], true);
+}
+
 TEST(Report, AcceptsAnotherOrderOfAnExternalPlanner) {
   Story story;
   story.first_colour = msg::kColourRed;

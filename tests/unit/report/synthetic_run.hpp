@@ -27,6 +27,7 @@ struct Story {
   std::int64_t mission_end_tick = 420;
   std::uint8_t mission_end = msg::kMissionSucceeded;  ///< what the planner announces then
   std::uint16_t objects_in_mission = 2;
+  std::int64_t looks_again_tick = 1'000'000;  ///< from this tick on the planner looks at its first object again
   double line_length_m = 10.0;
   bool truth = true;                        ///< whether the plant publishes ground truth
   std::int64_t torn_from_tick = 1'000'000;  ///< from this tick on images have fewer bytes than their size requires
@@ -173,6 +174,7 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
     return [story, status = wiring.output(topics::kTaskStatus),
             events = wiring.output(topics::kTaskEvent)](const Tick& tick) {
       msg::TaskStatus task{};
+      task.carrying = (tick.index > 120 && tick.index <= 200) || (tick.index > 320 && tick.index <= 400);
       task.task = tick.index >= 20 && tick.index < 380 ? msg::kTaskFollowLine : msg::kTaskDrop;
       task.goal_state = msg::kGoalRunning;
       task.parameters.timeout_s = std::nan("");
@@ -192,7 +194,8 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
   members.push_back(scripted("planner", {1, 1}, [story](Wiring& wiring) {
     return [story, out = wiring.output(topics::kMissionStatus)](const Tick& tick) {
       msg::MissionStatus mission{};
-      const bool second = tick.index > 200;
+      const bool again = tick.index >= story.looks_again_tick;
+      const bool second = tick.index > 200 && !again;
       mission.outcome = tick.index >= story.mission_end_tick ? story.mission_end : msg::kMissionRunning;
       if (mission.outcome == msg::kMissionFailed)
         std::snprintf(mission.reason, sizeof mission.reason, "more than 60 recoveries");

@@ -1,13 +1,15 @@
 // The slope of the ground on which the robot lies, from the attitude of its head.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "constrictor/messages.hpp"
 
-namespace constrictor::perception {
+namespace constrictor {
 
 /// The inertial unit measures the attitude of the head relative to gravity; what the camera sees depends on the
-/// attitude relative to the ground. The robot lies on its belly, so that the mean direction of the head's z axis is the
-/// normal of the ground, however the head turns and rocks. Serialisable.
+/// attitude relative to the ground, and gravity pulls the body downhill. The robot lies on its belly, so that the mean
+/// direction of the head's z axis is the normal of the ground, however the head turns and rocks. Serialisable.
 class GroundSlope {
  public:
   /// A new attitude: unit quaternion from the head to the level frame of the inertial unit. `share`: period of the
@@ -23,6 +25,10 @@ class GroundSlope {
   /// the result does not go to and fro.
   [[nodiscard]] msg::Quaternion relative_to_ground(const msg::Quaternion& attitude, double level_rad);
 
+  /// The part of gravity along the ground, as a share of it, in the level frame: it points downhill, and its length is
+  /// the sine of the slope. Zero on ground that counts as level, in the same sense as above.
+  [[nodiscard]] Eigen::Vector2d downhill(double level_rad);
+
   static constexpr double kLying_rad = 0.35;
 
   template <class Archive>
@@ -31,9 +37,12 @@ class GroundSlope {
   }
 
  private:
+  /// Whether the ground counts as a slope.
+  bool inclined(double level_rad);
+
   double x_ = 0.0, y_ = 0.0;  // of the normal, in the level frame
   double count_ = 0.0;        // of attitudes
   bool inclined_ = false;
 };
 
-}  // namespace constrictor::perception
+}  // namespace constrictor

@@ -1,12 +1,12 @@
-// The slope that perception finds, against rotations composed here.
-#include "perception/ground_slope.hpp"
+// The slope that the attitude of the head shows, against rotations composed here.
+#include "robot/ground_slope.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace constrictor::perception {
+namespace constrictor {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -69,6 +69,19 @@ TEST(GroundSlope, OnLevelGroundTheAttitudeStaysAsItIs) {
   }
 }
 
+TEST(GroundSlope, GravityAlongTheGroundPointsDownhill) {
+  for (const double angle_rad : {0.03, 0.1}) {
+    GroundSlope found;
+    for (int k = 0; k < 1500; ++k) found.learn(message(slope(angle_rad) * on_ground(k)), kShare);
+    const Eigen::Vector2d downhill = found.downhill(kLevel_rad);  // the ground rises to the left
+    EXPECT_NEAR(downhill.x(), 0.0, 1e-3);
+    EXPECT_NEAR(downhill.y(), -std::sin(angle_rad), 1e-3);
+  }
+  GroundSlope level;
+  for (int k = 0; k < 1000; ++k) level.learn(message(slope(0.01)), kShare);
+  EXPECT_EQ(level.downhill(kLevel_rad).norm(), 0.0);
+}
+
 TEST(GroundSlope, DoesNotGoToAndFroAtTheBound) {
   const auto inclined_at = [](GroundSlope& ground, double angle_rad) {
     for (int k = 0; k < 4000; ++k) ground.learn(message(slope(angle_rad)), kShare);
@@ -92,4 +105,4 @@ TEST(GroundSlope, AHeadThatDoesNotLieOnTheGroundTeachesNothing) {
 }
 
 }  // namespace
-}  // namespace constrictor::perception
+}  // namespace constrictor
