@@ -57,7 +57,7 @@ Agent::Agent(const std::string& token) : folder_(agent_folder(token)) {
   for (const int number : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, number);
   ::sigprocmask(SIG_BLOCK, &set, nullptr);
   signals_ = Descriptor(::signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
-  disconnected_at_ = Clock::now();
+  disconnected_at_ = awake_.now();
 }
 
 Agent::~Agent() { clean_up(); }
@@ -88,7 +88,7 @@ int Agent::run() {
     channel_->exchange();
     if (channel_->closed()) {
       channel_.reset();
-      disconnected_at_ = Clock::now();
+      disconnected_at_ = awake_.now();
     }
   }
   clean_up();
@@ -111,14 +111,14 @@ void Agent::accept_connection() {
   collecting_ = false;
 }
 
-bool Agent::abandoned() const {
-  const auto now = Clock::now();
+bool Agent::abandoned() {
+  const auto now = awake_.now();
   return now - last_word_ > patience_ ||
          (disconnected_at_ && now - *disconnected_at_ > std::min<std::chrono::duration<double>>(kGoneAfter, patience_));
 }
 
 void Agent::take(const nlohmann::json& message) {
-  last_word_ = Clock::now();
+  last_word_ = awake_.now();
   const auto op = field<std::string>(message, "op");
   if (op == "hello") take_hello(message);
   else if (op == "prepare") prepare(message);
@@ -151,6 +151,7 @@ void Agent::take_hello(const nlohmann::json& message) {
   nlohmann::json answer = description_;
   answer["op"] = "hello";
   answer["folder"] = folder_.string();
+  answer["kept"] = kept_output(folder_).string();
   answer["pid"] = ::getpid();
   answer["prepared"] = prepared_;
   // sshd's variable names both ends of the connection: address and port of the launcher, then those of this host.
