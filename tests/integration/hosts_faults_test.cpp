@@ -49,6 +49,17 @@ TEST_F(HostsFaults, AFileThatCannotBeWrittenHereIsNamedAndStaysOnItsHost) {
   EXPECT_TRUE(fs::exists(kept / "mission.json"));
 }
 
+TEST_F(HostsFaults, AnUndisturbedRunMakesOneConnection) {
+  const std::string count = (dir_ / "count").string();
+  ssh("echo x >> " + count);
+  for (std::uintmax_t runs = 1; runs <= 3; ++runs) {
+    Process launcher = run_there(100, "two");
+    ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
+    ASSERT_EQ(fs::file_size(count), 2 * runs);
+    fs::remove_all(dir_ / "two");
+  }
+}
+
 // A host that boots may be reachable before its name is, and the launcher's network may be gone for a moment.
 TEST_F(HostsFaults, ANameThatIsUnknownForAMomentEndsNoRun) {
   const std::string count = (dir_ / "count").string();

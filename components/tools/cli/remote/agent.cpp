@@ -73,6 +73,7 @@ int Agent::run() {
     }
     accept_connection();
     answer_echo();
+    probe();
     const bool ended = reap();
     for (auto& [name, process] : processes_) bound_log_of(name, process);
     if (!channel_) continue;
@@ -82,9 +83,11 @@ int Agent::run() {
     } catch (const std::exception& error) {
       channel_->send({{"op", "error"}, {"text", error.what()}});
     }
-    send_logs();
-    send_files();
-    if (ended || Clock::now() - last_state_ > kStateEvery) send_state();
+    if (greeted_) {
+      send_logs();
+      send_files();
+      if (ended || Clock::now() - last_state_ > kStateEvery) send_state();
+    }
     channel_->exchange();
     if (channel_->closed()) {
       channel_.reset();
@@ -108,7 +111,7 @@ void Agent::accept_connection() {
   // The newest connection counts: the launcher gave the older one up.
   channel_ = std::make_unique<MessageChannel>(Descriptor(connection));
   disconnected_at_.reset();
-  collecting_ = false;
+  collecting_ = greeted_ = false;
 }
 
 bool Agent::abandoned() {
@@ -126,9 +129,13 @@ void Agent::take(const nlohmann::json& message) {
   else if (op == "signal") signal(message);
   else if (op == "collect") collect();
   else if (op == "echo") open_echo(message);
+  else if (op == "probe") open_probe(message);
   else if (op == "end") over_ = true, keep_ = field<bool>(message, "keep");
   else if (op == "ping") last_state_ = {};
-  else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, echo, end, ping");
+  else
+    throw ProtocolError("found op \"" + op +
+                        "\", accepted hello, prepare, start, signal, collect, echo, probe, end, "
+                        "ping");
 }
 
 void Agent::take_hello(const nlohmann::json& message) {
@@ -161,6 +168,7 @@ void Agent::take_hello(const nlohmann::json& message) {
   answer["launcher_ip"] = launcher;
   answer["ip"] = field<std::string>(message, "network") == answer["network"] ? "" : own_address(plan, own);
   channel_->send(answer);
+  greeted_ = true;
   send_state();
 }
 

@@ -69,6 +69,10 @@ class Agent {
   /// Opens a UDP socket whose packets are sent back: `constrictor doctor` checks with it whether packets pass.
   void open_echo(const nlohmann::json& message);
   void answer_echo() const;
+  /// Sends packets to the echo of another host, and reports whether one comes back.
+  void open_probe(const nlohmann::json& message);
+  void probe();
+  void end_probe(bool passed);
   void send_logs();
   /// Empties the log of a process when it is too large: the launcher has it, or has been out of reach for too long.
   void bound_log_of(const std::string& name, Managed& process) const;
@@ -90,7 +94,8 @@ class Agent {
   }
 
   std::filesystem::path folder_;
-  Descriptor lock_, listener_, signals_, echo_;
+  Descriptor lock_, listener_, signals_, echo_, probe_;
+  Clock::time_point probe_until_{}, next_probe_{};
   std::unique_ptr<MessageChannel> channel_;
   AwakeClock awake_;
   std::optional<Clock::time_point> disconnected_at_;  ///< in the time of awake_, as the next one
@@ -109,6 +114,7 @@ class Agent {
   bool keep_ = false;      ///< the run may be continued later
   bool prepared_ = false;
   bool collecting_ = false;
+  bool greeted_ = false;  ///< the launcher has said hello on this connection, and which parts of the logs it has
   bool over_ = false;
 };
 

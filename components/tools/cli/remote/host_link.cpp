@@ -163,6 +163,7 @@ void HostLink::take(const nlohmann::json& message) {
   else if (op == "collected") collecting_ = false, collected_ = true;
   else if (op == "ended") ended_ = true;
   else if (op == "echoing") echo_answer_ = message;
+  else if (op == "probed") probe_answer_ = message;
   else if (op == "gone") agent_is_gone();
   else if (op == "error") refuse(field<std::string>(message, "text"));
   else if (op == "no release")

@@ -81,6 +81,13 @@ class HostLink {
   void echo(std::uint16_t port) { send({{"op", "echo"}, {"port", port}}); }
   /// Empty: the agent has not answered. Otherwise {error: text}, where an empty text means that the port is open.
   [[nodiscard]] const nlohmann::json& echo_answer() const { return echo_answer_; }
+  /// Asks the agent to send packets from its host's address to a UDP port of another one that sends them back.
+  void probe(const std::string& from, const std::string& to, std::uint16_t port) {
+    probe_answer_ = nullptr;
+    send({{"op", "probe"}, {"from", from}, {"to", to}, {"port", port}});
+  }
+  /// Null: the agent has not answered. Otherwise {passed: true or false}.
+  [[nodiscard]] const nlohmann::json& probe_answer() const { return probe_answer_; }
   /// Ends the agent and all its processes. `keep`: what they have written is kept, to continue the run later.
   void end(bool keep);
   [[nodiscard]] bool ended() const { return ended_; }
@@ -115,7 +122,7 @@ class HostLink {
   Print print_;
   std::unique_ptr<SshConnection> connection_;  ///< the one in use; kept while it is silent, until another one works
   std::unique_ptr<SshConnection> next_;        ///< being made
-  nlohmann::json description_, preparation_, echo_answer_;
+  nlohmann::json description_, preparation_, echo_answer_, probe_answer_;
   std::map<std::string, Process> processes_;
   std::filesystem::path collect_into_;
   std::uintmax_t collected_bytes_ = 0;
