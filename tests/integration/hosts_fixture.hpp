@@ -49,6 +49,14 @@ class Hosts : public RunCommand {
     }
     return 0;
   }
+  /// Sends a signal to all processes of this test's runs on both hosts, their launcher and what connects them included.
+  void signal_all(int number) const {
+    for (const auto& [pid, line] : command_lines()) {
+      std::ifstream file("/proc/" + std::to_string(pid) + "/environ");
+      const std::string environment(std::istreambuf_iterator<char>(file), {});
+      if (environment.find(dir_.string()) != std::string::npos) ::kill(pid, number);
+    }
+  }
   static std::string line_of_status(pid_t pid, const std::string& key) {
     std::ifstream file("/proc/" + std::to_string(pid) + "/status");
     for (std::string line; std::getline(file, line);) {

@@ -104,6 +104,17 @@ TEST_F(LongHosts, TheSnakeOnThreeHostsHasTheResultOfOneProcess) {
          "  - {components: [input]}\n  - {components: [planner]}\n  - {components: [report], host: eye}\n";
   Process doctor = hosts_->on(1, "exec constrictor doctor --manifest three.yaml");
   ASSERT_EQ(doctor.wait(60s), 0) << doctor.output() << doctor.errors();
+  // The second and the third host cannot reach each other, although both reach the launcher.
+  ASSERT_EQ(hosts_->on(3, "ip route add blackhole " + NamespaceHosts::address(2) + "/32").wait(10s), 0);
+  Process parted = hosts_->on(1, "exec constrictor doctor --manifest three.yaml");
+  EXPECT_EQ(parted.wait(60s), 1) << parted.output() << parted.errors();
+  EXPECT_NE(parted.output().find("no packet from 10.77.0.3 to UDP port 7660 of robot (10.77.0.2) came back"),
+            std::string::npos)
+      << parted.output();
+  EXPECT_NE(parted.output().find("no packet from 10.77.0.2 to UDP port 7660 of eye (10.77.0.3) came back"),
+            std::string::npos)
+      << parted.output();
+  ASSERT_EQ(hosts_->on(3, "ip route del blackhole " + NamespaceHosts::address(2) + "/32").wait(10s), 0);
   hosts_->network("loss 0.01");
   const std::string run = "exec constrictor run --manifest three.yaml --max-sim-time 4 ";
   // The mission is not over after 4 s: the exit status is that of a mission that did not succeed.

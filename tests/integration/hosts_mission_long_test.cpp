@@ -62,6 +62,32 @@ TEST_F(HostsMission, ARunWhoseLauncherIsKilledIsContinuedWithTheSameResult) {
   expect_nothing_left(2);
 }
 
+// Ten processes, of which seven are on the other host. The time is only printed, because it depends on the machine.
+TEST_F(HostsMission, TenProcessesMakeTheirFirstTick) {
+  make_two();
+  std::ofstream(hosts_->tmp(1) / "two.yaml", std::ios::app)
+      << "  - {components: [overview], program: constrictor_host, host: robot}\n";
+  for (const char* delay : {"0 0", "5 1", "25 1"}) {
+    hosts_->network(std::string("delay ") + delay);
+    const auto begin = std::chrono::steady_clock::now();
+    Process run = constrictor("run --manifest two.yaml --max-sim-time 1 --report two");
+    const auto ticked = [&] {  // the plant has written more than the header of its hashes
+      std::error_code none;
+      for (const auto& entry : std::filesystem::directory_iterator(hosts_->tmp(2) / "state/constrictor", none)) {
+        if (std::filesystem::file_size(entry.path() / "hashes.bin", none) > 64 && !none) return true;
+      }
+      return false;
+    };
+    ASSERT_TRUE(eventually(ticked, 60s)) << run.output() << run.errors();
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    ASSERT_EQ(run.wait(120s), 1) << run.output() << run.errors();  // the mission is not over after 1 s
+    EXPECT_EQ(report("two")["processes"].size(), 10u);
+    std::printf("delay %s ms: the first tick after %.1f s\n", delay, passed.count());
+    std::fflush(stdout);
+  }
+  expect_nothing_left(2);
+}
+
 TEST_F(HostsMission, AHostThatRebootsComesBackIntoTheRun) {
   make_two();
   const std::string expected = one("--max-sim-time 20");

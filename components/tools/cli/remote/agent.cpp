@@ -57,7 +57,7 @@ Agent::Agent(const std::string& token) : folder_(agent_folder(token)) {
   for (const int number : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, number);
   ::sigprocmask(SIG_BLOCK, &set, nullptr);
   signals_ = Descriptor(::signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
-  disconnected_at_ = Clock::now();
+  disconnected_at_ = awake_.now();
 }
 
 Agent::~Agent() { clean_up(); }
@@ -73,6 +73,7 @@ int Agent::run() {
     }
     accept_connection();
     answer_echo();
+    probe();
     const bool ended = reap();
     for (auto& [name, process] : processes_) bound_log_of(name, process);
     if (!channel_) continue;
@@ -82,13 +83,15 @@ int Agent::run() {
     } catch (const std::exception& error) {
       channel_->send({{"op", "error"}, {"text", error.what()}});
     }
-    send_logs();
-    send_files();
-    if (ended || Clock::now() - last_state_ > kStateEvery) send_state();
+    if (greeted_) {
+      send_logs();
+      send_files();
+      if (ended || Clock::now() - last_state_ > kStateEvery) send_state();
+    }
     channel_->exchange();
     if (channel_->closed()) {
       channel_.reset();
-      disconnected_at_ = Clock::now();
+      disconnected_at_ = awake_.now();
     }
   }
   clean_up();
@@ -108,17 +111,17 @@ void Agent::accept_connection() {
   // The newest connection counts: the launcher gave the older one up.
   channel_ = std::make_unique<MessageChannel>(Descriptor(connection));
   disconnected_at_.reset();
-  collecting_ = false;
+  collecting_ = greeted_ = false;
 }
 
-bool Agent::abandoned() const {
-  const auto now = Clock::now();
+bool Agent::abandoned() {
+  const auto now = awake_.now();
   return now - last_word_ > patience_ ||
          (disconnected_at_ && now - *disconnected_at_ > std::min<std::chrono::duration<double>>(kGoneAfter, patience_));
 }
 
 void Agent::take(const nlohmann::json& message) {
-  last_word_ = Clock::now();
+  last_word_ = awake_.now();
   const auto op = field<std::string>(message, "op");
   if (op == "hello") take_hello(message);
   else if (op == "prepare") prepare(message);
@@ -126,9 +129,13 @@ void Agent::take(const nlohmann::json& message) {
   else if (op == "signal") signal(message);
   else if (op == "collect") collect();
   else if (op == "echo") open_echo(message);
+  else if (op == "probe") open_probe(message);
   else if (op == "end") over_ = true, keep_ = field<bool>(message, "keep");
   else if (op == "ping") last_state_ = {};
-  else throw ProtocolError("found op \"" + op + "\", accepted hello, prepare, start, signal, collect, echo, end, ping");
+  else
+    throw ProtocolError("found op \"" + op +
+                        "\", accepted hello, prepare, start, signal, collect, echo, probe, end, "
+                        "ping");
 }
 
 void Agent::take_hello(const nlohmann::json& message) {
@@ -151,6 +158,7 @@ void Agent::take_hello(const nlohmann::json& message) {
   nlohmann::json answer = description_;
   answer["op"] = "hello";
   answer["folder"] = folder_.string();
+  answer["kept"] = kept_output(folder_).string();
   answer["pid"] = ::getpid();
   answer["prepared"] = prepared_;
   // sshd's variable names both ends of the connection: address and port of the launcher, then those of this host.
@@ -160,6 +168,7 @@ void Agent::take_hello(const nlohmann::json& message) {
   answer["launcher_ip"] = launcher;
   answer["ip"] = field<std::string>(message, "network") == answer["network"] ? "" : own_address(plan, own);
   channel_->send(answer);
+  greeted_ = true;
   send_state();
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/child_process.hpp"
+#include "cli/remote/awake_clock.hpp"
 #include "cli/remote/message_channel.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/security.hpp"
@@ -18,6 +19,9 @@ namespace constrictor::cli {
 
 /// The folder of an agent below run_directory(): its socket, its lock, files, logs and output of the run.
 [[nodiscard]] std::filesystem::path agent_folder(const std::string& token);
+
+/// The folder in which the output of the agent with this folder is kept; empty: there is none.
+[[nodiscard]] std::filesystem::path kept_output(const std::filesystem::path& agent);
 
 /// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder
 /// is left alone, because its agent may not have locked it yet, unless it is `own`, that of the calling agent's run:
@@ -65,6 +69,10 @@ class Agent {
   /// Opens a UDP socket whose packets are sent back: `constrictor doctor` checks with it whether packets pass.
   void open_echo(const nlohmann::json& message);
   void answer_echo() const;
+  /// Sends packets to the echo of another host, and reports whether one comes back.
+  void open_probe(const nlohmann::json& message);
+  void probe();
+  void end_probe(bool passed);
   void send_logs();
   /// Empties the log of a process when it is too large: the launcher has it, or has been out of reach for too long.
   void bound_log_of(const std::string& name, Managed& process) const;
@@ -74,8 +82,8 @@ class Agent {
   void send_files();
   /// Looks for processes that have ended. True if one has.
   bool reap();
-  /// Why the agent has to end; empty: it has not.
-  [[nodiscard]] bool abandoned() const;
+  /// Nobody needs the agent any more: the launcher has been away for too long.
+  [[nodiscard]] bool abandoned();
   /// `at_once`: without SIGTERM first.
   void kill_all(bool at_once);
   /// Kills all processes, removes all files and frees the domain. What processes have written is kept if the run may
@@ -86,10 +94,12 @@ class Agent {
   }
 
   std::filesystem::path folder_;
-  Descriptor lock_, listener_, signals_, echo_;
+  Descriptor lock_, listener_, signals_, echo_, probe_;
+  Clock::time_point probe_until_{}, next_probe_{};
   std::unique_ptr<MessageChannel> channel_;
-  std::optional<Clock::time_point> disconnected_at_;
-  Clock::time_point last_word_ = Clock::now();
+  AwakeClock awake_;
+  std::optional<Clock::time_point> disconnected_at_;  ///< in the time of awake_, as the next one
+  Clock::time_point last_word_ = awake_.now();
   Clock::time_point last_state_{};
   std::chrono::duration<double> patience_{60};
   std::unique_ptr<DomainClaim> claim_;
@@ -104,6 +114,7 @@ class Agent {
   bool keep_ = false;      ///< the run may be continued later
   bool prepared_ = false;
   bool collecting_ = false;
+  bool greeted_ = false;  ///< the launcher has said hello on this connection, and which parts of the logs it has
   bool over_ = false;
 };
 

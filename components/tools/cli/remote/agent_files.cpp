@@ -37,12 +37,6 @@ fs::path state_directory() {
   return error ? fs::path() : folder / "constrictor";
 }
 
-/// The folder in which the output of the agent with this folder is kept; empty: there is none.
-fs::path kept_output(const fs::path& agent) {
-  const fs::path state = state_directory();
-  return state.empty() ? state : state / (kKept + agent.filename().string().substr(std::string(kAgent).size()));
-}
-
 /// Removes the output that was kept of runs that were not continued.
 void remove_stale_output(const fs::path& own) {
   const fs::path state = state_directory(), spared = kept_output(own);
@@ -70,6 +64,11 @@ void write_private(const fs::path& path, const std::string& text) {
 }
 
 }  // namespace
+
+fs::path kept_output(const fs::path& agent) {
+  const fs::path state = state_directory();
+  return state.empty() ? state : state / (kKept + agent.filename().string().substr(std::string(kAgent).size()));
+}
 
 fs::path agent_folder(const std::string& token) { return run_directory() / (kAgent + token); }
 

@@ -1,12 +1,6 @@
 // The reports of the agent to the launcher while processes run: their state, their logs, the files that they write.
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include "cli/log/log_files.hpp"
@@ -74,28 +68,6 @@ void Agent::send_logs() {
       process.log_sent += text.size();
       channel_->send({{"op", "log"}, {"name", name}, {"next", process.log_sent}, {"text", text}});
     }
-  }
-}
-
-void Agent::open_echo(const nlohmann::json& message) {
-  echo_ = Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_ANY);
-  address.sin_port = htons(field<std::uint16_t>(message, "port"));
-  const bool bound = ::bind(echo_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  channel_->send({{"op", "echoing"}, {"error", bound ? "" : ::strerrordesc_np(errno)}});
-}
-
-void Agent::answer_echo() const {
-  if (!echo_.open()) return;
-  std::array<char, 64> bytes{};
-  sockaddr_in from{};
-  socklen_t size = sizeof(from);
-  for (ssize_t count = 0; (count = ::recvfrom(echo_.get(), bytes.data(), bytes.size(), 0,
-                                              reinterpret_cast<sockaddr*>(&from), &size)) > 0;) {
-    ::sendto(echo_.get(), bytes.data(), static_cast<std::size_t>(count), 0, reinterpret_cast<const sockaddr*>(&from),
-             size);
   }
 }
 

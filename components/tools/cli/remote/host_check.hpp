@@ -19,8 +19,9 @@ struct HostReport {
 };
 
 /// Connects to each host, compares it with this one, and checks whether packets pass in both directions on the ports of
-/// `domain`. `secure`: the folder with the keys of a run; whether they can be used is checked here and on each host,
-/// which stores them for the check only; empty: not checked. Starts no run.
+/// `domain`, also between each two of the others if nothing else is wrong. `secure`: the folder with the keys of a run;
+/// whether they can be used is checked here and on each host, which stores them for the check only; empty: not checked.
+/// Starts no run.
 [[nodiscard]] std::vector<HostReport> check_hosts(const LaunchManifest& manifest, std::uint32_t domain,
                                                   const std::filesystem::path& secure);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 #include <random>
 
 #include "cli/remote/host_description.hpp"
@@ -23,6 +22,7 @@ constexpr auto kLongestPause = 8000ms;
 
 /// Whether an attempt to connect that ended with this error would end in the same way again.
 bool is_final(const std::string& error) {
+  if (error.find("Temporary failure in name resolution") != std::string::npos) return false;
   for (const char* text : {"Permission denied", "Host key verification failed", "REMOTE HOST IDENTIFICATION",
                            "cannot start ssh", "Bad configuration", "Could not resolve hostname"}) {
     if (error.find(text) != std::string::npos) return true;
@@ -64,10 +64,10 @@ void HostLink::exchange() {
         connection_.reset();
       }
     }
-    if (up_ && Clock::now() - last_word_ > kSilent)
+    if (up_ && awake_.now() - last_word_ > kSilent)
       go_away(fmt::format("no answer for {} s", std::chrono::seconds(kSilent).count()));
-    if (up_ && Clock::now() - last_ping_ > kPing) {
-      last_ping_ = Clock::now();
+    if (up_ && awake_.now() - last_ping_ > kPing) {
+      last_ping_ = awake_.now();
       send({{"op", "ping"}});
     }
     if (!up_ && !ended_) connect();
@@ -78,8 +78,9 @@ void HostLink::exchange() {
     if (!prepared_) throw;
     give_up(error.what());
   }
-  if (up_ || ended_ || Clock::now() - away_since_ < patience_) return;
-  const std::string reason = fmt::format("could not be reached for {:.0f} s: {}", patience_.count(), last_error_);
+  if (up_ || ended_ || awake_.now() - away_since_ < patience_) return;
+  const std::string reason = fmt::format("could not be reached for {:.0f} s: {}", patience_.count(),
+                                         last_error_.empty() ? "ssh has not connected yet" : last_error_);
   if (!prepared_) refuse(reason);
   give_up(reason);
 }
@@ -100,12 +101,12 @@ void HostLink::go_away(const std::string& why) {
   away_since_ = last_word_;
   last_error_ = why;
   pause_ = kFirstPause;
-  next_attempt_ = Clock::now();
+  next_attempt_ = awake_.now();
   away_printed_ = false;
 }
 
 void HostLink::connect() {
-  const auto now = Clock::now();
+  const auto now = awake_.now();
   if (next_) return read_new_connection();
   if (now < next_attempt_) return;
   next_ = std::make_unique<SshConnection>(plan_, token_, begun_);
@@ -135,11 +136,12 @@ void HostLink::read_new_connection() {
     return take(*message);
   }
   const bool ended = next_->channel().closed() && next_->ended();
-  if (!ended && Clock::now() - attempt_began_ < kAttemptBound) return;
+  if (!ended && awake_.now() - attempt_began_ < kAttemptBound) return;
   last_error_ = ended ? next_->last_error() : "ssh did not connect in time";
   next_.reset();
-  if (!begun_ && is_final(last_error_)) refuse(last_error_ + "; `ssh " + plan_.ssh + "` must work without a question");
-  next_attempt_ = Clock::now() + pause_;
+  if (!prepared_ && is_final(last_error_))
+    refuse(last_error_ + "; `ssh " + plan_.ssh + "` must work without a question");
+  next_attempt_ = awake_.now() + pause_;
   pause_ = std::min<std::chrono::milliseconds>(2 * pause_, kLongestPause);
   if (std::exchange(away_printed_, true)) return;
   print_(fmt::format("host {} cannot be reached: {}; trying again for up to {:.0f} s", name_, last_error_,
@@ -151,7 +153,7 @@ void HostLink::send(const nlohmann::json& message) {
 }
 
 void HostLink::take(const nlohmann::json& message) {
-  last_word_ = Clock::now();
+  last_word_ = awake_.now();
   const auto op = field<std::string>(message, "op");
   if (op == "hello") take_hello(message);
   else if (op == "state") take_state(message);
@@ -161,6 +163,7 @@ void HostLink::take(const nlohmann::json& message) {
   else if (op == "collected") collecting_ = false, collected_ = true;
   else if (op == "ended") ended_ = true;
   else if (op == "echoing") echo_answer_ = message;
+  else if (op == "probed") probe_answer_ = message;
   else if (op == "gone") agent_is_gone();
   else if (op == "error") refuse(field<std::string>(message, "text"));
   else if (op == "no release")
@@ -174,7 +177,7 @@ void HostLink::take(const nlohmann::json& message) {
 void HostLink::take_hello(const nlohmann::json& message) {
   if (begun_ && away_printed_)
     print_(fmt::format("host {} is reached again after {:.0f} s", name_,
-                       std::chrono::duration<double>(Clock::now() - away_since_).count()));
+                       std::chrono::duration<double>(awake_.now() - away_since_).count()));
   description_ = message;
   begun_ = up_ = true;
   away_printed_ = false;
@@ -203,7 +206,7 @@ void HostLink::agent_is_gone() {
     if (!state.exit) state.exit = ChildExit{SIGKILL, 0};
   }
   if (ending_) ended_ = true;
-  next_attempt_ = Clock::now();
+  next_attempt_ = awake_.now();
 }
 
 void HostLink::prepare(const nlohmann::json& request) {
@@ -236,34 +239,6 @@ void HostLink::take_state(const nlohmann::json& message) {
     if (entry.contains("wait_status") && !process.exit)
       process.exit = ChildExit{field<int>(entry, "wait_status"), field<double>(entry, "cpu_s")};
   }
-}
-
-void HostLink::take_log(const nlohmann::json& message) {
-  const auto found = processes_.find(field<std::string>(message, "name"));
-  const auto next = field<std::uintmax_t>(message, "next");
-  if (found == processes_.end() || next <= found->second.received) return;
-  std::ofstream(found->second.log, std::ios::app) << field<std::string>(message, "text");
-  found->second.received = next;
-}
-
-void HostLink::collect(const std::filesystem::path& folder) {
-  collect_into_ = folder;
-  collecting_ = true;
-  send({{"op", "collect"}});
-}
-
-void HostLink::take_file(const nlohmann::json& message) {
-  const auto name = field<std::string>(message, "name");
-  const auto hex = field<std::string>(message, "hex");
-  if (!is_plain_path(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");
-  std::filesystem::create_directories((collect_into_ / name).parent_path());
-  const bool first = field<std::uintmax_t>(message, "offset") == 0;
-  std::ofstream file(collect_into_ / name, first ? std::ios::binary : std::ios::binary | std::ios::app);
-  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes.push_back(static_cast<char>(digit(hex[i]) * 16 + digit(hex[i + 1])));
-  file << bytes;
 }
 
 void HostLink::end(bool keep) {

@@ -15,6 +15,7 @@
 
 #include "cli/child_process.hpp"
 #include "cli/manifest.hpp"
+#include "cli/remote/awake_clock.hpp"
 #include "cli/remote/ssh_connection.hpp"
 
 namespace constrictor::cli {
@@ -72,10 +73,21 @@ class HostLink {
   /// Asks for the files that the processes of the host have written. They are stored in `folder`.
   void collect(const std::filesystem::path& folder);
   [[nodiscard]] bool collected() const { return collected_; }
+  /// [byte] of these files that have arrived.
+  [[nodiscard]] std::uintmax_t collected_bytes() const { return collected_bytes_; }
+  /// Why files of collect() are missing, and where they are; empty: all are there.
+  [[nodiscard]] std::string missing_files() const;
   /// Asks the agent to send back what arrives at a UDP port.
   void echo(std::uint16_t port) { send({{"op", "echo"}, {"port", port}}); }
   /// Empty: the agent has not answered. Otherwise {error: text}, where an empty text means that the port is open.
   [[nodiscard]] const nlohmann::json& echo_answer() const { return echo_answer_; }
+  /// Asks the agent to send packets from its host's address to a UDP port of another one that sends them back.
+  void probe(const std::string& from, const std::string& to, std::uint16_t port) {
+    probe_answer_ = nullptr;
+    send({{"op", "probe"}, {"from", from}, {"to", to}, {"port", port}});
+  }
+  /// Null: the agent has not answered. Otherwise {passed: true or false}.
+  [[nodiscard]] const nlohmann::json& probe_answer() const { return probe_answer_; }
   /// Ends the agent and all its processes. `keep`: what they have written is kept, to continue the run later.
   void end(bool keep);
   [[nodiscard]] bool ended() const { return ended_; }
@@ -110,14 +122,18 @@ class HostLink {
   Print print_;
   std::unique_ptr<SshConnection> connection_;  ///< the one in use; kept while it is silent, until another one works
   std::unique_ptr<SshConnection> next_;        ///< being made
-  nlohmann::json description_, preparation_, echo_answer_;
+  nlohmann::json description_, preparation_, echo_answer_, probe_answer_;
   std::map<std::string, Process> processes_;
   std::filesystem::path collect_into_;
-  bool begun_ = false;  ///< an agent was started, so that connections attach to it
+  std::uintmax_t collected_bytes_ = 0;
+  std::map<std::string, std::string> not_stored_;  ///< files of collect() that cannot be written here, with the reason
+  bool log_failed_ = false;                        ///< a log cannot be written here, which was printed
+  bool begun_ = false;                             ///< an agent was started, so that connections attach to it
   bool up_ = false, prepared_ = false, lost_ = false, collecting_ = false, collected_ = false, ending_ = false,
        ended_ = false, away_printed_ = false;
-  Clock::time_point away_since_ = Clock::now(), last_word_ = Clock::now(), last_ping_{}, next_attempt_ = Clock::now(),
-                    attempt_began_{};
+  AwakeClock awake_;
+  Clock::time_point away_since_ = awake_.now(), last_word_ = away_since_, last_ping_{}, next_attempt_ = away_since_,
+                    attempt_began_{};  ///< in the time of awake_
   std::chrono::milliseconds pause_{250};
   std::string last_error_;
   std::string launcher_;  ///< identifies this process for the agent

@@ -22,9 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kCollectBound = 60s;
-constexpr auto kHostsEndBound = 6s;
-
 std::string bytes_in(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(stream), {});
@@ -79,17 +76,6 @@ void HostSet::connect() {
     wait_();
   }
   compare();
-}
-
-HostSet::~HostSet() { end_agents(); }
-
-void HostSet::end_agents() {
-  const auto over = [](const auto& link) { return link->ended() || !link->up(); };
-  try {
-    for (const auto& link : links_) link->end(keep_at_end_);
-    exchange_until([&] { return std::all_of(links_.begin(), links_.end(), over); }, kHostsEndBound);
-  } catch (const std::exception&) {  // the agents end by themselves
-  }
 }
 
 void HostSet::compare() const {
@@ -238,24 +224,6 @@ std::unique_ptr<Child> HostSet::start(const ProcessPlan& plan, std::uint32_t inc
               {"environment", plan.environment}},
              log);
   return std::make_unique<RemoteChild>(link, plan.name());
-}
-
-void HostSet::finish(bool over) {
-  keep_at_end_ = options_.keep && !over;
-  const auto all = [this](auto condition) {
-    return std::all_of(links_.begin(), links_.end(), [&](const auto& link) { return !link->up() || condition(*link); });
-  };
-  for (const auto& link : links_) link->collect(report_dir_);
-  exchange_until([&] { return all([](const HostLink& link) { return link.collected(); }); }, kCollectBound);
-  for (const auto& link : links_) {
-    if (!link->collected())
-      print_(
-          fmt::format("host {} does not answer: the files that its processes wrote are not in the report; its agent "
-                      "ends all its processes within {:g} s",
-                      link->name(), manifest_.patience_s));
-    link->end(keep_at_end_);
-  }
-  exchange_until([&] { return all([](const HostLink& link) { return link.ended(); }); }, kHostsEndBound);
 }
 
 nlohmann::ordered_json HostSet::report() const {

@@ -73,6 +73,9 @@ class HostSet {
   void exchange();
   /// Calls exchange() until `done` returns true. False after `bound`.
   bool exchange_until(const std::function<bool()>& done, std::chrono::milliseconds bound);
+  /// Waits until all files that the other hosts send have arrived, as long as bytes arrive. A signal of the user ends
+  /// it.
+  void collect_files(const std::function<bool()>& done);
   /// The argument with the paths of the run's files replaced by those on the host.
   [[nodiscard]] std::string there(const HostLink& link, const std::string& argument) const;
 

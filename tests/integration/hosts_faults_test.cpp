@@ -1,0 +1,91 @@
+// What disturbs the connection between the launcher and the agent of another host, and what does not fit on a disk.
+#include "integration/hosts_fixture.hpp"
+#include "integration/run_ticks.hpp"
+
+namespace constrictor::testing {
+namespace {
+
+class HostsFaults : public Hosts {
+ protected:
+  static constexpr long kTicks = 300;
+
+  /// Starts a run and waits until all its processes take part.
+  [[nodiscard]] Process begun(const std::string& pace) const {
+    Process launcher = run_there(kTicks, "two", {"--pace", pace});
+    EXPECT_TRUE(eventually([&] { return members().size() == 5; })) << launcher.output() << launcher.errors();
+    EXPECT_TRUE(RunTicks(launcher).pass(20)) << launcher.output() << launcher.errors();
+    return launcher;
+  }
+};
+
+// As virtual machines that are stopped, or computers that sleep. The patience is longer than the time that DDS needs to
+// find participants again whose leases of 10 s have lapsed.
+TEST_F(HostsFaults, AFreezeOfAllHostsLongerThanThePatienceEndsNoRun) {
+  patience(12);
+  ASSERT_EQ(run_there(kTicks, "one", {"--in-process"}).wait(30s), exit_status::kOk);
+  Process launcher = begun("1x");
+  signal_all(SIGSTOP);
+  std::this_thread::sleep_for(14s);
+  signal_all(SIGCONT);
+  ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
+  EXPECT_EQ(state_hash("two"), state_hash("one"));
+  for (const auto& process : report("two")["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
+  expect_nothing_left();
+}
+
+TEST_F(HostsFaults, AFileThatCannotBeWrittenHereIsNamedAndStaysOnItsHost) {
+  Process launcher = begun("1x");
+  fs::create_symlink("/dev/full", dir_ / "two/mission.json");  // a disk on which there is no space
+  ASSERT_TRUE(launcher.wait(60s));
+  EXPECT_NE(launcher.output().find("1 of the files that its processes wrote is not in the report: cannot write " +
+                                   (dir_ / "two/mission.json").string() + ": No space left on device"),
+            std::string::npos)
+      << launcher.output();
+  EXPECT_FALSE(fs::exists(dir_ / "two/mission.json")) << "a part of a file";
+  expect_nothing_runs();
+  ASSERT_FALSE(fs::is_empty(state() / "constrictor"));
+  const fs::path kept = fs::directory_iterator(state() / "constrictor")->path();
+  EXPECT_NE(launcher.output().find("keeps them for a week in " + kept.string()), std::string::npos);
+  EXPECT_TRUE(fs::exists(kept / "mission.json"));
+}
+
+TEST_F(HostsFaults, AnUndisturbedRunMakesOneConnection) {
+  const std::string count = (dir_ / "count").string();
+  ssh("echo x >> " + count);
+  for (std::uintmax_t runs = 1; runs <= 3; ++runs) {
+    Process launcher = run_there(100, "two");
+    ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
+    ASSERT_EQ(fs::file_size(count), 2 * runs);
+    fs::remove_all(dir_ / "two");
+  }
+}
+
+// A host that boots may be reachable before its name is, and the launcher's network may be gone for a moment.
+TEST_F(HostsFaults, ANameThatIsUnknownForAMomentEndsNoRun) {
+  const std::string count = (dir_ / "count").string();
+  ASSERT_EQ(run_there(kTicks, "one", {"--in-process"}).wait(30s), exit_status::kOk);
+  // The connections: the first one, one that finds that the agent has died, and those that shall start it again.
+  ssh("echo x >> " + count + "; case $(grep -c x " + count +
+      ") in 3|4) echo 'ssh: Could not resolve hostname robot.local: Name or service not known' >&2; exit 255;; esac");
+  Process launcher = begun("1x");
+  const pid_t keeper = agent();
+  ASSERT_GT(keeper, 0);
+  ::kill(keeper, SIGKILL);
+  ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
+  EXPECT_GE(fs::file_size(count), 2u * 5u);
+  EXPECT_EQ(state_hash("two"), state_hash("one"));
+  expect_nobody_left();
+}
+
+TEST_F(HostsFaults, ANameServerThatDoesNotAnswerIsAskedAgain) {
+  const std::string count = (dir_ / "count").string();
+  ssh("echo x >> " + count + "; case $(grep -c x " + count +
+      ") in 1|2) echo 'ssh: Could not resolve hostname robot: Temporary failure in name resolution' >&2; exit 255;; "
+      "esac");
+  Process launcher = run_there(100, "two");
+  ASSERT_EQ(launcher.wait(60s), exit_status::kOk) << launcher.output() << launcher.errors();
+  expect_nothing_left();
+}
+
+}  // namespace
+}  // namespace constrictor::testing
