@@ -129,6 +129,24 @@ TEST_F(HostsMission, TheCaseStudyHasTheResultOfOneProcessOverALossyLink) {
   expect_nothing_left(2);
 }
 
+TEST_F(HostsMission, BlackoutsChangeNothingInTheCaseStudy) {
+  make_two();
+  const std::string expected = one("case_study");
+  for (const int seconds : {1, 10, 30}) {
+    Process run = constrictor("run case_study --manifest two.yaml --report two");
+    ASSERT_TRUE(eventually([&] { return newest_tick() > 1000; }, 120s)) << run.output() << run.errors();
+    hosts_->network("blackout " + std::to_string(seconds));
+    ASSERT_EQ(run.wait(600s), 0) << seconds << " s: " << run.output() << run.errors();
+    const auto json = report("two");
+    EXPECT_EQ(json.value("state_hash", "none"), expected) << seconds << " s";
+    for (const auto& process : json["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
+    std::printf("black-out of %2d s: %.1f s simulated in %.1f s\n", seconds, json.value("sim_time_s", 0.0),
+                json.value("wall_time_s", 0.0));
+    std::fflush(stdout);
+  }
+  expect_nothing_left(2);
+}
+
 // CONSTRICTOR_MISSION and CONSTRICTOR_SEEDS ("1 2 3") choose other missions. At real-time pace a tick that control
 // leaves out is an overrun; on a busy host the load itself causes some, so that the figure is only printed.
 TEST_F(HostsMission, AtRealTimePacePerceptionAndPlannerMayBe50MsAway) {
