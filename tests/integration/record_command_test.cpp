@@ -37,12 +37,14 @@ class RecordCommand : public RunCommand {
   std::string output_;
 };
 
+// Nothing waits for a recorder that is started beside a run. These runs are slow, so that it misses nothing on a
+// machine that is busy for a second.
 TEST_F(RecordCommand, AttachesTheFilesOfARunOfThisHost) {
   const std::string file = (dir_ / "live.mcap").string();
   write("mine.yaml", "travel: {frequency_hz: 0.5}\n");
   Process launcher =
       run(100'000, "r",
-          {"--pace", "2x", "--in-process", "--record", "--config", "navigation=" + (dir_ / "mine.yaml").string()});
+          {"--pace", "0.2x", "--in-process", "--record", "--config", "navigation=" + (dir_ / "mine.yaml").string()});
   ASSERT_NE(domain_of(launcher), 0u);
   ASSERT_EQ(status_of({"record", file, "--for", "1"}), 0) << output_;
   end(launcher);
@@ -90,7 +92,7 @@ TEST_F(RecordCommand, ExplainsWhichImagesItCanRecord) {
 
 TEST_F(RecordCommand, KnowsNoRateOfSamplesThatWritersKept) {
   const std::string file = (dir_ / "live.mcap").string();
-  Process launcher = run(100'000, "r", {"--pace", "2x"});
+  Process launcher = run(100'000, "r", {"--pace", "0.4x"});
   ASSERT_NE(domain_of(launcher), 0u);
   ASSERT_TRUE(eventually([&] { return members().size() == 5; }));
   ASSERT_EQ(status_of({"status"}), 0) << output_;  // the run has begun
@@ -103,7 +105,7 @@ TEST_F(RecordCommand, KnowsNoRateOfSamplesThatWritersKept) {
   EXPECT_EQ(hello->rate_hz(), 0.0);
   const RecordedTopic* joints = topic_of(summary, "joint_state");
   ASSERT_TRUE(joints);
-  EXPECT_NEAR(joints->rate_hz(), 100.0, 15.0) << "50 Hz at twice the speed of the wall clock";
+  EXPECT_NEAR(joints->rate_hz(), 20.0, 4.0) << "50 Hz at 0.4 times the speed of the wall clock";
   ASSERT_EQ(status_of({"info", file}), 0) << output_;
   const auto line = output_.find(std::string(barrier_topics::kHello.name));
   ASSERT_NE(line, std::string::npos) << output_;
