@@ -8,9 +8,6 @@
 
 namespace constrictor::perception {
 
-/// Rotation matrix of a unit quaternion (normalised here; identity if it is zero or not finite).
-Eigen::Matrix3d rotation_from(const msg::Quaternion& orientation);
-
 /// The head module as a capsule along its x axis: the camera sees part of it. With radius 0 it sees nothing of it.
 struct HeadShape {
   double half_length_m = 0.0;  ///< of the capsule's straight part

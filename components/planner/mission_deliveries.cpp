@@ -71,12 +71,7 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.dropped = false;
   memory_.released_tick = -1;
   const std::uint16_t last = memory_.object_index;
-  if (!choose_object()) {
-    memory_.object_index = last;
-    if (inspect_doubtful(inputs)) return kInspect;
-    choose_object();
-    return end_of_sequence();
-  }
+  if (!choose_object()) return inspect_doubtful(inputs, last) ? kInspect : end_of_sequence();
   // An object that the robot has pushed off its zone is near.
   return (memory_.displaced >> memory_.object_index & 1u) != 0 ? kSearchObject : kTurnRound;
 }
@@ -111,10 +106,9 @@ DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const Pla
   return view.offset_m < kNear_m ? view : DeliveryView{};
 }
 
-bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs) {
+bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except) {
   const auto doubtful = [&](const PlacedObject& object) {
-    if (object.index == memory_.object_index || (memory_.rechecked >> object.index & 1u) != 0 || !inputs.map)
-      return false;
+    if (object.index == except || (memory_.rechecked >> object.index & 1u) != 0 || !inputs.map) return false;
     // Of two objects of one colour, the map may have taken one for the other: a look proves nothing.
     const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), config_.sequence[object.index]);
     if (alike > 1) return false;
@@ -136,8 +130,6 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs) {
   memory_.newest_handle = found->newest_handle;
   memory_.released_tick = inputs.tick;  // only images from now on count
   memory_.placed.erase(found);
-  memory_.failures = 0;
-  memory_.side = msg::kDirectionNone;
   memory_.entered_s = memory_.active_s;
   memory_.requested = false;
   return true;

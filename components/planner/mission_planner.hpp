@@ -160,8 +160,9 @@ class MissionPlanner {
   [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs) const;
   /// Before the mission ends: selects a delivered object for another look if the map is not certain that it is still on
   /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop, and only
-  /// if the mission has no other object of its colour. False if there is no such object.
-  [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs);
+  /// if the mission has no other object of its colour; `except`, which was delivered just now, is not. False if there
+  /// is no such object. To be called after choose_object(), which has forgotten failures.
+  [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
   /// Whether the object in question is one that was delivered before and that the map has.
   [[nodiscard]] bool inspects_again(const PlannerInputs& inputs) const;
   /// Counts a delivered object as undelivered again.

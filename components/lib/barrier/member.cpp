@@ -147,10 +147,7 @@ void Member::on_tick(const msg::Tick& tick) {
     return refuse(fmt::format("tick: found index {} and period_ns {}, accepted an index from 0 and a period above 0",
                               tick.index, tick.period_ns));
   if (tick.index <= last_done_ && !tick.final_tick) return;  // from history, after a restart
-  if (tick.final_tick && !ended_) {
-    if (step_) step_->final_tick = tick;
-    else conclude(tick);
-  }
+  if (tick.final_tick && !ended_) conclude(tick);
   newest_tick_ = std::max(newest_tick_, tick.index);
   for (auto& input : inputs_) input->announce(tick.visible[input->topic().id]);
   if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
@@ -277,7 +274,6 @@ void Member::finish_step() {
   if (!is_plant_) done.written = std::exchange(written_, {});
   ticks_.erase(step.tick.index);
   sink_.done(done);
-  if (step.final_tick) concludes_at_ = step.final_tick;
   if (concludes_at_) conclude(*concludes_at_);
 }
 

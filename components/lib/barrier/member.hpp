@@ -135,19 +135,17 @@ class Member {
     Tick tick;
     std::vector<std::pair<const TopicInfo*, Sample>> outputs{};
     std::vector<std::string> refusals{};
-    std::optional<msg::Tick> final_tick{};  ///< arrived during the step
   };
   class MemberWiring;
   void refuse_from_component(const std::string& reason);
   void build(std::uint64_t seed);
   void replay_early();
-  /// Ends the member, at once or as soon as its last step is done and the inputs of that step have arrived again. By
-  /// value, because it resets concludes_at_.
-  void conclude(msg::Tick final_tick);
-  /// Whether steps before the final tick are still to be done. At real-time pace, those whose ticks have arrived.
+  /// Ends the member, at once or as soon as its last step is done and the inputs of that step have arrived again.
+  void conclude(const msg::Tick& final_tick);
+  /// Whether steps before the final tick are still to be finished. At real-time pace, those whose ticks have arrived.
   [[nodiscard]] bool is_behind(const msg::Tick& final_tick) const;
-  /// The part of conclude() that follows the last step.
-  void finish(const msg::Tick& final_tick);
+  /// The part of conclude() that follows the last step. By value, because it resets concludes_at_.
+  void finish(msg::Tick final_tick);
   [[nodiscard]] const msg::Tick* due() const;
   void skip_to_newest();
   void write(OutputPort& port, const void* message);

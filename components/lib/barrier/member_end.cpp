@@ -11,8 +11,8 @@ void Member::release_device() {
   if (auto* owner = dynamic_cast<DeviceOwner*>(component_.get())) owner->release_device();
 }
 
-void Member::conclude(const msg::Tick final_tick) {
-  release_device();
+void Member::conclude(const msg::Tick& final_tick) {
+  if (!step_) release_device();
   // A member with latency may be behind. It does its last steps, so that the result does not depend on how far.
   if (is_behind(final_tick)) concludes_at_ = final_tick;
   else finish(final_tick);
@@ -24,7 +24,7 @@ bool Member::is_behind(const msg::Tick& final_tick) const {
   return last >= 0 && last_done_ < last - last % timing_.period;
 }
 
-void Member::finish(const msg::Tick& final_tick) {
+void Member::finish(const msg::Tick final_tick) {
   auto* concluding = last_done_ < 0 ? nullptr : dynamic_cast<Concluding*>(component_.get());
   if (concluding && resumed_) {
     // No step of this incarnation has shown the component its inputs: they must arrive again.
@@ -46,7 +46,7 @@ void Member::conclude_anyway() {
   if (!concludes_at_ || step_) return;
   ticks_.clear();
   resumed_ = false;
-  finish(msg::Tick{*concludes_at_});
+  finish(*concludes_at_);
 }
 
 MissingInput Member::missing() const {

@@ -9,8 +9,7 @@
 namespace constrictor {
 
 void GroundSlope::learn(const msg::Quaternion& attitude, double share) {
-  const Eigen::Vector3d up =
-      Eigen::Quaterniond(attitude.w, attitude.x, attitude.y, attitude.z).toRotationMatrix().col(2);
+  const Eigen::Vector3d up = rotation_from(attitude).col(2);
   if (up.z() < std::cos(kLying_rad)) return;
   count_ += 1.0;
   const double gain = std::max(1.0 / count_, std::min(share, 1.0));

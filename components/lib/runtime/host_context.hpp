@@ -10,6 +10,7 @@
 
 #include "cyclone/run_token.hpp"
 #include "log/log.hpp"
+#include "runtime/awake_clock.hpp"
 #include "runtime/host.hpp"
 #include "scheduling/scheduling.hpp"
 
@@ -48,23 +49,17 @@ class HostContext {
   /// To be called when the run makes progress: the patience of this process starts again.
   void note_progress() {
     waited_ = {};
-    last_look_ = Clock::now();
+    progress_ = awake_.now();
   }
-  /// To be called several times a second while this process waits. If it was not called for longer, the process did not
-  /// run (SIGSTOP, a stopped virtual machine), and neither did perhaps those for which it waits: of that time, at most
-  /// kMostOfAFreeze counts as waiting.
-  void note_waiting() {
-    const auto now = Clock::now();
-    waited_ += std::min<Clock::duration>(now - last_look_, kMostOfAFreeze);
-    last_look_ = now;
-  }
+  /// To be called several times a second while this process waits.
+  void note_waiting() { waited_ = awake_.now() - progress_; }
   /// [s] of waiting since the last progress, at the last note_waiting().
   [[nodiscard]] double waited_s() const { return std::chrono::duration<double>(waited_).count(); }
 
  private:
-  static constexpr std::chrono::seconds kMostOfAFreeze{1};
+  AwakeClock awake_;
   Clock::duration waited_{};
-  Clock::time_point last_look_ = Clock::now();
+  Clock::time_point progress_ = awake_.now();  ///< in the time of awake_
 };
 
 }  // namespace constrictor

@@ -39,8 +39,7 @@ std::string cell(const Course& course) {
 void draw_example(const RobotModel& robot, const std::vector<Row>& rows, const std::filesystem::path& file) {
   constexpr std::uint64_t kSeed = 4;
   const FieldSpec field;
-  const double length_m = robot.module_length_m * (static_cast<double>(robot.module_count) - 0.5);
-  const Scenario scene = draw_field(field, length_m, robot.module_radius_m, kSeed);
+  const Scenario scene = field_for(robot, field, kSeed);
   std::vector<Panel> panels;
   for (const Row& r : rows) {
     const Course course = run(robot, field, kSeed, r.trial);

@@ -36,11 +36,15 @@ void note_pegs(const World& world, Course& course) {
 
 }  // namespace
 
+Scenario field_for(const RobotModel& robot, const FieldSpec& field, std::uint64_t seed) {
+  const double length_m = robot.module_length_m * (static_cast<double>(robot.module_count) - 0.5);
+  return draw_field(field, length_m, robot.module_radius_m, seed);
+}
+
 Course run(const RobotModel& robot_of_file, const FieldSpec& field, std::uint64_t seed, const Trial& trial) {
   RobotModel robot = robot_of_file;
   robot.friction_along = robot.friction_across = trial.ground_friction;
-  const double length_m = robot.module_length_m * (static_cast<double>(robot.module_count) - 0.5);
-  World world(robot, draw_field(field, length_m, robot.module_radius_m, seed));
+  World world(robot, field_for(robot, field, seed));
   Sensors sensors(robot, seed, true);
   MethodDriver driver(robot, trial.method);
   const double period_s = trial.method.period_s;

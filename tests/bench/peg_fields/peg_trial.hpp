@@ -34,6 +34,9 @@ struct Course {
   [[nodiscard]] double speed_m_s() const { return way_m / duration_s; }
 };
 
+/// The field of this seed for a robot that starts straight.
+[[nodiscard]] Scenario field_for(const RobotModel& robot, const FieldSpec& field, std::uint64_t seed);
+
 /// The sensors have the noise of the robot's file. Throws std::invalid_argument if control has no such method, or if
 /// the method does not accept the trial.
 [[nodiscard]] Course run(const RobotModel& robot, const FieldSpec& field, std::uint64_t seed, const Trial& trial);

@@ -9,6 +9,7 @@
 #include "perception/line_view.hpp"
 #include "perception/picture.hpp"
 #include "ray_caster.hpp"
+#include "robot/rotation.hpp"
 
 namespace constrictor::perception {
 namespace {

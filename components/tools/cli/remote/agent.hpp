@@ -10,10 +10,10 @@
 #include <string>
 
 #include "cli/child_process.hpp"
-#include "cli/remote/awake_clock.hpp"
 #include "cli/remote/message_channel.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/security.hpp"
+#include "runtime/awake_clock.hpp"
 
 namespace constrictor::cli {
 

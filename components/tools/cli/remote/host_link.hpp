@@ -15,8 +15,8 @@
 
 #include "cli/child_process.hpp"
 #include "cli/manifest.hpp"
-#include "cli/remote/awake_clock.hpp"
 #include "cli/remote/ssh_connection.hpp"
+#include "runtime/awake_clock.hpp"
 
 namespace constrictor::cli {
 

@@ -48,7 +48,9 @@ void HostSet::collect_files(const std::function<bool()>& done) {
       if (Clock::now() - begin < kCollectSilence || std::exchange(printed, true)) continue;
       print_("fetching the files that processes on other hosts wrote; Ctrl-C leaves them there");
     }
-  } catch (...) {
+  } catch (const std::exception& error) {
+    print_(fmt::format("{}; the files that have not arrived stay where they are", error.what()));
+  } catch (...) {  // a signal of the user, which the launcher throws from wait_()
     print_("interrupted; the files that have not arrived stay where they are");
   }
 }

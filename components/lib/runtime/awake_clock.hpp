@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <chrono>
 
-namespace constrictor::cli {
+namespace constrictor {
 
-/// A clock that must be read often. A long gap between two readings, in which the process or its computer was stopped,
-/// counts as 1 s, as in the processes of a run: a freeze of all hosts is not taken for a host that is away.
+/// A clock that must be read several times a second. If it was not read for longer, the process did not run (SIGSTOP, a
+/// stopped virtual machine), and neither did perhaps those for which it waits: such a gap counts as 1 s at most.
 class AwakeClock {
  public:
   using Base = std::chrono::steady_clock;
@@ -24,4 +24,4 @@ class AwakeClock {
   Base::time_point last_reading_ = Base::now(), time_ = last_reading_;
 };
 
-}  // namespace constrictor::cli
+}  // namespace constrictor
