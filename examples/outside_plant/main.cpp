@@ -24,7 +24,7 @@ constexpr const char* kLoopback = R"(<CycloneDDS><Domain>
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>
-<Peers><Peer Address="localhost"/></Peers></Discovery></Domain></CycloneDDS>)";
+<Peers><Peer Address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>)";
 constexpr long kPeriod_ns = 10'000'000;  // twice in each control period, so that plant_relay never waits for a sample
 
 constexpr int kDepth = 8;  // with 1, a stranger's command could replace the right one before it is read

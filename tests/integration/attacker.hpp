@@ -121,7 +121,7 @@ class Attacker {
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>
-<Peers><Peer Address="localhost"/></Peers></Discovery>
+<Peers><Peer Address="127.0.0.1"/></Peers></Discovery>
 <Tracing><Verbosity>none</Verbosity></Tracing>
 </Domain></CycloneDDS>)";
 

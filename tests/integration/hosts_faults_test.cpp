@@ -49,6 +49,24 @@ TEST_F(HostsFaults, AFileThatCannotBeWrittenHereIsNamedAndStaysOnItsHost) {
   EXPECT_TRUE(fs::exists(kept / "mission.json"));
 }
 
+TEST_F(HostsFaults, AFetchThatTakesLongIsSaidAndEndsAtCtrlC) {
+  Process launcher = begun("1x");
+  // A sparse file, as large as a recording of hours, beside what the report has written.
+  const fs::path kept = fs::directory_iterator(state() / "constrictor")->path();
+  std::ofstream(kept / "large.bin").close();
+  fs::resize_file(kept / "large.bin", std::uintmax_t{500} << 30);
+  ASSERT_TRUE(launcher.wait_for("fetching the files that processes on other hosts wrote; Ctrl-C", 60s))
+      << launcher.output();
+  launcher.signal(SIGINT);
+  ASSERT_TRUE(launcher.wait(20s)) << launcher.output();
+  EXPECT_NE(launcher.output().find("interrupted; the files that have not arrived stay where they are"),
+            std::string::npos)
+      << launcher.output();
+  EXPECT_NE(launcher.output().find("keeps them for a week in " + kept.string()), std::string::npos);
+  EXPECT_TRUE(fs::exists(kept / "large.bin"));
+  expect_nothing_runs();
+}
+
 TEST_F(HostsFaults, AnUndisturbedRunMakesOneConnection) {
   const std::string count = (dir_ / "count").string();
   ssh("echo x >> " + count);

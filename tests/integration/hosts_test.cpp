@@ -102,6 +102,15 @@ TEST_F(Hosts, AHostThatCannotBeReachedIsTriedForThePatience) {
   EXPECT_FALSE(fs::exists(dir_ / "two")) << "no report of a run that has not begun";
 }
 
+TEST_F(Hosts, ADirectoryInTheHomeOfTheOtherHostIsFound) {
+  fs::create_directory(dir_ / "home");
+  fs::create_directory_symlink(bin_, dir_ / "home/snake");
+  environment_["HOME"] = (dir_ / "home").string();
+  hosts("directory: ~/snake", 20);
+  Process launcher = run_there(50, "two");
+  EXPECT_EQ(launcher.wait(30s), exit_status::kOk) << launcher.output() << launcher.errors();
+}
+
 TEST_F(Hosts, AHostWithAnotherReleaseIsRefused) {
   fs::create_directories(dir_ / "other/bin");
   write("other/bin/constrictor", "#!/bin/sh\necho 9.9.9\n");

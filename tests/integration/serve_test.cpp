@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cyclone/domain_claim.hpp"
@@ -61,6 +62,11 @@ class Serve : public ::testing::Test {
   [[nodiscard]] fs::path plant_folder(const std::string& number) const {
     return dir_.path() / "out" / ("physics+guidance+navigation+control+input+planner+report" + number);
   }
+  /// Whether the run with this number has made ticks.
+  [[nodiscard]] bool ticks_begun(const std::string& number) const {
+    std::error_code none;
+    return fs::file_size(plant_folder(number) / "hashes.bin", none) > 10'000 && !none;
+  }
   [[nodiscard]] pid_t host_of(const std::string& component) const {
     for (const auto& [pid, line] : command_lines()) {
       const bool host = fs::path(line.substr(0, line.find('\0'))).filename() == "constrictor_host";
@@ -92,11 +98,7 @@ TEST_F(Serve, TwoHostsCarryOutOneRunAfterTheOtherAlsoWhenAProcessIsKilled) {
   ::kill(host_of("perception"), SIGKILL);
   EXPECT_TRUE(far.wait_for("was killed by signal 9 (Killed); starting it again", 20s)) << far.output();
   // The plant, too, comes back into its run.
-  const auto run_begun = [&] {
-    std::error_code none;
-    return fs::file_size(plant_folder("") / "hashes.bin", none) > 10'000 && !none;
-  };
-  ASSERT_TRUE(eventually(run_begun, 20s)) << plant.output();
+  ASSERT_TRUE(eventually([&] { return ticks_begun(""); }, 20s)) << plant.output();
   ::kill(host_of("physics"), SIGKILL);
   EXPECT_TRUE(plant.wait_for("continues the run at tick", 20s)) << plant.output();
   EXPECT_TRUE(eventually([&] { return hashes().size() >= 2; }, 60s)) << plant.output() << far.output();
@@ -109,6 +111,24 @@ TEST_F(Serve, TwoHostsCarryOutOneRunAfterTheOtherAlsoWhenAProcessIsKilled) {
   }
   EXPECT_EQ(host_of("physics"), -1);
   EXPECT_EQ(host_of("perception"), -1);
+}
+
+TEST_F(Serve, ANewRunOfThePlantsHostDoesNotWaitForThePatienceOfTheOthers) {
+  Process far = serve("perception");
+  auto plant = std::make_unique<Process>(serve("physics", {"--pace", "4x"}));
+  // The plant's number is higher than in the run that begins afterwards.
+  ASSERT_TRUE(eventually([&] { return ticks_begun(""); }, 20s)) << plant->output();
+  ::kill(host_of("physics"), SIGKILL);
+  ASSERT_TRUE(plant->wait_for("continues the run at tick", 20s)) << plant->output();
+  plant->signal(SIGTERM);
+  ASSERT_EQ(plant->wait(20s), exit_status::kOk);
+  *plant = serve("physics", {"--pace", "4x"});
+  EXPECT_TRUE(far.wait_for("physics has begun another run", 30s)) << far.output();
+  EXPECT_TRUE(eventually([&] { return ticks_begun("-2"); }, 20s)) << plant->output() << far.output();
+  for (Process* server : {plant.get(), &far}) {
+    server->signal(SIGTERM);
+    EXPECT_EQ(server->wait(20s), exit_status::kOk) << server->output() << server->errors();
+  }
 }
 
 TEST_F(Serve, WhatIsWrongIsSaidBeforeAnythingStarts) {

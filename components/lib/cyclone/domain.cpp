@@ -20,7 +20,7 @@ constexpr const char* kLoopback = R"(<CycloneDDS><Domain>
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>
-<Peers><Peer Address="localhost"/></Peers></Discovery>)";
+<Peers><Peer Address="127.0.0.1"/></Peers></Discovery>)";
 constexpr const char* kTracing =
     "<Tracing><Verbosity>severe</Verbosity><OutputFile>/dev/null</OutputFile></Tracing></Domain></CycloneDDS>";
 

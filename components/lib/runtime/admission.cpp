@@ -20,15 +20,16 @@ bool Admission::announce(const std::string& component, std::uint32_t incarnation
   auto& participants = known.participants;
   const bool same = !participants.empty() && participants.front() == participant;
   if (!participants.empty() && !same && incarnation <= known.incarnation) {
-    // Two processes of one name: the first one counts as long as it is there.
-    if (incarnation < known.incarnation) return false;
+    // Two processes of one name: the first one counts as long as it is there. Then also a lower number is right: the
+    // plant of a new run begins with 1.
     if (book_.lives(participants.front())) {
-      if (known.rivals.size() < kMostRivals) known.rivals.push_back(participant);
+      if (known.rivals.size() < kMostRivals && !contains(known.rivals, participant))
+        known.rivals.push_back(participant);
       return false;
     }
   }
   if (incarnation > known.incarnation) known.rivals.clear();
-  known.incarnation = std::max(known.incarnation, incarnation);
+  known.incarnation = incarnation;
   if (!same) participants.insert(participants.begin(), participant);
   if (participants.size() > kMostIncarnations) participants.pop_back();
   deliver_waiting(component);

@@ -15,6 +15,8 @@ namespace wire = dds::barrier_topics;
 
 /// The name in Admission of every plant, also of one whose hashes differ: only a plant may refuse a process.
 constexpr const char* kRefuser = "(plants)";
+/// [s] without a tick, after which the state of another run is not just late.
+constexpr double kWaitBeforeNewRun_s = 2.0;
 constexpr int kMostStrangeHellos = 16;  // of components outside the roster, in the life of the process
 
 /// [byte] about what a sample holds in memory.
@@ -228,6 +230,18 @@ void MemberSide::take_refused(const msg::Refused& message) {
 }
 
 void MemberSide::take_run_state(const msg::RunState& state) {
+  // The plant has gone and come back with another run. This process can take part in it only as one that has just
+  // begun.
+  const std::uint64_t ours = run_id();
+  const bool another = ours != 0 && state.run_id != ours;
+  if (another && all_ended()) new_run_ = true;
+  else if (another && context_.waited_s() > kWaitBeforeNewRun_s) {
+    context_.log.warning(
+        "{} has begun another run, {:016x}; this process ends, and can join it when it is started again",
+        context_.options.plant, state.run_id);
+    context_.exit_status = exit_status::kWaitedTooLong;
+  }
+  if (another) return;
   // The conductor sends RunState once a second. A run that is paused or held is not stuck.
   if (!state.paused && !state.ready_for_tick) return;
   const EpochId epoch{state.run_id, state.epoch};

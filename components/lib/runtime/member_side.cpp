@@ -250,7 +250,9 @@ void MemberSide::conclude_anyway() {
   }
 }
 
-bool MemberSide::plant_lives() const { return plant_ || links_.admission().lives(context_.options.plant); }
+bool MemberSide::plant_lives() const {
+  return plant_ || (!new_run_ && links_.admission().lives(context_.options.plant));
+}
 
 bool MemberSide::want_inputs() const {
   return std::any_of(members_.begin(), members_.end(), [](const auto& local) {

@@ -48,7 +48,8 @@ class MemberSide : private MemberSink {
   [[nodiscard]] bool all_ended() const;
   /// Ends the members that were restarted at the end of the run, and for which inputs of their last step do not arrive.
   void conclude_anyway();
-  /// Whether the plant is in this process, or its process is known and has not left the domain.
+  /// Whether the plant is in this process, or its process is known, has not left the domain, and has begun no other
+  /// run.
   [[nodiscard]] bool plant_lives() const;
   /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
   /// samples can wait for the next tick, too.
@@ -122,6 +123,7 @@ class MemberSide : private MemberSink {
   Links& links_;
   std::atomic<int> strange_hellos_{0};  ///< DDS counts them in its threads
   std::uint32_t refusers_ = 0;
+  bool new_run_ = false;  ///< the plant has begun another run after this one had ended
   std::vector<LocalMember> members_;
   Member* plant_ = nullptr;
   ConductorSide* conductor_ = nullptr;  ///< null: it is in another process

@@ -13,6 +13,7 @@ namespace constrictor::cli {
 namespace {
 
 constexpr const char* kLocal = "local";
+constexpr double kShortestPatience_s = 3.0;  ///< [s] processes on several hosts may need as long to find each other
 
 /// True if a shell or ssh cannot read the text as anything but a name or path.
 bool harmless(const std::string& text, const std::string& also) {
@@ -39,7 +40,11 @@ HostPlan read_host(Configuration entry) {
   if (entry.has("address") && ::inet_pton(AF_INET, host.address.c_str(), &parsed) != 1)
     throw entry.error("address",
                       fmt::format("found '{}', accepted an IPv4 address, for example 10.0.0.2", host.address));
-  host.directory = plain_text(entry, "directory", "/._-+", "/opt/constrictor");
+  host.directory = plain_text(entry, "directory", "/._-+~", "/opt/constrictor or ~/constrictor");
+  if (host.directory.string().find('~', host.directory.string().starts_with("~/") ? 1 : 0) != std::string::npos)
+    throw entry.error("directory", fmt::format("found '{}', accepted ~ only in ~/ at the beginning, which is the home "
+                                               "directory of the user of ssh",
+                                               host.directory.string()));
   if (host.ssh.empty() && !host.directory.empty())
     throw entry.error("directory", "found one of the launcher's own host, accepted only together with ssh");
   entry.finish();
@@ -91,6 +96,10 @@ void read_hosts(Configuration& root, LaunchManifest& manifest) {
                                                 did_you_mean(process.host, names)));
     process.host.clear();
   }
+  if (!manifest.hosts.empty() && manifest.patience_s < kShortestPatience_s)
+    throw root.error("patience_s", fmt::format("found {:g}, accepted at least {:g} for a run on several hosts, whose "
+                                               "processes may need as long to find each other",
+                                               manifest.patience_s, kShortestPatience_s));
   // A host without a process needs no connection.
   std::erase_if(manifest.hosts, [&](const auto& entry) {
     return std::none_of(manifest.processes.begin(), manifest.processes.end(),

@@ -156,7 +156,8 @@ std::string prepare_checkpoint(const fs::path& folder) {
       problem = "the computer was started anew";
     }
     const auto saved = CheckpointFile::read_copy(copy);
-    if (!saved && problem == "no checkpoint was stored") return "the run had not begun; it begins now";
+    if (!saved && problem == "no checkpoint was stored")
+      return "no checkpoint was stored: the run had not begun, or its disk was full; it begins anew";
     if (!saved) throw std::runtime_error(fmt::format("{}, and there is no copy {}", problem, copy.string()));
     file->clear();
     file->write(*saved);

@@ -67,7 +67,11 @@ class Server {
       processes_.emplace_back(
           process.name(),
           [this, &process, folder = fs::path()](std::uint32_t incarnation, bool same_run) mutable {
-            if (!same_run || folder.empty()) folder = output_folder(process);
+            if (!same_run || folder.empty()) {
+              std::error_code not_empty;  // the folder of a process that has written nothing is used again
+              if (!folder.empty()) fs::remove(folder, not_empty);
+              folder = output_folder(process);
+            }
             // The plant continues its run from the checkpoint in its folder. Otherwise a new run begins with it.
             const auto& hosted = process.components;
             const bool is_plant = std::find(hosted.begin(), hosted.end(), plan_.manifest.plant) != hosted.end();

@@ -201,6 +201,14 @@ TEST(Manifest, RejectsHostsThatSshOrAShellCouldMisread) {
     EXPECT_NE(error(std::string("{here: local, robot: {ssh: ") + ssh + "}}").find("hosts.robot.ssh: found"),
               std::string::npos)
         << ssh;
+  EXPECT_EQ(error("{here: local, robot: {ssh: a, directory: ~/c}}"), "accepted");
+  for (const char* directory : {"~snake/c", "/a/~", "~"})
+    EXPECT_NE(
+        error(std::string("{here: local, robot: {ssh: a, directory: '") + directory + "'}}").find("accepted ~ only"),
+        std::string::npos)
+        << directory;
+  EXPECT_NE(error("{here: local, robot: {ssh: a}}\npatience_s: 2").find("patience_s: found 2, accepted at least 3"),
+            std::string::npos);
   EXPECT_NE(error("{here: local, robot: {ssh: a, directory: '$(x)'}}").find("hosts.robot.directory: found '$(x)'"),
             std::string::npos);
   EXPECT_NE(error("{here: local, robot: {ssh: a, address: 10.0.0}}").find("accepted an IPv4 address"),

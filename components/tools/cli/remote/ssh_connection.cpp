@@ -36,7 +36,8 @@ std::vector<std::string> ssh_command() {
 }  // namespace
 
 std::string remote_command(const HostPlan& host, const std::string& token, bool attach) {
-  const std::string given = host.directory.string();
+  std::string given = host.directory.string();
+  if (given.starts_with("~/")) given.replace(0, 1, "\"$HOME\"");
   const std::string places =
       given.empty() ? "\"$(command -v constrictor)\" /opt/constrictor*/bin/constrictor /usr/local/bin/constrictor "
                       "\"$HOME\"/constrictor/build/release/bin/constrictor"
