@@ -10,6 +10,7 @@
 #   bench     MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
 #   browser   Chromium, for the long test of the dashboard's page
 #   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
+#   boot      debootstrap and systemd-nspawn, for the long test of the service that starts at boot
 # Example: scripts/setup.sh core tests
 set -euo pipefail
 
@@ -69,8 +70,10 @@ bench=(libmujoco-dev)
 browser=(chromium)
 # evaluations on several machines
 cluster=(parallel slurm-wlm munge)
+# a small Debian with a systemd of its own
+boot=(debootstrap systemd-container)
 
-accepted="core, hardware, web, pictures, ros, python, all, tests, tools, bench, browser, cluster"
+accepted="core, hardware, web, pictures, ros, python, all, tests, tools, bench, browser, cluster, boot"
 packages=()
 for group in "${@:-core}"; do
   case "$group" in
@@ -86,7 +89,8 @@ for group in "${@:-core}"; do
     bench) packages+=("${bench[@]}") ;;
     browser) packages+=("${browser[@]}") ;;
     cluster) packages+=("${cluster[@]}") ;;
-    --help) sed -n '2,14s/^# //p' "$0"; exit 0 ;;
+    boot) packages+=("${boot[@]}") ;;
+    --help) sed -n '2,15s/^# //p' "$0"; exit 0 ;;
     *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 2 ;;
   esac
 done

@@ -15,7 +15,7 @@ if [ "${1:-}" = --all ]; then
 fi
 
 groups=(core tests)
-if [ "$all" = true ]; then groups+=(browser cluster); fi
+if [ "$all" = true ]; then groups+=(browser cluster boot); fi
 ./scripts/setup.sh "${groups[@]}"
 ./scripts/build.sh --tests
 
