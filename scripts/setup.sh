@@ -10,6 +10,7 @@
 #   bench     MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
 #   browser   Chromium, for the long test of the dashboard's page
 #   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
+#   package   what scripts/package.sh needs in addition to make Debian packages
 #   boot      debootstrap and systemd-nspawn, for the long test of the service that starts at boot
 # Example: scripts/setup.sh core tests
 set -euo pipefail
@@ -41,9 +42,13 @@ pictures=(libopencv-videoio-dev)
 ros=()  # the bridge contains the definitions of its messages
 python=(python3-dev pybind11-dev python3-numpy)
 all=("${hardware[@]}" "${web[@]}" "${pictures[@]}" "${ros[@]}" "${python[@]}")
+# CPack finds the libraries of a program with these
+package=(file dpkg-dev)
 tests=(
   # the tests start the programs of all groups
   "${all[@]}"
+  # a test makes and installs the Debian packages
+  "${package[@]}"
   # GoogleTest and Google Benchmark
   libgtest-dev libbenchmark-dev
   # tests of the Python package, and of the manual pages
@@ -73,7 +78,7 @@ cluster=(parallel slurm-wlm munge)
 # a small Debian with a systemd of its own
 boot=(debootstrap systemd-container)
 
-accepted="core, hardware, web, pictures, ros, python, all, tests, tools, bench, browser, cluster, boot"
+accepted="core, hardware, web, pictures, ros, python, all, tests, tools, bench, browser, cluster, package, boot"
 packages=()
 for group in "${@:-core}"; do
   case "$group" in
@@ -89,8 +94,9 @@ for group in "${@:-core}"; do
     bench) packages+=("${bench[@]}") ;;
     browser) packages+=("${browser[@]}") ;;
     cluster) packages+=("${cluster[@]}") ;;
+    package) packages+=("${package[@]}") ;;
     boot) packages+=("${boot[@]}") ;;
-    --help) sed -n '2,15s/^# //p' "$0"; exit 0 ;;
+    --help) sed -n '2,16s/^# //p' "$0"; exit 0 ;;
     *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 2 ;;
   esac
 done

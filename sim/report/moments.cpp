@@ -17,6 +17,13 @@ void save(const std::filesystem::path& file, const msg::CameraImage& image) {
   replace_file(file, encode_png(image.width, image.height, image.data._buffer));
 }
 
+/// A moment whose processed image cannot be written keeps none: a later image would show something else.
+void save_processed(Moment& moment, const std::filesystem::path& folder, const msg::CameraImage& image,
+                    LostFiles& lost) {
+  moment.has_processed = lost.attempt([&] { save(MomentFiles(folder, moment).processed, image); });
+  if (!moment.has_processed) moment.camera_exposure = -1;
+}
+
 }  // namespace
 
 MomentFiles::MomentFiles(const std::filesystem::path& folder, const Moment& moment) {
@@ -66,32 +73,29 @@ std::vector<Moment> merge_end(std::vector<Moment> rows) {
 }
 
 void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-                      const msg::WorldState* world) {
+                      const msg::WorldState* world, LostFiles& lost) {
   if (moments.size() >= kMostMoments) return;
   if (!moments.empty() && moments.back().tick == moment.tick) return;  // that moment has the same pictures
   const MomentFiles files(folder, moment);
-  std::filesystem::remove(files.scene);
-  if (world != nullptr) save_world(files.world, *world);
-  if (camera != nullptr) {
-    save(files.camera, *camera);
+  std::error_code ignored;  // then no picture can be written either
+  std::filesystem::remove(files.scene, ignored);
+  if (world != nullptr) lost.attempt([&] { save_world(files.world, *world); });
+  if (camera != nullptr && lost.attempt([&] { save(files.camera, *camera); }))
     moment.camera_exposure = camera->exposure_tick;
-  }
   moments.push_back(std::move(moment));
 }
 
-void MomentAlbum::on_processed(const std::filesystem::path& folder, const msg::CameraImage& image) {
+void MomentAlbum::on_processed(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost) {
   for (Moment& moment : moments) {
     if (moment.has_processed || moment.camera_exposure < 0 || image.exposure_tick < moment.camera_exposure) continue;
-    save(MomentFiles(folder, moment).processed, image);
-    moment.has_processed = true;
+    save_processed(moment, folder, image, lost);
   }
 }
 
-void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage& processed) {
+void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage& processed, LostFiles& lost) {
   for (Moment& moment : moments) {
     if (moment.has_processed) continue;
-    save(MomentFiles(folder, moment).processed, processed);
-    moment.has_processed = true;
+    save_processed(moment, folder, processed, lost);
   }
 }
 

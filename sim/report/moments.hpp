@@ -12,6 +12,8 @@
 
 namespace constrictor::report {
 
+class LostFiles;
+
 struct Moment {
   std::int64_t tick = 0;
   double time_s = 0.0;
@@ -57,13 +59,14 @@ struct MomentAlbum {
 
   /// Images given to this class must have the right number of bytes (image_violation()). `camera` and `world` may be
   /// null. Moments after the first 100 are ignored, so that the state stays small. A picture of the scene that an
-  /// earlier run left for this tick is removed.
+  /// earlier run left for this tick is removed. A picture that cannot be written is noted in `lost` and not tried
+  /// again.
   void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-           const msg::WorldState* world);
-  void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image);
+           const msg::WorldState* world, LostFiles& lost);
+  void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost);
   /// Saves the newest processed image for all moments that still have none, because no further images arrive after the
   /// end of the run.
-  void finish(const std::filesystem::path& folder, const msg::CameraImage& processed);
+  void finish(const std::filesystem::path& folder, const msg::CameraImage& processed, LostFiles& lost);
 
   template <class Archive>
   void serialize(Archive& archive) {

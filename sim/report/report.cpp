@@ -41,7 +41,9 @@ Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
       torques_(in_folder(folder_, "joint_torques.csv")),
       events_(in_folder(folder_, "events.jsonl")),
       states_(in_folder(folder_, "states.jsonl")),
-      parameters_(in_folder(folder_, "parameters.jsonl")) {}
+      parameters_(in_folder(folder_, "parameters.jsonl")),
+      log_(setup.log),
+      lost_(setup.log) {}
 
 void Report::step(const Tick& tick) {
   if (state_.finished) return;
@@ -138,7 +140,7 @@ void Report::follow_mission(const Tick& tick) {
   if (state_.mission_state != mission_->state) {
     state_.mission_state = mission_->state;
     const ordered_json line{{"sim_time_s", seconds(mission_->header)}, {"state", state_.mission_state}};
-    states_.append(json_text(line) + "\n", state_.states_length);
+    append(states_, json_text(line) + "\n", state_.states_length);
   }
   if (mission_->outcome == msg::kMissionRunning) return;
   state_.mission = mission_->outcome;
@@ -163,7 +165,7 @@ void Report::follow_events() {
                               {"colour", name_of(constants::kColour, event.colour)},
                               {"object_handle", event.object_handle},
                               {"detail", event.detail}}}};
-    events_.append(json_text(line) + "\n", state_.events_length);
+    append(events_, json_text(line) + "\n", state_.events_length);
     if (report::is_key_event(event.event))
       add_moment(event.header.tick, seconds(event.header), event.event, event.colour);
   }
@@ -176,7 +178,7 @@ void Report::follow_parameters(const Tick& tick) {
                             {"name", change.name},
                             {"value", change.value},
                             {"source", change.source}};
-    parameters_.append(json_text(line) + "\n", state_.parameters_length);
+    append(parameters_, json_text(line) + "\n", state_.parameters_length);
   }
 }
 
@@ -189,9 +191,9 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.colour = colour;
   moment.state = state_.mission_state;
   const bool has_camera = camera_ && image_violation(*camera_).empty();
-  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, world_ ? &*world_ : nullptr);
+  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, world_ ? &*world_ : nullptr, lost_);
   // The percepts of this image may have arrived already.
-  if (processed_ && image_violation(*processed_).empty()) state_.album.on_processed(folder_, *processed_);
+  if (processed_ && image_violation(*processed_).empty()) state_.album.on_processed(folder_, *processed_, lost_);
 }
 
 void Report::follow_images() {
@@ -205,7 +207,7 @@ void Report::follow_images() {
     return false;
   };
   static_cast<void>(whole(camera_, topics::kCameraImage.name));  // only counts refusals; add_moment() uses the image
-  if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_);
+  if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_, lost_);
 }
 
 void Report::journal_torques(const Tick& tick) {
@@ -223,7 +225,7 @@ void Report::journal_torques(const Tick& tick) {
     std::snprintf(number, sizeof number, ",%.4f", joint < joints_->joint_count ? joints_->torque_nm[joint] : 0.0);
     line += number;
   }
-  torques_.append(line + "\n", state_.torques_length);
+  append(torques_, line + "\n", state_.torques_length);
 }
 
 void Report::end_early(const Tick& tick, const std::string& reason) {

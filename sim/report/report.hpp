@@ -85,6 +85,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   void end_early(const Tick& tick, const std::string& reason);
   /// True if the planner ended the mission successfully and ground truth, if it is known, agrees.
   [[nodiscard]] bool success() const;
+  [[nodiscard]] std::string outcome() const;
   /// Why the mission did not succeed; empty on success.
   [[nodiscard]] std::string failure() const;
   /// The reason why a mission without objects is not complete; empty if the head is at the end of the line.
@@ -95,7 +96,11 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] nlohmann::ordered_json objects_json() const;
   [[nodiscard]] std::string scenario() const;
   /// Returns why there is no figure.png; empty: there is.
-  [[nodiscard]] std::string draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const;
+  [[nodiscard]] std::string draw_figure(const Tick& tick, const std::vector<report::Moment>& moments);
+  /// Appends to a journal, if the disk takes it.
+  void append(report::Journal& journal, const std::string& text, std::uint64_t& length) {
+    lost_.attempt([&] { journal.append(text, length); });
+  }
 
   std::string scenario_;  // name of the scenario file, without folder and ending
   std::uint64_t seed_;
@@ -105,6 +110,8 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   double mass_kg_;                 // of all modules
   Eigen::Vector3d head_camera_m_;  // p_HC, for the pictures of the scene
   report::Journal torques_, events_, states_, parameters_;
+  Log log_;
+  report::LostFiles lost_;
   std::vector<Eigen::Vector2d> line_m_;  // points of the line in W, from the scene
   Latest<msg::WorldState> world_ = wiring_.latest(topics::kWorldState);
   Latest<msg::SceneDescription> scene_ = wiring_.latest(topics::kSceneDescription);

@@ -100,10 +100,11 @@ std::string Report::mission_json(const Tick& tick, const std::string& figure_err
   json["states"] = lines_of(states_.read(state_.states_length));
   json["parameters"] = lines_of(parameters_.read(state_.parameters_length));
   if (!figure_error.empty()) json["figure_error"] = figure_error;
+  for (const auto& [file, reason] : lost_.reasons()) json["files_not_written"].push_back(reason);
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) const {
+std::string Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) {
   std::vector<figure::FileRow> rows;
   for (const report::Moment& moment : report::merge_end(moments)) {
     const report::MomentFiles files(folder_, moment);
@@ -118,29 +119,34 @@ std::string Report::draw_figure(const Tick& tick, const std::vector<report::Mome
     if (moment.has_processed) row.processed = files.processed;
     rows.push_back(std::move(row));
   }
-  const std::string outcome = success() ? "succeeded" : "did not succeed";
   const figure::Heading heading{figure::kTitle,
                                 fmt::format("scenario {}, seed {}: {} after {:.1f} s", scenario(),
-                                            scene_ ? scene_->seed : seed_, outcome, tick.time_s()),
+                                            scene_ ? scene_->seed : seed_, outcome(), tick.time_s()),
                                 failure()};
   const std::string torques = torques_.read(state_.torques_length);
   try {
-    report::replace_file(folder_ / "figure.png",
-                         figure::draw_png_lazily(heading, rows, torques, config_.torque_window_s));
+    const std::string png = figure::draw_png_lazily(heading, rows, torques, config_.torque_window_s);
+    report::replace_file(folder_ / "figure.png", png);
   } catch (const std::runtime_error& error) {
     return error.what();
   }
   return {};
 }
 
+std::string Report::outcome() const { return success() ? "succeeded" : "did not succeed"; }
+
 void Report::write_files(const Tick& tick) {
   if (folder_.empty()) return;
-  if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_);
+  if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_, lost_);
   const std::vector<report::Moment> moments = report::figure_rows(state_.album.moments);
-  if (scene_) report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_);
+  if (scene_) report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_, lost_);
   const std::string figure_error = draw_figure(tick, moments);  // the verdict is needed without a figure, too
   // mission.json is written last: its presence shows that the other files are complete.
-  report::replace_file(folder_ / "mission.json", mission_json(tick, figure_error));
+  const auto write_mission = [&] { report::replace_file(folder_ / "mission.json", mission_json(tick, figure_error)); };
+  if (!lost_.attempt(write_mission)) {
+    report::remove_worlds(folder_);  // so that there may be space
+    if (!lost_.attempt(write_mission)) log_.error("the mission {} {}", outcome(), failure());
+  }
   // If this process is killed before this line, the restarted process draws all pictures again. If it is killed while
   // it removes world states, their moments keep the pictures that it has drawn.
   report::remove_worlds(folder_);

@@ -39,7 +39,7 @@ std::shared_ptr<const msg::WorldState> read_world(const std::filesystem::path& f
 }
 
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
-                         const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m) {
+                         const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost) {
   std::unique_ptr<OverviewView> view;  // made for the first picture, because this compiles shaders
   for (const Moment& moment : moments) {
     const MomentFiles files(folder, moment);
@@ -47,7 +47,8 @@ void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<
     if (!world) continue;
     if (!view) view = std::make_unique<OverviewView>(scene, OverviewConfig{}, head_camera_m);
     const std::vector<std::uint8_t>& rgb = view->draw(*world);
-    replace_file(files.scene, encode_png(view->camera().width, view->camera().height, rgb.data()));
+    const std::string png = encode_png(view->camera().width, view->camera().height, rgb.data());
+    lost.attempt([&] { replace_file(files.scene, png); });
   }
 }
 

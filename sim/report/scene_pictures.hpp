@@ -13,7 +13,7 @@
 namespace constrictor::report {
 
 /// Writes a file with a world state and its SHA-256. The file is replaced as a whole, and equal world states give equal
-/// files.
+/// files. Throws NotWritten.
 void save_world(const std::filesystem::path& file, const msg::WorldState& world);
 
 /// Reads a file that save_world() wrote. Null if the file is missing or damaged.
@@ -21,10 +21,10 @@ void save_world(const std::filesystem::path& file, const msg::WorldState& world)
 
 /// Draws the picture of the scene (OverviewView with its default options) for each moment whose world state can be read
 /// and writes it into the snapshots of `folder`. A moment without a readable world state keeps the picture that it has:
-/// none, or the one that this process drew before it was killed and restarted. `head_camera_m`: [m] p_HC. Throws
-/// std::runtime_error if OpenGL fails or a picture cannot be written.
+/// none, or the one that this process drew before it was killed and restarted. `head_camera_m`: [m] p_HC. A
+/// picture that cannot be written is noted in `lost`. Throws std::runtime_error if OpenGL fails.
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
-                         const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m);
+                         const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost);
 
 /// Removes all world states from the snapshots of `folder`, also those of an earlier epoch or run.
 void remove_worlds(const std::filesystem::path& folder);

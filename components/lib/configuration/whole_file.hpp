@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -35,14 +33,14 @@ class NewFile {
 };
 
 /// Writes a file beside `file` and renames it, so that readers, also those after a loss of power, see either the old or
-/// the new content. Throws std::runtime_error.
+/// the new content. Throws std::system_error.
 inline void write_whole(const std::filesystem::path& file, std::string_view content) {
   NewFile whole(file);
   {
     std::ofstream stream(whole.part(), std::ios::binary);
     stream << content;
     if (!stream.flush())
-      throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+      throw std::system_error(errno, std::generic_category(), fmt::format("cannot write {}", file.string()));
   }
   whole.complete();
 }

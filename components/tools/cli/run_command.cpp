@@ -240,7 +240,7 @@ class Launcher {
     log_.say(fmt::format("mission {}: {:.1f} s simulated in {:.1f} s; {}",
                          verdict.success ? "succeeded" : "did not succeed (" + verdict.reason + ")", verdict.sim_time_s,
                          wall_time_s, (report_dir_ / "report.json").string()));
-    if (!verdict.truth.empty()) display_.print(verdict.truth);
+    for (const auto& notice : verdict.notices) display_.print(notice);
     return verdict.success ? exit_status::kOk : status;
   }
 

@@ -1,10 +1,13 @@
 #include "cli/run_report.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <system_error>
 
+#include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/text.hpp"
 
@@ -40,6 +43,14 @@ Json scheduling_of(const std::vector<std::string>& components, const RunView& vi
     if (found != view.components.end()) return std::string(text_of(found->second.scheduling));
   }
   return nullptr;
+}
+
+/// The files that the report component could not write, for people; empty: none.
+std::string unwritten_files(const Json& mission) {
+  const Json reasons = mission.value("files_not_written", Json::array());
+  if (!reasons.is_array() || reasons.empty() || !reasons.front().is_string()) return {};
+  const std::string more = reasons.size() > 1 ? fmt::format("; {} more", reasons.size() - 1) : "";
+  return "files are missing in the report: " + reasons.front().get<std::string>() + more;
 }
 
 RunVerdict judge(const RunOutcome& outcome, const RunView& view, const Json& mission) {
@@ -107,8 +118,9 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   if (truth.is_object()) {
     report["truth"] = truth;
     const std::string reason = truth.value("reason", std::string());
-    verdict.truth = truth.value("success", false) ? "in the emulated world, the mission has succeeded"
-                                                  : "in the emulated world, the mission has not succeeded: " + reason;
+    verdict.notices.push_back(truth.value("success", false)
+                                  ? "in the emulated world, the mission has succeeded"
+                                  : "in the emulated world, the mission has not succeeded: " + reason);
   }
   if (!hosts.is_null()) report["hosts"] = hosts;
   if (!outcome.recording.is_null()) report["recording"] = outcome.recording;
@@ -116,9 +128,13 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   for (const auto& [key, value] : mission.items()) {
     if (!report.contains(key)) report[key] = value;
   }
-  std::ofstream file(report_dir / "report.json");
-  file << json_text(report, 1) << "\n";
-  if (!file.flush()) throw std::runtime_error("cannot write " + (report_dir / "report.json").string());
+  // The verdict must be heard also if the disk is full.
+  if (const std::string files = unwritten_files(mission); !files.empty()) verdict.notices.push_back(files);
+  try {
+    write_whole(report_dir / "report.json", json_text(report, 1) + "\n");
+  } catch (const std::system_error& error) {
+    verdict.notices.push_back(std::string("there is no report: ") + error.what());
+  }
   return verdict;
 }
 

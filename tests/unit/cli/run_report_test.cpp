@@ -97,5 +97,18 @@ TEST_F(RunReport, HasAReasonEvenIfTheReportComponentGivesNone) {
   EXPECT_EQ(reason_of({"s", 1, 1.0, "", ""}), "the report component gave no reason");
 }
 
+// On a disk without space, the verdict is still heard.
+TEST_F(RunReport, FilesThatCouldNotBeWrittenChangeNoVerdict) {
+  write_mission(R"({"success": true, "files_not_written": ["cannot write a.png: No space", "cannot write b.png: x"]})");
+  EXPECT_EQ(write_report(dir_, {}, {}, {}).notices,
+            std::vector<std::string>{"files are missing in the report: cannot write a.png: No space; 1 more"});
+  fs::remove(dir_ / "report.json");
+  fs::create_directory(dir_ / "report.json");
+  const RunVerdict verdict = write_report(dir_, {}, {}, {});
+  EXPECT_TRUE(verdict.success);
+  ASSERT_EQ(verdict.notices.size(), 2u);
+  EXPECT_NE(verdict.notices.back().find("report.json"), std::string::npos) << verdict.notices.back();
+}
+
 }  // namespace
 }  // namespace constrictor::cli

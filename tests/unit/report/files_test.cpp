@@ -2,6 +2,8 @@
 #include "sim/report/files.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include "support/temporary_folder.hpp"
 
@@ -40,6 +42,32 @@ TEST(Journal, ReportsAFileThatWasCutOrRemoved) {
   EXPECT_THROW((void)journal.read(10), std::runtime_error);
 }
 
+// A limit of the size of files stands for a disk without space: a line is written in part, and then no more.
+TEST(Journal, EndsAtItsLastWholeLineIfTheDiskIsFull) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "a.csv";
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit limit{10, before.rlim_max};
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  std::uint64_t length = 0;
+  {
+    Journal journal(file);
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    journal.append("the 1st\n", length);
+    EXPECT_THROW(journal.append("the 2nd\n", length), NotWritten);
+    journal.append("the 3rd\n", length);  // would leave a gap
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    journal.append("the 4th\n", length);
+  }
+  ::signal(SIGXFSZ, handler);
+  EXPECT_EQ(length, 8U);
+  Journal restarted(file);
+  EXPECT_EQ(restarted.read(length), "the 1st\n");
+  restarted.append("the 5th\n", length);
+  EXPECT_EQ(folder.contents().at("a.csv"), "the 1st\nthe 5th\n");
+}
+
 TEST(Journal, DiscardsLinesWithoutAPath) {
   std::uint64_t length = 0;
   Journal journal{std::filesystem::path()};
@@ -55,6 +83,17 @@ TEST(ReplaceFile, LeavesNothingBesideIt) {
   const auto contents = folder.contents();
   EXPECT_EQ(contents.size(), 1U);
   EXPECT_EQ(contents.at("b/c.json"), "new");
+}
+
+TEST(LostFiles, AreNamedOnceAndTheRunGoesOn) {
+  const testing::TemporaryFolder folder;
+  replace_file(folder.path() / "b", "a file where a folder is needed");
+  LostFiles lost(Log("report"));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(lost.attempt([&] { replace_file(folder.path() / "b" / "c.png", "x"); }));
+  EXPECT_TRUE(lost.attempt([&] { replace_file(folder.path() / "d.png", "x"); }));
+  ASSERT_EQ(lost.reasons().size(), 1U);
+  EXPECT_EQ(lost.reasons().begin()->second,
+            "cannot write " + (folder.path() / "b/c.png").string() + ": Not a directory");
 }
 
 }  // namespace
