@@ -114,9 +114,18 @@ bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   return !curled;
 }
 
+// The head of a caught robot swings to and fro while it turns; the object in the U stays where it is.
 bool MissionPlanner::stands_still(const PlannerInputs& inputs) {
-  return inputs.pose && memory_.standstill.notice(inputs.pose->x_m, inputs.pose->y_m, memory_.active_s,
-                                                  config_.standstill_m, config_.standstill_s);
+  if (!inputs.pose) return false;
+  double x_m = inputs.pose->x_m, y_m = inputs.pose->y_m;
+  if (inputs.map) {
+    for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
+      if (!landmark.carried) continue;
+      x_m = landmark.x_m;
+      y_m = landmark.y_m;
+    }
+  }
+  return memory_.standstill.notice(x_m, y_m, memory_.active_s, config_.standstill_m, config_.standstill_s);
 }
 
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {

@@ -298,6 +298,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
       memory_.entered_s = memory_.active_s;
       return recover(memory_.state);
     }
+    if (holding() && stands_still(inputs)) return memory_.state;  // the next move leads away
     const bool exploring = memory_.search_task == msg::kTaskExplore;
     const double requested_for_s = memory_.active_s - memory_.requested_s;
     if (requested_for_s > scaled_s(exploring ? config_.explore_s : config_.rotate_s)) return memory_.state;

@@ -23,8 +23,9 @@ class Standstill {
   void begin() { since_s_ = -1.0; }
   /// The object is gone, and with it the moves that were to lead it away.
   void end() { moves_left_ = 0; }
-  /// Takes the head's place [m] in M and the time [s]. Returns whether the robot stands still: whether it has stayed
-  /// within `near_m` of one place for `after_s`. The next moves of a search then lead away.
+  /// Takes the place [m] in M of the held object, or of the head if the map has no held object, and the time [s].
+  /// Returns whether the robot stands still: whether it has stayed within `near_m` of one place for `after_s`. The next
+  /// moves of a search then lead away.
   bool notice(double x_m, double y_m, double now_s, double near_m, double after_s) {
     const bool away = std::hypot(x_m - x_m_, y_m - y_m_) > near_m;
     const bool still = moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s;
