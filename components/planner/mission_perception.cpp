@@ -56,31 +56,58 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
 
 // An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
-  bool any = false;
-  for (std::size_t i = 0; i < config_.sequence.size(); ++i)
-    any = any || (config_.sequence[i] == blob.colour && done(i));
-  if (!any) return false;
-  if (!inputs.pose || !inputs.map) return false;
+  if (!inputs.pose) return false;
   const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
-  const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
-  const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
-  const auto* zone = nearest_landmark(*inputs.map, blob.colour, msg::kBlobZone, x_m, y_m);
-  return zone && std::hypot(zone->x_m - x_m, zone->y_m - y_m) < config_.on_zone_m;
+  return is_delivered(blob.colour, inputs.pose->x_m + blob.range_m * std::cos(heading_rad),
+                      inputs.pose->y_m + blob.range_m * std::sin(heading_rad), inputs);
+}
+
+bool MissionPlanner::is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const {
+  bool any = false;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) any = any || (config_.sequence[i] == colour && done(i));
+  if (!any || !inputs.map) return false;
+  const auto* zone = nearest_landmark(*inputs.map, colour, msg::kBlobZone, x_m, y_m);
+  if (!zone) return false;
+  // If one of this colour was pushed off its zone, the border of the zone tells it from those that stand there.
+  double reach_m = config_.on_zone_m;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    if (config_.sequence[i] != colour || (memory_.displaced >> i & 1u) == 0) continue;
+    reach_m = std::min(reach_m, std::isfinite(zone->radius_m) ? zone->radius_m : config_.zone_radius_m);
+  }
+  return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < reach_m;
+}
+
+bool MissionPlanner::is_placed(const msg::MapObject& landmark, const PlannerInputs& inputs) const {
+  const bool placed = std::any_of(memory_.placed.begin(), memory_.placed.end(),
+                                  [&](const PlacedObject& object) { return object.handle == landmark.handle; });
+  return placed || is_delivered(landmark.colour, landmark.x_m, landmark.y_m, inputs);
+}
+
+// A delivered object of the same colour is not the one that is wanted, and would hold the robot at the zones.
+const msg::MapObject* MissionPlanner::wanted_landmark(const PlannerInputs& inputs) const {
+  if (!inputs.map || !inputs.pose || colour() == msg::kColourUnknown) return nullptr;
+  const std::uint8_t kind = holding() ? msg::kBlobZone : msg::kBlobObject;
+  const msg::MapObject* best = nullptr;
+  double best_m = std::numeric_limits<double>::infinity();
+  for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
+    if (landmark.kind != kind || landmark.colour != colour()) continue;
+    const double apart_m = std::hypot(landmark.x_m - inputs.pose->x_m, landmark.y_m - inputs.pose->y_m);
+    if (apart_m >= best_m || (kind == msg::kBlobObject && is_placed(landmark, inputs))) continue;
+    best = &landmark;
+    best_m = apart_m;
+  }
+  return best;
 }
 
 std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (inputs.map && searches() && colour() != msg::kColourUnknown) {
-    const auto* landmark =
-        nearest_landmark(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
-    if (landmark) {
-      const double dx_m = landmark->x_m - pose.x_m;
-      const double dy_m = landmark->y_m - pose.y_m;
-      const double distance_m = std::hypot(dx_m, dy_m);
-      if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
-        return wrap_angle(std::atan2(dy_m, dx_m) - course_rad(pose));
-    }
+  if (const msg::MapObject* landmark = searches() ? wanted_landmark(inputs) : nullptr) {
+    const double dx_m = landmark->x_m - pose.x_m;
+    const double dy_m = landmark->y_m - pose.y_m;
+    const double distance_m = std::hypot(dx_m, dy_m);
+    if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
+      return wrap_angle(std::atan2(dy_m, dx_m) - course_rad(pose));
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
   if (!heading_rad) return std::nullopt;
@@ -162,7 +189,11 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
         parameters.direction = memory_.side == msg::kDirectionLeft ? msg::kDirectionRight : msg::kDirectionLeft;
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
-      if (memory_.state == kInspect && inspects_again(inputs)) parameters.object_handle = memory_.dropped_handle;
+      if (memory_.state == kInspect && inspects_by_handle(inputs)) parameters.object_handle = memory_.dropped_handle;
+      if (memory_.state == kSearchObject && has_delivered_twin()) {
+        const msg::MapObject* landmark = wanted_landmark(inputs);
+        if (landmark && !refusals().rejected()) parameters.object_handle = landmark->handle;
+      }
       break;
   }
   return wanted;

@@ -159,16 +159,23 @@ class MissionPlanner {
   /// The verdict on a delivered object as the map shows it now; kUnseen if no image has shown it since.
   [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs) const;
   /// Before the mission ends: selects a delivered object for another look if the map is not certain that it is still on
-  /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop, and only
-  /// if the mission has no other object of its colour; `except`, which was delivered just now, is not. False if there
-  /// is no such object. To be called after choose_object(), which has forgotten failures.
+  /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop;
+  /// `except`, which was delivered just now, is not. Nor is an object without a handle whose colour another object of
+  /// the mission has. False if there is no such object. To be called after choose_object(), which has forgotten
+  /// failures.
   [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
-  /// Whether the object in question is one that was delivered before and that the map has.
-  [[nodiscard]] bool inspects_again(const PlannerInputs& inputs) const;
+  /// Whether the look must be at the landmark of the object in question, which the map has: it was delivered before, or
+  /// a delivered object of its colour is near.
+  [[nodiscard]] bool inspects_by_handle(const PlannerInputs& inputs) const;
   /// Counts a delivered object as undelivered again.
   void take_back(PlacedObjects::iterator gone);
   /// Whether all objects but the present one are delivered; false in a mission with one object.
   [[nodiscard]] bool at_last_object() const;
+  /// Handles of the delivered objects of the same colour as object `index` of the sequence, except its own. The map
+  /// tells objects of one colour apart by their places.
+  [[nodiscard]] std::vector<std::uint16_t> twins(std::uint16_t index) const;
+  /// Whether another object of the present object's colour is delivered.
+  [[nodiscard]] bool has_delivered_twin() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
   /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
   /// delivered unless the map shows them outside their zone.
@@ -202,6 +209,13 @@ class MissionPlanner {
   /// Whether entry `i` of the sequence is delivered.
   [[nodiscard]] bool done(std::size_t i) const { return (memory_.delivered >> i & 1u) != 0; }
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
+  /// The same for an object of this colour at a place in M.
+  [[nodiscard]] bool is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const;
+  /// Whether this landmark is a delivered object.
+  [[nodiscard]] bool is_placed(const msg::MapObject& landmark, const PlannerInputs& inputs) const;
+  /// The nearest landmark of the zone for a robot with an object, otherwise of the object, that is not delivered yet;
+  /// null: the map has none.
+  [[nodiscard]] const msg::MapObject* wanted_landmark(const PlannerInputs& inputs) const;
   /// Whether the robot faces the direction along the line that the state wants. True if the direction is unknown.
   [[nodiscard]] bool leads_wanted_way(const PlannerInputs& inputs) const;
   /// Whether the visible line leads a robot without an object over new ground.
