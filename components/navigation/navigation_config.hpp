@@ -39,6 +39,9 @@ struct GripConfig : ParameterSet {
           "The same without contact sensors: an object in the U keeps the base at its torque limit");
   double hold_torque_nm = add(hold_torque_nm, "hold_torque_nm", 1.5, "Nm", bounds::kTorque, kAtStart,
                               "Maximum torque of the base joints while the robot carries an object");
+  double wide_hold_torque_nm =
+      add(wide_hold_torque_nm, "wide_hold_torque_nm", 3.0, "Nm", bounds::kTorque, kAtStart,
+          "The same for a large object, which keeps the base open: the arms have a longer lever");
   double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
                               "Mean closing torque of the base below which a held object may be lost");
   double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,
