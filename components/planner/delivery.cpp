@@ -25,7 +25,7 @@ DeliveryView view_of(const msg::FieldMap& map, const msg::MapObject& object, con
                      double seen_sd_m, double zone_radius_m) {
   constexpr double kClearly = 3.0;  // standard deviations
   DeliveryView view{Delivery::kUnseen, false, std::numeric_limits<double>::quiet_NaN(), zone_radius_m, object.handle};
-  const msg::MapObject* zone = nearest_landmark(map, object.colour, msg::kBlobZone, object.x_m, object.y_m);
+  const msg::MapObject* zone = zone_of(map, object.colour);
   if (!zone) return view;
   view.offset_m = std::hypot(zone->x_m - object.x_m, zone->y_m - object.y_m);
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;

@@ -15,7 +15,7 @@ enum class Delivery : std::uint8_t {
   kOutside,
 };
 
-/// A dropped object and the nearest zone of its colour.
+/// A dropped object and the zone of its colour.
 struct DeliveryView {
   Delivery verdict = Delivery::kUnseen;
   bool precise = false;      ///< the standard deviation of the object's place is at most `seen_sd_m`
@@ -39,7 +39,7 @@ struct DroppedObject {
   std::vector<std::uint16_t> others{};  ///< handles of other objects of this colour, which it is not
 };
 
-/// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
+/// Compares the object's place with the zone of its colour. It counts as seen if an image after the release
 /// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
 /// an object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
 /// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.

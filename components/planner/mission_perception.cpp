@@ -37,8 +37,9 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
     return wanted != msg::kColourUnknown && blob.colour == wanted && blob.kind == msg::kBlobObject &&
            !is_delivered(blob, inputs);
   });
-  const auto* zone = nearest(
-      *inputs.objects, [&](const msg::Blob& blob) { return blob.colour == wanted && blob.kind == msg::kBlobZone; });
+  const auto* zone = nearest(*inputs.objects, [&](const msg::Blob& blob) {
+    return blob.colour == wanted && blob.kind == msg::kBlobZone && is_zone(blob, inputs);
+  });
   const auto* any_zone = nearest(*inputs.objects, [](const msg::Blob& blob) { return blob.kind == msg::kBlobZone; });
   count(memory_.object_images, object && object->range_m <= config_.object_range_m);
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
@@ -54,6 +55,18 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   }
 }
 
+// An object that lies on its side may look like a zone. The range of a blob leads to its near edge.
+bool MissionPlanner::is_zone(const msg::Blob& blob, const PlannerInputs& inputs) const {
+  constexpr double kAnother_m = 1.0;
+  const msg::MapObject* zone = inputs.map && inputs.pose ? zone_of(*inputs.map, blob.colour) : nullptr;
+  if (!zone) return true;
+  const double sd_m = std::sqrt(std::max(inputs.pose->covariance[0], inputs.pose->covariance[4]));
+  const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
+  const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
+  const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
+  return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < kAnother_m + 3.0 * sd_m;
+}
+
 // An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
   if (!inputs.pose) return false;
@@ -66,7 +79,7 @@ bool MissionPlanner::is_delivered(std::uint8_t colour, double x_m, double y_m, c
   bool any = false;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) any = any || (config_.sequence[i] == colour && done(i));
   if (!any || !inputs.map) return false;
-  const auto* zone = nearest_landmark(*inputs.map, colour, msg::kBlobZone, x_m, y_m);
+  const auto* zone = zone_of(*inputs.map, colour);
   if (!zone) return false;
   // If one of this colour was pushed off its zone, the border of the zone tells it from those that stand there.
   double reach_m = config_.on_zone_m;

@@ -208,6 +208,9 @@ class MissionPlanner {
   void count_percepts(const PlannerInputs& inputs);
   /// Whether entry `i` of the sequence is delivered.
   [[nodiscard]] bool done(std::size_t i) const { return (memory_.delivered >> i & 1u) != 0; }
+  /// Whether a blob that looks like a zone may be the zone of its colour: it is near the one of the map, if there is
+  /// one.
+  [[nodiscard]] bool is_zone(const msg::Blob& blob, const PlannerInputs& inputs) const;
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
   /// The same for an object of this colour at a place in M.
   [[nodiscard]] bool is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const;
