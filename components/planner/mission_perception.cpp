@@ -99,28 +99,32 @@ bool MissionPlanner::is_placed(const msg::MapObject& landmark, const PlannerInpu
 // A delivered object of the same colour is not the one that is wanted, and would hold the robot at the zones.
 const msg::MapObject* MissionPlanner::wanted_landmark(const PlannerInputs& inputs) const {
   if (!inputs.map || !inputs.pose || colour() == msg::kColourUnknown) return nullptr;
-  const std::uint8_t kind = holding() ? msg::kBlobZone : msg::kBlobObject;
+  if (holding()) return zone_of(*inputs.map, colour());
   const msg::MapObject* best = nullptr;
   double best_m = std::numeric_limits<double>::infinity();
   for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
-    if (landmark.kind != kind || landmark.colour != colour()) continue;
+    if (landmark.kind != msg::kBlobObject || landmark.colour != colour()) continue;
     const double apart_m = std::hypot(landmark.x_m - inputs.pose->x_m, landmark.y_m - inputs.pose->y_m);
-    if (apart_m >= best_m || (kind == msg::kBlobObject && is_placed(landmark, inputs))) continue;
+    if (apart_m >= best_m || is_placed(landmark, inputs)) continue;
     best = &landmark;
     best_m = apart_m;
   }
   return best;
 }
 
+double MissionPlanner::remembered_m(const PlannerInputs& inputs) const {
+  const msg::MapObject* landmark = wanted_landmark(inputs);
+  if (!landmark) return std::numeric_limits<double>::infinity();
+  return std::hypot(landmark->x_m - inputs.pose->x_m, landmark->y_m - inputs.pose->y_m);
+}
+
 std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (const msg::MapObject* landmark = searches() ? wanted_landmark(inputs) : nullptr) {
-    const double dx_m = landmark->x_m - pose.x_m;
-    const double dy_m = landmark->y_m - pose.y_m;
-    const double distance_m = std::hypot(dx_m, dy_m);
-    if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
-      return wrap_angle(std::atan2(dy_m, dx_m) - course_rad(pose));
+  const double distance_m = searches() ? remembered_m(inputs) : std::numeric_limits<double>::infinity();
+  if (distance_m > 0.3 && distance_m < config_.remembered_range_m) {
+    const msg::MapObject* landmark = wanted_landmark(inputs);
+    return wrap_angle(std::atan2(landmark->y_m - pose.y_m, landmark->x_m - pose.x_m) - course_rad(pose));
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
   if (!heading_rad) return std::nullopt;
@@ -235,6 +239,9 @@ Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) cons
   constexpr double kAhead_rad = 0.25;
   constexpr double kBend_rad = 0.7;  // for larger angles, turning on the spot is faster
   const std::uint8_t side = side_for(turn_rad, inputs);
+  // With an object the robot turns in a circle: a zone inside of it would stay beside the robot for ever.
+  if (std::abs(turn_rad) > kBend_rad && holding() && remembered_m(inputs) < config_.turning_room_m)
+    return {msg::kTaskExplore, msg::kDirectionForwards};
   if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
   return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
 }

@@ -70,6 +70,7 @@ struct MissionMemory {
   double requested_s = 0.0;      ///< active time of the request
   double contradiction_s = 0.0;  ///< time for which navigation's report about a held object has contradicted the state
   double line_ended_s = -1e9;    ///< active time of the last end of the line
+  double turned_back_s = -1e9;   ///< active time at which turning back to the line last ended without success
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
   std::uint16_t object_index = 0;  ///< the first object of the sequence that is neither delivered nor put aside
@@ -112,7 +113,7 @@ struct MissionMemory {
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
             placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way,
-            rechecked);
+            rechecked, turned_back_s);
   }
 };
 
@@ -227,6 +228,8 @@ class MissionPlanner {
   [[nodiscard]] double course_rad(const msg::RobotPose& pose) const {
     return holding() ? pose.yaw_rad : pose.body_yaw_rad;
   }
+  /// [m] from the head to wanted_landmark(); infinite if the map has none.
+  [[nodiscard]] double remembered_m(const PlannerInputs& inputs) const;
   /// [rad] turn, positive left, after which the course leads to the remembered object or zone, or along the line in the
   /// wanted direction; empty: none of them is remembered.
   [[nodiscard]] std::optional<double> wanted_turn_rad(const PlannerInputs& inputs) const;
