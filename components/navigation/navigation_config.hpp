@@ -224,6 +224,8 @@ struct DropConfig : NavigationSection {
                             "The course over the zone stays fixed when the object is nearer to its centre");
   double brake_m = add(brake_m, "brake_m", 0.02, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
+  double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
+                      "Distance to another object on the zone before which the object is let go");
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the course this far ahead");
   double crab_filter_s = add(crab_filter_s, "crab_filter_s", 4.0, "s", {0.02, 600.0}, kWhileRunning,

@@ -1,4 +1,4 @@
-// drop while it backs off from the object that it has let go, with a body that has slid aside, as it does on a slope.
+// drop: where it lets the object go, and how it backs off with a body that has slid aside, as it does on a slope.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,12 @@ namespace {
 constexpr double kBacking_m_s = 0.15;
 constexpr double kDropped_m = 0.085;  // radius of the object
 
-/// A U that lets its object go at the origin of M, with its mouth along x, and backs off along x, beside this axis.
-class BackingOff {
+/// A U whose mouth points along x. It lets its object go at the origin of M, and backs off along x, beside this axis.
+class DropRun {
  public:
   /// `side`: +1 if the head's part of the body has the object to its left. `aside_m`: mean place of the U along y while
   /// it backs off. `sway_m`: by which it sways about that place with the gait.
-  BackingOff(double side, double aside_m, double sway_m) : aside_m_(aside_m), sway_m_(sway_m) {
+  DropRun(double side, double aside_m, double sway_m) : aside_m_(aside_m), sway_m_(sway_m) {
     grip_.carrying = true;
     grip_.side = side;
     grip_.radius_m = kDropped_m;
@@ -34,6 +35,26 @@ class BackingOff {
     task_->start(input(), grip_);
   }
 
+  /// [m] Drives along x to the zone, which is 1 m ahead and has a radius of 0.5 m, and returns how far the object is
+  /// from its centre when it is let go, positive beyond it. `other_m`: place along x of another object, from the
+  /// centre.
+  double let_go_m(std::optional<double> other_m) {
+    Sighting& zone = sightings_.zones[msg::kColourGreen];
+    zone.x_m = 1.0;
+    zone.radius_m = 0.5;
+    task_->start(input(), grip_);
+    if (other_m) {
+      map_.object_count = 1;
+      map_.objects[0].handle = 9;
+      map_.objects[0].x_m = 1.0 + *other_m;
+      map_.objects[0].radius_m = kDropped_m;
+    }
+    while (phase_ != "stop" && tick_.index < 2000) {
+      X_MU_.p.x() += kBacking_m_s * tick_.period_s();
+      step();
+    }
+    return X_MU_.p.x() - 1.0;
+  }
   /// Runs until the robot has backed off.
   void run() {
     while (phase_ != "straighten" && tick_.index < 2000) step();
@@ -53,8 +74,8 @@ class BackingOff {
   [[nodiscard]] TaskInput input() const {
     msg::TaskParameters parameters{};
     parameters.drop_zone_colour = msg::kColourGreen;
-    return {tick_,      robot_,  config_, sense_, parameters, head(), nullptr, false,
-            sightings_, nullptr, joints_, body_,  touches_,   true,   true};
+    return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
+            sightings_, &map_,  joints_, body_,  touches_,   true,   true};
   }
   void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
     const std::vector<std::size_t> yaw = robot_.yaw_joints();
@@ -89,6 +110,7 @@ class BackingOff {
   Tick tick_;
   Grip grip_;
   ObjectTrackerState sightings_;
+  msg::FieldMap map_{};
   msg::JointState joints_{};
   std::vector<PlanarPose> body_;
   const std::vector<Touch> touches_;
@@ -97,9 +119,18 @@ class BackingOff {
   std::string phase_;
 };
 
+// The robot pushed the first object off the zone when it brought the second one of the same colour to the centre.
+TEST(Drop, TheObjectIsLetGoBeforeAnotherOneThatStandsOnTheZone) {
+  const double brake_m = NavigationConfig().drop.brake_m, room_m = NavigationConfig().drop.room_m;
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m({}), -brake_m, 0.02);
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(0.05), 0.05 - 2.0 * kDropped_m - room_m - brake_m, 0.02);
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(-0.1), -0.25 - brake_m, 0.02) << "well inside the zone";
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(0.4), -brake_m, 0.02) << "not in the way";
+}
+
 TEST(Drop, TheArmsStayStraightWhileTheObjectIsInTheMiddle) {
   for (const double side : {1.0, -1.0}) {
-    BackingOff level(side, 0.0, 0.03);  // the sway of the gait does not bend them
+    DropRun level(side, 0.0, 0.03);  // the sway of the gait does not bend them
     level.run();
     ASSERT_EQ(level.phase(), "straighten");
     EXPECT_NEAR(level.most_1_m(), 0.0, 0.03) << side;
@@ -112,7 +143,7 @@ TEST(Drop, WhenTheBodySlidesAsideTheArmsBendTowardsTheObject) {
   for (const double side : {1.0, -1.0}) {
     double least_1_m = 0.0;
     for (const double aside_m : {0.02, 0.05, 0.1}) {
-      BackingOff left(side, aside_m, 0.02), right(side, -aside_m, 0.02);
+      DropRun left(side, aside_m, 0.02), right(side, -aside_m, 0.02);
       left.run();
       right.run();
       ASSERT_EQ(left.phase(), "straighten");
@@ -126,7 +157,7 @@ TEST(Drop, WhenTheBodySlidesAsideTheArmsBendTowardsTheObject) {
 }
 
 TEST(Drop, TheArmsDoNotBendBeyondTheLimit) {
-  BackingOff far(1.0, 1.0, 0.0);
+  DropRun far(1.0, 1.0, 0.0);
   far.run();
   EXPECT_EQ(far.least_1_m(), -NavigationConfig().drop.back_steering.limit);
 }
