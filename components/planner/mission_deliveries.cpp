@@ -158,8 +158,7 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
 }
 
 bool MissionPlanner::inspects_by_handle(const PlannerInputs& inputs) const {
-  const bool again = (memory_.rechecked >> memory_.object_index & 1u) != 0;
-  if (!inputs.map || !(again || has_delivered_twin())) return false;
+  if ((memory_.rechecked >> memory_.object_index & 1u) == 0 || !inputs.map) return false;
   const auto landmarks = landmarks_of(*inputs.map);
   return std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
     return landmark.kind == msg::kBlobObject && landmark.handle == memory_.dropped_handle;

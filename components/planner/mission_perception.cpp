@@ -208,8 +208,12 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       parameters.object_handle = memory_.object_handle;
       if (memory_.state == kInspect && inspects_by_handle(inputs)) parameters.object_handle = memory_.dropped_handle;
       if (memory_.state == kSearchObject && has_delivered_twin()) {
+        // Of two objects of one colour side by side, the search sees only the nearer one: it may be either.
         const msg::MapObject* landmark = wanted_landmark(inputs);
-        if (landmark && !refusals().rejected()) parameters.object_handle = landmark->handle;
+        const msg::MapObject* zone = landmark ? zone_of(*inputs.map, landmark->colour) : nullptr;
+        const bool alone =
+            zone && std::hypot(zone->x_m - landmark->x_m, zone->y_m - landmark->y_m) > 2.0 * config_.on_zone_m;
+        if (alone && !refusals().rejected()) parameters.object_handle = landmark->handle;
       }
       break;
   }

@@ -165,8 +165,7 @@ class MissionPlanner {
   /// the mission has. False if there is no such object. To be called after choose_object(), which has forgotten
   /// failures.
   [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
-  /// Whether the look must be at the landmark of the object in question, which the map has: it was delivered before, or
-  /// a delivered object of its colour is near.
+  /// Whether the look must be at the landmark of the object in question: it was delivered before, and the map has it.
   [[nodiscard]] bool inspects_by_handle(const PlannerInputs& inputs) const;
   /// Counts a delivered object as undelivered again.
   void take_back(PlacedObjects::iterator gone);
