@@ -66,7 +66,7 @@ struct PlannerConfig : ParameterSet {
                               "With an object, the robot turns to a zone that is at least this far away");
   double standstill_m = add(standstill_m, "standstill_m", 0.3, "m", {0.05, 100}, kAtStart,
                             "A robot with an object stands still while the object stays this near to one place");
-  double standstill_s = add(standstill_s, "standstill_s", 15.0, "s", {1, 3600}, kAtStart,
+  double standstill_s = add(standstill_s, "standstill_s", 30.0, "s", {1, 3600}, kAtStart,
                             "After this time a search leads the robot away: backwards, round, and forwards");
   double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, kAtStart,
                            "The planner ignores the line for this time after its end");

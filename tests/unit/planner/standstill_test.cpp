@@ -63,6 +63,7 @@ TEST_F(StandstillTest, AnotherSearchBeginsAnew) {
 // The end of a wall stood between the arms of the U. The head swung by a metre while the robot turned to and fro, and
 // no move led the robot away for 100 s.
 TEST_F(PlannerTest, ARobotIsCaughtWhenItsObjectStaysWhileTheHeadSwings) {
+  config_.standstill_s = 15.0;
   find_line();
   fetch(msg::kColourGreen);
   map_dropped(msg::kColourGreen, 0.5);
