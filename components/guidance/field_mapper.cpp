@@ -113,7 +113,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
   noise *= config_.inflation;
 
   std::size_t best = state_.landmarks.size(), nearest = best;
-  double best_distance2 = config_.gate, nearest_m = config_.merge_m;
+  double best_cost = std::numeric_limits<double>::infinity(), nearest_m = config_.merge_m;
   const Eigen::Vector2d p_M = to_parent(filter_.pose(), z);
   for (std::size_t i = 0; i < state_.landmarks.size(); ++i) {
     const Landmark& landmark = state_.landmarks[i];
@@ -124,10 +124,12 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
       continue;
     }
     if (used[i] || landmark.slot < 0) continue;
-    const double d2 = filter_.distance2(static_cast<std::size_t>(landmark.slot), z, noise);
-    if (d2 < best_distance2) {
+    // Of two landmarks in whose gate the percept lies, the likelier one is it: the distance alone would prefer a
+    // landmark whose place is uncertain to one that stands exactly there.
+    const auto [distance2, log_spread] = filter_.match(static_cast<std::size_t>(landmark.slot), z, noise);
+    if (distance2 < config_.gate && distance2 + log_spread < best_cost) {
       best = i;
-      best_distance2 = d2;
+      best_cost = distance2 + log_spread;
     }
     if (apart_m < nearest_m) {
       nearest = i;

@@ -45,13 +45,14 @@ void PoseFilter::observation(std::size_t index, Matrix& H, Eigen::Vector2d& expe
   H.block<2, 2>(0, static_cast<Eigen::Index>(3 + 2 * index)) = R_t;
 }
 
-double PoseFilter::distance2(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const {
+PoseFilter::Match PoseFilter::match(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const {
   Matrix H;
   Eigen::Vector2d expected;
   observation(index, H, expected);
   const Eigen::Matrix2d S = H * covariance() * H.transpose() + noise;
   const Eigen::Vector2d innovation = z_m - expected;
-  return innovation.dot(S.ldlt().solve(innovation));
+  const auto factors = S.ldlt();
+  return {innovation.dot(factors.solve(innovation)), factors.vectorD().array().log().sum()};
 }
 
 void PoseFilter::observe(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) {

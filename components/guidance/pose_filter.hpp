@@ -41,8 +41,13 @@ class PoseFilter {
   /// Motion `step_m` in the head's frame, turn `turn_rad`; `noise` is their covariance.
   void predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise);
 
-  /// Squared Mahalanobis distance of a landmark seen at `z_m` in the head's frame.
-  [[nodiscard]] double distance2(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const;
+  /// Whether a percept at `z_m` in the head's frame shows this landmark: the squared Mahalanobis distance, and the
+  /// natural logarithm of the determinant of the innovation's covariance [m4]. The landmark with the least sum is the
+  /// likeliest one.
+  struct Match {
+    double distance2, log_spread;
+  };
+  [[nodiscard]] Match match(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise) const;
   void observe(std::size_t index, const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);
   /// Adds a landmark at `z_m` in the head's frame. Its number is the previous landmark_count().
   void add(const Eigen::Vector2d& z_m, const Eigen::Matrix2d& noise);

@@ -110,16 +110,18 @@ Eigen::Vector2d GripSense::held_place_H(const Grip& grip, bool feels) const {
 std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip,
                                                           bool feels) const {
   const double side = grip.side;
-  const double open_rad = open_angle_rad(grip.radius_m);
   std::array<double, msg::kMaxJoints> shape{};
-  double closed_rad = 0.0;
+  double closed_rad = 0.0;  // beyond the U with parallel arms
   for (int i = 0; i < config_.base_joints; ++i) {
     const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
     shape[k] = joints.position_rad[yaw_joints_[k]] + side * margin_rad(feels);
-    closed_rad += shape[k] - side * open_rad;
+    closed_rad += shape[k] - side * config_.base_angle_rad;
   }
-  // The joints beside the base keep the angle to which the squeeze has opened them, so that the arms are parallel.
-  const double beside_rad = 0.5 * config_.opening_share * closed_rad;
+  // The joints beside the base keep the angle to which the squeeze has opened them. A large object has kept the base
+  // from closing so far: then they close by what is missing, because arms that are not parallel drive the U askew, and
+  // their thrust opens the base further.
+  const double share = side * closed_rad > 0.0 ? config_.opening_share : 1.0;
+  const double beside_rad = 0.5 * share * closed_rad;
   const auto first = static_cast<std::size_t>(config_.base_first_joint);
   const std::size_t after = first + base_joints_.size();
   if (first > 0) shape[first - 1] = -beside_rad;
@@ -128,7 +130,11 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
 }
 
 void GripSense::hold_starts(Grip& grip) const {
-  grip.hold_torque_nm = config_.hold_torque_nm;
+  double closed_rad = 0.0;  // beyond the U with parallel arms
+  for (int i = 0; i < config_.base_joints; ++i)
+    closed_rad +=
+        grip.side * grip.shape_rad[static_cast<std::size_t>(config_.base_first_joint + i)] - config_.base_angle_rad;
+  grip.hold_torque_nm = closed_rad < 0.0 ? config_.wide_hold_torque_nm : config_.hold_torque_nm;
   grip.torque_nm = config_.hold_torque_nm;
   grip.contact_share = 1.0;
   grip.below_s = 0.0;

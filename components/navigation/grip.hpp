@@ -69,7 +69,8 @@ class GripSense {
   /// closing by the margin of hold_shape.
   [[nodiscard]] Eigen::Vector2d held_place_H(const Grip& grip, bool feels) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with each joint of the base closed by a margin
-  /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object.
+  /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object. If the
+  /// object keeps the base open, the joints beside it close until the arms are parallel.
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
                                                                bool feels) const;
 
@@ -77,7 +78,7 @@ class GripSense {
   /// or the torque alone if the robot feels no touches.
   bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
             Grip& grip) const;
-  /// Resets the loss monitor at the beginning of a grasp.
+  /// Resets the loss monitor at the beginning of a grasp, and chooses the torque that holds the posture of the grip.
   void hold_starts(Grip& grip) const;
 
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }

@@ -39,6 +39,9 @@ struct GripConfig : ParameterSet {
           "The same without contact sensors: an object in the U keeps the base at its torque limit");
   double hold_torque_nm = add(hold_torque_nm, "hold_torque_nm", 1.5, "Nm", bounds::kTorque, kAtStart,
                               "Maximum torque of the base joints while the robot carries an object");
+  double wide_hold_torque_nm =
+      add(wide_hold_torque_nm, "wide_hold_torque_nm", 3.0, "Nm", bounds::kTorque, kAtStart,
+          "The same for a large object, which keeps the base open: the arms have a longer lever");
   double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
                               "Mean closing torque of the base below which a held object may be lost");
   double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,
@@ -221,6 +224,8 @@ struct DropConfig : NavigationSection {
                             "The course over the zone stays fixed when the object is nearer to its centre");
   double brake_m = add(brake_m, "brake_m", 0.02, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
+  double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
+                      "Distance to another object on the zone before which the object is let go");
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
                            "The robot steers towards the point of the course this far ahead");
   double crab_filter_s = add(crab_filter_s, "crab_filter_s", 4.0, "s", {0.02, 600.0}, kWhileRunning,

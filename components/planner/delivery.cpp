@@ -14,6 +14,7 @@ constexpr std::int64_t kReleaseTicks = 25;
 
 bool may_be(const msg::MapObject& landmark, const DroppedObject& dropped) {
   if (landmark.kind != msg::kBlobObject || landmark.colour != dropped.colour || landmark.carried) return false;
+  if (std::find(dropped.others.begin(), dropped.others.end(), landmark.handle) != dropped.others.end()) return false;
   const bool same = dropped.handle == 0 || landmark.handle == dropped.handle ||
                     landmark.handle > std::max(dropped.newest_handle, dropped.handle);
   return same && landmark.last_seen_tick > dropped.released_tick + kReleaseTicks;
@@ -23,8 +24,8 @@ bool may_be(const msg::MapObject& landmark, const DroppedObject& dropped) {
 DeliveryView view_of(const msg::FieldMap& map, const msg::MapObject& object, const DroppedObject& dropped,
                      double seen_sd_m, double zone_radius_m) {
   constexpr double kClearly = 3.0;  // standard deviations
-  DeliveryView view{Delivery::kUnseen, false, std::numeric_limits<double>::quiet_NaN(), zone_radius_m};
-  const msg::MapObject* zone = nearest_landmark(map, object.colour, msg::kBlobZone, object.x_m, object.y_m);
+  DeliveryView view{Delivery::kUnseen, false, std::numeric_limits<double>::quiet_NaN(), zone_radius_m, object.handle};
+  const msg::MapObject* zone = zone_of(map, object.colour);
   if (!zone) return view;
   view.offset_m = std::hypot(zone->x_m - object.x_m, zone->y_m - object.y_m);
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;

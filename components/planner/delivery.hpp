@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "constrictor/messages.hpp"
 
@@ -14,12 +15,13 @@ enum class Delivery : std::uint8_t {
   kOutside,
 };
 
-/// A dropped object and the nearest zone of its colour.
+/// A dropped object and the zone of its colour.
 struct DeliveryView {
   Delivery verdict = Delivery::kUnseen;
-  bool precise = false;   ///< the standard deviation of the object's place is at most `seen_sd_m`
-  double offset_m = 0.0;  ///< between the centres of object and zone; NaN: one of them is not in the map
-  double radius_m = 0.0;  ///< of the zone
+  bool precise = false;      ///< the standard deviation of the object's place is at most `seen_sd_m`
+  double offset_m = 0.0;     ///< between the centres of object and zone; NaN: one of them is not in the map
+  double radius_m = 0.0;     ///< of the zone
+  std::uint16_t handle = 0;  ///< of the object's landmark; 0: none was seen
 };
 
 /// Which object was dropped, and what counts as having seen it.
@@ -34,9 +36,10 @@ struct DroppedObject {
   /// be the object and whose verdict is certain, the one that was seen last counts. The verdict on a landmark that is
   /// outside of its zone by three standard deviations is certain, even if its place is imprecise.
   bool may_have_moved = false;
+  std::vector<std::uint16_t> others{};  ///< handles of other objects of this colour, which it is not
 };
 
-/// Compares the object's place with the nearest zone of its colour. It counts as seen if an image after the release
+/// Compares the object's place with the zone of its colour. It counts as seen if an image after the release
 /// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
 /// an object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
 /// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.

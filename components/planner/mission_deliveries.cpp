@@ -14,8 +14,26 @@ using enum MissionState;
 
 DeliveryView MissionPlanner::dropped_object(const PlannerInputs& inputs) const {
   if (!inputs.map) return {};
-  const DroppedObject dropped{colour(), memory_.dropped_handle, memory_.newest_handle, memory_.released_tick};
+  const DroppedObject dropped{colour(), memory_.dropped_handle,     memory_.newest_handle, memory_.released_tick,
+                              false,    twins(memory_.object_index)};
   return view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
+}
+
+std::vector<std::uint16_t> MissionPlanner::twins(std::uint16_t index) const {
+  std::vector<std::uint16_t> handles;
+  if (index >= config_.sequence.size()) return handles;
+  for (const PlacedObject& object : memory_.placed) {
+    const bool alike = config_.sequence.at(object.index) == config_.sequence.at(index);
+    if (alike && object.index != index && object.handle != 0) handles.push_back(object.handle);
+  }
+  return handles;
+}
+
+bool MissionPlanner::has_delivered_twin() const {
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    if (i != memory_.object_index && config_.sequence[i] == colour() && done(i)) return true;
+  }
+  return false;
 }
 
 void MissionPlanner::note_drops(const PlannerInputs& inputs) {
@@ -67,7 +85,9 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.delivered |= std::uint32_t{1} << memory_.object_index;
   memory_.displaced &= ~memory_.delivered;
   const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
-  memory_.placed.push_back({memory_.object_index, memory_.dropped_handle, newest, inputs.tick, 0.0});
+  const std::uint16_t seen = dropped_object(inputs).handle;  // the map may have given the object a new handle
+  const std::uint16_t handle = seen != 0 ? seen : memory_.dropped_handle;
+  memory_.placed.push_back({memory_.object_index, handle, newest, inputs.tick, 0.0});
   memory_.dropped = false;
   memory_.released_tick = -1;
   const std::uint16_t last = memory_.object_index;
@@ -100,8 +120,10 @@ DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const Pla
   bool all = true;  // all objects of this colour are delivered: an object that appears now is one of them
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
   constexpr std::uint16_t kNoOther = std::numeric_limits<std::uint16_t>::max();
-  if (!inputs.map || (!all && object.handle == 0)) return {};
-  const DroppedObject dropped{colour, object.handle, all ? object.newest_handle : kNoOther, object.tick, true};
+  const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), colour);
+  if (!inputs.map || (object.handle == 0 && (!all || alike > 1))) return {};
+  const DroppedObject dropped{colour,      object.handle, all ? object.newest_handle : kNoOther,
+                              object.tick, true,          twins(object.index)};
   const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
   return view.offset_m < kNear_m ? view : DeliveryView{};
 }
@@ -109,9 +131,9 @@ DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const Pla
 bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except) {
   const auto doubtful = [&](const PlacedObject& object) {
     if (object.index == except || (memory_.rechecked >> object.index & 1u) != 0 || !inputs.map) return false;
-    // Of two objects of one colour, the map may have taken one for the other: a look proves nothing.
+    // Without a handle, another object of its colour may be taken for it: a look proves nothing.
     const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), config_.sequence[object.index]);
-    if (alike > 1) return false;
+    if (alike > 1 && object.handle == 0) return false;
     const auto landmarks = landmarks_of(*inputs.map);
     const bool touched = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
       return object.handle != 0 && landmark.handle == object.handle && landmark.sd_m > config_.seen_sd_m;
@@ -135,7 +157,7 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
   return true;
 }
 
-bool MissionPlanner::inspects_again(const PlannerInputs& inputs) const {
+bool MissionPlanner::inspects_by_handle(const PlannerInputs& inputs) const {
   if ((memory_.rechecked >> memory_.object_index & 1u) == 0 || !inputs.map) return false;
   const auto landmarks = landmarks_of(*inputs.map);
   return std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {

@@ -37,8 +37,9 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
     return wanted != msg::kColourUnknown && blob.colour == wanted && blob.kind == msg::kBlobObject &&
            !is_delivered(blob, inputs);
   });
-  const auto* zone = nearest(
-      *inputs.objects, [&](const msg::Blob& blob) { return blob.colour == wanted && blob.kind == msg::kBlobZone; });
+  const auto* zone = nearest(*inputs.objects, [&](const msg::Blob& blob) {
+    return blob.colour == wanted && blob.kind == msg::kBlobZone && is_zone(blob, inputs);
+  });
   const auto* any_zone = nearest(*inputs.objects, [](const msg::Blob& blob) { return blob.kind == msg::kBlobZone; });
   count(memory_.object_images, object && object->range_m <= config_.object_range_m);
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
@@ -54,33 +55,76 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   }
 }
 
-// An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
-bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
-  bool any = false;
-  for (std::size_t i = 0; i < config_.sequence.size(); ++i)
-    any = any || (config_.sequence[i] == blob.colour && done(i));
-  if (!any) return false;
-  if (!inputs.pose || !inputs.map) return false;
+// An object that lies on its side may look like a zone. The range of a blob leads to its near edge.
+bool MissionPlanner::is_zone(const msg::Blob& blob, const PlannerInputs& inputs) const {
+  constexpr double kAnother_m = 1.0;
+  const msg::MapObject* zone = inputs.map && inputs.pose ? zone_of(*inputs.map, blob.colour) : nullptr;
+  if (!zone) return true;
+  const double sd_m = std::sqrt(std::max(inputs.pose->covariance[0], inputs.pose->covariance[4]));
   const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
   const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
   const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
-  const auto* zone = nearest_landmark(*inputs.map, blob.colour, msg::kBlobZone, x_m, y_m);
-  return zone && std::hypot(zone->x_m - x_m, zone->y_m - y_m) < config_.on_zone_m;
+  return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < kAnother_m + 3.0 * sd_m;
+}
+
+// An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
+bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
+  if (!inputs.pose) return false;
+  const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
+  return is_delivered(blob.colour, inputs.pose->x_m + blob.range_m * std::cos(heading_rad),
+                      inputs.pose->y_m + blob.range_m * std::sin(heading_rad), inputs);
+}
+
+bool MissionPlanner::is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const {
+  bool any = false;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) any = any || (config_.sequence[i] == colour && done(i));
+  if (!any || !inputs.map) return false;
+  const auto* zone = zone_of(*inputs.map, colour);
+  if (!zone) return false;
+  // If one of this colour was pushed off its zone, the border of the zone tells it from those that stand there.
+  double reach_m = config_.on_zone_m;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    if (config_.sequence[i] != colour || (memory_.displaced >> i & 1u) == 0) continue;
+    reach_m = std::min(reach_m, std::isfinite(zone->radius_m) ? zone->radius_m : config_.zone_radius_m);
+  }
+  return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < reach_m;
+}
+
+bool MissionPlanner::is_placed(const msg::MapObject& landmark, const PlannerInputs& inputs) const {
+  const bool placed = std::any_of(memory_.placed.begin(), memory_.placed.end(),
+                                  [&](const PlacedObject& object) { return object.handle == landmark.handle; });
+  return placed || is_delivered(landmark.colour, landmark.x_m, landmark.y_m, inputs);
+}
+
+// A delivered object of the same colour is not the one that is wanted, and would hold the robot at the zones.
+const msg::MapObject* MissionPlanner::wanted_landmark(const PlannerInputs& inputs) const {
+  if (!inputs.map || !inputs.pose || colour() == msg::kColourUnknown) return nullptr;
+  if (holding()) return zone_of(*inputs.map, colour());
+  const msg::MapObject* best = nullptr;
+  double best_m = std::numeric_limits<double>::infinity();
+  for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
+    if (landmark.kind != msg::kBlobObject || landmark.colour != colour()) continue;
+    const double apart_m = std::hypot(landmark.x_m - inputs.pose->x_m, landmark.y_m - inputs.pose->y_m);
+    if (apart_m >= best_m || is_placed(landmark, inputs)) continue;
+    best = &landmark;
+    best_m = apart_m;
+  }
+  return best;
+}
+
+double MissionPlanner::remembered_m(const PlannerInputs& inputs) const {
+  const msg::MapObject* landmark = wanted_landmark(inputs);
+  if (!landmark) return std::numeric_limits<double>::infinity();
+  return std::hypot(landmark->x_m - inputs.pose->x_m, landmark->y_m - inputs.pose->y_m);
 }
 
 std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (inputs.map && searches() && colour() != msg::kColourUnknown) {
-    const auto* landmark =
-        nearest_landmark(*inputs.map, colour(), holding() ? msg::kBlobZone : msg::kBlobObject, pose.x_m, pose.y_m);
-    if (landmark) {
-      const double dx_m = landmark->x_m - pose.x_m;
-      const double dy_m = landmark->y_m - pose.y_m;
-      const double distance_m = std::hypot(dx_m, dy_m);
-      if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
-        return wrap_angle(std::atan2(dy_m, dx_m) - course_rad(pose));
-    }
+  const double distance_m = searches() ? remembered_m(inputs) : std::numeric_limits<double>::infinity();
+  if (distance_m > 0.3 && distance_m < config_.remembered_range_m) {
+    const msg::MapObject* landmark = wanted_landmark(inputs);
+    return wrap_angle(std::atan2(landmark->y_m - pose.y_m, landmark->x_m - pose.x_m) - course_rad(pose));
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
   if (!heading_rad) return std::nullopt;
@@ -114,9 +158,18 @@ bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   return !curled;
 }
 
+// The head of a caught robot swings to and fro while it turns; the object in the U stays where it is.
 bool MissionPlanner::stands_still(const PlannerInputs& inputs) {
-  return inputs.pose && memory_.standstill.notice(inputs.pose->x_m, inputs.pose->y_m, memory_.active_s,
-                                                  config_.standstill_m, config_.standstill_s);
+  if (!inputs.pose) return false;
+  double x_m = inputs.pose->x_m, y_m = inputs.pose->y_m;
+  if (inputs.map) {
+    for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
+      if (!landmark.carried) continue;
+      x_m = landmark.x_m;
+      y_m = landmark.y_m;
+    }
+  }
+  return memory_.standstill.notice(x_m, y_m, memory_.active_s, config_.standstill_m, config_.standstill_s);
 }
 
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
@@ -153,7 +206,15 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
         parameters.direction = memory_.side == msg::kDirectionLeft ? msg::kDirectionRight : msg::kDirectionLeft;
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
-      if (memory_.state == kInspect && inspects_again(inputs)) parameters.object_handle = memory_.dropped_handle;
+      if (memory_.state == kInspect && inspects_by_handle(inputs)) parameters.object_handle = memory_.dropped_handle;
+      if (memory_.state == kSearchObject && has_delivered_twin()) {
+        // Of two objects of one colour side by side, the search sees only the nearer one: it may be either.
+        const msg::MapObject* landmark = wanted_landmark(inputs);
+        const msg::MapObject* zone = landmark ? zone_of(*inputs.map, landmark->colour) : nullptr;
+        const bool alone =
+            zone && std::hypot(zone->x_m - landmark->x_m, zone->y_m - landmark->y_m) > 2.0 * config_.on_zone_m;
+        if (alone && !refusals().rejected()) parameters.object_handle = landmark->handle;
+      }
       break;
   }
   return wanted;
@@ -182,6 +243,9 @@ Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) cons
   constexpr double kAhead_rad = 0.25;
   constexpr double kBend_rad = 0.7;  // for larger angles, turning on the spot is faster
   const std::uint8_t side = side_for(turn_rad, inputs);
+  // With an object the robot turns in a circle: a zone inside of it would stay beside the robot for ever.
+  if (std::abs(turn_rad) > kBend_rad && holding() && remembered_m(inputs) < config_.turning_room_m)
+    return {msg::kTaskExplore, msg::kDirectionForwards};
   if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
   return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
 }

@@ -84,6 +84,7 @@ void MissionPlanner::enter(MissionState state) {
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
     memory_.standstill.begin();
   }
+  if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
   if (state != kFollowLine) memory_.wrong_way = false;
   if (state == kGrasp) memory_.direction_known = true;
   if (row_of(state).holding) {
@@ -263,8 +264,13 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
                  : std::nullopt;
     case kSearchLine:
       if (zone) return kDrop;
-      if (line && !memory_.standstill.leads_away()) return leads_wanted_way(inputs) ? kTransport : recover(kTurnBack);
-      return std::nullopt;
+      if (!line || memory_.standstill.leads_away()) return std::nullopt;
+      if (leads_wanted_way(inputs)) return kTransport;
+      // Turning back helps only where the line leads to the zone, and not again where it has just failed.
+      if (remembered_m(inputs) < config_.remembered_range_m ||
+          memory_.active_s - memory_.turned_back_s < scaled_s(config_.any_way_s))
+        return std::nullopt;
+      return recover(kTurnBack);
     case kTransport:
       return zone ? std::optional(kDrop) : std::nullopt;
     case kTurnRound:
@@ -298,9 +304,11 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
       memory_.entered_s = memory_.active_s;
       return recover(memory_.state);
     }
+    if (holding() && stands_still(inputs)) return memory_.state;  // the next move leads away
     const bool exploring = memory_.search_task == msg::kTaskExplore;
     const double requested_for_s = memory_.active_s - memory_.requested_s;
-    if (requested_for_s > scaled_s(exploring ? config_.explore_s : config_.rotate_s)) return memory_.state;
+    const double move_s = exploring ? config_.explore_s : config_.rotate_s;
+    if (requested_for_s > (memory_.standstill.leading() ? move_s : scaled_s(move_s))) return memory_.state;
     if (!memory_.search_by_memory) return std::nullopt;
     if (!exploring) return has_turned(inputs) ? std::optional(memory_.state) : std::nullopt;
     const auto turn_rad = wanted_turn_rad(inputs);

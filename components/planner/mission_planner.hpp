@@ -70,6 +70,7 @@ struct MissionMemory {
   double requested_s = 0.0;      ///< active time of the request
   double contradiction_s = 0.0;  ///< time for which navigation's report about a held object has contradicted the state
   double line_ended_s = -1e9;    ///< active time of the last end of the line
+  double turned_back_s = -1e9;   ///< active time at which turning back to the line last ended without success
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
   std::uint16_t object_index = 0;  ///< the first object of the sequence that is neither delivered nor put aside
@@ -112,7 +113,7 @@ struct MissionMemory {
             object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
             standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
             placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way,
-            rechecked);
+            rechecked, turned_back_s);
   }
 };
 
@@ -159,16 +160,22 @@ class MissionPlanner {
   /// The verdict on a delivered object as the map shows it now; kUnseen if no image has shown it since.
   [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs) const;
   /// Before the mission ends: selects a delivered object for another look if the map is not certain that it is still on
-  /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop, and only
-  /// if the mission has no other object of its colour; `except`, which was delivered just now, is not. False if there
-  /// is no such object. To be called after choose_object(), which has forgotten failures.
+  /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop;
+  /// `except`, which was delivered just now, is not. Nor is an object without a handle whose colour another object of
+  /// the mission has. False if there is no such object. To be called after choose_object(), which has forgotten
+  /// failures.
   [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
-  /// Whether the object in question is one that was delivered before and that the map has.
-  [[nodiscard]] bool inspects_again(const PlannerInputs& inputs) const;
+  /// Whether the look must be at the landmark of the object in question: it was delivered before, and the map has it.
+  [[nodiscard]] bool inspects_by_handle(const PlannerInputs& inputs) const;
   /// Counts a delivered object as undelivered again.
   void take_back(PlacedObjects::iterator gone);
   /// Whether all objects but the present one are delivered; false in a mission with one object.
   [[nodiscard]] bool at_last_object() const;
+  /// Handles of the delivered objects of the same colour as object `index` of the sequence, except its own. The map
+  /// tells objects of one colour apart by their places.
+  [[nodiscard]] std::vector<std::uint16_t> twins(std::uint16_t index) const;
+  /// Whether another object of the present object's colour is delivered.
+  [[nodiscard]] bool has_delivered_twin() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
   /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
   /// delivered unless the map shows them outside their zone.
@@ -201,7 +208,17 @@ class MissionPlanner {
   void count_percepts(const PlannerInputs& inputs);
   /// Whether entry `i` of the sequence is delivered.
   [[nodiscard]] bool done(std::size_t i) const { return (memory_.delivered >> i & 1u) != 0; }
+  /// Whether a blob that looks like a zone may be the zone of its colour: it is near the one of the map, if there is
+  /// one.
+  [[nodiscard]] bool is_zone(const msg::Blob& blob, const PlannerInputs& inputs) const;
   [[nodiscard]] bool is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const;
+  /// The same for an object of this colour at a place in M.
+  [[nodiscard]] bool is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const;
+  /// Whether this landmark is a delivered object.
+  [[nodiscard]] bool is_placed(const msg::MapObject& landmark, const PlannerInputs& inputs) const;
+  /// The nearest landmark of the zone for a robot with an object, otherwise of the object, that is not delivered yet;
+  /// null: the map has none.
+  [[nodiscard]] const msg::MapObject* wanted_landmark(const PlannerInputs& inputs) const;
   /// Whether the robot faces the direction along the line that the state wants. True if the direction is unknown.
   [[nodiscard]] bool leads_wanted_way(const PlannerInputs& inputs) const;
   /// Whether the visible line leads a robot without an object over new ground.
@@ -210,6 +227,8 @@ class MissionPlanner {
   [[nodiscard]] double course_rad(const msg::RobotPose& pose) const {
     return holding() ? pose.yaw_rad : pose.body_yaw_rad;
   }
+  /// [m] from the head to wanted_landmark(); infinite if the map has none.
+  [[nodiscard]] double remembered_m(const PlannerInputs& inputs) const;
   /// [rad] turn, positive left, after which the course leads to the remembered object or zone, or along the line in the
   /// wanted direction; empty: none of them is remembered.
   [[nodiscard]] std::optional<double> wanted_turn_rad(const PlannerInputs& inputs) const;

@@ -62,9 +62,11 @@ struct PlannerConfig : ParameterSet {
                          "After searching for this time, a line that leads the wrong way is followed, too");
   double wrong_way_s = add(wrong_way_s, "wrong_way_s", 5.0, "s", {1, 600}, kAtStart,
                            "The robot turns round after following the line the wrong way for this time");
+  double turning_room_m = add(turning_room_m, "turning_room_m", 2.0, "m", {0, 20}, kAtStart,
+                              "With an object, the robot turns to a zone that is at least this far away");
   double standstill_m = add(standstill_m, "standstill_m", 0.3, "m", {0.05, 100}, kAtStart,
-                            "A robot with an object stands still while its head stays this near to one place");
-  double standstill_s = add(standstill_s, "standstill_s", 15.0, "s", {1, 3600}, kAtStart,
+                            "A robot with an object stands still while the object stays this near to one place");
+  double standstill_s = add(standstill_s, "standstill_s", 30.0, "s", {1, 3600}, kAtStart,
                             "After this time a search leads the robot away: backwards, round, and forwards");
   double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, kAtStart,
                            "The planner ignores the line for this time after its end");

@@ -22,9 +22,13 @@ class Standstill {
   /// A state of the mission begins at the present place of the robot.
   void begin() { since_s_ = -1.0; }
   /// The object is gone, and with it the moves that were to lead it away.
-  void end() { moves_left_ = 0; }
-  /// Takes the head's place [m] in M and the time [s]. Returns whether the robot stands still: whether it has stayed
-  /// within `near_m` of one place for `after_s`. The next moves of a search then lead away.
+  void end() {
+    moves_left_ = 0;
+    leading_ = false;
+  }
+  /// Takes the place [m] in M of the held object, or of the head if the map has no held object, and the time [s].
+  /// Returns whether the robot stands still: whether it has stayed within `near_m` of one place for `after_s`. The next
+  /// moves of a search then lead away.
   bool notice(double x_m, double y_m, double now_s, double near_m, double after_s) {
     const bool away = std::hypot(x_m - x_m_, y_m - y_m_) > near_m;
     const bool still = moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s;
@@ -41,9 +45,12 @@ class Standstill {
   }
   /// Whether moves that lead away are still to come: what the robot sees meanwhile has not freed it.
   [[nodiscard]] bool leads_away() const { return moves_left_ > 0; }
+  /// Whether the present move leads away. It is short: an object may slip out of a U that drives backwards for long.
+  [[nodiscard]] bool leading() const { return leading_; }
   /// The next move, if it must lead away. Call it once for each move of a search, after notice().
   std::optional<Move> next() {
-    if (moves_left_ == 0) return std::nullopt;
+    leading_ = moves_left_ > 0;
+    if (!leading_) return std::nullopt;
     switch (moves_left_--) {
       case 1:
         return Move{msg::kTaskExplore, msg::kDirectionForwards};
@@ -55,7 +62,7 @@ class Standstill {
   }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(x_m_, y_m_, since_s_, times_, moves_left_);
+    archive(x_m_, y_m_, since_s_, times_, moves_left_, leading_);
   }
 
  private:
@@ -64,6 +71,7 @@ class Standstill {
   double since_s_ = -1.0;                    // since then; negative: not known
   std::uint16_t times_ = 0;
   std::uint8_t moves_left_ = 0;
+  bool leading_ = false;
 };
 
 }  // namespace constrictor

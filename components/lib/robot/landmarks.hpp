@@ -31,4 +31,16 @@ namespace constrictor {
   return best;
 }
 
+/// The zone of this colour; null: the map has none. There is one for each colour. If the map has several, the one whose
+/// place is known best counts: the others may be something that looked like a zone once, such as an object that lies on
+/// its side.
+[[nodiscard]] inline const msg::MapObject* zone_of(const msg::FieldMap& map, std::uint8_t colour) {
+  const msg::MapObject* best = nullptr;
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.colour != colour || landmark.kind != msg::kBlobZone) continue;
+    if (!best || landmark.sd_m < best->sd_m) best = &landmark;
+  }
+  return best;
+}
+
 }  // namespace constrictor

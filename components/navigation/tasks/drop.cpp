@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "navigation/held_motion.hpp"
 #include "navigation/motions.hpp"
 #include "navigation/steering.hpp"
+#include "robot/landmarks.hpp"
 
 namespace constrictor {
 namespace {
@@ -93,10 +95,27 @@ class Drop : public StatefulTask<DropState> {
     const double past_m = X_MC.to_local(p_MO).x();
     if (state_.phase_s > config.approach_timeout_s)
       return output.abort("the zone was not reached in time");  // the robot still holds the object
-    if (past_m >= -config.brake_m) {
+    if (past_m >= stop_m(input, grip, X_MC) - config.brake_m) {
       enter(input, kStop);
       stand(grip, output);
     }
+  }
+
+  /// [m] Place on the course, counted from the zone's centre, at which the object is to stand: at the centre, or before
+  /// another object that stands in its way there, but always well inside the zone.
+  [[nodiscard]] static double stop_m(const TaskInput& input, const Grip& grip, const PlanarPose& X_MC) {
+    constexpr double kInside = 0.5;  // of the zone's radius
+    const double zone_m = input.sightings.zones[input.parameters.drop_zone_colour].radius_m;
+    double at_m = 0.0;
+    for (const msg::MapObject& other : input.map ? landmarks_of(*input.map) : std::span<const msg::MapObject>{}) {
+      if (other.kind != msg::kBlobObject || other.carried || other.handle == grip.handle) continue;
+      const double radius_m = std::isfinite(other.radius_m) ? other.radius_m : input.config.object.object_radius_m;
+      const double apart_m = grip.radius_m + radius_m + input.config.drop.room_m;
+      const Eigen::Vector2d p_C = X_MC.to_local({other.x_m, other.y_m});
+      if (p_C.norm() > zone_m || std::abs(p_C.y()) > apart_m) continue;
+      at_m = std::min(at_m, p_C.x() - std::sqrt(apart_m * apart_m - p_C.y() * p_C.y()));
+    }
+    return std::max(at_m, -kInside * zone_m);
   }
 
   void stop(const TaskInput& input, Grip& grip, TaskOutput& output) {

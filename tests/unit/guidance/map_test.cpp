@@ -65,6 +65,21 @@ TEST(Map, DelayedPerceptIsPlacedFromThePoseAtItsExposure) {
   EXPECT_NEAR(m.map().objects[0].y_m, 0.0, 0.01);
 }
 
+// The robot has touched the object on the left, so that its place is uncertain. Only the other one is in view.
+TEST(Map, AnObjectThatStandsWhereItStoodIsNotTakenForATouchedOneOfItsColour) {
+  Mapping m;
+  const auto touched = Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, 0.2, 0.08);
+  const auto other = Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, -0.1, 0.08);
+  m.see({touched, other}, 30);
+  for (int i = 0; i < 200; ++i) m.filter.loosen(0, 0.04 * 0.04);
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, -0.06, 0.08)}, 10);
+  const msg::FieldMap map = m.map();
+  ASSERT_EQ(map.object_count, 2);
+  EXPECT_LT(map.objects[0].last_seen_tick, map.objects[1].last_seen_tick);
+  EXPECT_NEAR(map.objects[0].y_m, 0.2, 0.02);
+  EXPECT_GT(map.objects[0].sd_m, 0.3);
+}
+
 TEST(Map, MovedObjectKeepsItsHandle) {
   Mapping m;
   m.see({Mapping::blob(msg::kColourRed, msg::kBlobObject, 0.6, 0.0, 0.08)}, 30);

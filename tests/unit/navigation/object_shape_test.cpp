@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "component/data_path.hpp"
 #include "navigation/grip.hpp"
@@ -148,14 +149,30 @@ TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
   const auto first = static_cast<std::size_t>(config.grip.base_first_joint);
   EXPECT_EQ(output.desired.shape_rad[first], grip_sense.open_angle_rad(grip.radius_m));
   EXPECT_LT(output.desired.shape_rad[first], config.grip.base_angle_rad);
-  // Held as it is, the joints beside the base open by a share of what the base has closed.
+  // The object keeps the base open. The joints beside it close until the arms are parallel: half a circle in all.
   msg::JointState joints{};
   joints.joint_count = static_cast<std::uint16_t>(robot.joints.size());
   const std::vector<std::size_t> yaw = robot.yaw_joints();
   for (std::size_t k = first; k < first + 3; ++k) joints.position_rad[yaw[k]] = output.desired.shape_rad[first];
   const auto shape = grip_sense.hold_shape(joints, grip, true);
-  const double closed_rad = 3.0 * config.grip.hold_margin_rad;
-  EXPECT_NEAR(shape[first - 1], -0.5 * config.grip.opening_share * closed_rad, 1e-9);
+  double bend_rad = 0.0;
+  for (std::size_t k = first - 1; k < first + 4; ++k) bend_rad += shape[k];
+  EXPECT_NEAR(bend_rad, std::numbers::pi, 1e-3);
+  EXPECT_NEAR(shape[first - 1], shape[first + 3], 1e-9);
+  // A base that has closed farther than that has opened them in the squeeze, and they stay there.
+  msg::JointState closed = joints;
+  for (std::size_t k = first; k < first + 3; ++k) closed.position_rad[yaw[k]] = config.grip.base_angle_rad + 0.1;
+  const double closed_rad = 3.0 * (0.1 + config.grip.hold_margin_rad);
+  EXPECT_NEAR(grip_sense.hold_shape(closed, grip, true)[first - 1], -0.5 * config.grip.opening_share * closed_rad,
+              1e-9);
+  // The base of the closed U holds more gently than that of the wide one, which has to bear the thrust of its arms.
+  Grip wide = grip, narrow = grip;
+  wide.shape_rad = shape;
+  narrow.shape_rad = grip_sense.hold_shape(closed, grip, true);
+  grip_sense.hold_starts(wide);
+  grip_sense.hold_starts(narrow);
+  EXPECT_EQ(wide.hold_torque_nm, config.grip.wide_hold_torque_nm);
+  EXPECT_EQ(narrow.hold_torque_nm, config.grip.hold_torque_nm);
   // A robot that feels no touches closes further, so that its torque stays at the limit.
   const auto unfelt = grip_sense.hold_shape(joints, grip, false);
   const double farther_rad = config.grip.unfelt_margin_rad - config.grip.hold_margin_rad;

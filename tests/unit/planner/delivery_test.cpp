@@ -126,6 +126,16 @@ TEST_F(DeliveryTest, WithoutAKnownRadiusTheConfiguredOneCounts) {
   EXPECT_EQ(verdict(0), Delivery::kUnseen) << "the map has no zone of this colour";
 }
 
+TEST_F(DeliveryTest, OfSeveralZonesOfOneColourTheBestKnownOneCounts) {
+  map_dropped(msg::kColourGreen, 0.9);
+  map_.objects[map_.object_count] = map_.objects[0];
+  msg::MapObject& phantom = map_.objects[map_.object_count++];
+  phantom.handle = 7;
+  phantom.x_m = pose_.x_m + 0.9;
+  phantom.sd_m = 0.09;
+  EXPECT_EQ(verdict(2), Delivery::kOutside);
+}
+
 TEST_F(DeliveryTest, TheHandleTellsObjectsOfOneColourApart) {
   map_dropped(msg::kColourGreen, 0.1);
   add_object(3, 2.0, 0.01);

@@ -156,6 +156,7 @@ TEST_F(PlannerTest, TheEndFromWhichTheRobotCameDoesNotEndAMissionWithoutObjects)
 
 // The line stays in view while a wall between the arms of the U holds the robot.
 TEST_F(PlannerTest, ARobotThatIsCaughtWhileItFollowsTheLineWithAnObjectIsLedAway) {
+  config_.standstill_s = 15.0;
   find_line();
   fetch(msg::kColourGreen);
   carry();

@@ -160,7 +160,8 @@ class PlannerTest : public ::testing::Test {
   void map_dropped(std::uint8_t colour, double offset_m, double sd_m = 0.03) {
     map_.object_count = 2;
     map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, sd_m, false, false, tick_};
-    map_.objects[1] = {2, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, sd_m, false, false, tick_};
+    map_.objects[1] = {object_, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, sd_m, false,
+                       false,   tick_};
   }
   /// Drops the object until the robot has backed off, and says nothing of where it stands.
   void release(std::uint8_t colour) {
@@ -194,6 +195,7 @@ class PlannerTest : public ::testing::Test {
   msg::FieldMap map_{};
   msg::TaskStatus status_{};
   msg::Authority authority_{};
+  std::uint16_t object_ = 2;  ///< handle of the dropped object
   std::vector<std::uint64_t> taken_;
   bool with_status_ = true;
   bool images_ = true;  ///< each step has the percepts of a new image

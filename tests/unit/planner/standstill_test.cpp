@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
+
+#include "scripted_planner.hpp"
 
 namespace constrictor {
 namespace {
@@ -55,6 +58,28 @@ TEST_F(StandstillTest, AnotherSearchBeginsAnew) {
   EXPECT_FALSE(at(0.0, 100.0));
   EXPECT_FALSE(at(0.0, 114.0));
   EXPECT_TRUE(at(0.0, 116.0));
+}
+
+// The end of a wall stood between the arms of the U. The head swung by a metre while the robot turned to and fro, and
+// no move led the robot away for 100 s.
+TEST_F(PlannerTest, ARobotIsCaughtWhenItsObjectStaysWhileTheHeadSwings) {
+  config_.standstill_s = 15.0;
+  find_line();
+  fetch(msg::kColourGreen);
+  map_dropped(msg::kColourGreen, 0.5);
+  map_.objects[1].carried = true;
+  std::vector<double> backwards_s;
+  const double from_s = time_s_;
+  for (int i = 0; i < 1200; ++i) {
+    pose_.y_m = 0.6 * std::sin(0.01 * i);
+    const auto wanted = step();
+    ASSERT_EQ(memory_.state, MissionState::kSearchLine);
+    if (wanted && wanted->task == msg::kTaskExplore && wanted->parameters.direction == msg::kDirectionBackwards)
+      backwards_s.push_back(time_s_ - from_s);
+  }
+  ASSERT_EQ(backwards_s.size(), 2u);
+  EXPECT_NEAR(backwards_s[0], config_.standstill_s, 0.5) << "the long move of the search ends early";
+  EXPECT_NEAR(backwards_s[1] - backwards_s[0], config_.explore_s, 0.5) << "the moves that lead away are short";
 }
 
 }  // namespace

@@ -1,0 +1,166 @@
+// drop: where it lets the object go, and how it backs off with a body that has slid aside, as it does on a slope.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "component/data_path.hpp"
+#include "navigation/task.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr double kBacking_m_s = 0.15;
+constexpr double kDropped_m = 0.085;  // radius of the object
+
+/// A U whose mouth points along x. It lets its object go at the origin of M, and backs off along x, beside this axis.
+class DropRun {
+ public:
+  /// `side`: +1 if the head's part of the body has the object to its left. `aside_m`: mean place of the U along y while
+  /// it backs off. `sway_m`: by which it sways about that place with the gait.
+  DropRun(double side, double aside_m, double sway_m) : aside_m_(aside_m), sway_m_(sway_m) {
+    grip_.carrying = true;
+    grip_.side = side;
+    grip_.radius_m = kDropped_m;
+    grip_.shape_rad = sense_.open_shape(side, config_.grip.base_angle_rad);
+    take(grip_.shape_rad);
+    sightings_.zones[msg::kColourGreen].known = true;  // its centre is the object's place
+    tick_.period_ns = 20'000'000;
+    task_->start(input(), grip_);
+  }
+
+  /// [m] Drives along x to the zone, which is 1 m ahead and has a radius of 0.5 m, and returns how far the object is
+  /// from its centre when it is let go, positive beyond it. `other_m`: place along x of another object, from the
+  /// centre.
+  double let_go_m(std::optional<double> other_m) {
+    Sighting& zone = sightings_.zones[msg::kColourGreen];
+    zone.x_m = 1.0;
+    zone.radius_m = 0.5;
+    task_->start(input(), grip_);
+    if (other_m) {
+      map_.object_count = 1;
+      map_.objects[0].handle = 9;
+      map_.objects[0].x_m = 1.0 + *other_m;
+      map_.objects[0].radius_m = kDropped_m;
+    }
+    while (phase_ != "stop" && tick_.index < 2000) {
+      X_MU_.p.x() += kBacking_m_s * tick_.period_s();
+      step();
+    }
+    return X_MU_.p.x() - 1.0;
+  }
+  /// Runs until the robot has backed off.
+  void run() {
+    while (phase_ != "straighten" && tick_.index < 2000) step();
+  }
+  [[nodiscard]] const std::string& phase() const { return phase_; }
+  /// [m] by which the robot has backed off.
+  [[nodiscard]] double backed_m() const { return backed_m_; }
+  /// [1/m] largest and least curvature of the arms after the first period of the gait, positive left.
+  [[nodiscard]] double most_1_m() const { return most_1_m_; }
+  [[nodiscard]] double least_1_m() const { return least_1_m_; }
+
+ private:
+  [[nodiscard]] PlanarPose head() const {
+    const PlanarPose X_HU{sense_.held_object_H(body_, kDropped_m), sense_.mouth_rad(body_)};
+    return {X_MU_.p - turned(X_HU.p, -X_HU.yaw_rad), -X_HU.yaw_rad};
+  }
+  [[nodiscard]] TaskInput input() const {
+    msg::TaskParameters parameters{};
+    parameters.drop_zone_colour = msg::kColourGreen;
+    return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
+            sightings_, &map_,  joints_, body_,  touches_,   true,   true};
+  }
+  void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
+    const std::vector<std::size_t> yaw = robot_.yaw_joints();
+    joints_.joint_count = static_cast<std::uint16_t>(robot_.joints.size());
+    for (std::size_t k = 0; k < yaw.size(); ++k) joints_.position_rad[yaw[k]] = shape_rad[k];
+    body_ = planar_body(robot_, joints_);
+  }
+  void step() {
+    ++tick_.index;
+    tick_.time_ns += tick_.period_ns;
+    TaskOutput output;
+    task_->step(input(), grip_, output);
+    phase_ = output.phase;
+    if (phase_ == "open") take(sense_.open_shape(grip_.side, config_.drop.open_angle_rad));
+    if (phase_ != "back off") return;
+    EXPECT_LT(output.desired.frequency_hz, 0.0) << "it drives backwards";
+    const double back_s = backed_m_ / kBacking_m_s;
+    if (back_s > 1.0 / config_.drop.back.frequency_hz) {
+      most_1_m_ = std::max(most_1_m_, output.desired.curvature_1_m);
+      least_1_m_ = std::min(least_1_m_, output.desired.curvature_1_m);
+    }
+    backed_m_ += kBacking_m_s * tick_.dt_s();
+    const double phase_rad = 2.0 * std::numbers::pi * config_.drop.back.frequency_hz * back_s;
+    X_MU_.p = {-backed_m_, aside_m_ + sway_m_ * std::sin(phase_rad)};
+  }
+
+  const double aside_m_, sway_m_;
+  const RobotModel robot_ = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  const NavigationConfig config_;
+  const GripSense sense_{robot_, config_.grip};
+  const std::unique_ptr<Task> task_ = make_task(msg::kTaskDrop);
+  Tick tick_;
+  Grip grip_;
+  ObjectTrackerState sightings_;
+  msg::FieldMap map_{};
+  msg::JointState joints_{};
+  std::vector<PlanarPose> body_;
+  const std::vector<Touch> touches_;
+  PlanarPose X_MU_;  ///< at the place of a held object; x points to the mouth
+  double backed_m_ = 0.0, most_1_m_ = -1e9, least_1_m_ = 1e9;
+  std::string phase_;
+};
+
+// The robot pushed the first object off the zone when it brought the second one of the same colour to the centre.
+TEST(Drop, TheObjectIsLetGoBeforeAnotherOneThatStandsOnTheZone) {
+  const double brake_m = NavigationConfig().drop.brake_m, room_m = NavigationConfig().drop.room_m;
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m({}), -brake_m, 0.02);
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(0.05), 0.05 - 2.0 * kDropped_m - room_m - brake_m, 0.02);
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(-0.1), -0.25 - brake_m, 0.02) << "well inside the zone";
+  EXPECT_NEAR(DropRun(1.0, 0.0, 0.0).let_go_m(0.4), -brake_m, 0.02) << "not in the way";
+}
+
+TEST(Drop, TheArmsStayStraightWhileTheObjectIsInTheMiddle) {
+  for (const double side : {1.0, -1.0}) {
+    DropRun level(side, 0.0, 0.03);  // the sway of the gait does not bend them
+    level.run();
+    ASSERT_EQ(level.phase(), "straighten");
+    EXPECT_NEAR(level.most_1_m(), 0.0, 0.03) << side;
+    EXPECT_NEAR(level.least_1_m(), 0.0, 0.03) << side;
+    EXPECT_NEAR(level.backed_m(), NavigationConfig().drop.back_m, 0.05) << side;
+  }
+}
+
+TEST(Drop, WhenTheBodySlidesAsideTheArmsBendTowardsTheObject) {
+  for (const double side : {1.0, -1.0}) {
+    double least_1_m = 0.0;
+    for (const double aside_m : {0.02, 0.05, 0.1}) {
+      DropRun left(side, aside_m, 0.02), right(side, -aside_m, 0.02);
+      left.run();
+      right.run();
+      ASSERT_EQ(left.phase(), "straighten");
+      // The body has slid to the left: the object is to its right, where the curvature is negative.
+      EXPECT_LT(left.most_1_m(), -least_1_m - 0.05) << side << ", " << aside_m;
+      EXPECT_GT(right.least_1_m(), least_1_m + 0.05) << side << ", " << aside_m;
+      EXPECT_NEAR(left.least_1_m(), -right.most_1_m(), 0.05) << "alike on both sides; " << side << ", " << aside_m;
+      least_1_m = right.most_1_m();
+    }
+  }
+}
+
+TEST(Drop, TheArmsDoNotBendBeyondTheLimit) {
+  DropRun far(1.0, 1.0, 0.0);
+  far.run();
+  EXPECT_EQ(far.least_1_m(), -NavigationConfig().drop.back_steering.limit);
+}
+
+}  // namespace
+}  // namespace constrictor

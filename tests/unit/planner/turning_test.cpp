@@ -1,0 +1,71 @@
+// How a robot with an object comes to the zone: it turns in a circle, and not everything that looks like a zone is one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scripted_planner.hpp"
+
+namespace constrictor {
+namespace {
+
+using enum MissionState;
+
+// The robot circled about the zone with the object until the mission's time was over.
+TEST_F(PlannerTest, DrivesOnBeforeItTurnsToAZoneWithinItsTurningCircle) {
+  find_line();
+  fetch(msg::kColourGreen);
+  face(0.2);
+  map_.object_count = 1;
+  map_.objects[0] = {1, msg::kColourGreen, msg::kBlobZone, pose_.x_m, pose_.y_m + 1.0, 0.3, 0.03, false, false, 0};
+  see_line(true);
+  for (int i = 0; i < 600; ++i) {
+    if (const auto wanted = step()) {
+      EXPECT_EQ(wanted->task, msg::kTaskExplore) << i;
+      EXPECT_EQ(wanted->parameters.direction, msg::kDirectionForwards) << i;
+    }
+    ASSERT_EQ(memory_.state, kSearchLine) << "the line leads away from the zone";
+  }
+  map_.objects[0].y_m = pose_.y_m + 2.2;
+  steps(110);
+  EXPECT_EQ(last_.task, msg::kTaskRotate);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionLeft);
+}
+
+TEST_F(PlannerTest, DoesNotTurnBackAgainAtOnceIfThatWasInVain) {
+  find_line();
+  fetch(msg::kColourGreen);
+  face(0.2);
+  see_line(true);
+  steps(4);
+  ASSERT_EQ(memory_.state, kTurnBack);
+  const double from_s = time_s_;
+  while (memory_.state == kTurnBack && time_s_ < from_s + 100.0) step();
+  ASSERT_EQ(memory_.state, kSearchLine);
+  EXPECT_NEAR(time_s_ - from_s, config_.turn_round_s * config_.holding_factor, 1.0);
+  const double since_s = time_s_;
+  while (memory_.state == kSearchLine && time_s_ < since_s + 100.0) {
+    pose_.y_m = 0.4 * std::sin(time_s_);  // it is not caught
+    step();
+  }
+  EXPECT_EQ(memory_.state, kTurnBack);
+  EXPECT_NEAR(time_s_ - since_s, config_.any_way_s * config_.holding_factor, 1.0);
+}
+
+// An object that had fallen over was taken for a second zone. The robot dropped the object there, and the mission was
+// called a success.
+TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
+  find_line();
+  fetch(msg::kColourGreen);
+  map_.object_count = 1;
+  map_.objects[0] = {1, msg::kColourGreen, msg::kBlobZone, pose_.x_m - 3.0, pose_.y_m, 0.4, 0.03, false, false, 0};
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);  // the head faces backwards along x
+  steps(20);
+  EXPECT_EQ(memory_.state, kSearchLine);
+  see(msg::kColourGreen, msg::kBlobZone, 1.6);  // nearer, but the pose is uncertain
+  pose_.covariance[0] = 0.3 * 0.3;
+  steps(4);
+  EXPECT_EQ(memory_.state, kDrop);
+}
+
+}  // namespace
+}  // namespace constrictor
