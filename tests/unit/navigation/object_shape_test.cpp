@@ -145,7 +145,7 @@ TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
   const Grip grip = held(0.11, 0.15);
   TaskOutput output;
   squeeze_u(config, grip_sense, grip.side, grip, output);
-  const auto first = static_cast<std::size_t>(config.grip.base_first_joint);
+  const std::size_t first = grip_sense.base_first_joint();
   EXPECT_EQ(output.desired.shape_rad[first], grip_sense.open_angle_rad(grip.radius_m));
   EXPECT_LT(output.desired.shape_rad[first], config.grip.base_angle_rad);
   // Held as it is, the joints beside the base open by a share of what the base has closed.
