@@ -38,7 +38,8 @@ GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
                     first, config.base_joints, joints - config.base_joints, joints, robot.name));
   }
   first_ = static_cast<std::size_t>(first);
-  for (int i = 0; i < config.base_joints; ++i) base_joints_.push_back(yaw_joints_[first_ + static_cast<std::size_t>(i)]);
+  for (int i = 0; i < config.base_joints; ++i)
+    base_joints_.push_back(yaw_joints_[first_ + static_cast<std::size_t>(i)]);
 }
 
 std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double angle_rad) const {

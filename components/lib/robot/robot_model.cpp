@@ -105,6 +105,10 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.contact_sensors = skin.flag("contact_sensors", true);
   skin.finish();
 
+  Configuration imu = root.section("imu", false);
+  robot.imu = imu.flag("present", true);
+  imu.finish();
+
   robot.camera = read_camera(root.section("camera"));
   read_noise(root.section("noise", false), robot);
   root.finish();
