@@ -6,7 +6,10 @@ namespace constrictor {
 namespace {
 
 constexpr double kTunedLength_m = 2.136;  // for which the values of the configuration were found
-constexpr double kHoldShare = 0.75;       // of a joint's torque, at most, for the hold of an object
+// The base of a body that is longer by a third holds an object with this share of a joint's torque: with less (2.7 Nm,
+// as the weight of an arm times its length demands) the U of 32 modules opened while it turned, and lost the object.
+constexpr double kFirmHold = 2.0 / 3.0;
+constexpr double kFirmFrom = 4.0 / 3.0;
 
 }  // namespace
 
@@ -27,10 +30,11 @@ NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
        {&config.rotate.carry_curvature_1_m, &config.follow_line.carry_limit_1_m, &config.drop.steering.limit})
     *curvature_1_m /= shorter;
 
-  // The friction of the ground opens the base with the weight of an arm times its length.
-  double most_nm = config.grip.hold_torque_nm;
-  for (const JointModel& joint : robot.joints) most_nm = std::max(most_nm, kHoldShare * joint.max_torque_nm);
-  config.grip.hold_torque_nm = std::min(most_nm, config.grip.hold_torque_nm * longer * longer);
+  // The friction of the ground on longer arms opens the base.
+  double firm_nm = config.grip.hold_torque_nm;
+  for (const JointModel& joint : robot.joints) firm_nm = std::max(firm_nm, kFirmHold * joint.max_torque_nm);
+  const double share = std::min(1.0, (longer - 1.0) / (kFirmFrom - 1.0));
+  config.grip.hold_torque_nm += share * (firm_nm - config.grip.hold_torque_nm);
 
   // A longer U follows its head later: it looks farther ahead and steers more gently, and its arms leave the object
   // only after a longer way.
@@ -38,6 +42,9 @@ NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
   config.drop.steering.ki /= longer;
   config.drop.lookahead_m *= longer;
   config.drop.back_m *= longer;
+  // It needs more time to straighten and more room, or its turns reach the object.
+  config.drop.straighten_rate_rad_s /= longer * longer;
+  config.drop.clear_m *= longer * longer;
   return config;
 }
 
