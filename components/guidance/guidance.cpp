@@ -10,6 +10,7 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kMapPeriodTicks = 5;
+constexpr double kSilent_s = 0.2;         // after which guidance does without the IMU
 constexpr std::size_t kTrackTicks = 110;  // covers the window of the speed and the delay of any camera
 
 /// [rad] yaw of the x axis in the ground plane, also if the length of the quaternion of an IMU is not exactly 1.
@@ -27,15 +28,15 @@ Guidance::Guidance(Wiring& wiring, const Setup& setup)
       log_(setup.log),
       model_(load_robot(setup.robot_file)) {}
 
-void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
+void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, bool imu) {
   guidance::OdometryInput input;
   input.joint_rad = body_.joints->position_rad;
   input.joint_rad_s = body_.joints->velocity_rad_s;
-  input.yaw_rad = yaw_of(imu_->orientation);
-  if (!std::isfinite(input.yaw_rad)) return;
+  const msg::Quaternion q = imu ? imu_->orientation : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
+  input.yaw_rad = imu ? yaw_of(q) : std::nan("");
+  if (imu && !std::isfinite(input.yaw_rad)) return;
   input.dt_s = static_cast<double>(tick.index - state_.last_tick) * tick.period_s();
   // A robot that has rolled over cannot distinguish ground and wall: only the motion of the body is used.
-  const auto& q = imu_->orientation;
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&
       body_.contacts->module_count >= model_.module_count) {
@@ -53,7 +54,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
       input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
   }
-  if (config_.slope_time_s > 0.0) {
+  if (config_.slope_time_s > 0.0 && imu) {
     state_.slope.learn(q, input.dt_s / config_.slope_time_s);
     input.downhill = turned(state_.slope.downhill(config_.level_rad), -input.yaw_rad);
   } else {
@@ -65,7 +66,8 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain) {
   const double speed_m_s = input.dt_s > 0.0 ? step.step_m.norm() / input.dt_s : 0.0;
   const double speed_sd = config_.speed_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
   const double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
-  const Eigen::Vector3d noise(variance, variance, config_.yaw_sd_rad_sqrt_s * config_.yaw_sd_rad_sqrt_s * input.dt_s);
+  const double yaw_sd = imu ? config_.yaw_sd_rad_sqrt_s : config_.unmeasured_yaw_sd_rad_sqrt_s;
+  const Eigen::Vector3d noise(variance, variance, yaw_sd * yaw_sd * input.dt_s);
   guidance::PoseFilter(state_.filter).predict(step.step_m, step.turn_rad, noise.asDiagonal());
   remember(tick.index, step.step_m, step.turn_rad);
 }
@@ -129,9 +131,14 @@ void Guidance::step(const Tick& tick) {
   const bool line = believed(percepts_.line, "perception/line");
   const bool objects = believed(percepts_.objects, "perception/objects");
   const bool contacts = believed(body_.contacts, "contact_state");
-  if (joints && imu) {
+  if (imu) state_.imu_tick = tick.index;
+  const bool silent = !model_.imu || static_cast<double>(tick.index - state_.imu_tick) * tick.period_s() > kSilent_s;
+  if (silent && !state_.imu_silent && model_.imu)
+    log_.warning("no plausible imu_state for {} s: the turns of the body follow from its joints alone", kSilent_s);
+  state_.imu_silent = silent;
+  if (joints && (imu || silent)) {
     const guidance::BodyChain chain = planar_module_poses(model_, {body_.joints->position_rad, joint_count});
-    dead_reckon(tick, chain);
+    dead_reckon(tick, chain, imu);
     double sum_rad = 0.0;
     for (const auto& module : chain) sum_rad += module.yaw_rad;
     state_.body_turn_rad = sum_rad / static_cast<double>(chain.size());
@@ -141,7 +148,7 @@ void Guidance::step(const Tick& tick) {
     if (objects) {
       const PlanarPose exposure = past(percepts_.objects->exposure_tick);
       mapper.objects(*percepts_.objects, exposure, tick.index);
-      const bool level = is_level(imu_->orientation);
+      const bool level = !imu || is_level(imu_->orientation);
       for (const auto& lost : mapper.doubt(*percepts_.objects, exposure, chain, level, tick.index, tick.period_s())) {
         log_.warning("the {} {} {} is not at ({:.2f}, {:.2f}) m any more, where images should show it: left the map",
                      name_of(constants::kColour, lost.colour), name_of(constants::kBlob, lost.kind), lost.handle,

@@ -13,7 +13,9 @@
 namespace constrictor {
 
 struct GuidanceState {
-  std::int64_t last_tick = 0;  ///< tick of the joints and of the IMU sample that were used last
+  std::int64_t last_tick = 0;  ///< tick of the joints that were used last
+  std::int64_t imu_tick = 0;   ///< tick of the newest plausible IMU sample
+  bool imu_silent = false;     ///< the IMU has been silent for kSilent_s
   guidance::OdometryState odometry;
   GroundSlope slope;
   guidance::PoseFilterState filter;
@@ -26,15 +28,16 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, odometry, slope, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
-            parameters);
+    archive(last_tick, imu_tick, imu_silent, odometry, slope, filter, track_tick, track_x_m, track_y_m, track_yaw_rad,
+            field, body_turn_rad, parameters);
   }
 };
 
 /// Estimates the pose of the head in M from the motion of the body (odometry), the yaw of the IMU, and recognised
 /// landmarks; keeps the map. Publishes the pose in every tick. Before the first joint and IMU samples it is the start
 /// pose with zero covariance. Without new plausible joint and IMU samples the pose does not change; the next samples
-/// then give the motion over the whole time since the last ones.
+/// then give the motion over the whole time since the last ones. If IMU samples are missing for kSilent_s, or the robot
+/// has no IMU, the turns follow from the joints alone, less exactly, and the ground counts as level.
 class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);
@@ -44,7 +47,8 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   /// Whether a new message has arrived and is plausible. An implausible message is counted as a refusal.
   template <class Message, class... Limits>
   bool believed(const Latest<Message>& input, const char* topic, Limits... limits);
-  void dead_reckon(const Tick& tick, const guidance::BodyChain& chain);
+  /// `imu`: the inertial unit measures the attitude of the head.
+  void dead_reckon(const Tick& tick, const guidance::BodyChain& chain, bool imu);
   /// Appends a step to the track of dead-reckoned poses.
   void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
   /// Pose of the head at an earlier tick, in the head's present frame.

@@ -57,6 +57,9 @@ struct GuidanceConfig : ParameterSet {
                              "Time over which the error of the estimated velocity stays the same");
   double yaw_sd_rad_sqrt_s = add(yaw_sd_rad_sqrt_s, "odometry.yaw_sd_rad_sqrt_s", 0.003, "rad/sqrt(s)", {0.0, 1.0},
                                  kWhileRunning, "Growth of the yaw's standard deviation");
+  double unmeasured_yaw_sd_rad_sqrt_s =
+      add(unmeasured_yaw_sd_rad_sqrt_s, "odometry.unmeasured_yaw_sd_rad_sqrt_s", 0.05, "rad/sqrt(s)", {0.0, 1.0},
+          kWhileRunning, "The same without samples of the inertial unit: the turns follow from the joints");
   double speed_window_s = add(speed_window_s, "odometry.speed_window_s", 1.5, "s", {0.1, 2.0}, kWhileRunning,
                               "Time over which the published speed is averaged; about a gait period");
 

@@ -30,9 +30,11 @@ struct OdometryState {
   double friction_along = 0.0;        ///< estimated coefficients
   double friction_across = 0.0;
   double driven_s = 0.0;  ///< time for which the coefficients have been estimated
+  double spin_nms = 0.0;  ///< angular momentum after a step whose turn was not measured
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(started, yaw_rad, joint_rad, joint_rad_s, vx_m_s, vy_m_s, friction_along, friction_across, driven_s);
+    archive(started, yaw_rad, joint_rad, joint_rad_s, vx_m_s, vy_m_s, friction_along, friction_across, driven_s,
+            spin_nms);
   }
 };
 
@@ -46,7 +48,7 @@ struct GroundForce {
 struct OdometryInput {
   const double* joint_rad = nullptr;  ///< angles of all joints, head to tail; finite
   const double* joint_rad_s = nullptr;
-  double yaw_rad = 0.0;                ///< yaw of the IMU; finite
+  double yaw_rad = 0.0;                ///< yaw of the IMU; NaN: not measured, the turn follows from the joints
   std::vector<double> load_n;          ///< normal force on each module; empty: the weight is spread evenly
   std::vector<GroundForce> ground;     ///< of each module; empty: not measured, the estimates of friction stay
   Eigen::Vector2d push_n{0.0, 0.0};    ///< sum of the contact forces, except those of the ground; in the head's frame
@@ -71,7 +73,8 @@ struct HeadStep {
 /// then, so that mu_along is the median of their ratios of friction to load; only some slide sideways, so that
 /// mu_across is the upper quartile. A module whose measured sideways force is clearly below its friction does not slide
 /// sideways; small errors of the measured shape must not make it slide in the model, so that its term is multiplied by
-/// `stick_factor`. The first call only initialises `state`.
+/// `stick_factor`. Without a measured yaw, the turn comes first from the same balance, in which the rate of the turn is
+/// a third unknown. The first call only initialises `state`.
 HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const OdometryConfig& config,
                           const OdometryInput& input);
 

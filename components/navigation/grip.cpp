@@ -1,22 +1,50 @@
 #include "navigation/grip.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace constrictor {
 
-GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
-    : robot_(robot), config_(config), yaw_joints_(robot.yaw_joints()) {
-  for (int i = 0; i < config.base_joints; ++i) {
-    base_joints_.push_back(yaw_joints_.at(static_cast<std::size_t>(config.base_first_joint + i)));
+int middle_base_joint(const RobotModel& robot, int base_joints) {
+  constexpr double kFrontArm_m = 0.75;  // a U with a shorter front arm (16 modules: 0.62 m) hardly reaches a zone
+  const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
+  const int last = static_cast<int>(yaw_joints.size()) - base_joints - 1;  // one joint remains behind the base
+  int best = std::max(0, last);
+  int best_difference = static_cast<int>(robot.module_count);
+  for (int k = 0; k <= last; ++k) {
+    const int front = static_cast<int>(yaw_joints[static_cast<std::size_t>(k)]) + 1;  // modules of the arm
+    const int last_base_joint = static_cast<int>(yaw_joints[static_cast<std::size_t>(k + base_joints - 1)]);
+    const int rear = static_cast<int>(robot.module_count) - 1 - last_base_joint;
+    const int difference = std::abs(front - rear);
+    if (front * robot.module_length_m < kFrontArm_m || difference > best_difference) continue;
+    best = k;  // of two places that are equally good, the one with the longer front arm
+    best_difference = difference;
   }
+  return best;
+}
+
+GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
+    : robot_(robot), config_(config), first_(0), yaw_joints_(robot.yaw_joints()) {
+  const int wanted = config.base_first_joint;
+  const int first = wanted < 0 ? middle_base_joint(robot, config.base_joints) : wanted;
+  const int joints = static_cast<int>(yaw_joints_.size());
+  if (first + config.base_joints > joints) {
+    throw ConfigurationError(
+        fmt::format("navigation: grip.base_first_joint: found {} with {} base_joints, accepted at most {} for "
+                    "the {} yaw joints of the robot {}",
+                    first, config.base_joints, joints - config.base_joints, joints, robot.name));
+  }
+  first_ = static_cast<std::size_t>(first);
+  for (int i = 0; i < config.base_joints; ++i)
+    base_joints_.push_back(yaw_joints_[first_ + static_cast<std::size_t>(i)]);
 }
 
 std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double angle_rad) const {
   std::array<double, msg::kMaxJoints> shape{};
-  for (int i = 0; i < config_.base_joints; ++i) {
-    shape[static_cast<std::size_t>(config_.base_first_joint + i)] = side * angle_rad;
-  }
+  for (std::size_t i = 0; i < base_joints_.size(); ++i) shape[first_ + i] = side * angle_rad;
   return shape;
 }
 
@@ -112,8 +140,7 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
   const double side = grip.side;
   std::array<double, msg::kMaxJoints> shape{};
   double closed_rad = 0.0;  // beyond the U with parallel arms
-  for (int i = 0; i < config_.base_joints; ++i) {
-    const auto k = static_cast<std::size_t>(config_.base_first_joint + i);
+  for (std::size_t k = first_; k < first_ + base_joints_.size(); ++k) {
     shape[k] = joints.position_rad[yaw_joints_[k]] + side * margin_rad(feels);
     closed_rad += shape[k] - side * config_.base_angle_rad;
   }
@@ -122,9 +149,8 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
   // their thrust opens the base further.
   const double share = side * closed_rad > 0.0 ? config_.opening_share : 1.0;
   const double beside_rad = 0.5 * share * closed_rad;
-  const auto first = static_cast<std::size_t>(config_.base_first_joint);
-  const std::size_t after = first + base_joints_.size();
-  if (first > 0) shape[first - 1] = -beside_rad;
+  const std::size_t after = first_ + base_joints_.size();
+  if (first_ > 0) shape[first_ - 1] = -beside_rad;
   if (after < yaw_joints_.size()) shape[after] = -beside_rad;
   return shape;
 }
@@ -132,8 +158,7 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
 void GripSense::hold_starts(Grip& grip) const {
   double closed_rad = 0.0;  // beyond the U with parallel arms
   for (int i = 0; i < config_.base_joints; ++i)
-    closed_rad +=
-        grip.side * grip.shape_rad[static_cast<std::size_t>(config_.base_first_joint + i)] - config_.base_angle_rad;
+    closed_rad += grip.side * grip.shape_rad[first_ + static_cast<std::size_t>(i)] - config_.base_angle_rad;
   grip.hold_torque_nm = closed_rad < 0.0 ? config_.wide_hold_torque_nm : config_.hold_torque_nm;
   grip.torque_nm = config_.hold_torque_nm;
   grip.contact_share = 1.0;

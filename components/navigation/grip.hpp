@@ -34,9 +34,14 @@ struct Grip {
   }
 };
 
+/// The first yaw joint of the base of the U, counted from the head, with which both arms of the U are about equally
+/// long. The front arm drives and steers: in a short body it stays long enough for that, and the rear arm is short.
+[[nodiscard]] int middle_base_joint(const RobotModel& robot, int base_joints);
+
 /// Which joints and modules of a robot form the base of the U, and what they measure.
 class GripSense {
  public:
+  /// Throws ConfigurationError if the robot has no such base.
   GripSense(const RobotModel& robot, const GripConfig& config);
 
   /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.
@@ -82,6 +87,8 @@ class GripSense {
   void hold_starts(Grip& grip) const;
 
   [[nodiscard]] std::size_t yaw_joint_count() const { return yaw_joints_.size(); }
+  /// First yaw joint of the base, counted from the head.
+  [[nodiscard]] std::size_t base_first_joint() const { return first_; }
 
  private:
   /// Unit vector to which the mouth of the U points, in the head's frame.
@@ -94,6 +101,7 @@ class GripSense {
 
   const RobotModel& robot_;
   const GripConfig& config_;
+  std::size_t first_;                     ///< yaw joint with which the base begins, counted from the head
   std::vector<std::size_t> yaw_joints_;   ///< indices among all joints
   std::vector<std::size_t> base_joints_;  ///< indices among all joints
 };

@@ -6,12 +6,14 @@
 #include "component/task_parameters.hpp"
 #include "component/task_refusal.hpp"
 #include "constrictor/text.hpp"
+#include "navigation/body_fit.hpp"
 #include "navigation/motions.hpp"
 
 namespace constrictor {
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
-    : TunableComponent(wiring, setup, topics::kNavigationParameters),
+    : TunableComponent(wiring, fitted_to(load_robot(setup.robot_file), load_configuration<NavigationConfig>(setup)),
+                       topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
       grip_sense_(robot_, config_.grip) {}
 

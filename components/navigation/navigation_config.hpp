@@ -13,8 +13,8 @@ namespace constrictor {
 
 /// The U that holds an object, and the monitor of its loss.
 struct GripConfig : ParameterSet {
-  int base_first_joint = add(base_first_joint, "base_first_joint", 5, "", {0, 60}, kAtStart,
-                             "First yaw joint of the base of the U, counted from the head");
+  int base_first_joint = add(base_first_joint, "base_first_joint", -1, "", {-1, 60}, kAtStart,
+                             "First yaw joint of the base of the U, counted from the head; -1: arms of equal length");
   int base_joints =
       add(base_joints, "base_joints", 3, "", {1, 8}, kAtStart, "Number of yaw joints in the base of the U");
   double base_angle_rad = add(base_angle_rad, "base_angle_rad", 1.047, "rad", bounds::kAngle, kAtStart,

@@ -47,7 +47,7 @@ void Physics::sample(const Tick& tick) {
   sensors_.contacts(world_, felt, touched);
   contact_state_.write(felt);
   touched_state_.write(touched);
-  imu_state_.write(sensors_.imu(world_, config_.period_s()));
+  if (world_.robot().imu) imu_state_.write(sensors_.imu(world_, config_.period_s()));
   world_state_.write(constrictor::world_state(world_));
 }
 

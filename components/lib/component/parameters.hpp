@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "component/component.hpp"
@@ -107,7 +108,9 @@ class TunableComponent : public ConfiguredComponent<State, Config> {
  protected:
   /// Reads the configuration; `topic`: where the list of parameters is published. Throws ConfigurationError.
   TunableComponent(Wiring& wiring, const Setup& setup, const Topic<msg::ParameterList>& topic)
-      : ConfiguredComponent<State, Config>(wiring, setup), parameters_(wiring, topic, this->config_) {}
+      : TunableComponent(wiring, load_configuration<Config>(setup), topic) {}
+  TunableComponent(Wiring& wiring, Config config, const Topic<msg::ParameterList>& topic)
+      : ConfiguredComponent<State, Config>(wiring, std::move(config)), parameters_(wiring, topic, this->config_) {}
 
   Parameters parameters_;  ///< the rows of config_
 };

@@ -9,7 +9,7 @@ namespace {
 
 // The arrays in messages have room for this many modules (kMaxModules in common.idl).
 constexpr std::int64_t kMostModules = 64;
-// To grip an object, navigation bends the sixth to the eighth yaw joint (components/navigation/navigation.yaml).
+// To grip an object, navigation bends three yaw joints. Four in front of them steer, and one behind them opens.
 constexpr std::size_t kFewestYawJoints = 8;
 
 JointModel read_joint(Configuration& joints) {
@@ -104,6 +104,10 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.friction_across = skin.number("friction_across", {0.0, 5.0});
   robot.contact_sensors = skin.flag("contact_sensors", true);
   skin.finish();
+
+  Configuration imu = root.section("imu", false);
+  robot.imu = imu.flag("present", true);
+  imu.finish();
 
   robot.camera = read_camera(root.section("camera"));
   read_noise(root.section("noise", false), robot);

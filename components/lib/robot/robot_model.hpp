@@ -64,6 +64,7 @@ struct RobotModel {
   double joint_torque_noise_nm = 0.0;
   bool contact_sensors = true;  ///< the skin feels contacts; otherwise ContactState.module_count is 0
   double contact_force_noise_n = 0.0;
+  bool imu = true;  ///< the head has an inertial unit; otherwise no ImuState is published
   double imu_rate_noise_rad_s = 0.0;
   double imu_acceleration_noise_m_s2 = 0.0;
   double imu_yaw_drift_rad_sqrt_s = 0.0;  ///< random walk of the yaw of ImuState.orientation

@@ -14,6 +14,7 @@ namespace constrictor {
 namespace {
 
 /// Joints that undulate. Their angles are not finite between ticks 40 and 45, and impossible in ticks 50 to 52.
+template <bool kImu>
 class Snake : public testing::PlantBase {
  public:
   Snake(Wiring& wiring, const Setup&)
@@ -33,7 +34,7 @@ class Snake : public testing::PlantBase {
     const double yaw = 0.05 * std::sin(phase);
     imu.orientation = {std::cos(0.5 * yaw), 0.0, 0.0, std::sin(0.5 * yaw)};
     imu.angular_velocity_rad_s.z = 0.05 * 2.0 * 3.14159265 * 0.7 * std::cos(phase);
-    imu_.write(imu);
+    if (kImu) imu_.write(imu);
   }
 
  private:
@@ -69,11 +70,12 @@ class Eye : public StatefulComponent<std::int64_t> {
   Output<msg::ObjectPercepts> objects_;
 };
 
+template <bool kImu = true>
 std::unique_ptr<LocalRun> make_run() {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   return std::make_unique<LocalRun>(
-      std::vector<ComponentFactory>{testing::member_of_class<Snake>("physics"),
+      std::vector<ComponentFactory>{testing::member_of_class<Snake<kImu>>("physics"),
                                     testing::member_of_class<Eye>("perception"), make_guidance_factory()},
       setup);
 }
@@ -108,6 +110,16 @@ TEST(GuidanceComponent, KeepsThePoseWhileJointsAreNotPlausible) {
   EXPECT_EQ(run->latest(topics::kRobotPose)->x_m, x);
   run->advance(10);
   EXPECT_NE(run->latest(topics::kRobotPose)->x_m, x);
+}
+
+TEST(GuidanceComponent, MovesWithoutAnInertialUnit) {
+  auto run = make_run<false>();
+  run->advance(150);
+  EXPECT_GT(std::abs(run->latest(topics::kRobotPose)->x_m), 0.1);
+  EXPECT_GT(run->latest(topics::kRobotPose)->covariance[8], 1e-4) << "the yaw is less certain";
+  auto measured = make_run();
+  measured->advance(150);
+  EXPECT_LT(measured->latest(topics::kRobotPose)->covariance[8], 1e-4);
 }
 
 TEST(GuidanceComponent, RestartChangesNothing) {

@@ -25,6 +25,7 @@ struct Case {
   OpenLoopGait gait;
   double friction_along = 0.05, friction_across = 0.5;
   double grade = 0.0, uphill_rad = 0.0;  ///< slope of the ground, relative to the first heading
+  bool imu = true;                       ///< the yaw is measured
 };
 
 double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
@@ -64,7 +65,8 @@ TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
     OdometryInput input;
     input.joint_rad = q.data();
     input.joint_rad_s = rate.data();
-    input.yaw_rad = wrap_angle(yaw_of(world.module_pose(0)) - yaw_of(start) + drift_rad);
+    if (c.imu) input.yaw_rad = wrap_angle(yaw_of(world.module_pose(0)) - yaw_of(start) + drift_rad);
+    else input.yaw_rad = std::nan("");
     input.ground.assign(robot.module_count, {0.0, 0.0, 0.0});
     for (const ModuleContact& contact : world.contacts()) {
       Eigen::Vector3d force = contact.force_n;
@@ -89,11 +91,14 @@ TEST_P(DeadReckoning, StaysWithinSixPercentOfTheDistanceOnUnknownGround) {
   const double error_m = (filter.pose().p - truth).norm();
   std::printf("%s: %.2f m, error %.3f m (%.1f %%), yaw drift %.2f degrees\n", c.name, path_m, error_m,
               100.0 * error_m / path_m, std::abs(drift_rad) * 180.0 / std::numbers::pi);
+  const double yaw_error_rad = wrap_angle(yaw_of(world.module_pose(0)) - yaw_of(start) - filter.pose().yaw_rad);
+  std::printf("  yaw error %.2f degrees\n", yaw_error_rad * 180.0 / std::numbers::pi);
   std::printf("  friction along %.3f (true %.3f), across %.3f (true %.3f)\n", state.friction_along, c.friction_along,
               state.friction_across, c.friction_across);
   EXPECT_NEAR(state.friction_along, c.friction_along, 0.2 * c.friction_along + 0.005);
   EXPECT_NEAR(state.friction_across, c.friction_across, 0.2 * c.friction_across);
   EXPECT_LT(error_m, 0.06 * path_m);
+  EXPECT_LT(std::abs(yaw_error_rad), 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -105,7 +110,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"twice the ratio", {}, 0.025, 0.5}, Case{"twice the friction", {}, 0.1, 1.0},
                       Case{"across a slope", {}, 0.05, 0.5, 0.03, 1.57}, Case{"uphill", {}, 0.05, 0.5, 0.03, 0.0},
                       Case{"backwards across a slope", {0.5, -0.7, 1.07, 0.0}, 0.05, 0.5, 0.04, -1.57},
-                      Case{"in a curve on a slope", {0.6, 1.1, 1.07, 0.5}, 0.05, 0.5, 0.03, 2.0}),
+                      Case{"in a curve on a slope", {0.6, 1.1, 1.07, 0.5}, 0.05, 0.5, 0.03, 2.0},
+                      Case{"straight without inertial unit", {}, 0.05, 0.5, 0.0, 0.0, false},
+                      Case{"left without inertial unit", {0.5, 0.7, 1.07, 0.8}, 0.05, 0.5, 0.0, 0.0, false},
+                      Case{"backwards without inertial unit", {0.5, -0.7, 1.07, 0.0}, 0.04, 0.4, 0.0, 0.0, false}),
     [](const auto& parameter) { return "Gait" + std::to_string(parameter.index); });
 
 }  // namespace

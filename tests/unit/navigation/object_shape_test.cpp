@@ -146,7 +146,7 @@ TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
   const Grip grip = held(0.11, 0.15);
   TaskOutput output;
   squeeze_u(config, grip_sense, grip.side, grip, output);
-  const auto first = static_cast<std::size_t>(config.grip.base_first_joint);
+  const std::size_t first = grip_sense.base_first_joint();
   EXPECT_EQ(output.desired.shape_rad[first], grip_sense.open_angle_rad(grip.radius_m));
   EXPECT_LT(output.desired.shape_rad[first], config.grip.base_angle_rad);
   // The object keeps the base open. The joints beside it close until the arms are parallel: half a circle in all.

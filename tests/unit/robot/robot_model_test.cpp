@@ -50,6 +50,7 @@ TEST(RobotModel, MambaHasTheSizesOfTheStudy) {
 
 TEST(RobotModel, ASkinWithoutContactSensorsIsStated) {
   EXPECT_TRUE(load_robot(kRobots / "mamba.yaml").contact_sensors);
+  EXPECT_TRUE(load_robot(kRobots / "mamba.yaml").imu);
   EXPECT_FALSE(load_robot(kRobots / "mamba_no_skin.yaml").contact_sensors);
 }
 
@@ -77,6 +78,9 @@ TEST(RobotModel, ErrorNamesTheMistake) {
             "module.count: found 12 modules with 6 yaw joints, accepted a robot with at least 8 yaw joints (16 modules "
             "if the axes alternate)");
   EXPECT_EQ(error_of_changed_file("count: 24", "count: 16"), "");
+  EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\nimu: {present: false}"), "");
+  EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\nimu: {presence: false}").substr(0, 41),
+            "imu.presence: found an unknown key, accep");
   EXPECT_EQ(error_of_changed_file("count: 24", "count: 65"), "module.count: found 65, accepted a whole number 2 to 64");
   EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: [yaw, roll]"),
             "joints.axes[1]: found roll, accepted one of yaw, pitch");

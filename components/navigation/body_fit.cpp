@@ -1,0 +1,51 @@
+#include "navigation/body_fit.hpp"
+
+#include <algorithm>
+
+namespace constrictor {
+namespace {
+
+constexpr double kTunedLength_m = 2.136;  // for which the values of the configuration were found
+// The base of a body that is longer by a third holds an object with this share of a joint's torque: with less (2.7 Nm,
+// as the weight of an arm times its length demands) the U of 32 modules opened while it turned, and lost the object.
+constexpr double kFirmHold = 2.0 / 3.0;
+constexpr double kFirmFrom = 4.0 / 3.0;
+
+}  // namespace
+
+NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
+  const double length = robot.module_length_m * static_cast<double>(robot.module_count) / kTunedLength_m;
+  const double longer = std::max(1.0, length);
+  const double shorter = std::min(1.0, length);
+
+  // A turn on the spot bends the whole body. By the same angle a longer body does not close to a ring, and the friction
+  // of the ground, which its joints must overcome, grows less.
+  for (double* curvature_1_m :
+       {&config.rotate.curvature_1_m, &config.search.turn_curvature_1_m, &config.track.turn_curvature_1_m})
+    *curvature_1_m /= longer;
+  config.track.turn_radius_m *= longer;
+
+  // With an object the two arms of the U bend. Shorter arms need a larger curvature for the same angle.
+  for (double* curvature_1_m :
+       {&config.rotate.carry_curvature_1_m, &config.follow_line.carry_limit_1_m, &config.drop.steering.limit})
+    *curvature_1_m /= shorter;
+
+  // The friction of the ground on longer arms opens the base.
+  double firm_nm = config.grip.hold_torque_nm;
+  for (const JointModel& joint : robot.joints) firm_nm = std::max(firm_nm, kFirmHold * joint.max_torque_nm);
+  const double share = std::min(1.0, (longer - 1.0) / (kFirmFrom - 1.0));
+  config.grip.hold_torque_nm += share * (firm_nm - config.grip.hold_torque_nm);
+
+  // A longer U follows its head later: it looks farther ahead and steers more gently, and its arms leave the object
+  // only after a longer way.
+  config.drop.steering.kp /= longer;
+  config.drop.steering.ki /= longer;
+  config.drop.lookahead_m *= longer;
+  config.drop.back_m *= longer;
+  // It needs more time to straighten and more room, or its turns reach the object.
+  config.drop.straighten_rate_rad_s /= longer * longer;
+  config.drop.clear_m *= longer * longer;
+  return config;
+}
+
+}  // namespace constrictor

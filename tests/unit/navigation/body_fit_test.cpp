@@ -1,0 +1,113 @@
+// Robots with more and fewer modules: the place of the base of the U, and the parameters that follow from the length.
+#include "navigation/body_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "component/data_path.hpp"
+#include "configuration/configuration.hpp"
+#include "navigation/grip.hpp"
+
+namespace constrictor {
+namespace {
+
+/// `mamba` with another number of modules.
+RobotModel robot_with(std::size_t modules) {
+  RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  robot.module_count = modules;
+  robot.joints.resize(modules - 1, robot.joints.front());
+  for (std::size_t i = 0; i < robot.joints.size(); ++i)
+    robot.joints[i].axis = i % 2 == 0 ? JointAxis::kYaw : JointAxis::kPitch;
+  return robot;
+}
+
+TEST(BodyFit, TheBaseLiesInTheMiddleOfTheBody) {
+  for (std::size_t modules = 16; modules <= 64; ++modules) {
+    const RobotModel robot = robot_with(modules);
+    const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
+    const auto first = static_cast<std::size_t>(middle_base_joint(robot, 3));
+    ASSERT_LT(first + 3, yaw_joints.size()) << modules << " modules: a joint remains behind the base";
+    const double front_m = static_cast<double>(yaw_joints[first] + 1) * robot.module_length_m;
+    const double rear_m = static_cast<double>(modules - 1 - yaw_joints[first + 2]) * robot.module_length_m;
+    EXPECT_GE(front_m, 0.75) << modules << " modules";
+    // Two yaw joints lie 0.18 m apart, and the base cannot lie exactly in the middle.
+    if (modules >= 20) {
+      EXPECT_LE(std::abs(front_m - rear_m), 0.2) << modules << " modules";
+    }
+  }
+}
+
+TEST(BodyFit, TheBaseOfKnownRobots) {
+  EXPECT_EQ(middle_base_joint(robot_with(16), 3), 4);
+  EXPECT_EQ(middle_base_joint(robot_with(24), 3), 5);
+  EXPECT_EQ(middle_base_joint(robot_with(32), 3), 7);
+}
+
+TEST(BodyFit, ABaseBeyondTheTailIsRefused) {
+  const RobotModel robot = robot_with(24);
+  GripConfig config;
+  config.base_first_joint = 9;
+  EXPECT_EQ(GripSense(robot, config).base_first_joint(), 9U);
+  config.base_first_joint = 10;
+  try {
+    const GripSense sense(robot, config);
+    FAIL() << "accepted";
+  } catch (const ConfigurationError& error) {
+    EXPECT_STREQ(error.what(),
+                 "navigation: grip.base_first_joint: found 10 with 3 base_joints, accepted at most 9 for "
+                 "the 12 yaw joints of the robot mamba");
+  }
+}
+
+/// The values of all parameters, by key.
+std::vector<std::pair<std::string, std::string>> values(const NavigationConfig& config) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const ParameterRow& row : config.describe()) all.emplace_back(row.key, row.value);
+  return all;
+}
+
+TEST(BodyFit, NothingChangesForTheBodyOfTheDefaultRobot) {
+  EXPECT_EQ(values(fitted_to(robot_with(24), {})), values({}));
+  EXPECT_NE(values(fitted_to(robot_with(16), {})), values({}));
+  EXPECT_NE(values(fitted_to(robot_with(32), {})), values({}));
+}
+
+TEST(BodyFit, ALongBodyTurnsByTheSameAngle) {
+  const NavigationConfig tuned;
+  const NavigationConfig fitted = fitted_to(robot_with(36), tuned);  // one and a half times as long
+  EXPECT_NEAR(fitted.rotate.curvature_1_m, tuned.rotate.curvature_1_m / 1.5, 1e-9);
+  EXPECT_NEAR(fitted.track.turn_radius_m, tuned.track.turn_radius_m * 1.5, 1e-9);
+  EXPECT_NEAR(fitted.drop.lookahead_m, tuned.drop.lookahead_m * 1.5, 1e-9);
+  EXPECT_NEAR(fitted.drop.clear_m, tuned.drop.clear_m * 2.25, 1e-9);
+  EXPECT_NEAR(fitted.grip.hold_torque_nm, 4.0, 1e-9) << "two thirds of the joint's torque";
+  const double between_nm = fitted_to(robot_with(28), tuned).grip.hold_torque_nm;
+  EXPECT_NEAR(between_nm, 0.5 * (tuned.grip.hold_torque_nm + 4.0), 1e-9);
+  EXPECT_EQ(fitted.rotate.carry_curvature_1_m, tuned.rotate.carry_curvature_1_m);
+}
+
+TEST(BodyFit, AShortBodyWithAnObjectBendsByTheSameAngle) {
+  const NavigationConfig tuned;
+  const NavigationConfig fitted = fitted_to(robot_with(16), tuned);
+  EXPECT_NEAR(fitted.rotate.carry_curvature_1_m, tuned.rotate.carry_curvature_1_m * 1.5, 1e-9);
+  EXPECT_NEAR(fitted.follow_line.carry_limit_1_m, tuned.follow_line.carry_limit_1_m * 1.5, 1e-9);
+  EXPECT_NEAR(fitted.drop.steering.limit, tuned.drop.steering.limit * 1.5, 1e-9);
+  EXPECT_EQ(fitted.rotate.curvature_1_m, tuned.rotate.curvature_1_m);
+  EXPECT_EQ(fitted.grip.hold_torque_nm, tuned.grip.hold_torque_nm);
+}
+
+TEST(BodyFit, TheHoldStaysBelowTheTorqueOfTheJoints) {
+  RobotModel robot = robot_with(64);
+  const NavigationConfig fitted = fitted_to(robot, {});
+  EXPECT_LT(fitted.grip.hold_torque_nm, robot.joints.front().max_torque_nm);
+  // A hold that the configuration demands is not weakened.
+  NavigationConfig firm;
+  firm.grip.hold_torque_nm = 5.0;
+  EXPECT_EQ(fitted_to(robot, firm).grip.hold_torque_nm, 5.0);
+}
+
+}  // namespace
+}  // namespace constrictor
