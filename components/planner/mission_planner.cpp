@@ -219,6 +219,8 @@ std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal
   const bool failed = goal_state == msg::kGoalAborted || goal_state == msg::kGoalCancelled;
   if (goal_state != msg::kGoalSucceeded && !failed) return std::nullopt;
   if (memory_.state == kInspect) return after_inspection(!failed, inputs);
+  // At real-time pace the status may arrive before the event that says the same.
+  if (!failed && (memory_.state == kFollowLine || memory_.state == kTransport)) return end_of_line(inputs);
   if (!failed) return memory_.state == kDrop ? after_drop(inputs) : row.succeeded;
   return turns(memory_.state) || memory_.state == kApproachAnew ? row.failed : recover(row.failed);
 }
