@@ -157,8 +157,8 @@ std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState&
 
 void GripSense::hold_starts(Grip& grip) const {
   double closed_rad = 0.0;  // beyond the U with parallel arms
-  for (int i = 0; i < config_.base_joints; ++i)
-    closed_rad += grip.side * grip.shape_rad[first_ + static_cast<std::size_t>(i)] - config_.base_angle_rad;
+  for (std::size_t k = first_; k < first_ + base_joints_.size(); ++k)
+    closed_rad += grip.side * grip.shape_rad[k] - config_.base_angle_rad;
   grip.hold_torque_nm = closed_rad < 0.0 ? config_.wide_hold_torque_nm : config_.hold_torque_nm;
   grip.torque_nm = config_.hold_torque_nm;
   grip.contact_share = 1.0;

@@ -121,10 +121,11 @@ double MissionPlanner::remembered_m(const PlannerInputs& inputs) const {
 std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  const double distance_m = searches() ? remembered_m(inputs) : std::numeric_limits<double>::infinity();
-  if (distance_m > 0.3 && distance_m < config_.remembered_range_m) {
-    const msg::MapObject* landmark = wanted_landmark(inputs);
-    return wrap_angle(std::atan2(landmark->y_m - pose.y_m, landmark->x_m - pose.x_m) - course_rad(pose));
+  if (const msg::MapObject* landmark = searches() ? wanted_landmark(inputs) : nullptr) {
+    const double x_m = landmark->x_m - pose.x_m, y_m = landmark->y_m - pose.y_m;
+    const double distance_m = std::hypot(x_m, y_m);
+    if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
+      return wrap_angle(std::atan2(y_m, x_m) - course_rad(pose));
   }
   const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
   if (!heading_rad) return std::nullopt;

@@ -8,8 +8,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
-#include <sstream>
 
 #include "runtime/host.hpp"
 #include "support/eventually.hpp"
@@ -29,8 +27,8 @@ constexpr const char* kSame = " --domain 7 --manifest case_study --scenario shor
 class Boot : public ::testing::Test {
  protected:
   void SetUp() override {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can boot a container";
     for (const char* program : {"/usr/sbin/debootstrap", "/usr/bin/systemd-nspawn", "/usr/bin/systemctl"}) {
-      if (::geteuid() != 0) GTEST_SKIP() << "only root can boot a container";
       if (!fs::exists(program)) GTEST_SKIP() << program << " is missing: ./scripts/setup.sh boot";
     }
     run({"/usr/sbin/debootstrap", "--variant=minbase", "--include=systemd,systemd-sysv,dbus", "bookworm",
@@ -46,13 +44,10 @@ class Boot : public ::testing::Test {
     if (container_) pull_the_plug();
   }
   /// Runs a command to its end. It must succeed.
-  static std::string run(std::vector<std::string> arguments, const std::map<std::string, std::string>& more = {}) {
-    std::map<std::string, std::string> environment = {{"DEBIAN_FRONTEND", "noninteractive"}};
-    environment.insert(more.begin(), more.end());
+  static void run(std::vector<std::string> arguments) {
     const std::string name = arguments.front();
-    Process process(std::move(arguments), environment);
+    Process process(std::move(arguments), {{"DEBIAN_FRONTEND", "noninteractive"}});
     EXPECT_EQ(process.wait(600s), exit_status::kOk) << name << ": " << process.output() << process.errors();
-    return process.output();
   }
   void in_root(const std::string& command) const {
     run({"/usr/sbin/chroot", root_.string(), "/bin/sh", "-c", command});
