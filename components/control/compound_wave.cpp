@@ -35,7 +35,7 @@ MethodProgress CompoundGait::step(const MethodInput& input, BodyState& body, Set
   const double spacing_m = input.robot.module_length_m;
   const double length_m = spacing_m * static_cast<double>(input.robot.module_count);
   const CompoundWave wave = this->wave(input.config, body.wave.curvature_1_m, length_m);
-  const bool moves = input.desired.amplitude_rad > 0.0;
+  const bool moves = input.gait.amplitude_rad > 0.0;
   const double step_rad = input.config.amplitude_rate_rad_s * input.dt_s;
   double& yaw_rad = body.scratch[kYawAmplitude];
   double& pitch_rad = body.scratch[kPitchAmplitude];

@@ -1,7 +1,7 @@
 #include "control/control.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@
 namespace constrictor {
 namespace {
 
-constexpr std::string_view kDrive = "drive";  // DesiredTrajectory.method
+constexpr double kLongestPeriod_s = 10.0;  // of MotionStatus.period_s: a body that stands does not sway
 
 }  // namespace
 
@@ -24,29 +24,29 @@ Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
       gate_(robot_, {0, config_.relax_after_ticks}),
       registry_(std::move(methods)) {}
 
-void Control::name_drive_method(msg::DesiredTrajectory& desired) const {
-  const std::string& chosen = drive_methods().at(config_.drive_method);
-  const ControlMethod* method = registry_.find(chosen);
-  const bool usable = method && method->accepts(desired, chain_);
-  set_text(desired.method, usable ? chosen : drive_methods().front());
+const ControlMethod* Control::method_for(const msg::DesiredTrajectory& desired) const {
+  const ControlMethod* method = registry_.find(method_of(desired.motion, config_));
+  if (method && method->accepts(desired, chain_)) return method;
+  method = drives(desired.motion) ? registry_.find(drive_methods().front()) : nullptr;
+  return method && method->accepts(desired, chain_) ? method : nullptr;
 }
 
-msg::DesiredTrajectory Control::choose(const ControlMethod*& method, bool& known) const {
-  msg::DesiredTrajectory desired{};
-  known = false;
+Control::Choice Control::choose() const {
+  Choice choice;
   const char* fallback = "hold";
   if (trajectory_in_) {
-    desired = *trajectory_in_;
-    if (std::string_view(desired.method) == kDrive) name_drive_method(desired);
-    method = registry_.find(desired.method);
-    known = method && method->accepts(desired, chain_);
+    choice.desired = *trajectory_in_;
+    choice.method = method_for(choice.desired);
+    choice.known = choice.method != nullptr;
     if (trajectory_in_.age_ticks() > config_.relax_after_ticks) fallback = "relax";
-    if (known && trajectory_in_.age_ticks() <= config_.hold_after_ticks) return desired;
+    if (choice.known && trajectory_in_.age_ticks() <= config_.hold_after_ticks) return choice;
   }
-  std::snprintf(desired.method, sizeof desired.method, "%s", fallback);
+  msg::DesiredTrajectory& desired = choice.desired;
   desired.shape_count = std::min<std::uint16_t>(desired.shape_count, static_cast<std::uint16_t>(chain_.joint_count()));
-  method = registry_.find(fallback);
-  return desired;
+  desired.point_count = 0;
+  desired.speed_m_s = 0.0;
+  choice.method = registry_.find(fallback);
+  return choice;
 }
 
 Perceived Control::perceived() const {
@@ -76,36 +76,38 @@ void Control::step(const Tick& tick) {
   }
   if (!state_.limiter.started) state_.limiter.position_rad = measured_rad;
 
-  const ControlMethod* method = nullptr;
-  bool known = false;
-  const msg::DesiredTrajectory desired = choose(method, known);
+  const Choice choice = choose();
+  const msg::DesiredTrajectory& desired = choice.desired;
+  const std::string method(choice.method->name());
+  const Gait gait = gait_of(desired, config_);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_,        chain_,      config_,     desired,    measured_rad, torque_nm,
+  const MethodInput input{robot_,        chain_,      config_,     desired,    gait,      measured_rad, torque_nm,
                           commanded_rad, tick.dt_s(), perceived(), rate_rad_s, exerted_nm};
-  if (state_.method != desired.method || state_.motion_id != desired.motion_id) {
+  if (state_.method != method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     state_.body.sliding = {};
-    method->start(input, state_.body);
-    state_.method = desired.method;
+    choice.method->start(input, state_.body);
+    state_.method = method;
     state_.motion_id = desired.motion_id;
   }
   Setpoints setpoints;
   setpoints.position_rad = commanded_rad;
   for (std::size_t j = 0; j < count; ++j) setpoints.torque_limit_nm[j] = robot_.joints[j].max_torque_nm;
-  const MethodProgress progress = method->step(input, state_.body, setpoints);
-  const bool relaxed = std::string_view(desired.method) == "relax";
+  const MethodProgress progress = choice.method->step(input, state_.body, setpoints);
+  const bool relaxed = method == "relax";
   msg::JointCommand wanted = relaxed ? limiter_.relax(measured_rad, state_.limiter)
                                      : limiter_.limit(setpoints, measured_rad, tick.dt_s(), state_.limiter);
   if (relaxed) wanted.mode = msg::kServoRelaxed;
   command_out_.write(gated(wanted, measured_rad, rate_rad_s, tick));
 
   msg::MotionStatus status{};
-  std::snprintf(status.method, sizeof status.method, "%s", desired.method);
+  set_text(status.method, method);
   status.motion_id = desired.motion_id;
-  status.accepted = known;
-  status.done = known && progress.done;
+  status.accepted = choice.known;
+  status.done = choice.known && progress.done;
   status.progress = progress.progress;
   status.phase_rad = state_.body.wave.phase_rad;
+  status.period_s = std::min(kLongestPeriod_s, 1.0 / std::abs(gait.frequency_hz));
   status_out_.write(status);
 }
 

@@ -38,11 +38,17 @@ class Control : public TunableComponent<ControlState, ControlConfig> {
   void step(const Tick& tick) override;
 
  private:
-  /// Replaces "drive" by the name of the method that moves the robot: the configured one, or undulation if that one
-  /// does not accept the trajectory (a body that holds an object).
-  void name_drive_method(msg::DesiredTrajectory& desired) const;
+  /// What control does in this tick.
+  struct Choice {
+    msg::DesiredTrajectory desired{};
+    const ControlMethod* method = nullptr;  ///< never null
+    bool known = false;                     ///< the trajectory is fresh, and its method accepts it
+  };
+  /// The method for the motion of the trajectory: the one that the parameters name, or undulation if that one does not
+  /// accept the trajectory (a body that holds an object). Null: there is none.
+  [[nodiscard]] const ControlMethod* method_for(const msg::DesiredTrajectory& desired) const;
   /// The trajectory to follow now, by the rules on age and validity, and its method.
-  [[nodiscard]] msg::DesiredTrajectory choose(const ControlMethod*& method, bool& known) const;
+  [[nodiscard]] Choice choose() const;
   [[nodiscard]] Perceived perceived() const;
   /// The command for the servos: `wanted` after the safety gate.
   [[nodiscard]] msg::JointCommand gated(const msg::JointCommand& wanted, const JointArray& measured_rad,

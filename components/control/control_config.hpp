@@ -10,12 +10,20 @@
 
 namespace constrictor {
 
-/// The methods that move the body along a path, by the values of `drive.method`.
+/// The methods that move the body along a path, by the values of `motion.KIND.method`.
 inline const std::vector<std::string>& drive_methods() {
   static const std::vector<std::string> names{"undulation", "sidewinding",  "rolling",       "pitch_wave",
                                               "concertina", "sliding_mode", "obstacle_aided"};
   return names;
 }
+
+/// How control performs a kind of motion along a path.
+struct MotionParameters {
+  std::uint8_t method = 0;  ///< index in drive_methods(); wrap and squeeze have methods of their own
+  double amplitude_rad = 0.0;
+  double wavelength_m = 1.0;
+  double advance_m = 1.0;
+};
 
 /// Parameters of the method "sliding_mode"; methods/sliding_mode.cpp explains the law.
 struct SlidingParameters {
@@ -43,8 +51,41 @@ struct ObstacleParameters {
 };
 
 struct ControlConfig : ParameterSet {
-  std::uint8_t drive_method = add(drive_method, "drive.method", 0, drive_methods(), kWhileRunning,
-                                  "Method that moves a body without an object; with one it is always undulation");
+  using ParameterSet::add;
+  /// The rows of a kind of motion whose method can be chosen.
+  MotionParameters add(MotionParameters& motion, const std::string& kind, const MotionParameters& fallback,
+                       const std::string& meaning) {
+    const std::uint8_t method = add(motion.method, "motion." + kind + ".method", 0, drive_methods(), kWhileRunning,
+                                    meaning + ": control method; undulation if this one cannot move the body");
+    MotionParameters motion_parameters = add_gait(motion, kind, fallback, meaning);
+    motion_parameters.method = method;
+    return motion_parameters;
+  }
+  /// The rows of the gait of a kind of motion.
+  MotionParameters add_gait(MotionParameters& motion, const std::string& kind, const MotionParameters& fallback,
+                            const std::string& meaning) {
+    const std::string key = "motion." + kind;
+    return {0,
+            add(motion.amplitude_rad, key + ".amplitude_rad", fallback.amplitude_rad, "rad", {0.0, 1.2}, kWhileRunning,
+                meaning + ": amplitude of the wave's heading"),
+            add(motion.wavelength_m, key + ".wavelength_m", fallback.wavelength_m, "m", {0.2, 5.0}, kWhileRunning,
+                meaning + ": length of the wave along the body"),
+            add(motion.advance_m, key + ".advance_m", fallback.advance_m, "m", {0.01, 5.0}, kWhileRunning,
+                meaning + ": way of the body in one undulation")};
+  }
+
+  MotionParameters travel = add(travel, "travel", {0, 0.5, 1.07, 0.9}, "Moving without an object");
+  MotionParameters carry = add(carry, "carry", {0, 0.8, 1.2, 0.18}, "Moving with an object in the U");
+  MotionParameters creep = add(creep, "creep", {0, 0.35, 1.07, 0.7}, "Small steps beside an object");
+  MotionParameters wrap = add_gait(wrap, "wrap", {0, 0.45, 1.07, 0.4}, "Wrapping");
+  MotionParameters seat = add(seat, "seat", {0, 0.8, 1.2, 0.15}, "Driving the base of the U to the object");
+  MotionParameters squeeze = add_gait(squeeze, "squeeze", {0, 0.3, 1.07, 0.14}, "Squeezing");
+  MotionParameters deliver = add(deliver, "deliver", {0, 0.6, 1.07, 0.15}, "The last stretch to a zone");
+  MotionParameters leave = add(leave, "leave", {0, 0.5, 1.07, 0.12}, "Backing off with an open U");
+  double lookahead_m = add(lookahead_m, "path.lookahead_m", 0.5, "m", {0.05, 2.0}, kWhileRunning,
+                           "The body steers towards the point of the path this far ahead of the head");
+  double most_hz = add(most_hz, "wave.most_hz", 1.2, "Hz", {0.05, 2.0}, kWhileRunning,
+                       "Most undulations per second: a faster motion stays slower than desired");
   WaveWeights weights{
       add(weights.head, "wave.head_weights", {0.0, 0.5, 0.8}, "", {0.0, 1.0}, {0, 16},
           "Share of the wave's amplitude in the first links (1 in all others); 0 keeps the head on the mean heading"),

@@ -8,6 +8,7 @@
 
 #include "control/control_config.hpp"
 #include "control/joint_limiter.hpp"
+#include "control/motion_gait.hpp"
 #include "control/yaw_chain.hpp"
 
 namespace constrictor {
@@ -69,6 +70,7 @@ struct MethodInput {
   const YawChain& chain;
   const ControlConfig& config;
   const msg::DesiredTrajectory& desired;
+  const Gait& gait;                 ///< what the path and the velocity of `desired` demand of the wave
   const JointArray& measured_rad;   ///< joint positions
   const JointArray& torque_nm;      ///< joint torques
   const JointArray& commanded_rad;  ///< previous setpoints

@@ -1,17 +1,17 @@
 #include <cmath>
 
 #include "control/control_method.hpp"
+#include "robot/trajectory_path.hpp"
 
 namespace constrictor {
 
 bool ControlMethod::accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const {
-  if (desired.shape_count > chain.joint_count() || desired.wavelength_m <= 0.0) return false;
+  if (desired.shape_count > chain.joint_count() || !has_valid_path(desired)) return false;
   for (std::size_t k = 0; k < desired.shape_count; ++k) {
     if (!std::isfinite(desired.shape_rad[k])) return false;
   }
-  return std::isfinite(desired.frequency_hz) && std::isfinite(desired.amplitude_rad) &&
-         std::isfinite(desired.wavelength_m) && std::isfinite(desired.curvature_1_m) &&
-         std::isfinite(desired.speed_m_s) && std::isfinite(desired.squeeze_rad);
+  return std::isfinite(desired.speed_m_s) && std::isfinite(desired.acceleration_m_s2) &&
+         std::isfinite(desired.slide_m_s) && std::isfinite(desired.squeeze_rad);
 }
 
 void ControlMethod::start(const MethodInput&, BodyState&) const {}

@@ -29,12 +29,12 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   // On a bent posture the waves of the two fields can differ by whole wavelengths. Therefore the wave fades out before
   // its field changes.
   const bool fades = wave.field != field && fields_differ(input.chain, body.shape_rad);
-  const double amplitude_rad = fades ? 0.0 : input.desired.amplitude_rad;
+  const double amplitude_rad = fades ? 0.0 : input.gait.amplitude_rad;
   wave.amplitude_rad = approach(wave.amplitude_rad, amplitude_rad, c.amplitude_rate_rad_s * dt_s);
   if (!fades || wave.amplitude_rad <= 0.0) wave.field = field;
-  wave.wavelength_m = approach(wave.wavelength_m, input.desired.wavelength_m, c.wavelength_rate_m_s * dt_s);
-  wave.curvature_1_m = approach(wave.curvature_1_m, input.desired.curvature_1_m, c.curvature_rate_1_ms * dt_s);
-  body.frequency_hz = approach(body.frequency_hz, input.desired.frequency_hz, c.frequency_rate_hz_s * dt_s);
+  wave.wavelength_m = approach(wave.wavelength_m, input.gait.wavelength_m, c.wavelength_rate_m_s * dt_s);
+  wave.curvature_1_m = approach(wave.curvature_1_m, input.gait.curvature_1_m, c.curvature_rate_1_ms * dt_s);
+  body.frequency_hz = approach(body.frequency_hz, input.gait.frequency_hz, c.frequency_rate_hz_s * dt_s);
   wave.phase_rad =
       std::remainder(wave.phase_rad + 2.0 * std::numbers::pi * body.frequency_hz * dt_s, 2.0 * std::numbers::pi);
 }

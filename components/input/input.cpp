@@ -150,7 +150,7 @@ void Input::forward_motion(const msg::Request& request) {
   set_text(motion.source, state_.arbiter.holder);
   motion.level = request.level;
   motion.motion = request.motion;
-  motion.frequency_hz = request.frequency_hz;
+  motion.speed_m_s = request.speed_m_s;
   motion.curvature_1_m = request.curvature_1_m;
   motion.angle_rad = request.angle_rad;
   motion_ = motion;

@@ -37,7 +37,7 @@ void begin_motion(const msg::MotionCommand& command, DirectMotionState& state, G
   state.begins = !same || command.motion == msg::kMotionWrap || command.motion == msg::kMotionSqueeze;
   state.active = true;
   state.motion = command.motion;
-  state.frequency_hz = command.frequency_hz;
+  state.speed_m_s = command.speed_m_s;
   state.curvature_1_m = command.curvature_1_m;
   state.angle_rad = command.angle_rad;
   switch (command.motion) {
@@ -66,9 +66,10 @@ void step_motion(const NavigationConfig& config, const GripSense& sense, const G
   switch (state.motion) {
     case msg::kMotionDrive: {
       output.phase = "drive";
-      Gait gait = present_gait(config, body);
-      gait.frequency_hz = std::abs(state.frequency_hz);
-      undulate(gait, state.curvature_1_m, state.frequency_hz < 0.0 ? -1.0 : 1.0, body, output);
+      Pace pace = present_pace(config, body);
+      pace.speed_m_s = std::abs(state.speed_m_s);
+      move_along(pace, state.curvature_1_m, state.speed_m_s < 0.0 ? -1.0 : 1.0, body, output);
+      if (grip.carrying) keep_upright(config, grip, output);
       break;
     }
     case msg::kMotionLook:
@@ -77,7 +78,7 @@ void step_motion(const NavigationConfig& config, const GripSense& sense, const G
       break;
     case msg::kMotionWrap:
       output.phase = "wrap";
-      wrap_round(sense, config.grasp.wrap, state.wrapped_side, config.grasp.wrap_speed_m_s, grip, output);
+      wrap_round(sense, config.grasp.wrap_m_s, state.wrapped_side, config.grasp.wrap_speed_m_s, grip, output);
       break;
     case msg::kMotionSqueeze:
       output.phase = "squeeze";

@@ -9,7 +9,7 @@ namespace constrictor {
 struct DirectMotionState {
   bool active = false;  ///< a direct motion, and no task, moves the body
   std::uint8_t motion = msg::kMotionStand;
-  double frequency_hz = 0.0;
+  double speed_m_s = 0.0;
   double curvature_1_m = 0.0;
   double angle_rad = 0.0;
   double wrapped_side = 0.0;  ///< the body is wrapped to this side: +1 left, -1 right; 0: it is straight
@@ -17,7 +17,7 @@ struct DirectMotionState {
   bool begins = false;  ///< the present step is the first of this motion
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(active, motion, frequency_hz, curvature_1_m, angle_rad, wrapped_side, squeezed, begins);
+    archive(active, motion, speed_m_s, curvature_1_m, angle_rad, wrapped_side, squeezed, begins);
   }
 };
 

@@ -6,15 +6,15 @@
 #include <numbers>
 
 #include "constrictor/text.hpp"
+#include "robot/trajectory_path.hpp"
 
 namespace constrictor {
 namespace {
 
-/// Begins a new trajectory for this method.
-void begin(const char* method, TaskOutput& output) {
+/// Begins a new trajectory for this kind of motion.
+void begin(const char* motion, TaskOutput& output) {
   output.desired = {};
-  output.desired.wavelength_m = 1.0;
-  set_text(output.desired.method, method);
+  set_text(output.desired.motion, motion);
 }
 
 void set_posture(const Grip& grip, TaskOutput& output) {
@@ -33,30 +33,28 @@ void set_open_u(const GripSense& sense, double side, const Grip& grip, TaskOutpu
   std::copy_n(shape_rad.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
 }
 
-void set_gait(const Gait& gait, double curvature_1_m, double direction, TaskOutput& output) {
-  output.desired.frequency_hz = direction * gait.frequency_hz;
-  output.desired.amplitude_rad = gait.amplitude_rad;
-  output.desired.wavelength_m = gait.wavelength_m;
-  output.desired.curvature_1_m = curvature_1_m;
+void set_pace(const Pace& pace, double curvature_1_m, double direction, TaskOutput& output) {
+  output.desired.speed_m_s = direction * pace.speed_m_s;
+  set_arc(curvature_1_m, output.desired);
 }
 
 }  // namespace
 
 void stand(const Grip& grip, TaskOutput& output) {
-  begin("hold", output);
+  begin("stand", output);
   set_posture(grip, output);
 }
 
-void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
-  begin("drive", output);
-  set_gait(gait, curvature_1_m, direction, output);
+void move_along(const Pace& pace, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
+  begin(pace.motion, output);
+  set_pace(pace, curvature_1_m, direction, output);
   set_posture(grip, output);
 }
 
-void undulate_on(const Gait& gait, double curvature_1_m, double direction,
-                 const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output) {
-  begin("undulation", output);
-  set_gait(gait, curvature_1_m, direction, output);
+void move_in_shape(const Pace& pace, double curvature_1_m, double direction,
+                   const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output) {
+  begin(pace.motion, output);
+  set_pace(pace, curvature_1_m, direction, output);
   output.desired.shape_count = static_cast<std::uint16_t>(shape_count);
   for (std::size_t k = 0; k < shape_count; ++k) output.desired.shape_rad[k] = shape_rad[k];
 }
@@ -75,19 +73,18 @@ void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Gr
   for (std::size_t k = first; k < end; ++k) output.desired.shape_rad[k] += each_rad;
 }
 
-void wrap_round(const GripSense& sense, const Gait& gait, double side, double speed_m_s, const Grip& grip,
+void wrap_round(const GripSense& sense, double speed_m_s, double side, double slide_m_s, const Grip& grip,
                 TaskOutput& output) {
-  undulate(gait, 0.0, 1.0, grip, output);
-  set_text(output.desired.method, "wrap");
+  move_along({"wrap", speed_m_s}, 0.0, 1.0, grip, output);
   set_open_u(sense, side, grip, output);
   output.desired.wrap_side = side;
-  output.desired.speed_m_s = speed_m_s;
+  output.desired.slide_m_s = slide_m_s;
 }
 
 void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
                TaskOutput& output) {
-  undulate(gentle(config.grasp.squeeze, config, grip), 0.0, 1.0, grip, output);
-  set_text(output.desired.method, "squeeze");
+  move_along({"squeeze", config.grasp.squeeze_m_s}, 0.0, 1.0, grip, output);
+  keep_upright(config, grip, output);
   set_open_u(sense, side, grip, output);
   output.desired.squeeze_rad = config.grasp.squeeze_max_rad;
   output.desired.torque_limit_nm = config.grasp.squeeze_cap_nm;
@@ -99,24 +96,19 @@ double tipping_acceleration_m_s2(const Grip& grip) {
   return kGravity_m_s2 * grip.radius_m / (0.5 * grip.height_m);
 }
 
-double lateral_acceleration_m_s2(const Gait& gait) {
-  return 2.0 * std::numbers::pi * gait.amplitude_rad * gait.wavelength_m * gait.frequency_hz * gait.frequency_hz;
+void keep_upright(const NavigationConfig& config, const Grip& grip, TaskOutput& output) {
+  constexpr double kAny_m_s2 = 100.0;  // no gait comes near it
+  const double most_m_s2 = config.grip.tipping_share * tipping_acceleration_m_s2(grip);
+  if (most_m_s2 < kAny_m_s2) output.desired.acceleration_m_s2 = most_m_s2;
 }
 
-Gait gentle(const Gait& gait, const NavigationConfig& config, const Grip& grip) {
-  const double share = config.grip.tipping_share * tipping_acceleration_m_s2(grip) / lateral_acceleration_m_s2(gait);
-  if (!(share < 1.0)) return gait;
-  // A smaller wave carries farther than a slower one of the same acceleration, unless it is so small that it slips.
-  constexpr double kLeastAmplitude_rad = 0.4;
-  const double amplitude_rad = share * gait.amplitude_rad;
-  Gait slower = gait;
-  slower.amplitude_rad = std::max(amplitude_rad, std::min(gait.amplitude_rad, kLeastAmplitude_rad));
-  slower.frequency_hz *= std::sqrt(amplitude_rad / slower.amplitude_rad);
-  return slower;
+Pace present_pace(const NavigationConfig& config, const Grip& grip) {
+  return grip.carrying ? Pace{"carry", config.carry_m_s} : Pace{"travel", config.travel_m_s};
 }
 
-Gait present_gait(const NavigationConfig& config, const Grip& grip) {
-  return grip.carrying ? gentle(config.carry, config, grip) : config.travel;
+void move_on(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {
+  move_along(present_pace(input.config, grip), curvature_1_m, direction, grip, output);
+  if (grip.carrying) keep_upright(input.config, grip, output);
 }
 
 double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
@@ -124,8 +116,6 @@ double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double y
   const double along_m = X_MP.to_local(X_MH.p).x();
   return X_MH.to_local(X_MP.to_parent({along_m + lookahead_m, 0.0})).y();
 }
-
-double gait_period_s(const Gait& gait) { return 1.0 / std::max(0.1, std::abs(gait.frequency_hz)); }
 
 double body_course_rad(const TaskInput& input) {
   double turn_rad = 0.0;

@@ -7,19 +7,25 @@ namespace constrictor {
 
 /// Stands still in the present posture.
 void stand(const Grip& grip, TaskOutput& output);
-/// Undulates along a path of this curvature, straight or in the U that holds an object. `direction`: +1 forwards, -1
-/// backwards.
-void undulate(const Gait& gait, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output);
+/// A kind of motion (msg::DesiredTrajectory), and the speed along its path.
+struct Pace {
+  const char* motion = "travel";
+  double speed_m_s = 0.0;  ///< positive
+};
+/// Moves along an arc of this curvature from the head, straight or in the U that holds an object. `direction`: +1
+/// forwards, -1 backwards.
+void move_along(const Pace& pace, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output);
 /// The same in a given posture: angles of the first `shape_count` yaw joints.
-void undulate_on(const Gait& gait, double curvature_1_m, double direction,
-                 const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output);
+void move_in_shape(const Pace& pace, double curvature_1_m, double direction,
+                   const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output);
 /// Bends the three yaw joints next to the head by `each_rad` each, positive left. The other joints are straight, or
 /// hold the object.
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
 /// The same with three neighbouring yaw joints, of which `first` is the one next to the head (0: the foremost).
 void bend_joints(std::size_t first, double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);
-/// Wraps the body round the object on `side` (+1 left, -1 right): the arc slides along the body at `speed_m_s`.
-void wrap_round(const GripSense& sense, const Gait& gait, double side, double speed_m_s, const Grip& grip,
+/// Wraps the body round the object on `side` (+1 left, -1 right): the body moves at `speed_m_s`, and the arc slides
+/// along it at `slide_m_s`.
+void wrap_round(const GripSense& sense, double speed_m_s, double side, double slide_m_s, const Grip& grip,
                 TaskOutput& output);
 /// Closes the base of the wrapped body with a limited torque while the body drives on.
 void squeeze_u(const NavigationConfig& config, const GripSense& sense, double side, const Grip& grip,
@@ -28,20 +34,16 @@ void squeeze_u(const NavigationConfig& config, const GripSense& sense, double si
 /// [m/s2] horizontal acceleration at which an upright object tips over its edge, like a block on a cart: gravity times
 /// its radius through half of its height. Infinite if its height is unknown.
 double tipping_acceleration_m_s2(const Grip& grip);
-/// [m/s2] largest lateral acceleration of a body that undulates with this gait: the body moves sideways by
-/// amplitude x wavelength / 2 pi.
-double lateral_acceleration_m_s2(const Gait& gait);
-/// The gait with an amplitude, and if necessary a frequency, at which the arms of the U do not knock the object over.
-Gait gentle(const Gait& gait, const NavigationConfig& config, const Grip& grip);
-/// The gait for a body with or without an object.
-Gait present_gait(const NavigationConfig& config, const Grip& grip);
+/// Limits the waves of the motion so that the arms of the U do not knock over the object of `grip`.
+void keep_upright(const NavigationConfig& config, const Grip& grip, TaskOutput& output);
+/// The pace of a body with or without an object.
+Pace present_pace(const NavigationConfig& config, const Grip& grip);
+/// Moves at the present pace, and keeps an object in the U upright.
+void move_on(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output);
 
 /// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
 /// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.
 double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m);
-
-/// [s] one period of the gait, in which the head sways once.
-double gait_period_s(const Gait& gait);
 
 /// [rad] heading in M that the body will have once it is straight: the mean heading of its modules.
 double body_course_rad(const TaskInput& input);

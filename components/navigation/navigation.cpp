@@ -10,6 +10,11 @@
 #include "navigation/motions.hpp"
 
 namespace constrictor {
+namespace {
+
+constexpr double kSwayPeriod_s = 1.5;  // until control has told its own
+
+}  // namespace
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
     : TunableComponent(wiring, fitted_to(load_robot(setup.robot_file), load_configuration<NavigationConfig>(setup)),
@@ -52,6 +57,7 @@ void Navigation::step(const Tick& tick) {
   const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);
   const std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);
   const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->accepted && motion_in_->done;
+  const double sway_period_s = motion_in_ && motion_in_->period_s > 0.0 ? motion_in_->period_s : kSwayPeriod_s;
   TaskInput input{tick,
                   robot_,
                   config_,
@@ -66,7 +72,8 @@ void Navigation::step(const Tick& tick) {
                   body,
                   touches,
                   state_.feels,
-                  done};
+                  done,
+                  sway_period_s};
   take_commands(input);
   take_direct_motions();
   input.parameters = state_.goal.parameters;
@@ -210,8 +217,8 @@ void Navigation::write_refusal(const msg::TaskCommand& command, const std::strin
 }
 
 void Navigation::write_trajectory(const TaskOutput& output) {
-  if (output.new_motion || state_.method != output.desired.method) ++state_.motion_id;
-  state_.method = output.desired.method;
+  if (output.new_motion || state_.motion != output.desired.motion) ++state_.motion_id;
+  state_.motion = output.desired.motion;
   msg::DesiredTrajectory desired = output.desired;
   desired.motion_id = state_.motion_id;
   trajectory_out_.write(desired);

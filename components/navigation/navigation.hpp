@@ -36,7 +36,7 @@ struct NavigationState {
   Grip grip;
   ObjectTrackerState sightings;
   std::uint64_t motion_id = 0;
-  std::string method;  ///< control method of the newest motion
+  std::string motion;  ///< kind of the newest motion
   DirectMotionState direct;
   bool blind = false;  ///< the task waits for percepts
   bool feels = false;  ///< the robot has contact sensors
@@ -45,13 +45,13 @@ struct NavigationState {
   template <class Archive>
   void save(Archive& archive) const {
     const std::string bytes = task ? task->save() : std::string();
-    archive(goal, grip, sightings, motion_id, method, direct, blind, feels, parameters, task != nullptr, bytes);
+    archive(goal, grip, sightings, motion_id, motion, direct, blind, feels, parameters, task != nullptr, bytes);
   }
   template <class Archive>
   void load(Archive& archive) {
     bool has_task = false;
     std::string bytes;
-    archive(goal, grip, sightings, motion_id, method, direct, blind, feels, parameters, has_task, bytes);
+    archive(goal, grip, sightings, motion_id, motion, direct, blind, feels, parameters, has_task, bytes);
     task = has_task ? make_task(goal.task) : nullptr;
     if (task) task->load(bytes);
   }

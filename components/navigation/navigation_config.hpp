@@ -186,9 +186,10 @@ struct GraspConfig : NavigationSection {
       add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
   double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
                                    "Time constant of the low-pass on the body's speed");
-  Gait wrap = add(wrap, "wrap", {0.7, 0.45, 1.07}, kAtStart, "Gait of the wrap");
-  Gait seat = add(seat, "seat", {1.1, 0.8, 1.2}, kAtStart, "Gait that drives the base to the object");
-  Gait squeeze = add(squeeze, "squeeze", {0.7, 0.3, 1.07}, kAtStart, "Gait of the squeeze");
+  double wrap_m_s = add_speed(wrap_m_s, "wrap.speed_m_s", 0.28, kAtStart, "Speed of the body in the wrap");
+  double seat_m_s =
+      add_speed(seat_m_s, "seat.speed_m_s", 0.165, kAtStart, "Speed at which the base drives to the object");
+  double squeeze_m_s = add_speed(squeeze_m_s, "squeeze.speed_m_s", 0.098, kAtStart, "Speed of the body in the squeeze");
   double touch_memory_s = add(touch_memory_s, "touch_memory_s", 3.0, "s", bounds::kTime, kAtStart,
                               "A touch counts for this time, because the gait interrupts touches");
   double seat_force_n = add(seat_force_n, "seat_force_n", 0.4, "N", bounds::kForce, kWhileRunning,
@@ -217,9 +218,9 @@ struct GraspConfig : NavigationSection {
 
 struct DropConfig : NavigationSection {
   PidGains steering = add(steering, "steering", {5.0, 1.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance to the course [m]");
-  Gait gait = add(gait, "gait", {1.1, 0.6, 1.07}, kAtStart, "Gait of the last stretch to the zone");
+  double speed_m_s = add_speed(speed_m_s, "speed_m_s", 0.165, kAtStart, "Speed on the last stretch to the zone");
   double slow_m = add(slow_m, "slow_m", 1.6, "m", bounds::kLength, kAtStart,
-                      "Length of this last stretch, for the object; before it, the gait is that of carrying");
+                      "Length of this last stretch, for the object; before it, the speed is that of carrying");
   double fix_course_m = add(fix_course_m, "fix_course_m", 0.8, "m", bounds::kLength, kWhileRunning,
                             "The course over the zone stays fixed when the object is nearer to its centre");
   double brake_m = add(brake_m, "brake_m", 0.02, "m", bounds::kLength, kAtStart,
@@ -233,7 +234,7 @@ struct DropConfig : NavigationSection {
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
   double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
-  Gait back = add(back, "back", {1.1, 0.5, 1.07}, kAtStart, "Gait by which the open U leaves the object");
+  double back_m_s = add_speed(back_m_s, "back.speed_m_s", 0.132, kAtStart, "Speed at which the open U leaves the object");
   PidGains back_steering =
       add(back_steering, "back_steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance from the object [m]");
   double back_m =
@@ -251,9 +252,9 @@ struct DropConfig : NavigationSection {
 };
 
 struct NavigationConfig : NavigationSection {
-  Gait travel = add(travel, "travel", {0.7, 0.5, 1.07}, kWhileRunning, "Gait without an object");
-  Gait carry = add(carry, "carry", {1.1, 0.8, 1.2}, kWhileRunning, "Gait with an object in the U");
-  Gait creep = add(creep, "creep", {0.4, 0.35, 1.07}, kWhileRunning, "Small steps beside an object");
+  double travel_m_s = add_speed(travel_m_s, "travel.speed_m_s", 0.63, kWhileRunning, "Speed without an object");
+  double carry_m_s = add_speed(carry_m_s, "carry.speed_m_s", 0.198, kWhileRunning, "Speed with an object in the U");
+  double creep_m_s = add_speed(creep_m_s, "creep.speed_m_s", 0.28, kWhileRunning, "Speed of small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,
                                        "The robot stands still when joints, contacts or pose are older than this");
   std::int64_t blind_after_images =

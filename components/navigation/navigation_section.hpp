@@ -1,4 +1,4 @@
-// Parts that all groups of navigation's parameters use: bounds, and rows for gaits and PID controllers.
+// Parts that all groups of navigation's parameters use: bounds, and rows for speeds and PID controllers.
 #pragma once
 
 #include <string>
@@ -21,23 +21,13 @@ inline constexpr Range kShare{0.0, 1.0};
 inline constexpr Range kCount{1, 20};
 }  // namespace bounds
 
-/// An undulation.
-struct Gait {
-  double frequency_hz = 0.0;   ///< undulations per second
-  double amplitude_rad = 0.0;  ///< of the wave's heading
-  double wavelength_m = 1.0;   ///< along the body
-};
-
-/// A group of navigation's parameters, with rows for gaits and PID controllers.
+/// A group of navigation's parameters, with rows for speeds and PID controllers.
 struct NavigationSection : ParameterSet {
   using ParameterSet::add;
-  Gait add(Gait& gait, const std::string& key, const Gait& fallback, Changes changes, const std::string& meaning) {
-    return {add(gait.frequency_hz, key + ".frequency_hz", fallback.frequency_hz, "Hz", {0.05, 2.0}, changes,
-                meaning + ": undulations per second"),
-            add(gait.amplitude_rad, key + ".amplitude_rad", fallback.amplitude_rad, "rad", {0.0, 1.2}, changes,
-                meaning + ": amplitude of the wave's heading"),
-            add(gait.wavelength_m, key + ".wavelength_m", fallback.wavelength_m, "m", {0.2, 5.0}, changes,
-                meaning + ": length of the wave along the body")};
+  /// The desired speed of a motion along its path.
+  double add_speed(double& speed_m_s, const std::string& key, double fallback_m_s, Changes changes,
+                   const std::string& meaning) {
+    return add(speed_m_s, key, fallback_m_s, "m/s", bounds::kSpeed, changes, meaning);
   }
   /// A PID controller from `error` to the curvature of the path.
   PidGains add(PidGains& gains, const std::string& key, const PidGains& fallback, Changes changes,

@@ -37,6 +37,7 @@ struct TaskInput {
   const std::vector<Touch>& touches;    ///< contacts from the side, without the ground's and the robot's own
   bool feels;                           ///< the robot has contact sensors; otherwise there are never any touches
   bool motion_done;                     ///< control has finished the newest motion
+  double sway_period_s;                 ///< in which the gait lets the head sway once
   const msg::Path* path = nullptr;      ///< of the command; only in refusal() and start()
 };
 
@@ -50,7 +51,7 @@ struct EventRecord {
 /// The result of a step of a task.
 struct TaskOutput {
   msg::DesiredTrajectory desired{};  ///< the caller fills in motion_id
-  bool new_motion = false;           ///< the motion starts again, although its method is the same as before
+  bool new_motion = false;           ///< the motion starts again, although it is of the same kind as before
   std::vector<EventRecord> events;
   std::uint8_t state = msg::kGoalRunning;        ///< kGoalSucceeded and kGoalAborted end the goal with this step
   std::string reason;                            ///< why the goal was aborted

@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "constrictor/text.hpp"
-
 namespace constrictor {
 
 MethodDriver::MethodDriver(const RobotModel& robot, const MethodTrial& trial)
@@ -13,11 +11,8 @@ MethodDriver::MethodDriver(const RobotModel& robot, const MethodTrial& trial)
       limiter_(robot, 1.0, trial.config.lead_s),
       method_(registry_.find(trial.method)) {
   if (!method_) throw std::invalid_argument("control has no method '" + trial.method + "'");
-  set_text(desired_.method, trial.method);
-  desired_.frequency_hz = trial.frequency_hz;
-  desired_.amplitude_rad = trial.amplitude_rad;
-  desired_.wavelength_m = trial.wavelength_m;
-  desired_.curvature_1_m = trial.curvature_1_m;
+  desired_.speed_m_s = trial.frequency_hz * trial.config.travel.advance_m;
+  gait_ = {trial.frequency_hz, trial.amplitude_rad, trial.wavelength_m, trial.curvature_1_m};
   if (!method_->accepts(desired_, chain_)) throw std::invalid_argument(trial.method + " does not accept the trial");
 }
 
@@ -26,7 +21,7 @@ std::vector<JointSetpoint> MethodDriver::step(const JointArray& angle_rad, const
   const std::size_t n = robot_.joints.size();
   if (!started_ || torque_mode_) limit_.position_rad = angle_rad;
   const JointArray commanded_rad = limit_.position_rad;
-  const MethodInput input{robot_,        chain_,          trial_.config, desired_,   angle_rad,  measured_nm,
+  const MethodInput input{robot_,        chain_,          trial_.config, desired_,   gait_,      angle_rad,  measured_nm,
                           commanded_rad, trial_.period_s, around,        rate_rad_s, exerted_nm_};
   if (!started_) method_->start(input, body_);
   started_ = true;

@@ -42,6 +42,7 @@ class MethodDriver {
   MethodRegistry registry_;
   const ControlMethod* method_;
   msg::DesiredTrajectory desired_{};
+  Gait gait_;
   BodyState body_;
   LimiterState limit_;
   JointArray wanted_rad_{}, exerted_nm_{};

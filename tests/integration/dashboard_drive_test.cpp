@@ -87,7 +87,7 @@ TEST_F(DashboardDrive, TasksAndParametersAreObeyedOrRefusedWithTheReason) {
     }
     return -1.0;
   };
-  const std::string name = "navigation.travel.frequency_hz";
+  const std::string name = "navigation.travel.speed_m_s";
   const double before = value_of(name);
   ASSERT_GT(before, 0);
   const std::string answer = viewer.ask("param_set", R"({"name":")" + name + R"(","value":0.9})");

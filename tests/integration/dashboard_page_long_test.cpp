@@ -77,9 +77,9 @@ TEST_F(DashboardPage, ThePadAndTheKeysDriveWhileTheyAreHeld) {
                     answered("accepted"), "click=#release", answered("released"), "print='handed back'",
                     // Another client changes a parameter, and the page shows it without being asked.
                     "wait=[...document.querySelectorAll('#parameter_rows tr.changed input')].some("
-                    "i => i.dataset.name === 'navigation.travel.frequency_hz' && i.value === '0.85')"});
+                    "i => i.dataset.name === 'navigation.travel.speed_m_s' && i.value === '0.85')"});
   ASSERT_TRUE(page.wait_for("\"handed back\"", 240s)) << page.errors();
-  Process changed = command({"param", "set", "navigation.travel.frequency_hz", "0.85"});
+  Process changed = command({"param", "set", "navigation.travel.speed_m_s", "0.85"});
   EXPECT_EQ(changed.wait(20s), 0) << changed.errors();
   EXPECT_EQ(page.wait(120s), 0) << page.errors();
 }

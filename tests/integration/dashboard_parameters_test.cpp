@@ -6,8 +6,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kName = "navigation.travel.frequency_hz";
-const std::string kChoice = "control.drive.method";
+const std::string kName = "navigation.travel.speed_m_s";
+const std::string kChoice = "control.motion.travel.method";
 
 class DashboardParameters : public DashboardRun {
  protected:
@@ -103,7 +103,7 @@ TEST_F(DashboardParameters, AreChangedOrRefusedWithTheReasonAndTheTrueValue) {
   expect_refused(kName, "fast", "found \"fast\", accepted ", 0.9);
   expect_refused(kChoice, "walking", "accepted one of undulation", "rolling");
   expect_refused("navigation.nothing", 1, "there is no such parameter", nullptr);
-  expect_refused("navigation.travel.frequensy_hz", 1, "did you mean 'navigation.travel.frequency_hz'?", nullptr);
+  expect_refused("navigation.travel.speeed_m_s", 1, "did you mean 'navigation.travel.speed_m_s'?", nullptr);
 
   const json both = ask(viewer, {{"op", "setParameters"},
                                  {"parameters", {{{"name", kName}, {"value", 900}}, {{"name", kChoice}, {"value", 0}}}},

@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const std::string kName = "navigation.travel.frequency_hz";
+const std::string kName = "navigation.travel.speed_m_s";
 
 class FoxgloveClient : public DashboardRun, public ::testing::WithParamInterface<const char*> {
  protected:

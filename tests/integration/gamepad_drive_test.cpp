@@ -22,7 +22,7 @@ class GamepadDrive : public CliFixture {
   [[nodiscard]] Process begin() {
     Process run =
         start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"});
-    const std::vector<std::string> ready = {"param", "get", "navigation.travel.frequency_hz"};
+    const std::vector<std::string> ready = {"param", "get", "navigation.travel.speed_m_s"};
     EXPECT_TRUE(eventually([&] { return domain() != 0 && command(ready) == 0; }, 30s)) << run.output() << run.errors();
     return run;
   }
@@ -103,26 +103,26 @@ TEST_F(GamepadDrive, TheRobotMovesOnlyWhileTheDeadManButtonIsHeld) {
 
   // Every parameter is kept and loaded as a file; a file with mistakes changes nothing.
   const std::string tuned = (dir_ / "tuned.yaml").string();
-  const std::string name = "navigation.travel.frequency_hz";
+  const std::string name = "navigation.travel.speed_m_s";
   ASSERT_EQ(command({"param", "set", name, "0.9"}), 0) << output_;
   EXPECT_TRUE(eventually([&] { return command({"param", "dump", tuned}) == 0; })) << output_;
   EXPECT_EQ(command({"param", "dump", tuned}), exit_status::kUsage) << "a tuned file is not replaced by accident";
   EXPECT_NE(output_.find("which exists, accepted a new file (or --force)"), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "dump", tuned, "--force"}), 0) << output_;
-  EXPECT_EQ(command({"param", "set", "navigation.travel.frequensy_hz", "0.5"}), exit_status::kFailed) << output_;
-  EXPECT_NE(output_.find("did you mean 'navigation.travel.frequency_hz'?"), std::string::npos) << output_;
+  EXPECT_EQ(command({"param", "set", "navigation.travel.speeed_m_s", "0.5"}), exit_status::kFailed) << output_;
+  EXPECT_NE(output_.find("did you mean 'navigation.travel.speed_m_s'?"), std::string::npos) << output_;
   ASSERT_EQ(command({"param", "set", name, "0.5"}), 0) << output_;
   const auto value = [&] {
     command({"param", "get", name, "--json"});
     return json::parse(output_, nullptr, false).value("value", 0.0);
   };
   EXPECT_TRUE(eventually([&] { return value() == 0.5; })) << output_;
-  write("wrong.yaml", "navigation.travel.frequency_hz: 0.8\nnavigation.travel.frequency_hzz: 1\n");
+  write("wrong.yaml", "navigation.travel.speed_m_s: 0.8\nnavigation.travel.speed_m_sz: 1\n");
   EXPECT_EQ(command({"param", "load", (dir_ / "wrong.yaml").string()}), exit_status::kConfiguration) << output_;
-  EXPECT_NE(output_.find("wrong.yaml:2: navigation.travel.frequency_hzz: "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("wrong.yaml:2: navigation.travel.speed_m_sz: "), std::string::npos) << output_;
   EXPECT_EQ(value(), 0.5) << "nothing is set if anything is wrong";
   ASSERT_EQ(command({"param", "load", tuned}), 0) << output_;
-  EXPECT_EQ(output_.find("navigation.travel.frequency_hz: 0.9 from tick"), 0u) << output_;
+  EXPECT_EQ(output_.find("navigation.travel.speed_m_s: 0.9 from tick"), 0u) << output_;
   EXPECT_EQ(std::count(output_.begin(), output_.end(), '\n'), 1) << "what is in force already is not set: " << output_;
   EXPECT_TRUE(eventually([&] { return value() == 0.9; })) << output_;
   EXPECT_EQ(command({"param", "load", (dir_ / "nowhere.yaml").string()}), exit_status::kConfiguration) << output_;

@@ -12,9 +12,9 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr const char* kFrequency = "navigation.travel.frequency_hz";
+constexpr const char* kFrequency = "navigation.travel.speed_m_s";
 constexpr const char* kRate = "control.wave.curvature_rate_1_ms";
-constexpr const char* kMethod = "control.drive.method";
+constexpr const char* kMethod = "control.motion.travel.method";
 constexpr int kTick = 300;
 
 class RunTimeParameters : public CliFixture {
@@ -22,7 +22,7 @@ class RunTimeParameters : public CliFixture {
   RunTimeParameters() {
     write("report.yaml", "max_sim_time_s: 10\nsettle_s: 1.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
     write("planned.yaml",
-          "parameter_changes:\n  - {tick: 300, name: navigation.travel.frequency_hz, value: 0.9}\n"
+          "parameter_changes:\n  - {tick: 300, name: navigation.travel.speed_m_s, value: 0.9}\n"
           "  - {tick: 300, name: control.wave.curvature_rate_1_ms, value: 0.7}\n");
   }
   [[nodiscard]] Process begin(const std::string& name, const std::vector<std::string>& more = {}) const {
@@ -76,7 +76,7 @@ TEST_F(RunTimeParameters, EqualChangesAtEqualTicksGiveEqualRunsInAnyProcessesAnd
   EXPECT_NE(expected, without["state_hash"]);
   ASSERT_EQ(reference["parameters"].size(), 2u);
   EXPECT_EQ(reference["parameters"][0],
-            json::parse(R"({"sim_time_s": 6.0, "tick": 300, "name": "navigation.travel.frequency_hz", "value": 0.9, )"
+            json::parse(R"({"sim_time_s": 6.0, "tick": 300, "name": "navigation.travel.speed_m_s", "value": 0.9, )"
                         R"("source": "input.yaml"})"));
 
   Process ten = begin("ten", {"--config", planned()});
@@ -150,11 +150,11 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(output_, "control.squeeze.opening_share\ncontrol.squeeze.rate_rad_s\n");
 
   EXPECT_EQ(command({"param", "set", kFrequency, "0.9"}), 0) << output_;
-  EXPECT_NE(output_.find("navigation.travel.frequency_hz: 0.9 from tick "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("navigation.travel.speed_m_s: 0.9 from tick "), std::string::npos) << output_;
   ASSERT_TRUE(eventually([&] { return ask({"param", "get", kFrequency})["value"] == 0.9; }));
   EXPECT_EQ(ask({"param", "list", "--changed"}).size(), 1u);
   EXPECT_EQ(command({"param", "list"}), 0);
-  EXPECT_NE(output_.find("* navigation.travel.frequency_hz"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("* navigation.travel.speed_m_s"), std::string::npos) << output_;
 
   ASSERT_EQ(command({"completion", "bash"}), 0);
   write("completion.sh", output_ + "\nconstrictor() { \"" + program("constrictor") + "\" \"$@\"; }\n" +
@@ -166,7 +166,7 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
 
   // A refused value ends the command with the reason and status 1; later values are not requested.
   EXPECT_EQ(command({"param", "set", kFrequency, "2.5", kRate, "3"}), 1);
-  EXPECT_NE(output_.find("refused: navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz"),
+  EXPECT_NE(output_.find("refused: navigation.travel.speed_m_s: found 2.5, accepted 0.001 to 2 m/s"),
             std::string::npos)
       << output_;
   EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find(
@@ -185,7 +185,7 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(command({"param", "set", kMethod, "moonwalk"}), exit_status::kUsage);
   EXPECT_NE(output_.find("found 'moonwalk', accepted one of undulation, sidewinding, "), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "set", kMethod, "sidewinding", kFrequency, "0.8"}), 0) << output_;
-  EXPECT_NE(output_.find("control.drive.method: sidewinding from tick "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("control.motion.travel.method: sidewinding from tick "), std::string::npos) << output_;
   ASSERT_TRUE(eventually([&] { return ask({"param", "get", kMethod})["value"] == "sidewinding"; }));
   EXPECT_EQ(command({"param", "set", kMethod, "99"}), 1);
   EXPECT_NE(output_.find("found 99, accepted the number of one of undulation, "), std::string::npos) << output_;
@@ -199,10 +199,10 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(command({"param", "list", "--names", "--json"}), exit_status::kUsage);
 
   // With --json, scripts read from standard output why nothing was done.
-  EXPECT_EQ(ask({"param", "get", "navigation.travel.frequency"}, 1),
-            (json{{"name", "navigation.travel.frequency"},
+  EXPECT_EQ(ask({"param", "get", "navigation.travel.speed"}, 1),
+            (json{{"name", "navigation.travel.speed"},
                   {"refused",
-                   "no parameter 'navigation.travel.frequency', did you mean 'navigation.travel.frequency_hz'?"
+                   "no parameter 'navigation.travel.speed', did you mean 'navigation.travel.speed_m_s'?"
                    " (`constrictor param list` lists all)"}}));
   const auto refusal = [&](std::vector<std::string> arguments, int status) {
     const json answer = ask(std::move(arguments), status);

@@ -21,7 +21,7 @@ inline std::vector<NamedFault> control_faults() {
           {"skips", "every_tick", "45 commands"},
           {"straightens", "first_command", "from the measured posture"},
           {"drifts", "rests", "in the first second"},
-          {"accepts_all", "unknown_method", "accepted"},
+          {"accepts_all", "unknown_motion", "accepted"},
           {"forgets_motion", "echo", "motion 0"},
           {"late", "echo", "after"},
           {"refuses_bend", "bend", "not accepted"},
@@ -33,13 +33,13 @@ inline std::vector<NamedFault> control_faults() {
           {"done_early", "done", "to go"},
           {"never_done", "done", "done is never set"},
           {"ignores_squeeze_limit", "squeeze", "6.0 Nm"},
-          {"slow_wave", "frequency", "0.25 Hz"},
-          {"weak_wave", "amplitude", "0.50 times"},
+          {"wrong_period", "period", "1.00 Hz stated"},
+          {"one_speed", "speed", "at half the speed"},
           {"only_backwards", "forwards", "travels to the head"},
           {"only_forwards", "backwards", "travels to the tail"},
           {"bends_right", "curvature", "the other way"},
           {"curvature_in_degrees", "curvature", "demanded"},
-          {"hides_method", "drive", "drives by 'drive'"},
+          {"hides_method", "echo", "with the method ''"},
           {"keeps_torque", "relax", "keep their torque"},
           {"ignores_silence", "silence", "after the last trajectory"},
           {"relaxes_at_once", "silence", "relaxed at once"},
@@ -94,15 +94,16 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
   if (is("done_early")) state([](msg::MotionStatus& s) { return (s.done = true); });
   if (is("never_done")) state([](msg::MotionStatus& s) { return (s.done = false, true); });
   if (is("ignores_squeeze_limit")) trajectory([](msg::DesiredTrajectory& d) { d.torque_limit_nm = 0.0; });
-  if (is("slow_wave")) trajectory([](msg::DesiredTrajectory& d) { d.frequency_hz *= 0.5; });
-  if (is("weak_wave")) trajectory([](msg::DesiredTrajectory& d) { d.amplitude_rad *= 0.5; });
-  if (is("only_backwards")) trajectory([](msg::DesiredTrajectory& d) { d.frequency_hz = -std::abs(d.frequency_hz); });
-  if (is("only_forwards")) trajectory([](msg::DesiredTrajectory& d) { d.frequency_hz = std::abs(d.frequency_hz); });
-  if (is("bends_right")) trajectory([](msg::DesiredTrajectory& d) { d.curvature_1_m = -d.curvature_1_m; });
-  if (is("curvature_in_degrees")) trajectory([](msg::DesiredTrajectory& d) { d.curvature_1_m /= kDegrees; });
+  if (is("wrong_period")) state([](msg::MotionStatus& s) { return (s.period_s *= 0.5, true); });
+  if (is("one_speed"))
+    trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = d.speed_m_s != 0.0 ? std::copysign(0.45, d.speed_m_s) : 0.0; });
+  if (is("only_backwards")) trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = -std::abs(d.speed_m_s); });
+  if (is("only_forwards")) trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = std::abs(d.speed_m_s); });
+  if (is("bends_right")) trajectory([](msg::DesiredTrajectory& d) { d.points[0].curvature_1_m *= -1.0; });
+  if (is("curvature_in_degrees")) trajectory([](msg::DesiredTrajectory& d) { d.points[0].curvature_1_m /= kDegrees; });
   if (is("hides_method"))
     state([](msg::MotionStatus& s) {
-      if (text_of(s.method) == "undulation") set_text(s.method, "drive");
+      set_text(s.method, "");
       return true;
     });
   if (is("keeps_torque"))

@@ -1,5 +1,5 @@
-// "bend": takes the desired posture at a limited speed. The wave gets the amplitude of the trajectory; with 0 it fades.
-// Done when the posture is reached.
+// "bend": takes the desired posture at a limited speed. The wave goes on if the trajectory names a speed; otherwise
+// it fades. Done when the posture is reached.
 #include <algorithm>
 
 #include "control/wave_motion.hpp"

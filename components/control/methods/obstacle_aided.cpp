@@ -77,7 +77,7 @@ class ObstacleAided : public ControlMethod {
   std::string_view name() const override { return "obstacle_aided"; }
   /// Only forwards, and without an object.
   bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const override {
-    return ControlMethod::accepts(desired, chain) && desired.frequency_hz >= 0.0 &&
+    return ControlMethod::accepts(desired, chain) && desired.speed_m_s >= 0.0 &&
            std::all_of(desired.shape_rad, desired.shape_rad + desired.shape_count,
                        [](double angle) { return angle == 0.0; });
   }
@@ -93,12 +93,12 @@ class ObstacleAided : public ControlMethod {
     const ControlConfig& c = input.config;
     auto& state = body.scratch;
     const Body now(input);
-    const bool moves = input.desired.amplitude_rad > 0.0 && input.desired.frequency_hz > 0.0;
+    const bool moves = input.gait.amplitude_rad > 0.0 && input.gait.frequency_hz > 0.0;
     state[kSwing] =
         approach(state[kSwing], moves ? 1.0 : 0.0, c.amplitude_rate_rad_s / c.obstacles.swing_rad * input.dt_s);
-    body.frequency_hz = approach(body.frequency_hz, input.desired.frequency_hz, c.frequency_rate_hz_s * input.dt_s);
+    body.frequency_hz = approach(body.frequency_hz, input.gait.frequency_hz, c.frequency_rate_hz_s * input.dt_s);
     body.wave.curvature_1_m =
-        approach(body.wave.curvature_1_m, input.desired.curvature_1_m, c.curvature_rate_1_ms * input.dt_s);
+        approach(body.wave.curvature_1_m, input.gait.curvature_1_m, c.curvature_rate_1_ms * input.dt_s);
     state[kSpeed] += (shape_speed_m_s(input.chain, now) - state[kSpeed]) * input.dt_s / kSpeed_s;
     const double forward_m_s = std::max(0.0, state[kSpeed]);
     state[kCourse] += body.wave.curvature_1_m * forward_m_s * input.dt_s;

@@ -23,7 +23,7 @@ class Wrap : public ControlMethod {
  public:
   std::string_view name() const override { return "wrap"; }
   bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const override {
-    return ControlMethod::accepts(desired, chain) && desired.shape_count > 0 && desired.speed_m_s > 0.0;
+    return ControlMethod::accepts(desired, chain) && desired.shape_count > 0 && desired.slide_m_s > 0.0;
   }
   void start(const MethodInput& input, BodyState& body) const override {
     keep_residual(input, body);
@@ -32,11 +32,11 @@ class Wrap : public ControlMethod {
   MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
     const LinkArray final_rad = desired_shape(input.desired, input.chain);
     double& left_m = body.scratch[0];
-    left_m = std::max(0.0, left_m - input.desired.speed_m_s * input.dt_s);
+    left_m = std::max(0.0, left_m - input.desired.slide_m_s * input.dt_s);
     advance_wave(input, 0.0, body);
     // The arc moves continuously at this rate. The trajectory's own rate matters only if the body was bent before.
     const double rate_rad_s =
-        std::max(desired_shape_rate(input), 2.0 * input.desired.speed_m_s / input.chain.link_length_m());
+        std::max(desired_shape_rate(input), 2.0 * input.desired.slide_m_s / input.chain.link_length_m());
     advance_shape(input, input.chain.slid(final_rad, left_m), rate_rad_s, body);
     ride(input, final_rad, body, setpoints);
     const double whole_m = start_distance_m(input, final_rad);

@@ -24,7 +24,7 @@ struct OwnedParameter {
 };
 
 struct ParameterView {
-  std::map<std::string, OwnedParameter> parameters;  ///< by name: "navigation.travel.frequency_hz"
+  std::map<std::string, OwnedParameter> parameters;  ///< by name: "navigation.travel.speed_m_s"
   std::vector<std::string> silent;  ///< components of the run that have a parameter list but have not published it yet
 };
 

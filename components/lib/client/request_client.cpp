@@ -137,12 +137,12 @@ std::uint64_t RequestClient::ask(std::uint8_t kind) {
   return ask(request);
 }
 
-std::uint64_t RequestClient::move(std::uint8_t motion, double frequency_hz, double curvature_1_m, double angle_rad) {
+std::uint64_t RequestClient::move(std::uint8_t motion, double speed_m_s, double curvature_1_m, double angle_rad) {
   msg::Request request{};
   request.kind = msg::kRequestMotion;
   request.parameters = no_parameters();
   request.motion = motion;
-  request.frequency_hz = frequency_hz;
+  request.speed_m_s = speed_m_s;
   request.curvature_1_m = curvature_1_m;
   request.angle_rad = angle_rad;
   return ask(request);

@@ -69,7 +69,7 @@ class Drop : public StatefulTask<DropState> {
       enter(input, kOver);
     }
     output.phase = state_.phase == kApproach ? "approach" : "over the zone";
-    const double period_s = gait_period_s(present_gait(input.config, grip));
+    const double period_s = input.sway_period_s;
     const double now_s = input.tick.time_s();
     const Eigen::Vector2d p_HO = input.grip_sense.held_object_H(input.body, grip.radius_m);
     const double mouth_rad = input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body);
@@ -90,8 +90,9 @@ class Drop : public StatefulTask<DropState> {
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
-    const Gait gait = gentle(d.norm() > config.slow_m ? input.config.carry : config.gait, input.config, grip);
-    undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+    const Pace pace = d.norm() > config.slow_m ? present_pace(input.config, grip) : Pace{"deliver", config.speed_m_s};
+    move_along(pace, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+    keep_upright(input.config, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
     if (state_.phase_s > config.approach_timeout_s)
       return output.abort("the zone was not reached in time");  // the robot still holds the object
@@ -131,11 +132,8 @@ class Drop : public StatefulTask<DropState> {
   void open(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const DropConfig& config = input.config.drop;
     output.phase = "open";
-    Gait still = input.config.travel;
-    still.amplitude_rad = 0.0;
-    still.frequency_hz = 0.0;
     const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
-    undulate_on(still, 0.0, 1.0, shape, input.grip_sense.yaw_joint_count(), output);
+    move_in_shape({"leave", 0.0}, 0.0, 1.0, shape, input.grip_sense.yaw_joint_count(), output);
     output.desired.shape_rate_rad_s = std::max(0.02, largest_opening(grip, shape) / config.open_s);
     if (state_.phase_s < config.open_s) return;
     enter(input, kBack);
@@ -156,11 +154,11 @@ class Drop : public StatefulTask<DropState> {
     // while it backs off. The arms bend towards the object, like a path that leads there.
     const PlanarPose X_MU{input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m)),
                           input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
-    const Gait gait = gentle(config.back, input.config, grip);
     const Steering steering(config.back_steering);
-    steering.observe(input.tick.time_s(), X_MU.to_local(state_.p_MO).y(), gait_period_s(gait), state_.back);
-    undulate_on(gait, steering.curvature(input.tick.dt_s(), state_.back), -1.0, shape,
-                input.grip_sense.yaw_joint_count(), output);
+    steering.observe(input.tick.time_s(), X_MU.to_local(state_.p_MO).y(), input.sway_period_s, state_.back);
+    move_in_shape({"leave", config.back_m_s}, steering.curvature(input.tick.dt_s(), state_.back), -1.0, shape,
+                  input.grip_sense.yaw_joint_count(), output);
+    keep_upright(input.config, grip, output);
     if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s)
       enter(input, kStraighten);
   }
@@ -175,7 +173,7 @@ class Drop : public StatefulTask<DropState> {
   void clear(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const DropConfig& config = input.config.drop;
     output.phase = "back off straight";
-    undulate(input.config.travel, 0.0, -1.0, grip, output);
+    move_on(input, 0.0, -1.0, grip, output);
     if ((input.X_MH.p - state_.from.p).norm() < config.clear_m && state_.phase_s < config.back_timeout_s) return;
     output.emit(msg::kEventDroppingDone, grip.colour, grip.handle);
     output.succeed();

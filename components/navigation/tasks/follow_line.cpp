@@ -31,12 +31,11 @@ class FollowLine : public StatefulTask<FollowLineState> {
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const NavigationConfig& config = input.config;
     const std::uint8_t colour = input.parameters.line_colour;
-    const Gait gait = present_gait(config, grip);
     PidGains gains = config.follow_line.steering;
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
     if (input.line) {
       update_line_tracker(config.line, *input.line, colour, state_.line);
-      if (state_.line.missed == 0) observe(input, gait_period_s(gait));
+      if (state_.line.missed == 0) observe(input, input.sway_period_s);
     }
     if (state_.line.visible && !state_.found) {
       state_.found = true;
@@ -44,7 +43,7 @@ class FollowLine : public StatefulTask<FollowLineState> {
     }
     // While the line is out of view for a moment, the last curvature continues.
     if (state_.line.missed == 0) state_.curvature_1_m = curvature(config.follow_line, gains, input.tick.dt_s());
-    undulate(gait, state_.curvature_1_m, 1.0, grip, output);
+    move_on(input, state_.curvature_1_m, 1.0, grip, output);
     output.phase = state_.line.visible ? "follow" : state_.found ? "coast" : "look";
     const double away_m = (input.X_MH.p - state_.start.p).norm();
     state_.travelled_m = std::max(state_.travelled_m, away_m);

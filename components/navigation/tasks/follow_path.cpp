@@ -37,7 +37,6 @@ class FollowPath : public StatefulTask<FollowPathState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const auto& config = input.config.follow_path;
-    const Gait gait = present_gait(input.config, grip);
     PidGains gains = config.steering;
     if (grip.carrying) gains.limit = input.config.follow_line.carry_limit_1_m;
     advance(input.X_MH.p, state_);
@@ -46,7 +45,7 @@ class FollowPath : public StatefulTask<FollowPathState> {
 
     // The error is not averaged over a gait period, as it is for a painted line: the delay would make the robot swing.
     const double ahead_m = input.X_MH.to_local(ahead(config.lookahead_m)).y();
-    undulate(gait, pid_step(gains, ahead_m, input.tick.dt_s(), state_.pid), 1.0, grip, output);
+    move_on(input, pid_step(gains, ahead_m, input.tick.dt_s(), state_.pid), 1.0, grip, output);
     output.phase = "follow";
     double total_m = 0.0;
     for (std::size_t i = 0; i + 1 < state_.x_m.size(); ++i) total_m += length(state_, i);

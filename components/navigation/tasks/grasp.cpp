@@ -63,27 +63,26 @@ class Grasp : public StatefulTask<GraspState> {
   void wrap(const TaskInput& input, Grip& grip, TaskOutput& output) {
     output.phase = "wrap";
     // The head bends round the object before the body begins to move; otherwise it would pass the object.
-    Gait gait = input.config.grasp.wrap;
-    if (state_.slid_m < input.config.grasp.wrap_still_m) gait.amplitude_rad = gait.frequency_hz = 0.0;
+    const bool still = state_.slid_m < input.config.grasp.wrap_still_m;
     // The arc must slide along the body as fast as the body advances, so that it stays round the object.
     const GraspConfig& config = input.config.grasp;
     const double moved_m = (input.X_MH.p - state_.before.p).dot(input.X_MH.forward());
     const double share = -std::expm1(-input.tick.dt_s() / config.wrap_speed_filter_s);
     state_.speed_m_s += share * (moved_m / input.tick.dt_s() - state_.speed_m_s);
     state_.before = input.X_MH;
-    const double speed_m_s = state_.slid_m < config.wrap_still_m
-                                 ? config.wrap_speed_m_s
-                                 : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
-    wrap_round(input.grip_sense, gait, grip.side, speed_m_s, grip, output);
-    state_.slid_m += speed_m_s * input.tick.dt_s();
+    const double slide_m_s =
+        still ? config.wrap_speed_m_s
+              : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
+    wrap_round(input.grip_sense, still ? 0.0 : config.wrap_m_s, grip.side, slide_m_s, grip, output);
+    state_.slid_m += slide_m_s * input.tick.dt_s();
     if (input.motion_done && state_.phase_s > 0.2) state_.enter(kSeat);
   }
 
   void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "seat";
-    undulate_on(gentle(config.seat, input.config, grip), 0.0, 1.0, open_u(input, grip),
-                input.grip_sense.yaw_joint_count(), output);
+    move_in_shape({"seat", config.seat_m_s}, 0.0, 1.0, open_u(input, grip), input.grip_sense.yaw_joint_count(), output);
+    keep_upright(input.config, grip, output);
     if (input.grip_sense.apex_force_n(input.touches) >= config.seat_force_n) state_.seated_s += input.tick.dt_s();
     count_touching(input);
     // A large object wedges between the arms before it reaches the middle of the base. It moves with the body all the
@@ -140,9 +139,10 @@ class Grasp : public StatefulTask<GraspState> {
   void check(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
-    // The robot drives with the gait for carrying: the base pushes an object that is inside the U, and so touches it.
-    undulate_on(gentle(input.config.carry, input.config, grip), 0.0, 1.0, grip.shape_rad,
-                input.grip_sense.yaw_joint_count(), output);
+    // The robot drives as it does with an object: the base pushes an object that is inside the U, and so touches it.
+    move_in_shape({"carry", input.config.carry_m_s}, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(),
+                  output);
+    keep_upright(input.config, grip, output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input);
     const bool lost = input.grip_sense.lost(input.joints, input.touches, input.feels, input.tick.dt_s(), grip);

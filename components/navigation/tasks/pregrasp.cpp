@@ -130,14 +130,14 @@ class Pregrasp : public StatefulTask<PregraspState> {
   }
 
   /// Steers along the passing line.
-  void pass(const TaskInput& input, const Gait& gait, Grip& grip, TaskOutput& output) {
+  void pass(const TaskInput& input, const Pace& pace, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
     const PlanarPose X_MP{state_.p_MO, state_.course_rad};
     const Eigen::Vector2d p_line = X_MP.to_parent({0.0, -state_.side * passing_m(input)});
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
-    steering.observe(input.tick.time_s(), error_m, gait_period_s(gait), state_.steering);
-    undulate(gait, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+    steering.observe(input.tick.time_s(), error_m, input.sway_period_s, state_.steering);
+    move_along(pace, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
   }
 
   /// [m] distance of the head beyond the object's centre along the passing line; negative before it.
@@ -148,7 +148,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
   void bend_away(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     output.phase = "bend away";
-    pass(input, input.config.travel, grip, output);
+    pass(input, {"travel", input.config.travel_m_s}, grip, output);
     const bool beside =
         std::abs(input.X_MH.to_local(state_.p_MO).y()) > 0.6 * std::abs(input.X_MH.to_local(state_.p_MO).x());
     if (!object.visible || beside || past_m(input) > -0.25) enter(kAdvance);
@@ -162,7 +162,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
   void advance(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const PregraspConfig& config = input.config.pregrasp;
     output.phase = "advance";
-    pass(input, input.config.creep, grip, output);
+    pass(input, {"creep", input.config.creep_m_s}, grip, output);
     if (past_m(input) >= state_.past_m - config.brake_m) enter(kSettle);
     if (state_.phase_s > 15.0) enter(kSettle);
   }

@@ -56,7 +56,7 @@ class SearchObject : public StatefulTask<SearchState> {
     }
     // With an object in the U the head cannot turn by itself, so the robot looks around by driving in bends.
     if (grip.carrying) {
-      undulate(present_gait(input.config, grip), std::sin(0.3 * state_.phase_s), 1.0, grip, output);
+      move_on(input, std::sin(0.3 * state_.phase_s), 1.0, grip, output);
       output.phase = "drive";
       return;
     }
@@ -113,14 +113,14 @@ class SearchObject : public StatefulTask<SearchState> {
     switch (state_.phase) {
       case kLeave:
         output.phase = "leave";
-        undulate(input.config.travel, 0.0, std::cos(bearing_rad) > 0.0 ? -1.0 : 1.0, grip, output);
+        move_on(input, 0.0, std::cos(bearing_rad) > 0.0 ? -1.0 : 1.0, grip, output);
         if (nearest_module_m(input, *p_MO) < config.near_m && state_.phase_s < kTurn_s) break;
         state_.side = bearing_rad > 0.0 ? 1.0 : -1.0;
         enter(input, kFace);
         break;
       case kFace:
         output.phase = "face";
-        undulate(input.config.travel, state_.side * config.turn_curvature_1_m, 1.0, grip, output);
+        move_on(input, state_.side * config.turn_curvature_1_m, 1.0, grip, output);
         if (std::abs(bearing_rad) < 0.25 || (state_.side * bearing_rad < 0.0 && std::abs(bearing_rad) < 1.5) ||
             state_.phase_s > kTurn_s) {
           enter(input, kApproach);
@@ -128,7 +128,7 @@ class SearchObject : public StatefulTask<SearchState> {
         break;
       default:
         output.phase = "approach";
-        undulate(input.config.travel, std::clamp(2.0 * bearing_rad, -1.2, 1.2), 1.0, grip, output);
+        move_on(input, std::clamp(2.0 * bearing_rad, -1.2, 1.2), 1.0, grip, output);
         if (d.norm() < config.near_m || state_.phase_s > kTurn_s) enter(input, kLookAhead);
         break;
     }
@@ -169,12 +169,12 @@ class SearchObject : public StatefulTask<SearchState> {
         break;
       case kAdvance:
         output.phase = "advance";
-        undulate(input.config.travel, 0.0, 1.0, grip, output);
+        move_on(input, 0.0, 1.0, grip, output);
         if ((input.X_MH.p - state_.from.p).norm() >= config.advance_m || state_.phase_s > 6.0) enter(input, kLookAhead);
         break;
       default:
         output.phase = "turn";
-        undulate(input.config.travel, config.turn_curvature_1_m, 1.0, grip, output);
+        move_on(input, config.turn_curvature_1_m, 1.0, grip, output);
         if (std::abs(state_.turned_rad) >= config.turn_rad || state_.phase_s > 8.0) enter(input, kLookAhead);
         break;
     }

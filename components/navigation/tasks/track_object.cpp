@@ -44,7 +44,6 @@ class TrackObject : public StatefulTask<TrackState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const TrackConfig& config = input.config.track;
-    const Gait& gait = input.config.travel;
     const std::uint8_t colour = input.parameters.object_colour;
     const Sighting& object = input.sightings.objects[colour];
     const Eigen::Vector2d p_HO = input.X_MH.to_local(object.p_M());
@@ -63,7 +62,7 @@ class TrackObject : public StatefulTask<TrackState> {
     }
 
     const Steering steering(config.steering);
-    steering.observe(input.tick.time_s(), bearing_rad, gait_period_s(gait), state_.steering);
+    steering.observe(input.tick.time_s(), bearing_rad, input.sway_period_s, state_.steering);
     const double mean_rad = Steering::mean_error(state_.steering);
     if (state_.first_distance_m > config.reach_m) {
       const double share = (state_.first_distance_m - range_m) / (state_.first_distance_m - config.reach_m);
@@ -82,7 +81,7 @@ class TrackObject : public StatefulTask<TrackState> {
     state_.turning = std::abs(turn_rad) > (was_turning ? 0.3 : config.turn_rad);
     const bool cramped = state_.turning && !was_turning && missing_room_m(input, object) > 0.0;
     if (state_.turning) curvature_1_m = std::copysign(config.turn_curvature_1_m, turn_rad);
-    undulate(gait, curvature_1_m, 1.0, grip, output);
+    move_on(input, curvature_1_m, 1.0, grip, output);
     output.phase = in_view && !state_.turning ? "track" : "turn to";
     const bool straight = std::abs(turn_rad) <= config.straight_rad;
     const bool reached =
@@ -119,7 +118,7 @@ class TrackObject : public StatefulTask<TrackState> {
     const double margin_m = kFarther_m * std::min(state_.leaves, kMostFarther);
     state_.leaving_s += input.tick.dt_s();
     const bool backwards = std::cos(turn_rad) > 0.0;
-    undulate(input.config.travel, 0.0, backwards ? -1.0 : 1.0, grip, output);
+    move_on(input, 0.0, backwards ? -1.0 : 1.0, grip, output);
     output.phase = backwards ? "back off" : "leave";
     const bool away = missing_room_m(input, object) + margin_m <= 0.0 &&
                       nearest_module_m(input, object.p_M()) >= input.config.search.near_m;

@@ -266,7 +266,7 @@ void add_param(CLI::App& app, Action& action) {
   auto* param = add_group(app, "param", "list and change the parameters of a run while it runs");
   param->footer(help_footer(
       "A parameter's name is that of its component and the keys in its configuration file: "
-      "navigation.travel.frequency_hz is `travel:\n"
+      "navigation.travel.speed_m_s is `travel:\n"
       "frequency_hz:` in navigation.yaml. Each component announces which of its parameters may change, with unit and "
       "bounds.\n\n"
       "A change takes effect at a tick: the next one, or the one that --at-tick names. The run's report records it. A "
@@ -278,9 +278,9 @@ void add_param(CLI::App& app, Action& action) {
       "no authority. While an operator has authority, only operators may set parameters; this command does so as an "
       "operator.",
       {"constrictor param list", "constrictor param list navigation.follow_line",
-       "constrictor param get navigation.travel.frequency_hz",
-       "constrictor param set navigation.travel.frequency_hz 0.9",
-       "constrictor param set control.drive.method sidewinding",
+       "constrictor param get navigation.travel.speed_m_s",
+       "constrictor param set navigation.travel.speed_m_s 0.9",
+       "constrictor param set control.motion.travel.method sidewinding",
        "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
        "2000",
        "constrictor param list --changed --json", "constrictor param dump tuned.yaml --changed",

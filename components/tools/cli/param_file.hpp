@@ -11,7 +11,7 @@ namespace constrictor::cli {
 
 /// A value of a file, for a parameter that may change and differs from the value in force.
 struct ParameterValue {
-  std::string name;  ///< "navigation.travel.frequency_hz"
+  std::string name;  ///< "navigation.travel.speed_m_s"
   double value = 0;
   std::string text;  ///< the value as a person wrote it: a number or a name
 };
@@ -20,7 +20,7 @@ struct ParameterValue {
 /// meaning as a comment. `title`: a line of text for its beginning. `changed`: only those that were changed.
 [[nodiscard]] std::string parameter_file(const ParameterView& view, const std::string& title, bool changed);
 
-/// Reads and checks a file. Keys may be whole names (`navigation.travel.frequency_hz: 0.9`) or nested, as in the
+/// Reads and checks a file. Keys may be whole names (`navigation.travel.speed_m_s: 0.9`) or nested, as in the
 /// component's configuration file. `is_fixed(name)`: whether a key of this name is in the configuration of a component,
 /// so that it is known but cannot change while the run goes on. Throws ConfigurationError that lists every mistake,
 /// with file, line, key, what was found and what is accepted.

@@ -19,7 +19,7 @@
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -108,8 +108,8 @@ class Teleop {
     }
     if (screen_.drive.apply(action)) {
       const bool moves = screen_.drive.forward != 0.0 || screen_.drive.turn != 0.0;
-      const DriveGait gait = drive_gait(screen_.drive.drive_m_s(), screen_.drive.turn_rad_s());
-      if (moves) asked("drive", client_.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m));
+      const DriveMotion motion = drive_motion(screen_.drive.drive_m_s(), screen_.drive.turn_rad_s());
+      if (moves) asked("drive", client_.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m));
       else if (action == TeleopAction::kStand) asked("stand", client_.move(msg::kMotionStand));
       return true;
     }

@@ -12,7 +12,7 @@
 #include "cli/usage.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-DriveGait parse_drive(const std::string& text) {
+DriveMotion parse_drive(const std::string& text) {
   double speed_m_s = 0.0;
   double turn_rad_s = 0.0;
   char rest = 0;
@@ -30,7 +30,7 @@ DriveGait parse_drive(const std::string& text) {
     throw UsageError(
         fmt::format("--drive: found '{}', accepted SPEED,TURN in m/s (to 2) and rad/s (to 4), as 0.3,0.5", text));
   }
-  return drive_gait(speed_m_s, turn_rad_s);
+  return drive_motion(speed_m_s, turn_rad_s);
 }
 
 /// Ends a drive: makes the robot stand and releases authority. Prints whether `input` has confirmed the release.
@@ -49,13 +49,13 @@ void stand_and_release(RequestClient& client) {
 }  // namespace
 
 int teleop_drive(const std::string& speed_and_turn, const std::string& duration, std::optional<std::uint32_t> run) {
-  const DriveGait gait = parse_drive(speed_and_turn);
+  const DriveMotion motion = parse_drive(speed_and_turn);
   const auto bound = duration.empty() ? std::chrono::milliseconds(24h * 365) : parse_duration("--for", duration);
   const RunNote note = join_run(run);
   RequestClient client(note.domain, operator_options(unique_source("teleop"), kTeleopLease));
   if (const int status = connect(client, "teleop"); status != exit_status::kOk) return status;
   RunMonitor monitor(note, client.participant());
-  const auto answer = client.wait_for_answer(client.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m), 5s);
+  const auto answer = client.wait_for_answer(client.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m), 5s);
   if (answer == RequestClient::Answer::kInterrupted) stand_and_release(client);
   if (answer != RequestClient::Answer::kGranted) return report_not_granted(client, answer, "teleop");
   fmt::print("driving as {}\n", client.source());

@@ -36,8 +36,9 @@ class ControlConformance {
   // Undulation (control_wave_checks.cpp).
   void check_wave();
   void judge_wave(const Steps& steps);
+  void judge_speed(const Steps& steps);
   void check_curvature();
-  void check_drive();
+  void check_stand();
   // Silence, authority, stops, epochs (control_safety_checks.cpp).
   void check_relax();
   void check_silence();
@@ -50,8 +51,8 @@ class ControlConformance {
   Steps go(double seconds);
   /// Bends the body to a posture, one angle for each yaw joint, and waits until it must have been reached.
   Steps bend(const std::vector<double>& shape_rad, double rate_rad_s);
-  /// Begins to undulate forwards along a straight path, without waiting.
-  void undulate(double frequency_hz, double curvature_1_m);
+  /// Begins to move along an arc of this curvature, without waiting.
+  void travel(double speed_m_s, double curvature_1_m);
   /// [rad] how far the setpoint that moved most is from `posture_rad` in any of the ticks from `from_s` on.
   [[nodiscard]] static double strayed_rad(const Steps& steps, const std::vector<double>& posture_rad,
                                           double from_s = 0.0);
@@ -68,7 +69,8 @@ class ControlConformance {
   Report& report_;
   ControlHand hand_;
   std::vector<std::size_t> yaw_;
-  bool bends_ = false, undulates_ = false;
+  bool bends_ = false, travels_ = false;
+  double rate_hz_ = 0.0;  ///< of the undulation at the speed of the profile, as motion_status states it
   // Checks of every command.
   bool judges_rate_ = true;
   std::vector<double> previous_rad_;       ///< setpoints of the last command; empty: none, or the joints were displaced

@@ -28,11 +28,10 @@ std::vector<double> ControlHand::posture(double scale_rad) const {
   return angles;
 }
 
-msg::DesiredTrajectory& ControlHand::begin(const std::string& method) {
+msg::DesiredTrajectory& ControlHand::begin(const std::string& motion) {
   desired.emplace();
-  set_text(desired->method, method);
+  set_text(desired->motion, motion);
   desired->motion_id = ++motions_;
-  desired->wavelength_m = 1.0;
   return *desired;
 }
 

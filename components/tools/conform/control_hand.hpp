@@ -35,8 +35,8 @@ class ControlHand {
   /// True: the joints stay where they are, whatever is commanded.
   bool stuck = false;
 
-  /// Begins a new motion. The trajectory has no posture and stands still.
-  msg::DesiredTrajectory& begin(const std::string& method);
+  /// Begins a new motion of this kind. The trajectory has no posture and stands still.
+  msg::DesiredTrajectory& begin(const std::string& motion);
   [[nodiscard]] const std::vector<double>& measured_rad() const { return measured_rad_; }
   /// The joints jump to another posture, as a relaxed body does when a person picks it up.
   void displace(const std::vector<double>& posture_rad) { measured_rad_ = posture_rad; }

@@ -46,7 +46,7 @@ void ControlConformance::check_bend() {
   std::optional<std::int64_t> echo_ticks;
   for (std::size_t i = 0; i < first.size() && !echo_ticks; ++i) {
     for (const auto& state : first[i].states) {
-      if (state.motion_id == hand_.desired->motion_id && text_of(state.method) == "bend")
+      if (state.motion_id == hand_.desired->motion_id && !text_of(state.method).empty())
         echo_ticks = static_cast<std::int64_t>(i);
     }
   }
@@ -54,16 +54,16 @@ void ControlConformance::check_bend() {
   const bool late = !echo_ticks || ControlHand::kPeriod_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
   report_.judge("echo", late,
                 echo_ticks ? "after " + counted(*echo_ticks, "tick")
-                : state    ? fmt::format("motion {} with the method '{}', not motion {} with 'bend'", state->motion_id,
+                : state    ? fmt::format("motion {} with the method '{}', not motion {} with its method", state->motion_id,
                                          printable(text_of(state->method)), hand_.desired->motion_id)
                            : "no motion_status",
                 "copy motion_id, and name the method that moves the robot");
   bends_ = state != nullptr && state->accepted;
   report_.judge("bend", !bends_, bends_ ? "accepted" : "not accepted",
-                "offer this method: navigation uses it to take and to leave each posture");
+                "offer this motion: navigation uses it to take and to leave each posture");
   if (!bends_) {
     for (const char* name : {"order", "sign", "unit", "gain", "shape_rate", "done"})
-      report_.skip(name, "the method bend is not accepted");
+      report_.skip(name, "the motion bend is not accepted");
     return;
   }
   std::vector<double> shape_rad;  // no two joints are alike, and no joint is like another with the wrong sign

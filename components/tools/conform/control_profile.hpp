@@ -13,15 +13,11 @@ struct ControlProfile : ParameterSet {
   double posture_rad = add(posture_rad, "tolerance.posture_rad", 0.02, "rad", {0.0001, 0.3}, kAtStart,
                            "A setpoint differs from the posture that is demanded by less than this");
   double gain_tolerance = add(gain_tolerance, "tolerance.gain", 0.35, "", {0.01, 0.9}, kAtStart,
-                              "Amplitudes, curvatures and rates may be wrong by this share");
-  double rate_hz = add(rate_hz, "motion.frequency_hz", 0.5, "Hz", {0.1, 2.0}, kAtStart, "Of the undulation");
-  double amplitude_rad =
-      add(amplitude_rad, "motion.amplitude_rad", 0.5, "rad", {0.1, 1.2}, kAtStart, "Of the undulation's links");
-  double wavelength_m =
-      add(wavelength_m, "motion.wavelength_m", 1.07, "m", {0.3, 5.0}, kAtStart, "Of the undulation, along the body");
+                              "Frequencies, curvatures and rates may be wrong by this share");
+  double speed_m_s = add(speed_m_s, "motion.speed_m_s", 0.45, "m/s", {0.05, 2.0}, kAtStart, "Along the path");
   double curvature_1_m = add(curvature_1_m, "motion.curvature_1_m", 0.8, "1/m", {0.1, 3.0}, kAtStart, "Of the path");
   double settle_s = add(settle_s, "motion.settle_s", 4.0, "s", {0.5, 60.0}, kAtStart,
-                        "Time in which frequency, amplitude and curvature reach what is demanded");
+                        "Time in which speed and curvature reach what is demanded");
   double hold_within_s = add(hold_within_s, "hold_within_s", 0.5, "s", {0.02, 10.0}, kAtStart,
                              "Time after which the setpoints rest when trajectories or authority end");
   double relax_within_s = add(relax_within_s, "relax_within_s", 10.0, "s", {0.1, 600.0}, kAtStart,

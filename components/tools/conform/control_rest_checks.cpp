@@ -18,10 +18,10 @@ std::vector<Check> control_checks() {
       {"every_tick", "one joint_command and one motion_status in each tick", {}, {}, {}},
       {"first_command", "the first command is the measured posture", {}, {}, {}},
       {"rests", "the posture is held before the first trajectory", {}, {}, {}},
-      {"unknown_method", "a method that does not exist is not accepted, and the posture is held", {}, {}, {}},
+      {"unknown_motion", "a motion that does not exist is not accepted, and the posture is held", {}, {}, {}},
       {"wrong_posture", "a posture with too many joints is not accepted, and the posture is held", {}, {}, {}},
       {"echo", "motion_status names method and motion_id of the trajectory soon", {}, {}, {}},
-      {"bend", "the method bend is accepted", {}, {}, {}},
+      {"bend", "the motion bend is accepted", {}, {}, {}},
       {"order", "shape_rad[k] is for the k-th yaw joint from the head", {}, {}, {}},
       {"sign", "a positive angle bends the head side to the left", {}, {}, {}},
       {"unit", "angles are in radians", {}, {}, {}},
@@ -29,15 +29,15 @@ std::vector<Check> control_checks() {
       {"shape_rate", "the posture changes by shape_rate_rad_s at most", {}, {}, {}},
       {"done", "done is set when the posture is reached, and not before; progress rises from 0 to 1", {}, {}, {}},
       {"squeeze", "the base of the posture closes by squeeze_rad, with at most torque_limit_nm", {}, {}, {}},
-      {"undulation", "the method undulation is accepted and moves the yaw joints", {}, {}, {}},
-      {"frequency", "the joints undulate with frequency_hz", {}, {}, {}},
-      {"amplitude", "the links' heading swings by amplitude_rad", {}, {}, {}},
-      {"forwards", "with a positive frequency the wave travels to the tail, with wavelength_m", {}, {}, {}},
-      {"backwards", "with a negative frequency the wave travels to the head", {}, {}, {}},
-      {"curvature", "with a positive curvature the body bends to the left by curvature_1_m", {}, {}, {}},
-      {"drive", "the method drive is accepted, and motion_status names the method that moves the robot", {}, {}, {}},
-      {"hold", "the method hold keeps the posture", {}, {}, {}},
-      {"relax", "the method relax takes the torque away; the next motion begins at the measured posture", {}, {}, {}},
+      {"travel", "the motion travel is accepted and moves the yaw joints", {}, {}, {}},
+      {"method", "motion_status names the method that moves the robot", {}, {}, {}},
+      {"period", "the joints undulate once in motion_status.period_s", {}, {}, {}},
+      {"speed", "a greater speed_m_s moves the joints faster", {}, {}, {}},
+      {"forwards", "with a positive speed the wave travels to the tail", {}, {}, {}},
+      {"backwards", "with a negative speed the wave travels to the head", {}, {}, {}},
+      {"curvature", "on a path that bends to the left the body bends to the left, by the same curvature", {}, {}, {}},
+      {"stand", "the motion stand keeps the posture", {}, {}, {}},
+      {"relax", "the motion relax takes the torque away; the next motion begins at the measured posture", {}, {}, {}},
       {"silence", "without trajectories the posture is held, later the joints are relaxed", {}, {}, {}},
       {"authority", "the posture is held while no source has authority, after one had it", {}, {}, {}},
       {"takeover", "after a change of authority the motion begins at the measured posture", {}, {}, {}},
@@ -62,7 +62,7 @@ void ControlConformance::run() {
   check_bend();
   check_squeeze();
   check_wave();
-  check_drive();
+  check_stand();
   check_relax();
   check_silence();
   check_authority();
@@ -192,10 +192,10 @@ void ControlConformance::check_refusals() {
     report_.judge(name, accepted || far_rad > profile_.posture_rad,
                   accepted ? "accepted" : fmt::format("not accepted, the setpoints move by {:.3f} rad", far_rad), todo);
   };
-  hand_.begin("no_such_method");
+  hand_.begin("no_such_motion");
   hand_.desired->shape_count = 1;
   hand_.desired->shape_rad[0] = 0.5;
-  refuses("unknown_method", "set motion_status.accepted to false, and hold");
+  refuses("unknown_motion", "set motion_status.accepted to false, and hold");
   if (yaw_.size() >= msg::kMaxJoints) return report_.skip("wrong_posture", "no message can name more joints");
   hand_.begin("bend");
   hand_.desired->shape_count = static_cast<std::uint16_t>(yaw_.size() + 1);

@@ -33,7 +33,7 @@ void ControlConformance::check_relax() {
   previous_rad_.clear();
   go(0.2);
   hand_.stuck = true;
-  hand_.begin("hold");
+  hand_.begin("stand");
   const double far_rad = strayed_rad(go(0.5), posture_rad, 0.1);
   hand_.stuck = false;
   const bool accepted = state != nullptr && state->accepted;
@@ -84,7 +84,7 @@ void ControlConformance::check_authority() {
   go(0.2);
   hand_.authority.level = msg::kAuthorityOperator;
   set_text(hand_.authority.source, "person.1");
-  hand_.begin("hold");
+  hand_.begin("stand");
   judges_rate_ = false;      // the setpoints jump to the measured angles
   double nearest_rad = 1e9;  // of the ticks after the takeover
   for (const auto& step : go(0.5)) nearest_rad = std::min(nearest_rad, strayed_rad({step}, posture_rad));
@@ -121,7 +121,7 @@ void ControlConformance::check_stop() {
 }
 
 void ControlConformance::check_wrong_joints() {
-  hand_.begin("hold");
+  hand_.begin("stand");
   go(1.0);
   const std::vector<double> posture_rad = hand_.measured_rad();
   const std::uint64_t before = port_.refused();

@@ -1,4 +1,4 @@
-// Undulation: frequency, amplitude, direction of the travelling wave, curvature of the path.
+// Moving along a path: period and direction of the travelling wave, speed, curvature of the path.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "conform/control_conformance.hpp"
 #include "conform/median.hpp"
+#include "robot/trajectory_path.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -50,85 +51,103 @@ Fit fitted(const std::vector<ControlStep>& steps, std::size_t joint, double freq
 
 }  // namespace
 
-void ControlConformance::undulate(double frequency_hz, double curvature_1_m) {
-  auto& desired = hand_.begin("undulation");
-  desired.frequency_hz = frequency_hz;
-  desired.amplitude_rad = profile_.amplitude_rad;
-  desired.wavelength_m = profile_.wavelength_m;
-  desired.curvature_1_m = curvature_1_m;
+void ControlConformance::travel(double speed_m_s, double curvature_1_m) {
+  auto& desired = hand_.begin("travel");
+  desired.speed_m_s = speed_m_s;
+  set_arc(curvature_1_m, desired);
 }
 
 void ControlConformance::check_wave() {
+  constexpr const char* kRest[] = {"method", "period", "speed", "forwards", "backwards", "curvature"};
   if (yaw_.size() < 4) {
-    for (const char* name : {"undulation", "frequency", "amplitude", "forwards", "backwards", "curvature"})
-      report_.skip(name, "needs four yaw joints");
+    report_.skip("travel", "needs four yaw joints");
+    for (const char* name : kRest) report_.skip(name, "needs four yaw joints");
     return;
   }
-  undulate(profile_.rate_hz, 0.0);
-  go(profile_.settle_s);
-  const Steps steps = go(kPeriods / profile_.rate_hz);
-  const msg::MotionStatus* state = last_state(steps);
+  travel(profile_.speed_m_s, 0.0);
+  const msg::MotionStatus* state = last_state(go(profile_.settle_s));
+  const double period_s = state ? state->period_s : 0.0;
+  constexpr double kLongest_s = 10.0;
+  rate_hz_ = 1.0 / (period_s > 0.0 ? std::min(period_s, kLongest_s) : 1.0);
+  const Steps steps = go(kPeriods / rate_hz_);
+  state = last_state(steps);
   const bool accepted = state != nullptr && state->accepted;
   const double swing_rad = moved_rad(steps, 0.0);
-  undulates_ = accepted && swing_rad > 0.05;
-  report_.judge("undulation", !undulates_,
+  travels_ = accepted && swing_rad > 0.05;
+  report_.judge("travel", !travels_,
                 !accepted ? "not accepted" : fmt::format("the setpoints swing by up to {:.2f} rad", swing_rad),
-                "offer this method: navigation drives by it while the body holds an object");
-  if (!undulates_) {
-    for (const char* name : {"frequency", "amplitude", "forwards", "backwards", "curvature"})
-      report_.skip(name, "the robot does not undulate");
+                "offer this motion: navigation moves the robot by it");
+  if (!travels_) {
+    for (const char* name : kRest) report_.skip(name, "the robot does not move");
     return;
   }
+  const std::string method = printable(text_of(state->method));
+  report_.judge("method", method.empty(), method.empty() ? "no name" : fmt::format("'{}'", method),
+                "write the name of the method that moves the robot into motion_status");
   judge_wave(steps);
+  judge_speed(steps);
   check_curvature();
 }
 
 void ControlConformance::judge_wave(const Steps& steps) {
-  const double link_m = robot_.module_length_m * static_cast<double>(yaw_[1] - yaw_[0]);
-  const double step_rad = 2.0 * kPi * link_m / profile_.wavelength_m;  // of the wave from joint to joint
   /// [rad] median phase of a joint minus that of the joint in front of it.
   const auto lag_rad = [&](const Steps& some) {
     std::vector<double> lags;
     for (std::size_t k = yaw_.size() / 3; k + 1 < yaw_.size(); ++k) {
-      const double lag =
-          fitted(some, yaw_[k + 1], profile_.rate_hz).phase_rad - fitted(some, yaw_[k], profile_.rate_hz).phase_rad;
+      const double lag = fitted(some, yaw_[k + 1], rate_hz_).phase_rad - fitted(some, yaw_[k], rate_hz_).phase_rad;
       lags.push_back(std::remainder(lag, 2.0 * kPi));
     }
     return median(std::move(lags));
   };
-  const Fit middle = fitted(steps, yaw_[yaw_.size() / 2], profile_.rate_hz);
-  report_.judge("frequency", middle.explained < 0.8,
-                fmt::format("{:.2f} Hz, with {:.2f} Hz demanded", middle.seen_hz, profile_.rate_hz),
-                "advance the phase by 2 pi frequency_hz in a second of simulated time");
-  // Links whose headings swing by A with this phase between them: the joint angle is the difference of two of them.
-  const double expected_rad = 2.0 * profile_.amplitude_rad * std::abs(std::sin(0.5 * step_rad));
-  const double ratio = middle.amplitude_rad / expected_rad;
-  report_.judge("amplitude", std::abs(ratio - 1.0) > profile_.gain_tolerance,
-                fmt::format("{:.2f} times the demanded amplitude", ratio),
-                "amplitude_rad [rad] is that of the links' heading, not of the joint angles");
+  const Fit middle = fitted(steps, yaw_[yaw_.size() / 2], rate_hz_);
+  report_.judge("period", middle.explained < 0.8,
+                fmt::format("{:.2f} Hz, with {:.2f} Hz stated", middle.seen_hz, rate_hz_),
+                "period_s is the time in which the wave passes a joint once, at the desired speed");
   const double forwards_rad = lag_rad(steps);
-  const bool wrong_way = forwards_rad > 0.0;
-  const bool wrong_length = std::abs(-forwards_rad / step_rad - 1.0) > profile_.gain_tolerance;
-  report_.judge("forwards", wrong_way || wrong_length,
-                wrong_way ? std::string("the wave travels to the head")
-                          : fmt::format("the wave is {:.2f} m long, and travels to the tail",
-                                        2.0 * kPi * link_m / std::max(-forwards_rad, 1e-3)),
-                "a wave that travels to the tail pushes the robot forwards; check wavelength_m [m]");
-  undulate(-profile_.rate_hz, 0.0);
+  const auto direction = [](double lag) { return lag > 0.0 ? "head" : "tail"; };
+  report_.judge("forwards", forwards_rad > 0.0, fmt::format("the wave travels to the {}", direction(forwards_rad)),
+                "a wave that travels to the tail pushes the robot forwards");
+  travel(-profile_.speed_m_s, 0.0);
   go(profile_.settle_s);
-  const double backwards_rad = lag_rad(go(kPeriods / profile_.rate_hz));
-  report_.judge("backwards", backwards_rad < 0.0,
-                fmt::format("the wave travels to the {}", backwards_rad < 0.0 ? "tail" : "head"),
-                "turn the wave round when frequency_hz is negative");
+  const double backwards_rad = lag_rad(go(kPeriods / rate_hz_));
+  report_.judge("backwards", backwards_rad < 0.0, fmt::format("the wave travels to the {}", direction(backwards_rad)),
+                "turn the wave round when speed_m_s is negative");
+}
+
+void ControlConformance::judge_speed(const Steps& steps) {
+  /// [rad/s] mean absolute rate of the yaw joints' setpoints.
+  const auto rate_rad_s = [&](const Steps& some) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    const msg::JointCommand* before = nullptr;
+    for (const auto& step : some) {
+      if (step.commands.empty()) continue;
+      const msg::JointCommand& now = step.commands.back();
+      for (const std::size_t joint : yaw_) {
+        if (!before) continue;
+        sum += std::abs(now.position_rad[joint] - before->position_rad[joint]) / ControlHand::kPeriod_s;
+        ++count;
+      }
+      before = &now;
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  };
+  const double whole = rate_rad_s(steps);
+  travel(0.5 * profile_.speed_m_s, 0.0);
+  go(profile_.settle_s);
+  const double half = rate_rad_s(go(2.0 * kPeriods / rate_hz_));
+  report_.judge("speed", half > 0.9 * whole,
+                fmt::format("{:.2f} rad/s on average, and {:.2f} rad/s at half the speed", whole, half),
+                "turn speed_m_s into the frequency or the amplitude of the wave");
 }
 
 void ControlConformance::check_curvature() {
   const auto bend_1_m = [&](double curvature_1_m) {
-    undulate(profile_.rate_hz, curvature_1_m);
+    travel(profile_.speed_m_s, curvature_1_m);
     go(profile_.settle_s);
-    const Steps steps = go(kPeriods / profile_.rate_hz);
+    const Steps steps = go(kPeriods / rate_hz_);
     double sum_rad = 0.0;
-    for (std::size_t k = 1; k < yaw_.size(); ++k) sum_rad += fitted(steps, yaw_[k], profile_.rate_hz).mean_rad;
+    for (std::size_t k = 1; k < yaw_.size(); ++k) sum_rad += fitted(steps, yaw_[k], rate_hz_).mean_rad;
     const double length_m = robot_.module_length_m * static_cast<double>(yaw_.back() - yaw_.front());
     return sum_rad / length_m;
   };
@@ -139,29 +158,15 @@ void ControlConformance::check_curvature() {
                 ratio < -0.2 ? std::string("the body bends the other way")
                              : fmt::format("{:.2f} and {:.2f} 1/m, with +-{:.2f} 1/m demanded", left, right,
                                            profile_.curvature_1_m),
-                "add curvature_1_m times the distance of two joints to each yaw angle; positive is left");
+                "bend the body by the curvature of the path; positive is left");
 }
 
-void ControlConformance::check_drive() {
-  hand_.begin("drive");
-  hand_.desired->frequency_hz = profile_.rate_hz;
-  hand_.desired->amplitude_rad = profile_.amplitude_rad;
-  hand_.desired->wavelength_m = profile_.wavelength_m;
-  go(profile_.settle_s);
-  const Steps steps = go(1.0 / profile_.rate_hz);
-  const msg::MotionStatus* state = last_state(steps);
-  const std::string method = state ? printable(text_of(state->method)) : "";
-  const double swing_rad = moved_rad(steps, 0.0);
-  const bool wrong = state == nullptr || !state->accepted || method.empty() || method == "drive" || swing_rad < 0.02;
-  report_.judge(
-      "drive", wrong,
-      state && state->accepted ? fmt::format("drives by '{}', {:.2f} rad", method, swing_rad) : "not accepted",
-      "choose the method that moves the robot, and name it in motion_status");
-  hand_.begin("hold");
+void ControlConformance::check_stand() {
+  hand_.begin("stand");
   const Steps held = go(1.5);
-  state = last_state(held);
+  const msg::MotionStatus* state = last_state(held);
   const double moved = moved_rad(held, 0.5);
-  report_.judge("hold", moved > profile_.posture_rad || state == nullptr || !state->accepted,
+  report_.judge("stand", moved > profile_.posture_rad || state == nullptr || !state->accepted,
                 state && state->accepted ? fmt::format("{:.3f} rad after half a second", moved) : "not accepted",
                 "keep the posture in which the motion began");
 }

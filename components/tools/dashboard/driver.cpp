@@ -10,7 +10,7 @@
 #include "component/task_parameters.hpp"
 #include "dashboard/lane.hpp"
 #include "dashboard/protocol.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 
 namespace constrictor::dashboard {
 namespace {
@@ -62,10 +62,10 @@ std::string Driver::drive(double speed_m_s, double turn_rad_s) {
   client_.connect_or_throw(5s);
   check_authority();
   if (!drive_ || drive_->speed_m_s != speed_m_s || drive_->turn_rad_s != turn_rad_s) {
-    const DriveGait gait = drive_gait(speed_m_s, turn_rad_s);
+    const DriveMotion motion = drive_motion(speed_m_s, turn_rad_s);
     const bool held = drive_ && drive_->held;
     drive_.reset();
-    expect_granted(client_, client_.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m), "drive");
+    expect_granted(client_, client_.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m), "drive");
     drive_ = Drive{speed_m_s, turn_rad_s, held};
   }
   until_ = Clock::now() + kSilence;

@@ -126,7 +126,7 @@ void add_session(py::module_& module) {
       .def("topics", [](Session& session) { return to_python(released(list_topics, session)); })
       .def("take", &Session::take, Free())
       .def("release", &Session::release, Free())
-      .def("move", &Session::move, Free(), py::arg("motion"), py::arg("frequency_hz"), py::arg("curvature_1_m"),
+      .def("move", &Session::move, Free(), py::arg("motion"), py::arg("speed_m_s"), py::arg("curvature_1_m"),
            py::arg("angle_rad"))
       .def("drive", &Session::drive, Free(), py::arg("speed_m_s"), py::arg("turn_rad_s"))
       .def(

@@ -16,7 +16,7 @@
 #include "constrictor/json.hpp"
 #include "cyclone/run_token.hpp"
 #include "python/turn.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 
 namespace constrictor::python {
 namespace {
@@ -227,20 +227,20 @@ bool Session::release() {
   return client().release();
 }
 
-void Session::move(const std::string& motion, double frequency_hz, double curvature_1_m, double angle_rad) {
+void Session::move(const std::string& motion, double speed_m_s, double curvature_1_m, double angle_rad) {
   const std::uint8_t value = constant(constants::kMotion, "motion", motion, 0);
-  finite("frequency_hz", frequency_hz, 2.0, "Hz");
+  finite("speed_m_s", speed_m_s, 2.0, "m/s");
   finite("curvature_1_m", curvature_1_m, 5.0, "1/m");
   finite("angle_rad", angle_rad, 4.0, "rad");
   const Turn turn(*this);
-  granted(client().move(value, frequency_hz, curvature_1_m, angle_rad));
+  granted(client().move(value, speed_m_s, curvature_1_m, angle_rad));
 }
 
 void Session::drive(double speed_m_s, double turn_rad_s) {
-  const DriveGait gait =
-      drive_gait(finite("speed_m_s", speed_m_s, 2.0, "m/s"), finite("turn_rad_s", turn_rad_s, 4.0, "rad/s"));
+  const DriveMotion motion =
+      drive_motion(finite("speed_m_s", speed_m_s, 2.0, "m/s"), finite("turn_rad_s", turn_rad_s, 4.0, "rad/s"));
   const Turn turn(*this);
-  granted(client().move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m));
+  granted(client().move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m));
 }
 
 std::uint64_t Session::start(const std::string& task, const TaskArguments& given) {

@@ -80,7 +80,7 @@ class Session {
   void take();
   /// Returns whether this session has no authority afterwards.
   bool release();
-  void move(const std::string& motion, double frequency_hz, double curvature_1_m, double angle_rad);
+  void move(const std::string& motion, double speed_m_s, double curvature_1_m, double angle_rad);
   void drive(double speed_m_s, double turn_rad_s);
   /// Returns the goal's id.
   std::uint64_t start(const std::string& task, const TaskArguments& arguments);

@@ -49,7 +49,7 @@ void Bridge::take_velocities(SteadyClock::time_point now) {
   if (const auto request = pilot_.next(client_.connected(), steered, now_s)) {
     if (request->kind != msg::kRequestMotion) number_ = client_.ask(request->kind);
     else if (request->drive == Drive{}) number_ = client_.move(msg::kMotionStand);
-    else number_ = client_.move(msg::kMotionDrive, request->drive.frequency_hz, request->drive.curvature_1_m);
+    else number_ = client_.move(msg::kMotionDrive, request->drive.speed_m_s, request->drive.curvature_1_m);
   }
 }
 

@@ -205,10 +205,9 @@ Drive drive_of(const Twist& twist, const DriveConfig& config) {
   const double limit = config.max_curvature_1_m;
   // A path of curvature k driven at speed v turns at k v; backwards the same turning rate needs the other curvature.
   const double wanted_1_m = std::abs(speed_m_s) < kStill ? std::copysign(limit, turn_rad_s) : turn_rad_s / speed_m_s;
-  const double for_speed_hz = std::abs(speed_m_s) / config.advance_per_cycle_m;
-  const double for_turn_hz = std::abs(wanted_1_m) < limit ? 0.0 : std::abs(turn_rad_s) / config.turn_rate_at_1hz_rad_s;
-  const double frequency_hz = std::min(config.max_frequency_hz, std::max(for_speed_hz, for_turn_hz));
-  return {std::copysign(frequency_hz, speed_m_s <= -kStill ? -1.0 : 1.0), std::clamp(wanted_1_m, -limit, limit)};
+  const double for_turn_m_s = std::abs(wanted_1_m) < limit ? 0.0 : std::abs(turn_rad_s) / config.turn_rad_m;
+  const double path_m_s = std::min(config.max_speed_m_s, std::max(std::abs(speed_m_s), for_turn_m_s));
+  return {std::copysign(path_m_s, speed_m_s <= -kStill ? -1.0 : 1.0), std::clamp(wanted_1_m, -limit, limit)};
 }
 
 }  // namespace constrictor::ros

@@ -77,16 +77,15 @@ class Translator {
   std::string logger_, message_;
 };
 
-/// The constants that convert a velocity into an undulation.
+/// The constants that convert a velocity into a path.
 struct DriveConfig {
-  double advance_per_cycle_m = 0.9;  ///< travel of one wave; Source: the gait's measured speed, sim/world/README.md
-  double max_frequency_hz = 1.0;
-  double max_curvature_1_m = 2.3;       ///< the curvature with which navigation turns on the spot
-  double turn_rate_at_1hz_rad_s = 1.8;  ///< turning on the spot at the largest curvature
+  double max_speed_m_s = 0.9;
+  double max_curvature_1_m = 2.3;  ///< the curvature with which navigation turns on the spot
+  double turn_rad_m = 2.0;         ///< turn on the spot, for each metre along the path with the largest curvature
 };
 
 struct Drive {
-  double frequency_hz = 0.0;   ///< 0: stand
+  double speed_m_s = 0.0;      ///< along the path; negative: backwards; 0: stand
   double curvature_1_m = 0.0;  ///< positive left
   bool operator==(const Drive&) const = default;
 };

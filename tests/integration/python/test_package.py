@@ -145,7 +145,7 @@ def test_messages_are_published_checked(run):
 
 
 def test_parameters_are_read_set_and_refused(run):
-    name = "navigation.travel.frequency_hz"
+    name = "navigation.travel.speed_m_s"
     assert run.get_parameter(name) == 0.7
     assert run.parameters(name)[name]["unit"] == "Hz"
     tick = run.set_parameter(name, 0.8)
@@ -155,16 +155,16 @@ def test_parameters_are_read_set_and_refused(run):
         run.set_parameter(name, 9)
     with pytest.raises(KeyError, match="no parameter"):
         run.get_parameter("navigation.nothing")
-    with pytest.raises(KeyError, match="did you mean 'navigation.travel.frequency_hz'"):
-        run.get_parameter("navigation.travel.frequensy_hz")
-    with pytest.raises(constrictor.RefusedError, match="did you mean 'navigation.travel.frequency_hz'"):
-        run.set_parameter("navigation.travel.frequensy_hz", 0.8)
-    assert run.get_parameter("control.drive.method") == "undulation"
-    run.set_parameter("control.drive.method", "rolling")
-    assert eventually(lambda: run.get_parameter("control.drive.method") == "rolling")
-    run.set_parameter("control.drive.method", "undulation")
+    with pytest.raises(KeyError, match="did you mean 'navigation.travel.speed_m_s'"):
+        run.get_parameter("navigation.travel.speeed_m_s")
+    with pytest.raises(constrictor.RefusedError, match="did you mean 'navigation.travel.speed_m_s'"):
+        run.set_parameter("navigation.travel.speeed_m_s", 0.8)
+    assert run.get_parameter("control.motion.travel.method") == "undulation"
+    run.set_parameter("control.motion.travel.method", "rolling")
+    assert eventually(lambda: run.get_parameter("control.motion.travel.method") == "rolling")
+    run.set_parameter("control.motion.travel.method", "undulation")
     with pytest.raises(ValueError, match="found 'moonwalk', accepted undulation, "):
-        run.set_parameter("control.drive.method", "moonwalk")
+        run.set_parameter("control.motion.travel.method", "moonwalk")
 
 
 def test_wrong_types_are_named_with_argument_found_and_accepted(run):
@@ -175,7 +175,7 @@ def test_wrong_types_are_named_with_argument_found_and_accepted(run):
         (lambda: run.step(True), r"ticks: found True \(bool\), accepted int"),
         (lambda: run.start(3), r"task: found 3 \(int\), accepted str"),
         (lambda: run.start("rotate", direction=1), r"direction: found 1 \(int\), accepted str or None"),
-        (lambda: run.set_parameter("navigation.travel.frequency_hz", [1]), r"value: .* accepted float or str"),
+        (lambda: run.set_parameter("navigation.travel.speed_m_s", [1]), r"value: .* accepted float or str"),
         (lambda: run.subscribe("joint_state", depth="8"), r"depth: found '8' \(str\), accepted int"),
         (lambda: constrictor.join("3"), r"join: run: found '3' \(str\), accepted int or None"),
     ]

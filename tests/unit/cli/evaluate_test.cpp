@@ -105,8 +105,8 @@ TEST(Variants, ChangeOneValueOfACopyOfTheFile) {
   EXPECT_EQ(Configuration::load(noisy.scenario).one_line("mission"), Configuration::load(original).one_line("mission"));
   EXPECT_EQ(Configuration::load(noisy.scenario).one_line("line"), Configuration::load(original).one_line("line"));
   EXPECT_NE(text(options("objects.0.mass_kg=0.7").scenario).find("mass_kg: 0.7"), std::string::npos);
-  EXPECT_TRUE(options("navigation:travel.frequency_hz=0.8").scenario == "short");
-  EXPECT_TRUE(options("navigation:travel.frequency_hz=0.8").config_files.front().starts_with("navigation="));
+  EXPECT_TRUE(options("navigation:travel.speed_m_s=0.8").scenario == "short");
+  EXPECT_TRUE(options("navigation:travel.speed_m_s=0.8").config_files.front().starts_with("navigation="));
   for (const char* wrong : {"objects.7.mass_kg=1", "objects.x.mass_kg=1", "name.x=1", "nobody:a=1", "noise=[1"})
     EXPECT_THROW(static_cast<void>(options(wrong)), ConfigurationError) << wrong;
 }

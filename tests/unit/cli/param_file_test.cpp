@@ -25,7 +25,7 @@ OwnedParameter parameter(const std::string& name, double value, double minimum, 
 ParameterView view() {
   ParameterView view;
   for (const auto& each :
-       {parameter("navigation.travel.frequency_hz", 0.7, 0.05, 2), parameter("navigation.grasp.steps", 3, 1, 9, true),
+       {parameter("navigation.travel.speed_m_s", 0.7, 0.05, 2), parameter("navigation.grasp.steps", 3, 1, 9, true),
         parameter("control.wave.curvature_rate_1_ms", 0.1 + 0.2, 0, 5)})
     view.parameters[each.parameter.name] = each;
   return view;
@@ -48,7 +48,7 @@ std::string refusal(const std::string& text) {
 
 TEST(ParameterFile, IsReadBackWithTheSameNumbers) {
   ParameterView changed = view();
-  changed.parameters["navigation.travel.frequency_hz"].parameter.value = 1.0 / 3.0;
+  changed.parameters["navigation.travel.speed_m_s"].parameter.value = 1.0 / 3.0;
   changed.parameters["navigation.grasp.steps"].parameter.pending_value = 4;
   changed.parameters["navigation.grasp.steps"].parameter.pending_tick = 900;
   const std::string text = parameter_file(changed, "Parameters of a run", false);
@@ -57,73 +57,73 @@ TEST(ParameterFile, IsReadBackWithTheSameNumbers) {
   ASSERT_EQ(values.size(), 2u) << "what is in force already is left out: " << text;
   EXPECT_EQ(values[0].name, "navigation.grasp.steps");
   EXPECT_EQ(values[0].value, 4);
-  EXPECT_EQ(values[1].name, "navigation.travel.frequency_hz");
+  EXPECT_EQ(values[1].name, "navigation.travel.speed_m_s");
   EXPECT_EQ(values[1].value, 1.0 / 3.0) << "bit for bit";
 }
 
 TEST(ParameterFile, KeepsNamesOfValues) {
   ParameterView named = view();
-  OwnedParameter method = parameter("control.drive.method", 1, 0, 2, true);
+  OwnedParameter method = parameter("control.motion.travel.method", 1, 0, 2, true);
   set_text(method.parameter.choices, "undulation sidewinding rolling");
-  named.parameters["control.drive.method"] = method;
+  named.parameters["control.motion.travel.method"] = method;
   const std::string text = parameter_file(named, "Parameters", false);
-  EXPECT_NE(text.find("\ncontrol.drive.method: sidewinding  # one of undulation, sidewinding, rolling; "),
+  EXPECT_NE(text.find("\ncontrol.motion.travel.method: sidewinding  # one of undulation, sidewinding, rolling; "),
             std::string::npos)
       << text;
   EXPECT_TRUE(read_parameter_file(text, "f.yaml", named, is_fixed).empty()) << "the value is in force already";
-  const auto values = read_parameter_file("control.drive.method: rolling\n", "f.yaml", named, is_fixed);
+  const auto values = read_parameter_file("control.motion.travel.method: rolling\n", "f.yaml", named, is_fixed);
   ASSERT_EQ(values.size(), 1u);
   EXPECT_EQ(values[0].value, 2);
   EXPECT_EQ(values[0].text, "rolling");
-  EXPECT_THROW(static_cast<void>(read_parameter_file("control.drive.method: hop\n", "f.yaml", named, is_fixed)),
+  EXPECT_THROW(static_cast<void>(read_parameter_file("control.motion.travel.method: hop\n", "f.yaml", named, is_fixed)),
                ConfigurationError);
 }
 
 TEST(ParameterFile, OfChangesHasNothingElse) {
   ParameterView changed = view();
-  changed.parameters["navigation.travel.frequency_hz"].parameter.changed_tick = 300;
+  changed.parameters["navigation.travel.speed_m_s"].parameter.changed_tick = 300;
   const std::string text = parameter_file(changed, "t", true);
-  EXPECT_NE(text.find("navigation.travel.frequency_hz: 0.7"), std::string::npos) << text;
+  EXPECT_NE(text.find("navigation.travel.speed_m_s: 0.7"), std::string::npos) << text;
   EXPECT_EQ(text.find("grasp"), std::string::npos) << text;
 }
 
 TEST(ParameterFile, MayBeNestedLikeTheConfigurationOfAComponent) {
   const auto values = read("navigation:\n  travel: {frequency_hz: 0.9}\n  grasp.steps: 5\n");
   ASSERT_EQ(values.size(), 2u);
-  EXPECT_EQ(values[0].name, "navigation.travel.frequency_hz");
+  EXPECT_EQ(values[0].name, "navigation.travel.speed_m_s");
   EXPECT_EQ(values[0].value, 0.9);
   EXPECT_EQ(values[1].value, 5);
 }
 
 TEST(ParameterFile, NamesEveryMistakeWithItsLine) {
-  EXPECT_EQ(refusal("navigation.travel.frequency_hz: 7\n"
+  EXPECT_EQ(refusal("navigation.travel.speed_m_s: 7\n"
                     "navigation.grasp.steps: 2.5\n"
-                    "navigation.travel.frequensy_hz: 1\n"
+                    "navigation.travel.speeed_m_s: 1\n"
                     "control.joints.gain: 3\n"
                     "navigation.grasp.steps: 2\n"
                     "control: {wave: {curvature_rate_1_ms: fast}}\n"
                     "navigation.travel: [1, 2]\n"),
-            "f.yaml:1: navigation.travel.frequency_hz: found 7, accepted 0.05 to 2 Hz\n"
+            "f.yaml:1: navigation.travel.speed_m_s: found 7, accepted 0.05 to 2 Hz\n"
             "f.yaml:2: navigation.grasp.steps: found 2.5, accepted whole, 1 to 9 Hz\n"
-            "f.yaml:3: navigation.travel.frequensy_hz: found no such parameter, accepted those of `constrictor param "
-            "list`, did you mean 'navigation.travel.frequency_hz'?\n"
+            "f.yaml:3: navigation.travel.speeed_m_s: found no such parameter, accepted those of `constrictor param "
+            "list`, did you mean 'navigation.travel.speed_m_s'?\n"
             "f.yaml:4: control.joints.gain: cannot change while the run goes on; accepted in a configuration file, for "
             "the next run: `constrictor run --config control=FILE`\n"
             "f.yaml:5: navigation.grasp.steps: found twice, first in line 2, accepted once\n"
             "f.yaml:6: control.wave.curvature_rate_1_ms: found fast, accepted 0 to 5 Hz\n"
             "f.yaml:7: navigation.travel: found no such parameter, accepted those of `constrictor param list`, did you "
-            "mean 'navigation.travel.frequency_hz'?");
+            "mean 'navigation.travel.speed_m_s'?");
   EXPECT_EQ(refusal("- 1\n"), "f.yaml:1: found no map, accepted lines as NAME: VALUE");
   EXPECT_TRUE(refusal("a: [\n").starts_with("f.yaml:")) << refusal("a: [\n");
-  EXPECT_EQ(refusal("navigation.travel.frequency_hz: .inf\n"),
-            "f.yaml:1: navigation.travel.frequency_hz: found .inf, accepted 0.05 to 2 Hz");
+  EXPECT_EQ(refusal("navigation.travel.speed_m_s: .inf\n"),
+            "f.yaml:1: navigation.travel.speed_m_s: found .inf, accepted 0.05 to 2 Hz");
   EXPECT_TRUE(read("").empty());
 }
 
 TEST(ParameterFile, KnowsWhatIsInTheConfigurationOfAComponent) {
-  for (const char* name : {"navigation.travel.frequency_hz", "navigation.travel"})
+  for (const char* name : {"navigation.travel.speed_m_s", "navigation.travel"})
     EXPECT_TRUE(is_in_configuration(name)) << name;
-  for (const char* name : {"navigation.travel.frequency_hz.x", "navigation", "nobody.travel", "../tools.x", ""})
+  for (const char* name : {"navigation.travel.speed_m_s.x", "navigation", "nobody.travel", "../tools.x", ""})
     EXPECT_FALSE(is_in_configuration(name)) << name;
 }
 

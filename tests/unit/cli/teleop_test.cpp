@@ -14,7 +14,7 @@
 #include "cli/teleop_keys.hpp"
 #include "cli/usage.hpp"
 #include "client/task_names.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -160,17 +160,17 @@ TEST(TeleopDrive, TurnKeysAlsoDriveButRotateKeysTurnOnTheSpot) {
   EXPECT_GE(drive.speed_m_s, 0.1 - 1e-9);
 }
 
-TEST(DriveGait, HasTheSignsOfSpeedAndTurnAndStaysWithinTheRangesOfTheMessage) {
-  EXPECT_GT(drive_gait(0.3, 0.0).frequency_hz, 0.0);
-  EXPECT_LT(drive_gait(-0.3, 0.0).frequency_hz, 0.0);
-  EXPECT_GT(drive_gait(0.3, 0.2).curvature_1_m, 0.0);
-  EXPECT_LT(drive_gait(0.0, -0.5).curvature_1_m, -2.0);
-  EXPECT_EQ(drive_gait(0.0, 0.0).frequency_hz, 0.0);
+TEST(DriveMotion, HasTheSignsOfSpeedAndTurnAndStaysWithinTheRangesOfTheMessage) {
+  EXPECT_GT(drive_motion(0.3, 0.0).speed_m_s, 0.0);
+  EXPECT_LT(drive_motion(-0.3, 0.0).speed_m_s, 0.0);
+  EXPECT_GT(drive_motion(0.3, 0.2).curvature_1_m, 0.0);
+  EXPECT_LT(drive_motion(0.0, -0.5).curvature_1_m, -2.0);
+  EXPECT_EQ(drive_motion(0.0, 0.0).speed_m_s, 0.0);
   for (const double v : {-1e9, -1.0, 0.0, 0.01, 5.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
     for (const double w : {-1e9, 0.0, 1e-6, 3.0, std::nan("")}) {
-      const DriveGait gait = drive_gait(v, w);
-      EXPECT_LE(std::abs(gait.frequency_hz), 2.0) << v << " " << w;
-      EXPECT_LE(std::abs(gait.curvature_1_m), 5.0) << v << " " << w;
+      const DriveMotion motion = drive_motion(v, w);
+      EXPECT_LE(std::abs(motion.speed_m_s), 2.0) << v << " " << w;
+      EXPECT_LE(std::abs(motion.curvature_1_m), 5.0) << v << " " << w;
     }
   }
 }

@@ -7,7 +7,7 @@
 namespace constrictor {
 namespace {
 
-constexpr const char* kName = "navigation.travel.frequency_hz";
+constexpr const char* kName = "navigation.travel.speed_m_s";
 
 /// A list with one parameter that was changed at this tick and waits for another change (-1: never, none).
 msg::ParameterList list_with(std::int64_t changed_tick, std::int64_t pending_tick, std::uint32_t epoch = 1) {

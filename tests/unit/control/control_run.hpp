@@ -45,13 +45,13 @@ inline ComponentFactory scripted_navigation(Script script) {
   return testing::scripted_writer<msg::DesiredTrajectory>(
       "navigation", topics::kDesiredTrajectory, [script = std::move(script)](const Tick& tick, const auto& out) {
         msg::DesiredTrajectory desired{};
-        desired.wavelength_m = 1.07;
         if (script(tick, desired)) out.write(desired);
       });
 }
 
-inline void set_method(msg::DesiredTrajectory& desired, const char* method, std::uint64_t motion_id) {
-  std::snprintf(desired.method, sizeof desired.method, "%s", method);
+/// `motion`: a kind of motion, or the name of a control method.
+inline void set_motion(msg::DesiredTrajectory& desired, const char* motion, std::uint64_t motion_id) {
+  std::snprintf(desired.motion, sizeof desired.motion, "%s", motion);
   desired.motion_id = motion_id;
 }
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "robot/trajectory_path.hpp"
 #include "unit/control/control_run.hpp"
 
 namespace constrictor {
@@ -63,7 +64,7 @@ ComponentFactory estimate() {
 TEST(Control, PassesSensesToAnAddedMethod) {
   LocalRun run = make_run<TouchingServos>(
       [](const Tick&, msg::DesiredTrajectory& desired) {
-        set_method(desired, "feeler", 1);
+        set_motion(desired, "feeler", 1);
         return true;
       },
       make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Feeler>(); }}),
@@ -102,8 +103,8 @@ TEST(Control, EachMethodHasTheNameOfItsFileAndARowInTheReadme) {
 
 TEST(Control, HoldsPostureOnUnknownMethodAndOnInvalidShape) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
-    set_method(desired, tick.index < 50 ? "moonwalk" : "undulation", 1);
-    desired.frequency_hz = 0.7;
+    set_motion(desired, tick.index < 50 ? "moonwalk" : "undulation", 1);
+    desired.speed_m_s = 0.63;
     desired.shape_count = tick.index < 50 ? 0 : 65535;  // more joints than the robot has
     return tick.index < 50;
   });
@@ -114,9 +115,8 @@ TEST(Control, HoldsPostureOnUnknownMethodAndOnInvalidShape) {
 
 TEST(Control, HoldsThenRelaxesWhenTheTrajectoryIsStale) {
   LocalRun run = make_run([](const Tick& tick, msg::DesiredTrajectory& desired) {
-    set_method(desired, "undulation", 1);
-    desired.frequency_hz = 0.7;
-    desired.amplitude_rad = 0.5;
+    set_motion(desired, "undulation", 1);
+    desired.speed_m_s = 0.63;
     return tick.index < 100;
   });
   run.advance(115);
@@ -140,9 +140,8 @@ ComponentFactory hanging_input() {
 TEST(Control, HoldsPostureWhenAuthorityIsNoLongerPublished) {
   LocalRun run = make_run(
       [](const Tick&, msg::DesiredTrajectory& desired) {
-        set_method(desired, "undulation", 1);
-        desired.frequency_hz = 0.7;
-        desired.amplitude_rad = 0.5;
+        set_motion(desired, "undulation", 1);
+        desired.speed_m_s = 0.63;
         return true;
       },
       make_control_factory(), {hanging_input()});
@@ -158,12 +157,11 @@ TEST(Control, ChangesOfMethodDoNotJump) {
     static constexpr const char* kMethods[] = {"undulation", "hold",    "bend",       "wrap",
                                                "squeeze",    "bend",    "undulation", "sidewinding",
                                                "concertina", "rolling", "undulation", "pitch_wave"};
-    set_method(desired, kMethods[phase % 12], static_cast<std::uint64_t>(phase));
-    desired.frequency_hz = phase < 7 ? 0.7 : 0.5;
-    desired.amplitude_rad = 0.5;
-    desired.curvature_1_m = phase == 6 ? -1.0 : phase < 7 ? 0.5 : 0.2;
+    set_motion(desired, kMethods[phase % 12], static_cast<std::uint64_t>(phase));
+    desired.speed_m_s = phase < 7 ? 0.63 : 0.45;
+    set_arc(phase == 6 ? -1.0 : phase < 7 ? 0.5 : 0.2, desired);
     if (phase >= 3 && phase < 6) set_u(desired);
-    desired.speed_m_s = 0.2;
+    desired.slide_m_s = 0.2;
     desired.squeeze_rad = 0.3;
     return true;
   });
@@ -174,9 +172,9 @@ TEST(Control, ChangesOfMethodDoNotJump) {
 
 TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {
   LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory& desired) {
-    set_method(desired, "wrap", 1);
+    set_motion(desired, "wrap", 1);
     set_u(desired);
-    desired.speed_m_s = 0.2;
+    desired.slide_m_s = 0.2;
     return true;
   });
   run.advance(100);
@@ -190,7 +188,7 @@ TEST(Control, WrapEndsInThePostureAndBendsHeadFirst) {
 
 TEST(Control, TorqueLimitAppliesToTheBaseOfTheUOnly) {
   LocalRun run = make_run([](const Tick&, msg::DesiredTrajectory& desired) {
-    set_method(desired, "squeeze", 1);
+    set_motion(desired, "squeeze", 1);
     set_u(desired);
     desired.squeeze_rad = 0.5;
     desired.torque_limit_nm = 1.5;
@@ -208,10 +206,9 @@ TEST(Control, TorqueLimitAppliesToTheBaseOfTheUOnly) {
 TEST(Control, ContinuesIdenticallyAfterARestart) {
   const Script script = [](const Tick& tick, msg::DesiredTrajectory& desired) {
     const bool wraps = tick.index >= 80 && tick.index < 200;
-    set_method(desired, tick.index < 80 ? "undulation" : wraps ? "wrap" : "sidewinding", tick.index < 80 ? 1 : 2);
-    desired.frequency_hz = 0.7;
-    desired.amplitude_rad = 0.5;
-    desired.speed_m_s = 0.2;
+    set_motion(desired, tick.index < 80 ? "undulation" : wraps ? "wrap" : "sidewinding", tick.index < 80 ? 1 : 2);
+    desired.speed_m_s = 0.63;
+    desired.slide_m_s = 0.2;
     if (wraps) set_u(desired);
     return true;
   };

@@ -1,4 +1,4 @@
-// The parameter drive.method, which names the method that moves the robot.
+// The parameter motion.travel.method, which names the method that moves the robot.
 #include <gtest/gtest.h>
 
 #include "unit/control/control_run.hpp"
@@ -6,13 +6,13 @@
 namespace constrictor {
 namespace {
 
-/// Stands for the component `input`: from tick 50 on, the parameter drive.method of control has this value.
+/// Stands for the component `input`: from tick 50 on, the parameter motion.travel.method of control has this value.
 ComponentFactory choosing_input(double value) {
   return testing::scripted_writer<msg::ParameterChange>(
       "input", topics::kParameterChange, [value](const Tick& tick, const auto& out) {
         if (tick.index != 40) return;
         msg::ParameterChange change{};
-        std::snprintf(change.name, sizeof change.name, "control.drive.method");
+        std::snprintf(change.name, sizeof change.name, "control.motion.travel.method");
         change.value = value;
         change.effective_tick = 50;
         out.write(change);
@@ -23,9 +23,8 @@ ComponentFactory choosing_input(double value) {
 std::string driving_method(double parameter, int ticks, bool to_u = false) {
   LocalRun run = make_run(
       [to_u](const Tick& tick, msg::DesiredTrajectory& desired) {
-        set_method(desired, "drive", 1);
-        desired.frequency_hz = 0.7;
-        desired.amplitude_rad = 0.5;
+        set_motion(desired, "travel", 1);
+        desired.speed_m_s = 0.63;
         if (to_u && tick.index >= 100) set_u(desired);
         return true;
       },
@@ -53,7 +52,6 @@ TEST(Control, ARobotWithoutPitchJointsRefusesVerticalWaves) {
   const MethodRegistry registry;
   const YawChain flat(robot);
   msg::DesiredTrajectory straight{};
-  straight.wavelength_m = 1.0;
   for (const char* name : {"sidewinding", "rolling", "pitch_wave"})
     EXPECT_FALSE(registry.find(name)->accepts(straight, flat)) << name;
   for (const char* name : {"undulation", "concertina"}) EXPECT_TRUE(registry.find(name)->accepts(straight, flat));
@@ -63,7 +61,6 @@ TEST(Control, TheDriveMethodsExistAndAcceptAStraightBody) {
   const MethodRegistry registry;
   const YawChain chain(load_robot(data_path("components/lib/robot/mamba.yaml")));
   msg::DesiredTrajectory straight{};
-  straight.wavelength_m = 1.0;
   for (const auto& name : drive_methods()) {
     const ControlMethod* method = registry.find(name);
     ASSERT_TRUE(method) << name;

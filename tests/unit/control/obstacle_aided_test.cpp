@@ -13,9 +13,7 @@ namespace {
 class Steps {
  public:
   Steps() {
-    desired_.frequency_hz = 0.5;
-    desired_.amplitude_rad = 0.5;
-    desired_.wavelength_m = 1.07;
+    desired_.speed_m_s = 0.45;
     felt.module_count = 24;
     imu.orientation.w = 1.0;
   }
@@ -23,7 +21,8 @@ class Steps {
   Setpoints step(const LinkArray& yaw_rad) {
     JointArray angle_rad{};
     for (std::size_t k = 0; k < chain.joint_count(); ++k) angle_rad[chain.joint_index(k)] = yaw_rad[k];
-    const MethodInput input{robot, chain, config_, desired_, angle_rad, {}, {}, 0.02, {&felt, &imu}, {}, {}};
+    const Gait gait = gait_of(desired_, config_);
+    const MethodInput input{robot, chain, config_, desired_, gait, angle_rad, {}, {}, 0.02, {&felt, &imu}, {}, {}};
     if (!started_) method_->start(input, body);
     started_ = true;
     Setpoints setpoints;
@@ -182,9 +181,8 @@ class PegServos : public IdealServos {
 };
 
 bool script(const Tick&, msg::DesiredTrajectory& desired) {
-  set_method(desired, "obstacle_aided", 1);
-  desired.frequency_hz = 0.5;
-  desired.amplitude_rad = 0.5;
+  set_motion(desired, "obstacle_aided", 1);
+  desired.speed_m_s = 0.45;
   return true;
 }
 
@@ -218,10 +216,9 @@ TEST(ObstacleAided, LeavesBackwardMotionAndPosturesToUndulation) {
   const MethodRegistry registry;
   const YawChain chain(load_robot(data_path("components/lib/robot/mamba.yaml")));
   msg::DesiredTrajectory desired{};
-  desired.wavelength_m = 1.0;
-  desired.frequency_hz = -0.5;
+  desired.speed_m_s = -0.45;
   EXPECT_FALSE(registry.find("obstacle_aided")->accepts(desired, chain));
-  desired.frequency_hz = 0.5;
+  desired.speed_m_s = 0.45;
   EXPECT_TRUE(registry.find("obstacle_aided")->accepts(desired, chain));
   set_u(desired);
   EXPECT_FALSE(registry.find("obstacle_aided")->accepts(desired, chain));

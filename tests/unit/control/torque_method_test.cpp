@@ -60,7 +60,7 @@ ComponentFactory control_with_push() {
 LocalRun run_of(const char* then, std::int64_t at_tick) {
   return make_run<ViscousJoints>(
       [=](const Tick& tick, msg::DesiredTrajectory& desired) {
-        set_method(desired, tick.index < at_tick ? "push" : then, tick.index < at_tick ? 1 : 2);
+        set_motion(desired, tick.index < at_tick ? "push" : then, tick.index < at_tick ? 1 : 2);
         return true;
       },
       control_with_push());
@@ -104,9 +104,8 @@ TEST(TorqueMethod, AMotionAfterTorquesBeginsWhereTheJointsAre) {
 
 TEST(TorqueMethod, SlidingModeContinuesIdenticallyAfterARestart) {
   const Script script = [](const Tick&, msg::DesiredTrajectory& desired) {
-    set_method(desired, "sliding_mode", 1);
-    desired.frequency_hz = 0.7;
-    desired.amplitude_rad = 0.5;
+    set_motion(desired, "sliding_mode", 1);
+    desired.speed_m_s = 0.63;
     return true;
   };
   LocalRun whole = make_run<ViscousJoints>(script);

@@ -80,7 +80,7 @@ void make_relevant(msg::TaskEvent& m, HostileFiller& f) {
 void make_relevant(msg::TaskStatus& m, HostileFiller& f) {
   if (f.roll(2) == 0) m.goal_id = (std::uint64_t{1} << 48) + f.roll(20);
 }
-constexpr const char* kParameters[] = {"navigation.travel.frequency_hz", "control.squeeze.opening_share",
+constexpr const char* kParameters[] = {"navigation.travel.speed_m_s", "control.squeeze.opening_share",
                                        "perception.colour.min_chroma", "guidance.landmarks.confirm"};
 void make_relevant(msg::Request& m, HostileFiller& f) {
   static constexpr const char* kSources[] = {"planner", "pilot", "machine", "script"};

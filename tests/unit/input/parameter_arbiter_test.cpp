@@ -18,7 +18,7 @@
 namespace constrictor {
 namespace {
 
-constexpr const char* kFrequency = "navigation.travel.frequency_hz";
+constexpr const char* kFrequency = "navigation.travel.speed_m_s";
 constexpr const char* kImages = "navigation.watch.images";
 
 void set_name(char (&field)[64], const std::string& name) { std::snprintf(field, sizeof field, "%s", name.c_str()); }
@@ -71,11 +71,11 @@ TEST_F(ParameterArbiterTest, TheTickIsTheRequestedOneOrTheNext) {
   EXPECT_EQ(decide(change(kFrequency, 0.9, 101)), "101");
   EXPECT_EQ(decide(change(kFrequency, 0.9, 5000)), "5000");
   EXPECT_EQ(decide(change(kFrequency, 0.9, 100)),
-            "tick of navigation.travel.frequency_hz: found 100, accepted 101 or later (0: as soon as possible)");
+            "tick of navigation.travel.speed_m_s: found 100, accepted 101 or later (0: as soon as possible)");
 }
 
 TEST_F(ParameterArbiterTest, ARefusalNamesTheFoundAndTheAcceptedValues) {
-  EXPECT_EQ(decide(change(kFrequency, 2.5, 0)), "navigation.travel.frequency_hz: found 2.5, accepted 0.05 to 2 Hz");
+  EXPECT_EQ(decide(change(kFrequency, 2.5, 0)), "navigation.travel.speed_m_s: found 2.5, accepted 0.001 to 2 m/s");
   EXPECT_EQ(decide(change(kImages, 2.5, 0)),
             "navigation.watch.images: found 2.5, accepted whole numbers from 1 to 100");
   EXPECT_NE(decide(change(kImages, std::nan(""), 0)).find("accepted whole numbers"), std::string::npos);
@@ -167,9 +167,9 @@ TEST_F(InputParameters, RefusesMoreChangesThanATickHolds) {
 TEST_F(InputParameters, WritesPlannedChangesOneTickBeforeTheirOwnInTheOrderOfTheFile) {
   run(40, {},
       "parameter_changes:\n"
-      "  - {tick: 30, name: navigation.travel.frequency_hz, value: 0.9}\n"
+      "  - {tick: 30, name: navigation.travel.speed_m_s, value: 0.9}\n"
       "  - {tick: 12, name: navigation.watch.images, value: 7}\n"
-      "  - {tick: 30, name: navigation.travel.frequency_hz, value: 1.1}\n"
+      "  - {tick: 30, name: navigation.travel.speed_m_s, value: 1.1}\n"
       "  - {tick: 35, name: navigation.travel.nothing, value: 1.1}\n");
   ASSERT_EQ(changes_.size(), 3u);
   EXPECT_EQ(changes_[0].effective_tick, 12);

@@ -16,10 +16,10 @@ namespace {
 
 class DirectMotion : public ::testing::Test {
  protected:
-  TaskOutput ask(std::uint8_t motion, double frequency_hz = 0.0, double curvature_1_m = 0.0, double angle_rad = 0.0) {
+  TaskOutput ask(std::uint8_t motion, double speed_m_s = 0.0, double curvature_1_m = 0.0, double angle_rad = 0.0) {
     msg::MotionCommand command{};
     command.motion = motion;
-    command.frequency_hz = frequency_hz;
+    command.speed_m_s = speed_m_s;
     command.curvature_1_m = curvature_1_m;
     command.angle_rad = angle_rad;
     begin_motion(command, state_, grip_);
@@ -38,17 +38,17 @@ class DirectMotion : public ::testing::Test {
 };
 
 TEST_F(DirectMotion, DrivesForwardsBackwardsAndInCurves) {
-  EXPECT_EQ(ask(msg::kMotionDrive, 0.5, 0.8).desired.frequency_hz, 0.5);
-  EXPECT_EQ(step().desired.curvature_1_m, 0.8);
+  EXPECT_EQ(ask(msg::kMotionDrive, 0.5, 0.8).desired.speed_m_s, 0.5);
+  EXPECT_EQ(step().desired.points[0].curvature_1_m, 0.8);
   const TaskOutput back = ask(msg::kMotionDrive, -0.5);
-  EXPECT_EQ(back.desired.frequency_hz, -0.5);
+  EXPECT_EQ(back.desired.speed_m_s, -0.5);
   EXPECT_FALSE(back.new_motion) << "another speed continues the same motion";
-  EXPECT_STREQ(back.desired.method, "drive");
+  EXPECT_STREQ(back.desired.motion, "travel");
 }
 
 TEST_F(DirectMotion, LooksLeftWithThePositiveSign) {
   const TaskOutput look = ask(msg::kMotionLook, 0.0, 0.0, 0.6);
-  EXPECT_STREQ(look.desired.method, "bend");
+  EXPECT_STREQ(look.desired.motion, "bend");
   double sum_rad = 0.0;
   for (int k = 0; k < look.desired.shape_count; ++k) sum_rad += look.desired.shape_rad[k];
   EXPECT_NEAR(sum_rad, 0.6, 1e-12);
@@ -56,8 +56,8 @@ TEST_F(DirectMotion, LooksLeftWithThePositiveSign) {
 
 TEST_F(DirectMotion, WrapsToTheSideOfTheSignAndDrivesWrapped) {
   const TaskOutput wrap = ask(msg::kMotionWrap, 0.0, 0.0, -1.0);
-  EXPECT_STREQ(wrap.desired.method, "wrap");
-  EXPECT_GT(wrap.desired.speed_m_s, 0.0);
+  EXPECT_STREQ(wrap.desired.motion, "wrap");
+  EXPECT_GT(wrap.desired.slide_m_s, 0.0);
   EXPECT_LT(wrap.desired.shape_rad[5], -0.5);
   const TaskOutput drive = ask(msg::kMotionDrive, 0.5);
   EXPECT_LT(drive.desired.shape_rad[5], -0.5);
@@ -66,15 +66,15 @@ TEST_F(DirectMotion, WrapsToTheSideOfTheSignAndDrivesWrapped) {
 }
 
 TEST_F(DirectMotion, SqueezesOnlyAWrappedBodyAndCapsTheTorque) {
-  EXPECT_STREQ(ask(msg::kMotionSqueeze).desired.method, "hold");
+  EXPECT_STREQ(ask(msg::kMotionSqueeze).desired.motion, "stand");
   ask(msg::kMotionWrap, 0.0, 0.0, 1.0);
   const TaskOutput squeeze = ask(msg::kMotionSqueeze);
-  EXPECT_STREQ(squeeze.desired.method, "squeeze");
+  EXPECT_STREQ(squeeze.desired.motion, "squeeze");
   EXPECT_TRUE(squeeze.new_motion);
   EXPECT_FALSE(step().new_motion);
   EXPECT_GT(squeeze.desired.torque_limit_nm, 0.0);
   const TaskOutput stand = ask(msg::kMotionStand);
-  EXPECT_STREQ(stand.desired.method, "hold");
+  EXPECT_STREQ(stand.desired.motion, "stand");
   EXPECT_EQ(stand.desired.torque_limit_nm, config_.grip.hold_torque_nm);
 }
 
@@ -103,7 +103,7 @@ ComponentFactory scripted_input() {
           if (tick.index == 20 || tick.index == 40 || tick.index == 50) {
             msg::MotionCommand command{};
             command.motion = tick.index == 50 ? msg::kMotionStand : msg::kMotionDrive;
-            command.frequency_hz = 0.4;
+            command.speed_m_s = 0.4;
             motion.write(command);
           }
         };
@@ -127,18 +127,18 @@ TEST(DirectMotionInNavigation, TasksAndMotionsEndEachOther) {
   run.subscribe<msg::TaskEvent>(topics::kTaskEvent, [&](const msg::TaskEvent& e) {
     preempted[e.goal_id] += e.goal_state == msg::kGoalPreempted;
   });
-  const auto frequency_hz = [&](std::int64_t tick) {
+  const auto speed_m_s = [&](std::int64_t tick) {
     run.advance(tick - run.tick());
-    return run.latest(topics::kDesiredTrajectory)->frequency_hz;
+    return run.latest(topics::kDesiredTrajectory)->speed_m_s;
   };
-  EXPECT_NE(frequency_hz(15), 0.4);
-  EXPECT_EQ(frequency_hz(25), 0.4);
+  EXPECT_NE(speed_m_s(15), 0.4);
+  EXPECT_EQ(speed_m_s(25), 0.4);
   EXPECT_EQ(preempted[10], 1);
-  EXPECT_NE(frequency_hz(35), 0.4);
-  EXPECT_EQ(frequency_hz(45), 0.4);
+  EXPECT_NE(speed_m_s(35), 0.4);
+  EXPECT_EQ(speed_m_s(45), 0.4);
   EXPECT_EQ(preempted[30], 1);
-  frequency_hz(55);
-  EXPECT_STREQ(run.latest(topics::kDesiredTrajectory)->method, "hold");
+  speed_m_s(55);
+  EXPECT_STREQ(run.latest(topics::kDesiredTrajectory)->motion, "stand");
 }
 
 TEST(DirectMotionInNavigation, ContinuesIdenticallyAfterARestart) {

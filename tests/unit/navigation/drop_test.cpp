@@ -75,7 +75,7 @@ class DropRun {
     msg::TaskParameters parameters{};
     parameters.drop_zone_colour = msg::kColourGreen;
     return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
-            sightings_, &map_,  joints_, body_,  touches_,   true,   true};
+            sightings_, &map_,  joints_, body_,  touches_,   true,   true,   1.0 / 1.1};
   }
   void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
     const std::vector<std::size_t> yaw = robot_.yaw_joints();
@@ -91,11 +91,11 @@ class DropRun {
     phase_ = output.phase;
     if (phase_ == "open") take(sense_.open_shape(grip_.side, config_.drop.open_angle_rad));
     if (phase_ != "back off") return;
-    EXPECT_LT(output.desired.frequency_hz, 0.0) << "it drives backwards";
+    EXPECT_LT(output.desired.speed_m_s, 0.0) << "it drives backwards";
     const double back_s = backed_m_ / kBacking_m_s;
     if (back_s > 1.0 / config_.drop.back.frequency_hz) {
-      most_1_m_ = std::max(most_1_m_, output.desired.curvature_1_m);
-      least_1_m_ = std::min(least_1_m_, output.desired.curvature_1_m);
+      most_1_m_ = std::max(most_1_m_, output.desired.points[0].curvature_1_m);
+      least_1_m_ = std::min(least_1_m_, output.desired.points[0].curvature_1_m);
     }
     backed_m_ += kBacking_m_s * tick_.dt_s();
     const double phase_rad = 2.0 * std::numbers::pi * config_.drop.back.frequency_hz * back_s;

@@ -81,7 +81,7 @@ TEST(TaskRegistry, HasEveryTaskOfTheIdlAndNoOther) {
 TEST(Goals, StandsStillWithoutAGoal) {
   GoalRun r({});
   r.run->advance(50);
-  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
+  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->motion, "stand");
   EXPECT_EQ(r.run->latest(topics::kTaskStatus)->goal_state, msg::kGoalIdle);
 }
 
@@ -109,7 +109,7 @@ TEST(Goals, ANewGoalPreemptsAndACancelCancels) {
   EXPECT_EQ(r.count(2, msg::kGoalCancelled), 1);
   EXPECT_EQ(r.ends(1), 1);
   EXPECT_EQ(r.ends(2), 1);
-  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
+  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->motion, "stand");
 }
 
 TEST(Goals, RefusesWithAReasonAndLeavesTheRunningGoalAlone) {
@@ -147,9 +147,9 @@ TEST(Goals, FollowLineWaitsForTheFirstPercept) {
 TEST(Goals, HoldsWhenThePoseIsStale) {
   GoalRun r({{10, start(1, msg::kTaskRotate)}});
   r.run->advance(400);
-  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "drive");
+  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->motion, "travel");
   r.run->advance(60);
-  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->method, "hold");
+  EXPECT_STREQ(r.run->latest(topics::kDesiredTrajectory)->motion, "stand");
 }
 
 TEST(Goals, AreCancelledWhileThePoseIsStale) {

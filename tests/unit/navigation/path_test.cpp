@@ -9,6 +9,7 @@
 
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
+#include "robot/trajectory_path.hpp"
 #include "support/project.hpp"
 #include "support/scripted_members.hpp"
 #include "support/waypoints.hpp"
@@ -49,9 +50,9 @@ class DrivenPoint : public StatefulComponent<Driven> {
   DrivenPoint(Wiring& wiring, const Setup&)
       : out_(wiring.output(topics::kRobotPose)), desired_(wiring.latest(topics::kDesiredTrajectory)) {}
   void step(const Tick& tick) override {
-    if (desired_ && std::string(desired_->method) == "drive") {
+    if (desired_ && std::string(desired_->motion) == "travel") {
       const double step_m = kSpeed_m_s * tick.dt_s();
-      state_.yaw_rad += desired_->curvature_1_m * step_m;
+      state_.yaw_rad += pursuit_curvature_1_m(*desired_, 0.35) * step_m;
       state_.x_m += step_m * std::cos(state_.yaw_rad);
       state_.y_m += step_m * std::sin(state_.yaw_rad);
     }

@@ -60,11 +60,11 @@ class SightRun {
                                                                     make_navigation_factory(), pose(), command(task)},
                                       setup);
   }
-  /// The method that navigation asks for at this tick.
-  std::string method_at(std::int64_t tick) {
+  /// The kind of motion that navigation asks for at this tick.
+  std::string motion_at(std::int64_t tick) {
     run_->advance(tick - tick_);
     tick_ = tick;
-    return run_->latest(topics::kDesiredTrajectory)->method;
+    return run_->latest(topics::kDesiredTrajectory)->motion;
   }
   std::string phase() { return run_->latest(topics::kTaskStatus)->phase; }
   std::uint8_t goal_state() { return run_->latest(topics::kTaskStatus)->goal_state; }
@@ -77,24 +77,24 @@ class SightRun {
 TEST(Sight, WithoutPerceptsATaskThatSteersBySightStandsUntilTheyComeAgain) {
   for (const std::uint8_t task : {msg::kTaskFollowLine, msg::kTaskRotate, msg::kTaskExplore}) {
     SightRun run(task);
-    EXPECT_NE(run.method_at(kSilentFrom + 60), "hold") << "a few lost images change nothing";
-    EXPECT_EQ(run.method_at(kSilentFrom + 100), "hold");
+    EXPECT_NE(run.motion_at(kSilentFrom + 60), "stand") << "a few lost images change nothing";
+    EXPECT_EQ(run.motion_at(kSilentFrom + 100), "stand");
     EXPECT_EQ(run.phase(), "blind");
-    EXPECT_EQ(run.method_at(kSilentUntil), "hold");
+    EXPECT_EQ(run.motion_at(kSilentUntil), "stand");
     EXPECT_EQ(run.goal_state(), msg::kGoalRunning) << "the task waits";
-    EXPECT_NE(run.method_at(kSilentUntil + 10), "hold");
+    EXPECT_NE(run.motion_at(kSilentUntil + 10), "stand");
     EXPECT_NE(run.phase(), "blind");
   }
 }
 
 TEST(Sight, ATaskThatNeedsNoSightGoesOn) {
   SightRun run(msg::kTaskFollowPath);
-  EXPECT_EQ(run.method_at(kSilentUntil - 1), "drive");
+  EXPECT_EQ(run.motion_at(kSilentUntil - 1), "travel");
 }
 
 TEST(Sight, ARobotWithoutACameraIsNotBlind) {
   SightRun run(msg::kTaskRotate, false);
-  EXPECT_EQ(run.method_at(kSilentUntil), "drive");
+  EXPECT_EQ(run.motion_at(kSilentUntil), "travel");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "barrier/local_run.hpp"
 #include "navigation/navigation.hpp"
 #include "robot/planar.hpp"
+#include "robot/trajectory_path.hpp"
 #include "support/project.hpp"
 #include "support/scripted_members.hpp"
 
@@ -100,9 +101,9 @@ class TrackRun {
     const auto guidance = testing::scripted_member("guidance", [this](Wiring& wiring) -> testing::StepFunction {
       return [this, desired = wiring.latest(topics::kDesiredTrajectory),
               out = wiring.output(topics::kRobotPose)](const Tick& tick) {
-        if (desired && std::string(desired->method) == "drive") {
-          const double step_m = std::copysign(kDrivenSpeed_m_s, desired->frequency_hz) * tick.dt_s();
-          body_->drive(step_m, kCurvatureShare * desired->curvature_1_m, tick.dt_s());
+        if (desired && std::string(desired->motion) == "travel") {
+          const double step_m = std::copysign(kDrivenSpeed_m_s, desired->speed_m_s) * tick.dt_s();
+          body_->drive(step_m, kCurvatureShare * pursuit_curvature_1_m(*desired, 0.35), tick.dt_s());
         }
         const PlanarPose head = body_->head();
         msg::RobotPose pose{};

@@ -182,15 +182,15 @@ Twist twist(double speed_m_s, double turn_rad_s) {
 TEST(RosVelocity, BecomesAnUndulationOfThatSpeedAndTurningRate) {
   const DriveConfig config;
   const Drive straight = drive_of(twist(0.45, 0));
-  EXPECT_NEAR(straight.frequency_hz * config.advance_per_cycle_m, 0.45, 1e-12);
+  EXPECT_NEAR(straight.speed_m_s, 0.45, 1e-12);
   EXPECT_EQ(straight.curvature_1_m, 0);
   EXPECT_GT(drive_of(twist(0.4, 0.3)).curvature_1_m, 0);  // to the left
   const Drive back = drive_of(twist(-0.4, 0.2));
-  EXPECT_LT(back.frequency_hz, 0);
+  EXPECT_LT(back.speed_m_s, 0);
   EXPECT_NEAR(back.curvature_1_m * -0.4, 0.2, 1e-12);
   const Drive spot = drive_of(twist(0, -1));
   EXPECT_EQ(spot.curvature_1_m, -config.max_curvature_1_m);
-  EXPECT_GT(spot.frequency_hz, 0);
+  EXPECT_GT(spot.speed_m_s, 0);
 }
 
 TEST(RosVelocity, AHostileVelocityGivesABoundedMotion) {
@@ -201,7 +201,7 @@ TEST(RosVelocity, AHostileVelocityGivesABoundedMotion) {
   for (const double v : {0.0, 0.3, 1e300, -1e300, kInf, kNaN}) {
     for (const double w : {0.0, -0.3, 1e300, kInf, kNaN}) {
       const Drive drive = drive_of(twist(v, w));
-      EXPECT_LE(std::abs(drive.frequency_hz), config.max_frequency_hz) << v << " " << w;
+      EXPECT_LE(std::abs(drive.speed_m_s), config.max_speed_m_s) << v << " " << w;
       EXPECT_LE(std::abs(drive.curvature_1_m), config.max_curvature_1_m) << v << " " << w;
       const bool stands = drive == Drive{};
       EXPECT_TRUE(stands || (std::isfinite(v) && std::isfinite(w)));

@@ -126,7 +126,7 @@ Variation parse_variation(const std::string& text) {
   if (variation.file.empty() || variation.key.empty() || variation.values.empty() || empty_value) {
     throw UsageError(
         fmt::format("--vary: found '{}', accepted [FILE:]KEY=VALUE[,VALUE...], for example noise.camera_sd=0,0.02 or "
-                    "navigation:travel.frequency_hz=0.8,1.0",
+                    "navigation:travel.speed_m_s=0.8,1.0",
                     text));
   }
   return variation;

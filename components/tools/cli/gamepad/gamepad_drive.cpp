@@ -19,7 +19,7 @@
 #include "cli/teleop_request.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
-#include "robot/drive_gait.hpp"
+#include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -135,9 +135,9 @@ class GamepadTeleop {
                        std::abs(turn_rad_s - sent_turn_rad_s_) > kSmallest_rad_s;
     if (!other || (driving_ && Clock::now() - sent_ < kShortest)) return;
     if (!monitor_.attachment().may_send()) return;
-    const DriveGait gait = drive_gait(drive_m_s, turn_rad_s);
+    const DriveMotion motion = drive_motion(drive_m_s, turn_rad_s);
     const bool first = !driving_;
-    const std::uint64_t number = client_.move(msg::kMotionDrive, gait.frequency_hz, gait.curvature_1_m);
+    const std::uint64_t number = client_.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m);
     if (first) ask("drive", number);
     driving_ = true;
     sent_ = Clock::now();

@@ -143,14 +143,14 @@ class Run(Domain):
         self._session.move("stand", 0.0, 0.0, 0.0)
 
     def move(
-        self, motion: str, *, frequency_hz: float = 0.0, curvature_1_m: float = 0.0, angle_rad: float = 0.0
+        self, motion: str, *, speed_m_s: float = 0.0, curvature_1_m: float = 0.0, angle_rad: float = 0.0
     ) -> None:
         """Starts one of constrictor.MOTIONS. Raises ValueError, RefusedError, NoAnswerError.
 
-        drive: frequency_hz of the undulation (negative: backwards), curvature_1_m of the path (positive: left)
+        drive: speed_m_s along the path (negative: backwards), curvature_1_m of the path (positive: left)
         look: angle_rad by which the head bends. wrap: its sign is the side of the object.
         """
-        self._session.move(motion, frequency_hz, curvature_1_m, angle_rad)
+        self._session.move(motion, speed_m_s, curvature_1_m, angle_rad)
 
     def wait(self, duration_s: float) -> None:
         """Waits until the robot's time has advanced by this much, at whatever pace the run goes.
