@@ -29,9 +29,8 @@ struct CompoundWave {
 };
 
 /// A gait of such waves. It moves a body without an object: it refuses trajectories with a posture, and robots without
-/// pitch joints if it has a vertical wave. The gait gives the frequency (its sign is the direction) and the curvature of
-/// the path; an amplitude of 0 stops the waves. The form of the waves is in the configuration. It is never
-/// done.
+/// pitch joints if it has a vertical wave. The gait gives the frequency (its sign is the direction) and the curvature
+/// of the path; an amplitude of 0 stops the waves. The form of the waves is in the configuration. It is never done.
 class CompoundGait : public ControlMethod {
  public:
   [[nodiscard]] bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const final;

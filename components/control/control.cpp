@@ -81,8 +81,8 @@ void Control::step(const Tick& tick) {
   const std::string method(choice.method->name());
   const Gait gait = gait_of(desired, config_);
   const JointArray commanded_rad = state_.limiter.position_rad;
-  const MethodInput input{robot_,        chain_,      config_,     desired,    gait,      measured_rad, torque_nm,
-                          commanded_rad, tick.dt_s(), perceived(), rate_rad_s, exerted_nm};
+  const MethodInput input{robot_,    chain_,        config_,     desired,     gait,       measured_rad,
+                          torque_nm, commanded_rad, tick.dt_s(), perceived(), rate_rad_s, exerted_nm};
   if (state_.method != method || state_.motion_id != desired.motion_id) {
     state_.body.scratch = {};
     state_.body.sliding = {};

@@ -23,7 +23,8 @@ constexpr Kind kKinds[] = {{"travel", &ControlConfig::travel, true},   {"carry",
 
 /// Null for every other kind of motion.
 const Kind* kind_of(std::string_view motion) {
-  const Kind* kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == motion; });
+  const Kind* kind =
+      std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == motion; });
   return kind == std::end(kKinds) ? nullptr : kind;
 }
 

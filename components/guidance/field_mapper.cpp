@@ -228,8 +228,11 @@ void FieldMapper::fill(msg::FieldMap& map) const {
   map.touch_count = static_cast<std::uint16_t>(state_.felt.size());
   for (std::size_t i = 0; i < state_.felt.size(); ++i) {
     const Felt& felt = state_.felt[i];
-    map.touches[i] = {felt.x_m, felt.y_m, felt.force_n, felt.module_index, felt.tick};
+    map.touches[i] = {felt.x_m, felt.y_m, felt.force_n, felt.module_index, felt.tick, felt.handle};
   }
+  map.obstacle_count = static_cast<std::uint16_t>(state_.obstacle_x_m.size());
+  std::copy(state_.obstacle_x_m.begin(), state_.obstacle_x_m.end(), map.obstacle_x_m);
+  std::copy(state_.obstacle_y_m.begin(), state_.obstacle_y_m.end(), map.obstacle_y_m);
 }
 
 }  // namespace constrictor::guidance

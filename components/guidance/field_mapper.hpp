@@ -32,6 +32,7 @@ class FieldMapper {
   /// Maps the points of the line and corrects the pose by points that are in the map already.
   void line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick, double period_s);
   /// Keeps contacts that belong neither to the ground nor to the robot itself, and marks the objects that they confirm.
+  /// A contact where no object stands is with an obstacle, whose place the map keeps until the body passes through it.
   void touch(const msg::ContactState& contacts, const BodyChain& chain, std::int64_t tick, double period_s);
   /// Moves the carried object with the base of the U.
   void carry(const msg::TaskStatus& task, const BodyChain& chain, std::int64_t tick);
@@ -58,6 +59,10 @@ class FieldMapper {
   void release_slot(Landmark& landmark);
   /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
+  /// Stores the place of an obstacle in M, unless there is one already.
+  void keep_obstacle(const Eigen::Vector2d& p_M);
+  /// Forgets obstacles where the body is now.
+  void clear_obstacles(const BodyChain& chain);
   /// [m] position of the centre of an object of this radius that lies in the base of the U, in the head's frame.
   [[nodiscard]] Eigen::Vector2d base_of_u(const BodyChain& chain, double radius_m) const;
 

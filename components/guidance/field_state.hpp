@@ -35,9 +35,10 @@ struct Felt {
   double x_m = 0.0, y_m = 0.0, force_n = 0.0;
   std::uint8_t module_index = 0;
   std::int64_t tick = 0;
+  std::uint16_t handle = 0;  ///< of the object that stands there; 0: an obstacle
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(x_m, y_m, force_n, module_index, tick);
+    archive(x_m, y_m, force_n, module_index, tick, handle);
   }
 };
 
@@ -46,13 +47,15 @@ struct FieldState {
   std::uint16_t next_handle = 1;
   bool carrying = false;
   std::uint8_t line_colour = 0;
-  std::vector<double> line_x_m, line_y_m;  ///< points in M, in the order of their discovery
-  std::vector<std::int64_t> line_tick;     ///< tick of each discovery
-  std::deque<Felt> felt;                   ///< the oldest first
-  std::int64_t looked_tick = 0;            ///< of the newest percepts
+  std::vector<double> line_x_m, line_y_m;          ///< points in M, in the order of their discovery
+  std::vector<std::int64_t> line_tick;             ///< tick of each discovery
+  std::deque<Felt> felt;                           ///< the oldest first
+  std::vector<double> obstacle_x_m, obstacle_y_m;  ///< felt obstacles in M, the oldest first
+  std::int64_t looked_tick = 0;                    ///< of the newest percepts
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, looked_tick);
+    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, obstacle_x_m,
+            obstacle_y_m, looked_tick);
   }
 };
 

@@ -3,11 +3,14 @@
 #include <cmath>
 
 #include "guidance/field_mapper.hpp"
+#include "robot/landmarks.hpp"
 
 namespace constrictor::guidance {
 namespace {
 
 constexpr double kPushed_m = 0.04;  // standard deviation of the distance that a touched object may slide in a tick
+constexpr double kSameObstacle_m = 0.06;
+constexpr double kInside_m = 0.015;  // inside a module: an obstacle that is still there keeps the body out
 
 }  // namespace
 
@@ -25,6 +28,7 @@ bool FieldMapper::is_self(const BodyChain& chain, std::size_t module, const Eige
 void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chain, std::int64_t tick, double period_s) {
   const auto keep = static_cast<std::int64_t>(std::llround(config_.touch_keep_s / period_s));
   while (!state_.felt.empty() && tick - state_.felt.front().tick > keep) state_.felt.pop_front();
+  clear_obstacles(chain);
 
   const int count = std::min<int>(contacts.contact_count, msg::kMaxContacts);
   for (int i = 0; i < count; ++i) {
@@ -43,7 +47,7 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
       return felt.module_index == module && std::hypot(felt.x_m - p_M.x(), felt.y_m - p_M.y()) < 0.04;
     });
     if (same != state_.felt.end()) state_.felt.erase(same);
-    state_.felt.push_back({p_M.x(), p_M.y(), force_n, contact.module_index, tick});
+    state_.felt.push_back({p_M.x(), p_M.y(), force_n, contact.module_index, tick, 0});
     if (state_.felt.size() > static_cast<std::size_t>(msg::kMaxTouches)) state_.felt.pop_front();
 
     Landmark* nearest = nullptr;
@@ -51,16 +55,47 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     for (Landmark& landmark : state_.landmarks) {
       if (landmark.kind != msg::kBlobObject || landmark.hits < config_.confirm) continue;
       const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-      const double off_m = std::abs((position(landmark) - p_M).norm() - radius_m);
-      if (off_m < 0.08 + 2.0 * sd(landmark) && off_m < nearest_m) {
+      const double off_m = surface_gap_m((position(landmark) - p_M).norm(), radius_m);
+      if (off_m < touch_gate_m(sd(landmark)) && off_m < nearest_m) {
         nearest = &landmark;
         nearest_m = off_m;
       }
     }
-    if (nearest == nullptr) continue;
+    if (nearest == nullptr) {
+      keep_obstacle(p_M);
+      continue;
+    }
+    state_.felt.back().handle = nearest->handle;
     nearest->felt = true;
     // The touched object may have been pushed. Later percepts of it must correct the landmark, not the robot's pose.
     if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
+  }
+}
+
+void FieldMapper::keep_obstacle(const Eigen::Vector2d& p_M) {
+  for (std::size_t i = 0; i < state_.obstacle_x_m.size(); ++i) {
+    if (std::hypot(state_.obstacle_x_m[i] - p_M.x(), state_.obstacle_y_m[i] - p_M.y()) < kSameObstacle_m) return;
+  }
+  if (state_.obstacle_x_m.size() >= static_cast<std::size_t>(msg::kMaxFeltObstacles)) {
+    state_.obstacle_x_m.erase(state_.obstacle_x_m.begin());
+    state_.obstacle_y_m.erase(state_.obstacle_y_m.begin());
+  }
+  state_.obstacle_x_m.push_back(p_M.x());
+  state_.obstacle_y_m.push_back(p_M.y());
+}
+
+void FieldMapper::clear_obstacles(const BodyChain& chain) {
+  const double half_m = 0.5 * model_.module_length_m;
+  for (std::size_t i = state_.obstacle_x_m.size(); i-- > 0;) {
+    const Eigen::Vector2d p = filter_.pose().to_local({state_.obstacle_x_m[i], state_.obstacle_y_m[i]});
+    const bool inside = std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
+      Eigen::Vector2d local = module.to_local(p);
+      local.x() -= std::clamp(local.x(), -half_m, half_m);
+      return local.norm() < model_.module_radius_m - kInside_m;
+    });
+    if (!inside) continue;
+    state_.obstacle_x_m.erase(state_.obstacle_x_m.begin() + static_cast<std::ptrdiff_t>(i));
+    state_.obstacle_y_m.erase(state_.obstacle_y_m.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
 

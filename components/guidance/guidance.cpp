@@ -10,6 +10,7 @@ namespace constrictor {
 namespace {
 
 constexpr std::int64_t kMapPeriodTicks = 5;
+constexpr std::int64_t kMapLeastTicks = 3;
 constexpr double kSilent_s = 0.2;         // after which guidance does without the IMU
 constexpr std::size_t kTrackTicks = 110;  // covers the window of the speed and the delay of any camera
 
@@ -171,7 +172,10 @@ void Guidance::step(const Tick& tick) {
   }
   pose_.write(pose);
 
-  if (tick.index % kMapPeriodTicks == 0) {
+  // As often as the images come, and in the tick in which they come.
+  const std::int64_t since_ticks = tick.index - state_.map_tick;
+  if (since_ticks >= kMapPeriodTicks || (objects && since_ticks >= kMapLeastTicks)) {
+    state_.map_tick = tick.index;
     msg::FieldMap map{};
     guidance::FieldMapper(state_.field, filter, model_, config_).fill(map);
     map_.write(map);

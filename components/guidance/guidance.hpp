@@ -15,6 +15,7 @@ namespace constrictor {
 struct GuidanceState {
   std::int64_t last_tick = 0;  ///< tick of the joints that were used last
   std::int64_t imu_tick = 0;   ///< tick of the newest plausible IMU sample
+  std::int64_t map_tick = -5;  ///< in which the map was published last
   bool imu_silent = false;     ///< the IMU has been silent for kSilent_s
   guidance::OdometryState odometry;
   GroundSlope slope;
@@ -28,8 +29,8 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, imu_tick, imu_silent, odometry, slope, filter, track_tick, track_x_m, track_y_m, track_yaw_rad,
-            field, body_turn_rad, parameters);
+    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, filter, track_tick, track_x_m, track_y_m,
+            track_yaw_rad, field, body_turn_rad, parameters);
   }
 };
 

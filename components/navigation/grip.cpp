@@ -169,8 +169,8 @@ bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& to
                      Grip& grip) const {
   const double share = -std::expm1(-dt_s / config_.lost_filter_s);
   grip.torque_nm += share * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
-  const double touching = base_force_n(touches) >= config_.touch_force_n ? 1.0 : 0.0;
-  grip.contact_share += share * (touching - grip.contact_share);
+  const bool touched = base_force_n(touches_of(grip.handle, touches)) >= config_.touch_force_n;
+  grip.contact_share += share * ((touched ? 1.0 : 0.0) - grip.contact_share);
   const bool few_touches = !feels || grip.contact_share < config_.lost_contact_share;
   const bool weak = grip.torque_nm < config_.lost_torque_nm && few_touches;
   // A large wave loads the base of an empty U, too: without any touch the torque proves nothing.

@@ -43,19 +43,18 @@ void Navigation::step(const Tick& tick) {
     return;
   }
   const PlanarPose X_MH{{field_.pose->x_m, field_.pose->y_m}, field_.pose->yaw_rad};
-  // The pose is one tick old, and the tasks use it as the present one. It is therefore stored under the present tick,
-  // so that the positions of objects are late by the same tick and are right relative to X_MH.
-  remember_pose(tick.index, X_MH, state_.sightings);
   if (field_.objects && field_.objects.fresh()) {
-    update_object_tracker(config_.object, *field_.objects, state_.sightings);
+    update_visibility(config_.object, *field_.objects, state_.sightings);
     measure_heights(robot_, *field_.objects, state_.sightings);
   }
-  if (field_.map && field_.map.fresh()) forget_dropped(config_.object, *field_.map, state_.sightings);
+  if (field_.map && field_.map.fresh())
+    take_places(config_.object, *field_.map, X_MH.p, state_.goal.parameters.object_handle, state_.sightings);
 
   // A robot whose sensors are silent for a while also reports 0 modules; it is still one that feels.
   state_.feels = state_.feels || body_.contacts->module_count > 0;
   const std::vector<PlanarPose> body = planar_body(robot_, *body_.joints);
-  const std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);
+  std::vector<Touch> touches = lateral_touches(robot_, body, *body_.contacts, config_.grip.touch_force_n);
+  if (field_.map) assign_touches(*field_.map, X_MH, config_.object.object_radius_m, touches);
   const bool done = motion_in_ && motion_in_->motion_id == state_.motion_id && motion_in_->accepted && motion_in_->done;
   const double sway_period_s = motion_in_ && motion_in_->period_s > 0.0 ? motion_in_->period_s : kSwayPeriod_s;
   TaskInput input{tick,

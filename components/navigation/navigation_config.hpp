@@ -234,7 +234,8 @@ struct DropConfig : NavigationSection {
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
   double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
-  double back_m_s = add_speed(back_m_s, "back.speed_m_s", 0.132, kAtStart, "Speed at which the open U leaves the object");
+  double back_m_s =
+      add_speed(back_m_s, "back.speed_m_s", 0.132, kAtStart, "Speed at which the open U leaves the object");
   PidGains back_steering =
       add(back_steering, "back_steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance from the object [m]");
   double back_m =
@@ -254,7 +255,8 @@ struct DropConfig : NavigationSection {
 struct NavigationConfig : NavigationSection {
   double travel_m_s = add_speed(travel_m_s, "travel.speed_m_s", 0.63, kWhileRunning, "Speed without an object");
   double carry_m_s = add_speed(carry_m_s, "carry.speed_m_s", 0.198, kWhileRunning, "Speed with an object in the U");
-  double creep_m_s = add_speed(creep_m_s, "creep.speed_m_s", 0.28, kWhileRunning, "Speed of small steps beside an object");
+  double creep_m_s =
+      add_speed(creep_m_s, "creep.speed_m_s", 0.28, kWhileRunning, "Speed of small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,
                                        "The robot stands still when joints, contacts or pose are older than this");
   std::int64_t blind_after_images =

@@ -16,17 +16,7 @@ std::span<const msg::MapObject> known_landmarks(const TaskInput& input) {
 }  // namespace
 
 std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour) {
-  if (colour >= msg::kColourCount || !input.sightings.objects[colour].known) return 0;
-  std::uint16_t handle = 0;
-  double nearest_m = input.config.object.jump_m;
-  for (const auto& landmark : known_landmarks(input)) {
-    if (landmark.kind != msg::kBlobObject || landmark.colour != colour) continue;
-    const double apart_m = (Eigen::Vector2d(landmark.x_m, landmark.y_m) - input.sightings.objects[colour].p_M()).norm();
-    if (apart_m >= nearest_m) continue;
-    nearest_m = apart_m;
-    handle = landmark.handle;
-  }
-  return handle;
+  return colour < msg::kColourCount ? input.sightings.objects[colour].handle : std::uint16_t{0};
 }
 
 bool is_named(const TaskInput& input) {

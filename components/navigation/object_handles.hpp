@@ -8,8 +8,7 @@
 
 namespace constrictor {
 
-/// Handle of the map's object of this colour at the place where navigation saw the object last; 0: the map has no
-/// object there.
+/// Handle of the object of this colour that counts (take_places); 0: the map has none.
 [[nodiscard]] std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour);
 
 /// Whether the last seen object of the goal's colour is the object that the goal names. A goal without a handle means

@@ -9,85 +9,54 @@
 namespace constrictor {
 namespace {
 
-constexpr std::size_t kPosesKept = 40;
-
-/// Radius from the image if it shows the whole width; otherwise the radius so far.
-double measured_radius_m(const ObjectTrackerConfig& config, const msg::Blob& blob, const Sighting& s) {
-  const bool whole = !blob.cut_left && !blob.cut_right && std::isfinite(blob.width_m) && blob.width_m > 0.0;
-  const double before_m = s.radius_m > 0.0 ? s.radius_m : config.object_radius_m;
-  if (!whole) return before_m;
-  const double now_m = std::clamp(0.5 * blob.width_m, config.min_radius_m, config.max_radius_m);
-  return before_m + 0.2 * (now_m - before_m);
+/// The object of this colour that counts, by the rules of take_places(). Null: there is none.
+const msg::MapObject* object_of(const msg::FieldMap& map, std::uint8_t colour, const Eigen::Vector2d& p_MH,
+                                std::uint16_t named, const Sighting& last) {
+  const msg::MapObject* best = nullptr;
+  const auto apart_m = [&](const msg::MapObject& landmark) {
+    return (Eigen::Vector2d(landmark.x_m, landmark.y_m) - p_MH).norm();
+  };
+  const auto better = [&](const msg::MapObject& one, const msg::MapObject& other) {
+    if (last.visible && one.last_seen_tick != other.last_seen_tick) return one.last_seen_tick > other.last_seen_tick;
+    if ((one.handle == named) != (other.handle == named)) return one.handle == named;
+    if (!last.visible && (one.handle == last.handle) != (other.handle == last.handle)) return one.handle == last.handle;
+    return apart_m(one) < apart_m(other);
+  };
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.colour != colour || landmark.kind != msg::kBlobObject || landmark.carried) continue;
+    if (!best || better(landmark, *best)) best = &landmark;
+  }
+  return best;
 }
 
-void see(const ObjectTrackerConfig& config, const msg::Blob& blob, bool zone, const PlanarPose& X_MH, std::int64_t tick,
-         Sighting& s) {
-  s.seen_tick = tick;
-  s.bearing_rad = blob.bearing_rad;
-  s.range_m = blob.range_m;
-  if (!zone) s.radius_m = measured_radius_m(config, blob, s);
-  // If the image cuts the object at the bottom or at a side, the centre of the visible part is not the object's centre.
-  const bool whole = !blob.cut_bottom && !blob.cut_left && !blob.cut_right;
-  if (!std::isfinite(blob.range_m) || !std::isfinite(blob.bearing_rad) || (!whole && s.known)) return;
-  double radius_m = s.radius_m;
-  if (zone) {
-    radius_m = std::isfinite(blob.width_m) && blob.width_m > 0.0 ? 0.5 * blob.width_m : config.zone_radius_m;
-    radius_m = std::clamp(radius_m, 0.1, 0.6);
-    s.radius_m = radius_m;
-  }
-  const double distance_m = blob.range_m + radius_m;
-  const Eigen::Vector2d p_M =
-      X_MH.to_parent({distance_m * std::cos(blob.bearing_rad), distance_m * std::sin(blob.bearing_rad)});
-  if (!s.known || (p_M - s.p_M()).norm() > config.jump_m) s.weight = 0.0;
-  s.weight = std::min(config.memory_images, s.weight + 1.0);
-  s.x_m += (p_M.x() - s.x_m) / s.weight;
-  s.y_m += (p_M.y() - s.y_m) / s.weight;
-  s.known = true;
+void take_place(const msg::MapObject* landmark, double usual_radius_m, Range radius_m, Sighting& s) {
+  s.known = landmark != nullptr;
+  s.handle = landmark ? landmark->handle : std::uint16_t{0};
+  if (!landmark) return;
+  s.x_m = landmark->x_m;
+  s.y_m = landmark->y_m;
+  s.radius_m =
+      std::isfinite(landmark->radius_m) ? std::clamp(landmark->radius_m, radius_m.min, radius_m.max) : usual_radius_m;
 }
 
 }  // namespace
 
-void remember_pose(std::int64_t tick, const PlanarPose& X_MH, ObjectTrackerState& state) {
-  state.poses.push_back({static_cast<double>(tick), X_MH.p.x(), X_MH.p.y(), X_MH.yaw_rad});
-  while (state.poses.size() > kPosesKept) state.poses.pop_front();
-}
-
-PlanarPose remembered_pose(std::int64_t tick, const ObjectTrackerState& state) {
-  PlanarPose pose;
-  double nearest = 1e18;
-  for (const auto& [at, x_m, y_m, yaw_rad] : state.poses) {
-    const double distance = std::abs(at - static_cast<double>(tick));
-    if (distance > nearest) continue;
-    nearest = distance;
-    pose.p = {x_m, y_m};
-    pose.yaw_rad = yaw_rad;
-  }
-  return pose;
-}
-
-void update_object_tracker(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
-                           ObjectTrackerState& state) {
-  const PlanarPose X_MH = remembered_pose(percepts.exposure_tick, state);
-  std::array<const msg::Blob*, msg::kColourCount> object{};
-  std::array<const msg::Blob*, msg::kColourCount> zone{};
+void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
+                       ObjectTrackerState& state) {
+  std::array<bool, msg::kColourCount> object{};
+  std::array<bool, msg::kColourCount> zone{};
   for (std::size_t i = 0; i < percepts.blob_count; ++i) {
     const msg::Blob& blob = percepts.blobs[i];
     if (blob.colour >= msg::kColourCount) continue;
-    const bool flat = blob.kind == msg::kBlobZone;
     const bool undecided = blob.kind == msg::kBlobUndecided;
-    auto keep = [&blob](const msg::Blob*& best) {
-      if (!best || blob.area_fraction > best->area_fraction) best = &blob;
-    };
-    if (blob.kind == msg::kBlobObject || (undecided && state.objects[blob.colour].visible)) keep(object[blob.colour]);
-    if (flat || (undecided && state.zones[blob.colour].visible)) keep(zone[blob.colour]);
+    if (blob.kind == msg::kBlobObject || (undecided && state.objects[blob.colour].visible)) object[blob.colour] = true;
+    if (blob.kind == msg::kBlobZone || (undecided && state.zones[blob.colour].visible)) zone[blob.colour] = true;
   }
   for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
-    auto take = [&](const msg::Blob* blob, bool flat, Sighting& s) {
-      debounce(config, blob != nullptr, s);
-      if (blob) see(config, *blob, flat, X_MH, percepts.exposure_tick, s);
-    };
-    take(object[colour], false, state.objects[colour]);
-    take(zone[colour], true, state.zones[colour]);
+    debounce(config, object[colour], state.objects[colour]);
+    debounce(config, zone[colour], state.zones[colour]);
+    if (object[colour]) state.objects[colour].seen_tick = percepts.exposure_tick;
+    if (zone[colour]) state.zones[colour].seen_tick = percepts.exposure_tick;
   }
 }
 
@@ -125,26 +94,14 @@ void measure_heights(const RobotModel& robot, const msg::ObjectPercepts& percept
   }
 }
 
-void forget_dropped(const ObjectTrackerConfig& config, const msg::FieldMap& map, ObjectTrackerState& state) {
-  const auto forget = [&](std::uint8_t colour, std::uint8_t kind, Sighting& s) {
-    if (!s.known) return;
-    const auto* there = nearest_landmark(map, colour, kind, s.x_m, s.y_m);
-    const bool mapped = there && std::hypot(there->x_m - s.x_m, there->y_m - s.y_m) < config.jump_m;
-    if (mapped) {
-      s.handle = there->handle;
-      return;
-    }
-    const auto landmarks = landmarks_of(map);
-    const bool exists = std::any_of(landmarks.begin(), landmarks.end(),
-                                    [&](const msg::MapObject& landmark) { return landmark.handle == s.handle; });
-    if (s.handle == 0 || exists || s.visible) return;
-    s.known = false;
-    s.weight = 0.0;
-    s.handle = 0;
-  };
+void take_places(const ObjectTrackerConfig& config, const msg::FieldMap& map, const Eigen::Vector2d& p_MH,
+                 std::uint16_t named, ObjectTrackerState& state) {
+  constexpr Range kZoneRadius_m{0.1, 0.6};
   for (std::uint8_t colour = 0; colour < msg::kColourCount; ++colour) {
-    forget(colour, msg::kBlobObject, state.objects[colour]);
-    forget(colour, msg::kBlobZone, state.zones[colour]);
+    Sighting& object = state.objects[colour];
+    take_place(object_of(map, colour, p_MH, named, object), config.object_radius_m,
+               {config.min_radius_m, config.max_radius_m}, object);
+    take_place(zone_of(map, colour), config.zone_radius_m, kZoneRadius_m, state.zones[colour]);
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "robot/kinematics.hpp"
+#include "robot/landmarks.hpp"
 
 namespace constrictor {
 
@@ -43,6 +45,22 @@ std::vector<Touch> lateral_touches(const RobotModel& robot, const std::vector<Pl
     if (!own) touches.push_back(touch);
   }
   return touches;
+}
+
+void assign_touches(const msg::FieldMap& map, const PlanarPose& X_MH, double usual_radius_m,
+                    std::vector<Touch>& touches) {
+  for (Touch& touch : touches) {
+    const Eigen::Vector2d p_M = X_MH.to_parent(touch.p_H);
+    const msg::MapObject* object = touched_object(map, p_M.x(), p_M.y(), usual_radius_m);
+    touch.handle = object ? object->handle : std::uint16_t{0};
+  }
+}
+
+std::vector<Touch> touches_of(std::uint16_t handle, const std::vector<Touch>& touches) {
+  std::vector<Touch> own;
+  std::copy_if(touches.begin(), touches.end(), std::back_inserter(own),
+               [&](const Touch& touch) { return handle == 0 || touch.handle == 0 || touch.handle == handle; });
+  return own;
 }
 
 }  // namespace constrictor

@@ -21,8 +21,8 @@ std::vector<JointSetpoint> MethodDriver::step(const JointArray& angle_rad, const
   const std::size_t n = robot_.joints.size();
   if (!started_ || torque_mode_) limit_.position_rad = angle_rad;
   const JointArray commanded_rad = limit_.position_rad;
-  const MethodInput input{robot_,        chain_,          trial_.config, desired_,   gait_,      angle_rad,  measured_nm,
-                          commanded_rad, trial_.period_s, around,        rate_rad_s, exerted_nm_};
+  const MethodInput input{robot_,      chain_,        trial_.config,   desired_, gait_,      angle_rad,
+                          measured_nm, commanded_rad, trial_.period_s, around,   rate_rad_s, exerted_nm_};
   if (!started_) method_->start(input, body_);
   started_ = true;
   Setpoints wanted;

@@ -166,8 +166,7 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
 
   // A refused value ends the command with the reason and status 1; later values are not requested.
   EXPECT_EQ(command({"param", "set", kFrequency, "2.5", kRate, "3"}), 1);
-  EXPECT_NE(output_.find("refused: navigation.travel.speed_m_s: found 2.5, accepted 0.001 to 2 m/s"),
-            std::string::npos)
+  EXPECT_NE(output_.find("refused: navigation.travel.speed_m_s: found 2.5, accepted 0.001 to 2 m/s"), std::string::npos)
       << output_;
   EXPECT_EQ(ask({"param", "set", "navigation.nothing", "1"}, 1)[0]["refused"].get<std::string>().find(
                 "no component announces a parameter 'navigation.nothing'"),

@@ -96,7 +96,8 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
   if (is("ignores_squeeze_limit")) trajectory([](msg::DesiredTrajectory& d) { d.torque_limit_nm = 0.0; });
   if (is("wrong_period")) state([](msg::MotionStatus& s) { return (s.period_s *= 0.5, true); });
   if (is("one_speed"))
-    trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = d.speed_m_s != 0.0 ? std::copysign(0.45, d.speed_m_s) : 0.0; });
+    trajectory(
+        [](msg::DesiredTrajectory& d) { d.speed_m_s = d.speed_m_s != 0.0 ? std::copysign(0.45, d.speed_m_s) : 0.0; });
   if (is("only_backwards")) trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = -std::abs(d.speed_m_s); });
   if (is("only_forwards")) trajectory([](msg::DesiredTrajectory& d) { d.speed_m_s = std::abs(d.speed_m_s); });
   if (is("bends_right")) trajectory([](msg::DesiredTrajectory& d) { d.points[0].curvature_1_m *= -1.0; });

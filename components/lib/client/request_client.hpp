@@ -65,8 +65,7 @@ class RequestClient {
   /// is also sent to the plant itself, which obeys it when `input` hangs.
   std::uint64_t ask(std::uint8_t kind);
   /// Sends a motion (kMotion...): frequency of the undulation [Hz], its curvature [1/m], angle [rad].
-  std::uint64_t move(std::uint8_t motion, double speed_m_s = 0.0, double curvature_1_m = 0.0,
-                     double angle_rad = 0.0);
+  std::uint64_t move(std::uint8_t motion, double speed_m_s = 0.0, double curvature_1_m = 0.0, double angle_rad = 0.0);
 
   /// Starts a task and waits until `input` and `navigation` have accepted it. `request` comes from task_request().
   /// Returns the goal's id as on task/event and task/status. Throws CommandError: kRefused, kNoAnswer, kInterrupted.

@@ -17,8 +17,8 @@ struct DriveMotion {
 /// that are not finite count as 0. With speed 0 the robot turns nearly on the spot. Source: measured on the simulated
 /// Mamba (curvature 2.25 1/m at 0.63 m/s: about 1.2 rad/s, because the body also slides sideways).
 inline DriveMotion drive_motion(double speed_m_s, double turn_rad_s) {
-  constexpr double kRotate_1_m = 2.25;     // curvature of a turn on the spot
-  constexpr double kRotate_rad_m = 1.9;    // turn of the robot per metre along this path
+  constexpr double kRotate_1_m = 2.25;   // curvature of a turn on the spot
+  constexpr double kRotate_rad_m = 1.9;  // turn of the robot per metre along this path
   constexpr double kMost_m_s = 0.9;
   constexpr double kMostDriving_1_m = 1.5;
   const double speed = std::isfinite(speed_m_s) ? speed_m_s : 0.0;

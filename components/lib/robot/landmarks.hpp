@@ -15,6 +15,30 @@ namespace constrictor {
   return {map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects)};
 }
 
+/// [m] between a touched point and the surface of an object of this radius, at a distance from its centre.
+[[nodiscard]] inline double surface_gap_m(double distance_m, double radius_m) {
+  return std::abs(distance_m - radius_m);
+}
+/// [m] largest gap at which a touch may belong to an object whose place has this standard deviation.
+[[nodiscard]] inline double touch_gate_m(double sd_m) { return 0.08 + 2.0 * sd_m; }
+
+/// The object of the map that stands where the robot touches something, at a point of frame M; null: there is none, so
+/// that it is an obstacle. An object of unknown radius has `usual_radius_m`.
+[[nodiscard]] inline const msg::MapObject* touched_object(const msg::FieldMap& map, double x_m, double y_m,
+                                                          double usual_radius_m) {
+  const msg::MapObject* best = nullptr;
+  double best_m = 0.0;
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.kind != msg::kBlobObject) continue;
+    const double radius_m = std::isfinite(landmark.radius_m) ? landmark.radius_m : usual_radius_m;
+    const double gap_m = surface_gap_m(std::hypot(landmark.x_m - x_m, landmark.y_m - y_m), radius_m);
+    if (gap_m >= touch_gate_m(landmark.sd_m) || (best && gap_m >= best_m)) continue;
+    best = &landmark;
+    best_m = gap_m;
+  }
+  return best;
+}
+
 /// The landmark of this kind (msg::kBlob...) and colour (msg::kColour...) that is nearest to a point of frame M; null:
 /// there is none.
 [[nodiscard]] inline const msg::MapObject* nearest_landmark(const msg::FieldMap& map, std::uint8_t colour,

@@ -70,9 +70,8 @@ class Grasp : public StatefulTask<GraspState> {
     const double share = -std::expm1(-input.tick.dt_s() / config.wrap_speed_filter_s);
     state_.speed_m_s += share * (moved_m / input.tick.dt_s() - state_.speed_m_s);
     state_.before = input.X_MH;
-    const double slide_m_s =
-        still ? config.wrap_speed_m_s
-              : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
+    const double slide_m_s = still ? config.wrap_speed_m_s
+                                   : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
     wrap_round(input.grip_sense, still ? 0.0 : config.wrap_m_s, grip.side, slide_m_s, grip, output);
     state_.slid_m += slide_m_s * input.tick.dt_s();
     if (input.motion_done && state_.phase_s > 0.2) state_.enter(kSeat);
@@ -83,8 +82,9 @@ class Grasp : public StatefulTask<GraspState> {
     output.phase = "seat";
     move_in_shape({"seat", config.seat_m_s}, 0.0, 1.0, open_u(input, grip), input.grip_sense.yaw_joint_count(), output);
     keep_upright(input.config, grip, output);
-    if (input.grip_sense.apex_force_n(input.touches) >= config.seat_force_n) state_.seated_s += input.tick.dt_s();
-    count_touching(input);
+    if (input.grip_sense.apex_force_n(touches_of(grip.handle, input.touches)) >= config.seat_force_n)
+      state_.seated_s += input.tick.dt_s();
+    count_touching(input, grip);
     // A large object wedges between the arms before it reaches the middle of the base. It moves with the body all the
     // same, and the squeeze shows whether it is held.
     constexpr double kLong_s = 8.0;  // twice the usual time
@@ -99,10 +99,10 @@ class Grasp : public StatefulTask<GraspState> {
     }
   }
 
-  /// Counts the modules near the base with a recent touch: the gait interrupts touches.
-  void count_touching(const TaskInput& input) {
+  /// Counts the modules near the base with a recent touch of the object: the gait interrupts touches.
+  void count_touching(const TaskInput& input, const Grip& grip) {
     for (double& since_s : state_.touched_s) since_s += input.tick.dt_s();
-    for (const Touch& touch : input.touches) state_.touched_s[touch.module] = 0.0;
+    for (const Touch& touch : touches_of(grip.handle, input.touches)) state_.touched_s[touch.module] = 0.0;
     state_.touching = 0;
     for (std::size_t m = 0; m < input.robot.module_count; ++m) {
       if (input.grip_sense.is_near_base(m) && state_.touched_s[m] < input.config.grasp.touch_memory_s)
@@ -121,7 +121,7 @@ class Grasp : public StatefulTask<GraspState> {
     // Driving on presses the object into the base, and moving arms overcome the friction of the ground more easily.
     squeeze_u(input.config, input.grip_sense, grip.side, grip, output);
     const double torque_nm = input.grip_sense.largest_closing_nm(input.joints, grip.side);
-    count_touching(input);
+    count_touching(input, grip);
     const bool settled = state_.phase_s >= config.squeeze_settle_s;  // the wave of the seat loads the joints, too
     const bool firm = settled && torque_nm >= config.squeeze_torque_nm && enough_touches(input);
     const bool closed = input.motion_done && state_.phase_s > 0.5;
@@ -144,7 +144,7 @@ class Grasp : public StatefulTask<GraspState> {
                   output);
     keep_upright(input.config, grip, output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
-    count_touching(input);
+    count_touching(input, grip);
     const bool lost = input.grip_sense.lost(input.joints, input.touches, input.feels, input.tick.dt_s(), grip);
     if (state_.phase_s < config.check_s && !lost) return;
     if (enough_touches(input) && !lost) {

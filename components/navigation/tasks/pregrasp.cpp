@@ -9,6 +9,7 @@
 
 #include "navigation/motions.hpp"
 #include "navigation/object_handles.hpp"
+#include "navigation/passing_room.hpp"
 #include "navigation/steering.hpp"
 
 namespace constrictor {
@@ -103,28 +104,18 @@ class Pregrasp : public StatefulTask<PregraspState> {
   }
 
   /// The side of the body on which the object is passed, +1 left, -1 right: the side that the goal names. Otherwise the
-  /// side on which other objects leave more room for passing and wrapping; the nearer side if both leave enough.
+  /// side on which other objects and felt obstacles leave more room for passing and wrapping; the nearer side if both
+  /// leave enough.
   [[nodiscard]] double choose_side(const TaskInput& input) const {
     if (input.parameters.direction == msg::kDirectionLeft) return 1.0;
     if (input.parameters.direction == msg::kDirectionRight) return -1.0;
-    const PregraspConfig& config = input.config.pregrasp;
-    double room_m[2] = {1e9, 1e9};
+    double room_m[2];
     for (const int option : {0, 1}) {
       const double side = option == 0 ? 1.0 : -1.0;
       const PlanarPose X_MP{state_.p_MO, tangent_course(input, side)};
-      for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
-        const Sighting& other = input.sightings.objects[colour];
-        if (!other.known || colour == input.parameters.object_colour) continue;
-        // The head passes the object on one side, turns beyond it and comes back on the other side.
-        const Eigen::Vector2d p = X_MP.to_local(other.p_M());
-        const double lane_m = -side * passing_m(input);
-        const double along_m = std::clamp(p.x(), -0.9, 0.3);
-        const double lane = (p - Eigen::Vector2d(along_m, lane_m)).norm();
-        const double turn = (p - Eigen::Vector2d(0.25, 0.0)).norm();
-        room_m[option] = std::min({room_m[option], lane - other.radius_m, turn - other.radius_m});
-      }
+      room_m[option] = passing_room_m(input, X_MP, side, passing_m(input), state_.radius_m);
     }
-    const double wanted_m = config.other_clearance_m;
+    const double wanted_m = input.config.pregrasp.other_clearance_m;
     if (std::min(room_m[0], wanted_m) != std::min(room_m[1], wanted_m)) return room_m[0] > room_m[1] ? 1.0 : -1.0;
     return input.X_MH.to_local(state_.p_MO).y() >= 0.0 ? 1.0 : -1.0;
   }
@@ -203,7 +194,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     for (const Touch& t : input.touches) {
       const PlanarPose& module = input.body[t.module];
       const bool inner_side = state_.side * t.normal_H.dot(module.left()) < 0.3;
-      if (t.module < kSwinging && inner_side && t.force_n >= config.touch_force_n &&
+      if (t.module < kSwinging && inner_side && t.force_n >= config.touch_force_n && is_object(input, t) &&
           (!best || t.force_n > best->force_n))
         best = &t;
     }
@@ -216,6 +207,14 @@ class Pregrasp : public StatefulTask<PregraspState> {
     } else if (input.motion_done && state_.phase_s > 0.2) {
       enter(kUnbend);
     }
+  }
+
+  /// Whether a touch is one of the object: the map has this object there, or nothing, and the object cannot be far.
+  [[nodiscard]] bool is_object(const TaskInput& input, const Touch& touch) const {
+    constexpr double kMoved_m = 0.25;  // the body may have pushed the object this far from where it was seen
+    if (touch.handle != 0) return touch.handle == object_handle(input);
+    const Eigen::Vector2d p_MO = input.X_MH.to_parent(touch.p_H - state_.radius_m * touch.normal_H);
+    return (p_MO - state_.p_MO).norm() < kMoved_m;
   }
 
   void unbend(const TaskInput& input, Grip& grip, TaskOutput& output) {

@@ -81,10 +81,9 @@ class SearchObject : public StatefulTask<SearchState> {
     const std::uint8_t colour = input.parameters.object_colour;
     std::optional<Eigen::Vector2d> best;
     if (input.sightings.objects[colour].known) best = input.sightings.objects[colour].p_M();
-    if (input.map) {  // the map also follows touches
+    if (input.map && input.parameters.object_handle != 0) {
       for (const msg::MapObject& landmark : landmarks_of(*input.map)) {
-        const bool meant = input.parameters.object_handle == 0 || input.parameters.object_handle == landmark.handle;
-        if (landmark.kind == msg::kBlobObject && landmark.colour == colour && meant)
+        if (landmark.kind == msg::kBlobObject && landmark.handle == input.parameters.object_handle)
           best = Eigen::Vector2d(landmark.x_m, landmark.y_m);
       }
     }

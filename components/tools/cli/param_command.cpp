@@ -278,8 +278,7 @@ void add_param(CLI::App& app, Action& action) {
       "no authority. While an operator has authority, only operators may set parameters; this command does so as an "
       "operator.",
       {"constrictor param list", "constrictor param list navigation.follow_line",
-       "constrictor param get navigation.travel.speed_m_s",
-       "constrictor param set navigation.travel.speed_m_s 0.9",
+       "constrictor param get navigation.travel.speed_m_s", "constrictor param set navigation.travel.speed_m_s 0.9",
        "constrictor param set control.motion.travel.method sidewinding",
        "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
        "2000",

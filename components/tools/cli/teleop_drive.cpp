@@ -55,7 +55,8 @@ int teleop_drive(const std::string& speed_and_turn, const std::string& duration,
   RequestClient client(note.domain, operator_options(unique_source("teleop"), kTeleopLease));
   if (const int status = connect(client, "teleop"); status != exit_status::kOk) return status;
   RunMonitor monitor(note, client.participant());
-  const auto answer = client.wait_for_answer(client.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m), 5s);
+  const auto answer =
+      client.wait_for_answer(client.move(msg::kMotionDrive, motion.speed_m_s, motion.curvature_1_m), 5s);
   if (answer == RequestClient::Answer::kInterrupted) stand_and_release(client);
   if (answer != RequestClient::Answer::kGranted) return report_not_granted(client, answer, "teleop");
   fmt::print("driving as {}\n", client.source());

@@ -54,9 +54,9 @@ void ControlConformance::check_bend() {
   const bool late = !echo_ticks || ControlHand::kPeriod_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
   report_.judge("echo", late,
                 echo_ticks ? "after " + counted(*echo_ticks, "tick")
-                : state    ? fmt::format("motion {} with the method '{}', not motion {} with its method", state->motion_id,
-                                         printable(text_of(state->method)), hand_.desired->motion_id)
-                           : "no motion_status",
+                : state ? fmt::format("motion {} with the method '{}', not motion {} with its method", state->motion_id,
+                                      printable(text_of(state->method)), hand_.desired->motion_id)
+                        : "no motion_status",
                 "copy motion_id, and name the method that moves the robot");
   bends_ = state != nullptr && state->accepted;
   report_.judge("bend", !bends_, bends_ ? "accepted" : "not accepted",

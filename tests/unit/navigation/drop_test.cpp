@@ -75,7 +75,7 @@ class DropRun {
     msg::TaskParameters parameters{};
     parameters.drop_zone_colour = msg::kColourGreen;
     return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
-            sightings_, &map_,  joints_, body_,  touches_,   true,   true,   1.0 / 1.1};
+            sightings_, &map_,  joints_, body_,  touches_,   true,   true,    1.0 / 1.1};
   }
   void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
     const std::vector<std::size_t> yaw = robot_.yaw_joints();

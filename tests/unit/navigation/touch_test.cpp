@@ -117,6 +117,26 @@ TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
 }
 
 /// A U to the right that holds an object, and the torque of its base.
+TEST_F(TouchTest, EachTouchBelongsToTheObjectThatStandsThere) {
+  msg::FieldMap map{};
+  map.object_count = 3;
+  map.objects[0] = {7, msg::kColourGreen, msg::kBlobObject, 1.0, 0.12, 0.08, 0.01, false, false, 0};
+  map.objects[1] = {8, msg::kColourRed, msg::kBlobObject, 1.0, -0.115, 0.08, 0.01, false, false, 0};
+  map.objects[2] = {9, msg::kColourRed, msg::kBlobZone, 0.5, 0.1, 0.08, 0.01, false, false, 0};
+  std::vector<Touch> touches(4);
+  touches[0].p_H = {0.0, 0.04};   // the head is at (1, 0): the green one, 0.12 m to the left
+  touches[1].p_H = {0.0, -0.04};  // the red one
+  touches[2].p_H = {-0.5, 0.03};  // a zone cannot be touched
+  touches[3].p_H = {0.35, 0.0};   // nothing is known there
+  assign_touches(map, {{1.0, 0.0}, 0.0}, 0.085, touches);
+  EXPECT_EQ(touches[0].handle, 7);
+  EXPECT_EQ(touches[1].handle, 8);
+  EXPECT_EQ(touches[2].handle, 0);
+  EXPECT_EQ(touches[3].handle, 0);
+  EXPECT_EQ(touches_of(7, touches).size(), 3U) << "all but that of the red object";
+  EXPECT_EQ(touches_of(0, touches).size(), 4U);
+}
+
 class HoldTest : public TouchTest {
  protected:
   HoldTest() {
@@ -158,6 +178,21 @@ TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   const double untouched_s = lost_after_s();
   EXPECT_GT(untouched_s, neither_s + 0.5);
   EXPECT_LT(untouched_s, 6.0);
+}
+
+TEST_F(HoldTest, ATouchOfAnotherObjectIsNoHold) {
+  grip.handle = 3;
+  std::vector<Touch> touch(1);
+  touch[0].module = 12;
+  touch[0].force_n = 2.0;
+  touch[0].handle = 4;
+  load(0.1);
+  double time_s = 0.0;
+  while (!grip_sense.lost(u, touch, true, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  EXPECT_LT(time_s, 5.0);
+  grip_sense.hold_starts(grip);
+  touch[0].handle = 3;
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, true, 0.02, grip));
 }
 
 TEST_F(HoldTest, ARobotWithoutContactSensorsNoticesTheLossByTheTorque) {

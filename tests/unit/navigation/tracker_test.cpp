@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "navigation/line_tracker.hpp"
 #include "navigation/object_tracker.hpp"
@@ -54,80 +55,87 @@ TEST(LineTracker, IgnoresALineOfAnotherColour) {
   EXPECT_FALSE(state.visible);
 }
 
-msg::ObjectPercepts one_blob(std::uint8_t kind, double bearing_rad, double range_m, double width_m) {
+msg::ObjectPercepts one_blob(std::uint8_t kind, std::int64_t exposure_tick = 0) {
   msg::ObjectPercepts percepts{};
+  percepts.exposure_tick = exposure_tick;
   percepts.blob_count = 1;
-  msg::Blob& blob = percepts.blobs[0];
-  blob.colour = msg::kColourGreen;
-  blob.kind = kind;
-  blob.bearing_rad = bearing_rad;
-  blob.range_m = range_m;
-  blob.width_m = width_m;
-  blob.area_fraction = 0.01;
+  percepts.blobs[0].colour = msg::kColourGreen;
+  percepts.blobs[0].kind = kind;
   return percepts;
 }
 
-TEST(ObjectTracker, PlacesAnObjectByThePoseAtTheExposureOfTheImage) {
-  ObjectTrackerState state;
-  remember_pose(10, {{1.0, 2.0}, 1.57079632679}, state);
-  remember_pose(20, {{5.0, 5.0}, 0.0}, state);
-  msg::ObjectPercepts percepts = one_blob(msg::kBlobObject, 0.0, 0.9, 0.2);
-  percepts.exposure_tick = 11;
-  ObjectTrackerConfig config;
-  for (int i = 0; i < 50; ++i) update_object_tracker(config, percepts, state);
-  const Sighting& seen = state.objects[msg::kColourGreen];
-  EXPECT_TRUE(seen.visible);
-  EXPECT_NEAR(seen.radius_m, 0.1, 1e-3);
-  EXPECT_NEAR(seen.x_m, 1.0, 1e-3);
-  EXPECT_NEAR(seen.y_m, 2.0 + 0.9 + 0.1, 1e-3);  // looking along +y
-  EXPECT_FALSE(state.zones[msg::kColourGreen].known);
+void images(const msg::ObjectPercepts& percepts, int count, ObjectTrackerState& state) {
+  for (int i = 0; i < count; ++i) update_visibility({}, percepts, state);
 }
 
-TEST(ObjectTracker, AnUndecidedBlobKeepsAVisibleZoneVisibleAndDoesNotMoveIt) {
-  ObjectTrackerState state;
-  remember_pose(0, {}, state);
-  for (int i = 0; i < 5; ++i) update_object_tracker({}, one_blob(msg::kBlobZone, 0.0, 1.0, 0.6), state);
-  const double x_m = state.zones[msg::kColourGreen].x_m;
-  msg::ObjectPercepts undecided = one_blob(msg::kBlobUndecided, 0.4, 0.3, 0.6);
-  undecided.blobs[0].cut_bottom = true;
-  for (int i = 0; i < 30; ++i) update_object_tracker({}, undecided, state);
-  EXPECT_TRUE(state.zones[msg::kColourGreen].visible);
-  EXPECT_EQ(state.zones[msg::kColourGreen].x_m, x_m);
+msg::MapObject landmark(std::uint16_t handle, std::uint8_t kind, double x_m, double y_m, double radius_m = 0.08) {
+  return {handle, msg::kColourGreen, kind, x_m, y_m, radius_m, 0.03, false, false, 0};
 }
 
-TEST(ObjectTracker, AMovedObjectGetsItsNewPositionAtOnce) {
-  ObjectTrackerState state;
-  remember_pose(0, {}, state);
-  for (int i = 0; i < 50; ++i) update_object_tracker({}, one_blob(msg::kBlobObject, 0.0, 1.0, 0.17), state);
-  update_object_tracker({}, one_blob(msg::kBlobObject, 0.0, 2.0, 0.17), state);
-  EXPECT_NEAR(state.objects[msg::kColourGreen].x_m, 2.0 + 0.085, 1e-2);
-}
-
-TEST(ObjectTracker, ForgetsAPlaceThatTheMapHasGivenUp) {
-  ObjectTrackerConfig config;
-  ObjectTrackerState state;
-  const auto images = [&](const msg::ObjectPercepts& percepts, int count) {
-    for (int i = 0; i < count; ++i) update_object_tracker(config, percepts, state);
-  };
-  images(one_blob(msg::kBlobObject, 0.0, 1.0, 0.16), 10);
-  const std::uint8_t colour = one_blob(msg::kBlobObject, 0.0, 1.0, 0.16).blobs[0].colour;
-  const Sighting& object = state.objects[colour];
+msg::FieldMap map_of(const std::vector<msg::MapObject>& landmarks) {
   msg::FieldMap map{};
-  forget_dropped(config, map, state);
-  EXPECT_TRUE(object.known) << "the map does not have it yet";
-  map.object_count = 1;
-  map.objects[0] = {5, colour, msg::kBlobObject, object.x_m + 0.1, object.y_m, 0.08, 0.03, false, false, 0};
-  forget_dropped(config, map, state);
-  map.objects[0].x_m += 3.0;  // carried away by the robot itself: it keeps its handle
-  images({}, 20);
-  forget_dropped(config, map, state);
+  for (const auto& one : landmarks) map.objects[map.object_count++] = one;
+  return map;
+}
+
+TEST(ObjectTracker, AnUndecidedBlobKeepsAVisibleZoneVisible) {
+  ObjectTrackerState state;
+  const Sighting& zone = state.zones[msg::kColourGreen];
+  images(one_blob(msg::kBlobUndecided), 30, state);
+  EXPECT_FALSE(zone.visible);
+  EXPECT_EQ(zone.seen_tick, -1);
+  images(one_blob(msg::kBlobZone), 5, state);
+  EXPECT_TRUE(zone.visible);
+  images(one_blob(msg::kBlobUndecided, 70), 30, state);
+  EXPECT_TRUE(zone.visible);
+  EXPECT_EQ(zone.seen_tick, 70);
+  images({}, 30, state);
+  EXPECT_FALSE(zone.visible);
+}
+
+TEST(ObjectTracker, APlaceIsThatOfTheLandmark) {
+  ObjectTrackerState state;
+  const Sighting& object = state.objects[msg::kColourGreen];
+  images(one_blob(msg::kBlobObject), 5, state);
+  take_places({}, map_of({}), {0.0, 0.0}, 0, state);
+  EXPECT_FALSE(object.known) << "the map does not have it yet";
+  take_places({}, map_of({landmark(5, msg::kBlobObject, 1.0, 2.0, 0.06), landmark(6, msg::kBlobZone, 3.0, 4.0, 0.3)}),
+              {0.0, 0.0}, 0, state);
   EXPECT_TRUE(object.known);
-  map.object_count = 0;
-  forget_dropped(config, map, state);
-  EXPECT_FALSE(object.known);
-  images(one_blob(msg::kBlobObject, 0.0, 2.0, 0.16), 1);
-  EXPECT_TRUE(object.known);
-  EXPECT_NEAR(object.x_m, 2.08, 0.02) << "the old place has no part in the new one";
+  EXPECT_EQ(object.handle, 5);
+  EXPECT_EQ(object.p_M(), Eigen::Vector2d(1.0, 2.0));
+  EXPECT_EQ(object.radius_m, 0.06);
+  EXPECT_EQ(state.zones[msg::kColourGreen].p_M(), Eigen::Vector2d(3.0, 4.0));
+  EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, 0.3);
+  take_places({}, map_of({landmark(5, msg::kBlobObject, 1.0, 2.0, kNan), landmark(6, msg::kBlobZone, 3.0, 4.0, 9.0)}),
+              {0.0, 0.0}, 0, state);
+  EXPECT_EQ(object.radius_m, ObjectTrackerConfig().object_radius_m) << "no image has shown its width";
+  EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, 0.6) << "no zone is larger";
+  take_places({}, map_of({}), {0.0, 0.0}, 0, state);
+  EXPECT_FALSE(object.known) << "the map has given it up";
+  EXPECT_EQ(object.handle, 0);
+}
+
+TEST(ObjectTracker, OfSeveralObjectsTheNamedOneOrTheNearestInViewCounts) {
+  ObjectTrackerState state;
+  const Sighting& object = state.objects[msg::kColourGreen];
+  images(one_blob(msg::kBlobObject), 5, state);
+  std::vector<msg::MapObject> twins = {landmark(1, msg::kBlobObject, 1.0, 0.0), landmark(2, msg::kBlobObject, 2.0, 0.0),
+                                       landmark(3, msg::kBlobObject, 0.5, 0.0)};
+  twins[0].last_seen_tick = twins[1].last_seen_tick = 100;
+  twins[2].last_seen_tick = 60;  // it is not in view
+  const auto counting = [&](std::uint16_t named) {
+    take_places({}, map_of(twins), {0.0, 0.0}, named, state);
+    return object.handle;
+  };
+  EXPECT_EQ(counting(0), 1);
+  EXPECT_EQ(counting(2), 2);
+  EXPECT_EQ(counting(3), 1) << "a named object out of view is not the one that the images show";
+  images({}, 20, state);
+  EXPECT_EQ(counting(0), 1) << "out of view, the last one remains";
+  EXPECT_EQ(counting(3), 3) << "unless another one is named";
+  twins[2].carried = true;
+  EXPECT_EQ(counting(3), 1) << "what the robot carries does not stand anywhere";
 }
 
 }  // namespace

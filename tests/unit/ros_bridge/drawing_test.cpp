@@ -48,7 +48,7 @@ msg::FieldMap field() {
   map.objects[0] = {7, msg::kColourRed, msg::kBlobObject, 1.5, 0.5, 0.09, 0.02, true, false, 40};
   map.objects[1] = {9, msg::kColourGreen, msg::kBlobZone, -1.0, 2.0, kNaN, 0.1, false, false, 50};
   map.touch_count = 1;
-  map.touches[0] = {1.4, 0.4, 2.0, 3, 300};
+  map.touches[0] = {1.4, 0.4, 2.0, 3, 300, 0};
   return map;
 }
 

@@ -1,0 +1,30 @@
+#include "navigation/passing_room.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace constrictor {
+
+double passing_room_m(const TaskInput& input, const PlanarPose& X_MP, double side, double passing_m, double radius_m) {
+  double least_m = std::numeric_limits<double>::infinity();
+  const auto beside = [&](const Eigen::Vector2d& p_M, double other_radius_m) {
+    constexpr double kBegin_m = -0.9, kEnd_m = 0.3, kTurn_m = 0.25;  // of the way, along the course
+    const Eigen::Vector2d p = X_MP.to_local(p_M);
+    const double lane_m = (p - Eigen::Vector2d(std::clamp(p.x(), kBegin_m, kEnd_m), -side * passing_m)).norm();
+    const double turn_m = (p - Eigen::Vector2d(kTurn_m, 0.0)).norm();
+    least_m = std::min({least_m, lane_m - other_radius_m, turn_m - other_radius_m});
+  };
+  for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
+    const Sighting& other = input.sightings.objects[colour];
+    if (other.known && colour != input.parameters.object_colour) beside(other.p_M(), other.radius_m);
+  }
+  if (!input.map) return least_m;
+  for (std::size_t i = 0; i < std::min<std::size_t>(input.map->obstacle_count, msg::kMaxFeltObstacles); ++i) {
+    constexpr double kOwn = 1.5;  // of the radius: the object itself, where it stood a moment ago
+    const Eigen::Vector2d p_M(input.map->obstacle_x_m[i], input.map->obstacle_y_m[i]);
+    if ((p_M - X_MP.p).norm() > kOwn * radius_m) beside(p_M, 0.0);
+  }
+  return least_m;
+}
+
+}  // namespace constrictor

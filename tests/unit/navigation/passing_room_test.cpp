@@ -1,0 +1,83 @@
+// The room beside an object, compared with the nearest of many points of the way of the head.
+#include "navigation/passing_room.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "component/data_path.hpp"
+
+namespace constrictor {
+namespace {
+
+class PassingRoom : public ::testing::Test {
+ protected:
+  static constexpr double kPassing_m = 0.17, kRadius_m = 0.085;
+  RobotModel robot_ = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  NavigationConfig config_;
+  GripSense sense_{robot_, config_.grip};
+  Tick tick_{};
+  msg::FieldMap map_{};
+  msg::JointState joints_{};
+  ObjectTrackerState sightings_;
+  std::vector<PlanarPose> body_;
+  std::vector<Touch> touches_;
+  const PlanarPose X_MP_{{2.0, 1.0}, 0.5};  // the object, with the course of the passing line
+
+  double room_m(double side) {
+    msg::TaskParameters parameters{};
+    parameters.object_colour = msg::kColourGreen;
+    const TaskInput input{tick_,      robot_, config_, sense_, parameters, {},   nullptr, false,
+                          sightings_, &map_,  joints_, body_,  touches_,   true, true,    1.0};
+    return passing_room_m(input, X_MP_, side, kPassing_m, kRadius_m);
+  }
+  void stand_at(std::uint8_t colour, const Eigen::Vector2d& p_P, double radius_m) {
+    Sighting& other = sightings_.objects[colour];
+    const Eigen::Vector2d p_M = X_MP_.to_parent(p_P);
+    other.known = true;
+    other.x_m = p_M.x();
+    other.y_m = p_M.y();
+    other.radius_m = radius_m;
+  }
+  void feel_at(const Eigen::Vector2d& p_P) {
+    const Eigen::Vector2d p_M = X_MP_.to_parent(p_P);
+    map_.obstacle_x_m[map_.obstacle_count] = p_M.x();
+    map_.obstacle_y_m[map_.obstacle_count++] = p_M.y();
+  }
+  /// The lane beside the object from 0.9 m before it to 0.3 m beyond it, and the turn 0.25 m beyond it.
+  static double sampled_m(double side, const Eigen::Vector2d& p_P) {
+    double least_m = (p_P - Eigen::Vector2d(0.25, 0.0)).norm();
+    for (double x_m = -0.9; x_m <= 0.3; x_m += 1e-4)
+      least_m = std::min(least_m, (p_P - Eigen::Vector2d(x_m, -side * kPassing_m)).norm());
+    return least_m;
+  }
+};
+
+TEST_F(PassingRoom, IsUnlimitedInAnEmptyField) {
+  EXPECT_TRUE(std::isinf(room_m(1.0)));
+  stand_at(msg::kColourGreen, {0.0, 0.0}, kRadius_m);  // the object itself
+  EXPECT_TRUE(std::isinf(room_m(1.0)));
+}
+
+TEST_F(PassingRoom, IsTheLeastDistanceToOtherObjectsAndFeltObstacles) {
+  for (const Eigen::Vector2d& p_P : {Eigen::Vector2d(-0.5, -0.4), {0.6, 0.1}, {-1.4, 0.3}, {0.1, 0.5}}) {
+    for (const double side : {1.0, -1.0}) {
+      stand_at(msg::kColourRed, p_P, 0.06);
+      EXPECT_NEAR(room_m(side), sampled_m(side, p_P) - 0.06, 1e-3);
+      sightings_ = {};
+      feel_at(p_P);
+      EXPECT_NEAR(room_m(side), sampled_m(side, p_P), 1e-3);
+      map_.obstacle_count = 0;
+    }
+  }
+}
+
+TEST_F(PassingRoom, WhatWasFeltAtTheObjectIsTheObject) {
+  feel_at({0.05, 0.06});
+  EXPECT_TRUE(std::isinf(room_m(1.0)));
+  feel_at({-0.3, -0.2});
+  EXPECT_LT(room_m(1.0), room_m(-1.0)) << "the obstacle stands in the lane on the right";
+}
+
+}  // namespace
+}  // namespace constrictor
