@@ -56,7 +56,7 @@ struct ControlConfig : ParameterSet {
   MotionParameters add(MotionParameters& motion, const std::string& kind, const MotionParameters& fallback,
                        const std::string& meaning) {
     const std::uint8_t method = add(motion.method, "motion." + kind + ".method", 0, drive_methods(), kWhileRunning,
-                                    meaning + ": control method; undulation if this one cannot move the body");
+                                    meaning + ": method, or undulation if it cannot do it");
     MotionParameters motion_parameters = add_gait(motion, kind, fallback, meaning);
     motion_parameters.method = method;
     return motion_parameters;

@@ -116,8 +116,8 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   Process run = start({"run", "short", "--in-process", "--pace", "1x", "--report", (dir_ / "run").string(), "--config",
                        "report=" + (dir_ / "long.yaml").string()});
   ASSERT_TRUE(run_answers()) << output_;
-  EXPECT_NE(output_.find("0.7 Hz"), std::string::npos) << output_;
-  EXPECT_NE(output_.find("accepted: 0.05 to 2 Hz; default: 0.7 Hz"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("0.63 m/s"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("accepted: 0.001 to 2 m/s; default: 0.63 m/s"), std::string::npos) << output_;
 
   const json all = ask({"param", "list"});
   std::map<std::string, int> owners;
@@ -207,7 +207,7 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
     const json answer = ask(std::move(arguments), status);
     return answer.is_array() && answer.size() == 1 ? answer[0].value("refused", "") : answer.dump();
   };
-  write("wrong.yaml", "navigation: {travel: {frequency_hz: 99}}\n");
+  write("wrong.yaml", "navigation: {travel: {speed_m_s: 99}}\n");
   const std::string wrong = refusal({"param", "load", (dir_ / "wrong.yaml").string()}, exit_status::kConfiguration);
   EXPECT_NE(wrong.find("found 99"), std::string::npos) << wrong;
   EXPECT_NE(refusal({"param", "set", kFrequency, "fast"}, exit_status::kUsage).find("found 'fast'"), std::string::npos);

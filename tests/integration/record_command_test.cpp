@@ -41,7 +41,7 @@ class RecordCommand : public RunCommand {
 // machine that is busy for a second.
 TEST_F(RecordCommand, AttachesTheFilesOfARunOfThisHost) {
   const std::string file = (dir_ / "live.mcap").string();
-  write("mine.yaml", "travel: {frequency_hz: 0.5}\n");
+  write("mine.yaml", "travel: {speed_m_s: 0.5}\n");
   Process launcher =
       run(100'000, "r",
           {"--pace", "0.2x", "--in-process", "--record", "--config", "navigation=" + (dir_ / "mine.yaml").string()});
@@ -55,7 +55,7 @@ TEST_F(RecordCommand, AttachesTheFilesOfARunOfThisHost) {
     files->erase("versions.yaml");  // constrictor_host may have loaded other libraries than the toys
   }
   EXPECT_EQ(found, expected);
-  EXPECT_EQ(found["configuration/navigation.yaml"], "travel: {frequency_hz: 0.5}\n");
+  EXPECT_EQ(found["configuration/navigation.yaml"], "travel: {speed_m_s: 0.5}\n");
   for (const char* name : {"scenario.yaml", "robot.yaml", "manifest.yaml", "configuration/control.yaml"})
     EXPECT_TRUE(found.contains(name)) << name;
 }

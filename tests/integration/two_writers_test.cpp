@@ -68,7 +68,7 @@ class Program {
     r.parameters.direction = operates ? msg::kDirectionLeft : msg::kDirectionRight;
     r.parameters.timeout_s = 1.0;
     r.motion = msg::kMotionDrive;
-    r.frequency_hz = operates ? 0.6 : -0.6;
+    r.speed_m_s = operates ? 0.6 : -0.6;
     return r;
   }
   void send_requests() {

@@ -45,7 +45,7 @@ void ControlConformance::check_relax() {
 }
 
 void ControlConformance::check_silence() {
-  undulate(profile_.rate_hz, 0.0);
+  travel(profile_.speed_m_s, 0.0);
   go(2.0);
   hand_.desired.reset();
   const Steps steps = go(profile_.hold_within_s + 1.0);
@@ -64,7 +64,7 @@ void ControlConformance::check_silence() {
 }
 
 void ControlConformance::check_authority() {
-  undulate(profile_.rate_hz, 0.0);
+  travel(profile_.speed_m_s, 0.0);
   go(2.0);
   hand_.authority.level = msg::kAuthorityNone;
   set_text(hand_.authority.source, "");
@@ -98,12 +98,12 @@ void ControlConformance::check_authority() {
 }
 
 void ControlConformance::check_stop() {
-  undulate(profile_.rate_hz, 0.0);
+  travel(profile_.speed_m_s, 0.0);
   go(2.0);
   hand_.authority.emergency_stop = true;
   hand_.authority.level = msg::kAuthorityEmergencyStop;
   go(0.2);
-  undulate(2.0 * profile_.rate_hz, 0.0);
+  travel(2.0 * profile_.speed_m_s, 0.0);
   const Steps steps = go(profile_.hold_within_s + 1.0);
   const double moved = moved_rad(steps, profile_.hold_within_s);
   const bool relaxed = is_relaxed(*last_command(steps));
@@ -112,7 +112,7 @@ void ControlConformance::check_stop() {
   previous_rad_.clear();
   go(1.0);
   const double again_rad = moved_rad(go(2.0), 0.0);
-  const bool stuck = undulates_ && again_rad < 0.02;
+  const bool stuck = travels_ && again_rad < 0.02;
   report_.judge("stop", moved > profile_.posture_rad || relaxed || stuck,
                 relaxed ? std::string("the joints are relaxed: a snake that has climbed would fall")
                 : stuck ? std::string("nothing moves after the stop was cleared")
@@ -150,7 +150,7 @@ void ControlConformance::check_epoch() {
     hand_.displace(posture_rad);
     previous_rad_.clear();
     Steps steps = go(0.5);
-    undulate(profile_.rate_hz, 0.5 * profile_.curvature_1_m);
+    travel(profile_.speed_m_s, 0.5 * profile_.curvature_1_m);
     for (auto& step : go(1.0)) steps.push_back(std::move(step));
     disturb();
     for (auto& step : go(1.0)) steps.push_back(std::move(step));

@@ -147,11 +147,11 @@ def test_messages_are_published_checked(run):
 def test_parameters_are_read_set_and_refused(run):
     name = "navigation.travel.speed_m_s"
     assert run.get_parameter(name) == 0.7
-    assert run.parameters(name)[name]["unit"] == "Hz"
+    assert run.parameters(name)[name]["unit"] == "m/s"
     tick = run.set_parameter(name, 0.8)
     assert eventually(lambda: json.loads(command("param", "get", name, "--json"))["value"] == 0.8)
     assert tick > 0
-    with pytest.raises(constrictor.RefusedError, match="found 9, accepted 0.05 to 2 Hz"):
+    with pytest.raises(constrictor.RefusedError, match="found 9, accepted 0.001 to 2 m/s"):
         run.set_parameter(name, 9)
     with pytest.raises(KeyError, match="no parameter"):
         run.get_parameter("navigation.nothing")

@@ -88,7 +88,7 @@ TEST(ParameterFile, OfChangesHasNothingElse) {
 }
 
 TEST(ParameterFile, MayBeNestedLikeTheConfigurationOfAComponent) {
-  const auto values = read("navigation:\n  travel: {frequency_hz: 0.9}\n  grasp.steps: 5\n");
+  const auto values = read("navigation:\n  travel: {speed_m_s: 0.9}\n  grasp.steps: 5\n");
   ASSERT_EQ(values.size(), 2u);
   EXPECT_EQ(values[0].name, "navigation.travel.speed_m_s");
   EXPECT_EQ(values[0].value, 0.9);

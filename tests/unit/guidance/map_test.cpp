@@ -294,41 +294,5 @@ TEST(Map, ALineLongerThanTheMessageIsPublishedFromBeginToEnd) {
   for (int i = 1; i < map.line_point_count; ++i) EXPECT_NEAR(map.line_x_m[i] - map.line_x_m[i - 1], 0.16, 0.09);
 }
 
-// A touch where no object stands is one of an obstacle. The map keeps it until the body lies where it was.
-TEST(Map, KeepsFeltObstaclesUntilTheBodyPassesThroughThem) {
-  Mapping m;
-  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.6, 0.4, 0.08)}, 5);
-  const auto touch_beside = [&](std::size_t module, double y_m) {
-    msg::ContactState contacts{};
-    contacts.module_count = 24;
-    contacts.contact_count = 1;
-    contacts.contacts[0].module_index = static_cast<std::uint8_t>(module);
-    contacts.contacts[0].position_m = {0.0, y_m, 0.0};
-    contacts.contacts[0].normal = {0.0, y_m > 0.0 ? -1.0 : 1.0, 0.0};
-    contacts.contacts[0].force_n = {0.0, y_m > 0.0 ? -2.0 : 2.0, 0.0};
-    m.mapper.touch(contacts, m.chain(), m.tick++, 0.02);
-  };
-  touch_beside(3, 0.035);
-  touch_beside(3, 0.035);  // the same peg
-  touch_beside(9, -0.035);
-  const msg::FieldMap map = m.map();
-  ASSERT_EQ(map.obstacle_count, 2);
-  EXPECT_EQ(map.touches[0].handle, 0);
-  const Eigen::Vector2d expected = m.chain()[3].to_parent({0.0, 0.035});  // the head stands at the origin of M
-  EXPECT_NEAR(map.obstacle_x_m[0], expected.x(), 1e-9);
-  EXPECT_NEAR(map.obstacle_y_m[0], expected.y(), 1e-9);
-  m.mapper.touch({}, m.chain(), m.tick + 100'000, 0.02);
-  EXPECT_EQ(m.map().touch_count, 0) << "touches are forgotten after a time";
-  EXPECT_EQ(m.map().obstacle_count, 2) << "obstacles are not";
-  // The body bends to the left, over the place of the first one.
-  m.q[0] = m.q[2] = 0.12;
-  const BodyChain bent = m.chain();
-  const Eigen::Vector2d local = bent[3].to_local(expected);
-  ASSERT_LT(std::abs(local.x()), 0.04);
-  ASSERT_LT(std::abs(local.y()), 0.015);
-  m.mapper.touch({}, bent, m.tick + 100'001, 0.02);
-  EXPECT_EQ(m.map().obstacle_count, 1);
-}
-
 }  // namespace
 }  // namespace constrictor

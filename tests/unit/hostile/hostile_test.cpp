@@ -69,8 +69,13 @@ void make_relevant(msg::JointCommand& m, HostileFiller& f) {
 }
 void make_relevant(msg::DesiredTrajectory& m, HostileFiller& f) {
   static const MethodRegistry methods;
-  const auto names = methods.names();
-  if (f.roll(4) != 0) std::snprintf(m.method, sizeof m.method, "%s", names[f.roll(names.size())].data());
+  auto names = methods.names();
+  names.insert(names.end(), {"travel", "carry", "creep", "seat", "deliver", "leave", "stand"});
+  if (f.roll(4) != 0) std::snprintf(m.motion, sizeof m.motion, "%s", names[f.roll(names.size())].data());
+  if (f.roll(3) != 0) m.point_count = static_cast<std::uint16_t>(f.roll(msg::kMaxTrajectoryPoints + 1));
+  if (f.roll(2) == 0) {
+    for (int i = 0; i < msg::kMaxTrajectoryPoints; ++i) m.points[i].arc_m = 0.1 * i;
+  }
   if (f.roll(3) != 0) m.shape_count = static_cast<std::uint16_t>(f.roll(13));
   if (f.roll(3) != 0) m.motion_id = f.roll(3);
 }

@@ -129,7 +129,7 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
     }
     (ask->kind == msg::kRequestMotion ? motions : releases) += 1;
     ASSERT_TRUE(ask->kind == msg::kRequestMotion || ask->kind == msg::kRequestRelease);
-    ASSERT_TRUE(std::abs(ask->drive.frequency_hz) <= limits.max_frequency_hz) << ask->drive.frequency_hz;
+    ASSERT_TRUE(std::abs(ask->drive.speed_m_s) <= limits.max_speed_m_s) << ask->drive.speed_m_s;
     ASSERT_TRUE(std::abs(ask->drive.curvature_1_m) <= limits.max_curvature_1_m) << ask->drive.curvature_1_m;
     ASSERT_TRUE(!stopped || ask->drive == ros::Drive{})
         << "motion after an emergency stop, without a pause of the velocity";

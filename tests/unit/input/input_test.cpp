@@ -101,11 +101,11 @@ TEST_F(InputMemberTest, AnswersAndCountsRequestsThatTheLatchDropped) {
                     clients_->add(request("x", kExternal, msg::kRequestMotion, i));
                   auto drive = request("x", kExternal, msg::kRequestMotion, 101);
                   drive.motion = msg::kMotionDrive;
-                  drive.frequency_hz = 0.7;
+                  drive.speed_m_s = 0.7;
                   clients_->add(drive);
                 }}});
   ASSERT_EQ(motions_.size(), 1u);
-  EXPECT_DOUBLE_EQ(motions_[0].frequency_hz, 0.7);
+  EXPECT_DOUBLE_EQ(motions_[0].speed_m_s, 0.7);
   EXPECT_TRUE(answers_.back().granted);
   EXPECT_EQ(answers_.back().request_sequence, 101u);
   EXPECT_FALSE(answers_.front().granted);
@@ -164,7 +164,7 @@ TEST_F(InputMemberTest, ADirectMotionEndsWithItsSourceOrWithATask) {
   const auto drive = [](std::uint64_t sequence) {
     auto r = request("pilot", kOperator, msg::kRequestMotion, sequence);
     r.motion = msg::kMotionDrive;
-    r.frequency_hz = 0.5;
+    r.speed_m_s = 0.5;
     return r;
   };
   run({}, 40,

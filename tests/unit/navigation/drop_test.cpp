@@ -16,6 +16,7 @@
 namespace constrictor {
 namespace {
 
+constexpr double kSway_hz = 1.1;  // of the gait by which the robot backs off
 constexpr double kBacking_m_s = 0.15;
 constexpr double kDropped_m = 0.085;  // radius of the object
 
@@ -75,7 +76,7 @@ class DropRun {
     msg::TaskParameters parameters{};
     parameters.drop_zone_colour = msg::kColourGreen;
     return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
-            sightings_, &map_,  joints_, body_,  touches_,   true,   true,    1.0 / 1.1};
+            sightings_, &map_,  joints_, body_,  touches_,   true,   true,    1.0 / kSway_hz};
   }
   void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
     const std::vector<std::size_t> yaw = robot_.yaw_joints();
@@ -93,12 +94,12 @@ class DropRun {
     if (phase_ != "back off") return;
     EXPECT_LT(output.desired.speed_m_s, 0.0) << "it drives backwards";
     const double back_s = backed_m_ / kBacking_m_s;
-    if (back_s > 1.0 / config_.drop.back.frequency_hz) {
+    if (back_s > 1.0 / kSway_hz) {
       most_1_m_ = std::max(most_1_m_, output.desired.points[0].curvature_1_m);
       least_1_m_ = std::min(least_1_m_, output.desired.points[0].curvature_1_m);
     }
     backed_m_ += kBacking_m_s * tick_.dt_s();
-    const double phase_rad = 2.0 * std::numbers::pi * config_.drop.back.frequency_hz * back_s;
+    const double phase_rad = 2.0 * std::numbers::pi * kSway_hz * back_s;
     X_MU_.p = {-backed_m_, aside_m_ + sway_m_ * std::sin(phase_rad)};
   }
 

@@ -90,7 +90,7 @@ TEST(Goals, RotateEndsByItsTimeoutWithTheEvent) {
   rotate.parameters.timeout_s = 2.0;
   GoalRun r({{10, rotate}});
   r.run->advance(60);
-  EXPECT_GT(r.run->latest(topics::kDesiredTrajectory)->curvature_1_m, 1.5);
+  EXPECT_GT(r.run->latest(topics::kDesiredTrajectory)->points[0].curvature_1_m, 1.5);
   r.run->advance(100);
   EXPECT_EQ(r.count(1, msg::kGoalRunning), 1);
   EXPECT_EQ(r.count(1, msg::kGoalSucceeded), 1);
