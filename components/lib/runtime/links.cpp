@@ -9,7 +9,8 @@
 namespace constrictor {
 
 Links::Links(std::uint32_t domain, const std::string& identity)
-    : domain_(dds::create_domain(domain, dds::Reach::kLoopback, dds::kNoLinger)),
+    : domain_((dds::Mailbox::open_for_this_process(),
+               dds::create_domain(domain, dds::Reach::kLoopback, dds::kNoLinger))),
       participant_(dds::create_participant(domain, dds::Reach::kLoopback, identity)),
       wait_set_(dds_create_waitset(participant_.get()), "dds_create_waitset"),
       always_wait_set_(dds_create_waitset(participant_.get()), "dds_create_waitset"),
@@ -41,6 +42,8 @@ void Links::take_all() {
 }
 
 void Links::wait(dds_duration_t bound_ns, bool wanted) {
+  if (wanted && !emptied_at_once_) emptied_at_once_.emplace();
+  else if (!wanted) emptied_at_once_.reset();
   if (!wanted && bound_ns > 0) {
     dds::check(dds_waitset_wait(always_wait_set_.get(), nullptr, 0, bound_ns), "dds_waitset_wait");
     bound_ns = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "constrictor/reflect.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
+#include "cyclone/mailbox.hpp"
 #include "runtime/admission.hpp"
 
 namespace constrictor {
@@ -80,6 +82,7 @@ class Links {
  private:
   void attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes);
 
+  std::optional<dds::Mailbox::EmptiedAtOnce> emptied_at_once_{std::in_place};  ///< while inputs are wanted
   Admission admission_;  // first, because the readers of this process note their writers in it
   dds::Entity domain_;
   dds::Entity participant_;
