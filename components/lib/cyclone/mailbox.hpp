@@ -11,11 +11,11 @@
 
 namespace constrictor::dds {
 
-/// A member needs the samples of the others only when the next tick arrives. If each of them wakes the thread of Cyclone
-/// DDS that receives, this costs more CPU time than the sample itself, because the caches have forgotten the process.
-/// So a process of a run has a mailbox: a socket for which no thread waits. A sender of the same host puts datagrams
-/// that may wait into it, and the receiving thread empties it when an ordinary datagram arrives, before it passes on
-/// that one. Ordinary datagrams are ticks, heartbeats, and everything from processes that know no mailboxes.
+/// A member needs the samples of the others only when the next tick arrives. If each of them wakes the thread of
+/// Cyclone DDS that receives, this costs more CPU time than the sample itself, because the caches have forgotten the
+/// process. So a process of a run has a mailbox: a socket for which no thread waits. A sender of the same host puts
+/// datagrams that may wait into it, and the receiving thread empties it when an ordinary datagram arrives, before it
+/// passes on that one. Ordinary datagrams are ticks, heartbeats, and everything from processes that know no mailboxes.
 ///
 /// A mailbox takes about ten datagrams. What it does not take, and what is for a process without a mailbox, is sent as
 /// an ordinary datagram. So nothing depends on mailboxes but the CPU time.
