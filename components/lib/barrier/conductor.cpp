@@ -201,6 +201,11 @@ bool Conductor::may_tick() const {
   });
 }
 
+bool Conductor::awaits_step(const std::string& component) const {
+  const MemberState& member = members_.at(component);
+  return epoch_ && !ended_ && !options_.realtime && member.ready && member.last_done < newest_due(member, next_index_);
+}
+
 std::vector<Conductor::Owed> Conductor::owed() const {
   std::vector<Owed> owed;
   for (const auto& [name, member] : members_) {
@@ -288,11 +293,6 @@ std::map<std::string, std::array<std::uint8_t, 32>> Conductor::output_hashes() c
 std::uint32_t Conductor::incarnation(const std::string& component) const {
   const auto found = members_.find(component);
   return found == members_.end() ? 0 : found->second.hello.incarnation;
-}
-
-std::string Conductor::known_of(const std::string& component) const {
-  const MemberState& member = members_.at(component);
-  return std::to_string(member.hello.incarnation) + (member.ready ? "r" : "-") + std::to_string(member.last_done);
 }
 
 }  // namespace constrictor

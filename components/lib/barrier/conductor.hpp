@@ -102,11 +102,16 @@ class Conductor {
     std::int64_t want;  ///< tick whose step must be finished
   };
   [[nodiscard]] std::vector<Owed> owed() const;
+  /// Whether the next tick waits for a TickDone of this member of the roster.
+  [[nodiscard]] bool awaits_step(const std::string& component) const;
   /// Output hash of each member over what is visible at the last tick.
   [[nodiscard]] std::map<std::string, std::array<std::uint8_t, 32>> output_hashes() const;
   [[nodiscard]] std::uint32_t incarnation(const std::string& component) const;
   /// The conductor's knowledge of a member, as text that tests compare: incarnation, ready or not, last finished step.
-  [[nodiscard]] std::string known_of(const std::string& component) const;
+  [[nodiscard]] std::string known_of(const std::string& component) const {
+    const MemberState& member = members_.at(component);
+    return std::to_string(member.hello.incarnation) + (member.ready ? "r" : "-") + std::to_string(member.last_done);
+  }
 
  private:
   /// A finished step whose outputs are not visible yet.

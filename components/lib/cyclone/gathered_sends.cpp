@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cyclone/mailbox.hpp"
+
 // A datagram of RTPS is a header, which names the participant that sends, and submessages. Submessages set what holds
 // for the following ones: the participant that is meant (INFO_DST) and the time (INFO_TS). So two datagrams with the
 // same header make one: the submessages of the second one follow those of the first one, after two submessages that
@@ -68,12 +70,14 @@ struct Datagram {
   int socket = -1;
   int flags = 0;
   sockaddr_in to{};
+  bool may_wait = false;  ///< in the mailbox of the receiver
   std::string bytes;
 };
 
 class Gathering {
  public:
   [[nodiscard]] const GatheredSends::Counts& counts() const { return counts_; }
+  void let_receivers_wait(bool may_wait) { may_wait_ = may_wait; }
 
   /// Takes the message if it can wait, and returns its size; otherwise sends it, after the messages that wait for its
   /// address.
@@ -103,8 +107,14 @@ class Gathering {
   }
 
   void send_all() {
-    for (std::size_t i = 0; i < used_; ++i) send_waiting(datagrams_[i]);
+    // What wakes a receiver goes last, so that the receiver then finds everything else.
+    for (const bool may_wait : {true, false}) {
+      for (std::size_t i = 0; i < used_; ++i) {
+        if (datagrams_[i].may_wait == may_wait) send_waiting(datagrams_[i]);
+      }
+    }
     used_ = 0;
+    may_wait_ = false;
   }
 
  private:
@@ -134,12 +144,22 @@ class Gathering {
     const bool same_sender = std::string_view(to.bytes).substr(0, kHeader) == part.substr(0, kHeader);
     if (!to.bytes.empty() && (!same_sender || to.bytes.size() + kRestore.size() + part.size() > kLargest))
       send_waiting(to);
-    if (to.bytes.empty()) to.bytes = part;
-    else to.bytes.append(kRestore).append(part.substr(kHeader));
+    if (to.bytes.empty()) {
+      to.bytes = part;
+      to.may_wait = may_wait_;
+    } else {
+      to.bytes.append(kRestore).append(part.substr(kHeader));
+      to.may_wait = to.may_wait && may_wait_;
+    }
   }
 
   void send_waiting(Datagram& datagram) {
     if (datagram.bytes.empty()) return;
+    if (datagram.may_wait && mail_.put(ntohs(datagram.to.sin_port), datagram.bytes)) {
+      ++counts_.datagrams;
+      datagram.bytes.clear();
+      return;
+    }
     iovec bytes{datagram.bytes.data(), datagram.bytes.size()};
     msghdr message{};
     message.msg_name = &datagram.to;
@@ -159,6 +179,8 @@ class Gathering {
   std::vector<Datagram> datagrams_;  // the first used_ ones wait; all keep their memory
   std::size_t used_ = 0;
   std::string part_;
+  bool may_wait_ = false;  ///< of what is sent now
+  MailSender mail_;
   GatheredSends::Counts counts_;
 };
 
@@ -167,7 +189,11 @@ thread_local Gathering t_gathering;
 
 }  // namespace
 
-GatheredSends::GatheredSends() { ++t_objects; }
+GatheredSends::GatheredSends(Receivers receivers) {
+  if (t_objects++ == 0) t_gathering.let_receivers_wait(receivers == Receivers::kMayWait);
+}
+
+void GatheredSends::wake_receivers() { t_gathering.let_receivers_wait(false); }
 
 GatheredSends::~GatheredSends() {
   if (--t_objects == 0) t_gathering.send_all();

@@ -15,11 +15,18 @@ namespace constrictor::dds {
 /// program in which it does not, for example a Python module, sends each sample for itself, which is also right.
 class GatheredSends {
  public:
-  GatheredSends();
+  enum class Receivers {
+    kWake,
+    kMayWait,  ///< until they receive something else, see Mailbox
+  };
+  explicit GatheredSends(Receivers receivers = Receivers::kWake);
   GatheredSends(const GatheredSends&) = delete;
   GatheredSends& operator=(const GatheredSends&) = delete;
   /// Sends what waits, unless another object of this thread is still there.
   ~GatheredSends();
+
+  /// What this thread sends from now on until the object is destroyed wakes the processes to which it goes.
+  static void wake_receivers();
 
   struct Counts {
     std::uint64_t messages = 0;   ///< that Cyclone DDS gave to the kernel while an object existed

@@ -240,6 +240,14 @@ void ConductorSide::finish() {
   if (recorder_) recorder_->finish();
 }
 
+void ConductorSide::expect_done() {
+  const auto& roster = context_.options.roster;
+  const auto missing = std::count_if(roster.begin(), roster.end(), [this](const std::string& name) {
+    return !members_.hosts(name) && conductor_->awaits_step(name);
+  });
+  links_.expect(done_reader_.get(), static_cast<std::size_t>(missing));
+}
+
 void ConductorSide::poll_recording() {
   if (recorder_) recorder_->poll();
 }

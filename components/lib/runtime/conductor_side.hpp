@@ -40,6 +40,8 @@ class ConductorSide : private ConductorSink {
   [[nodiscard]] std::int64_t wait_ns() const { return pacer_.wait_ns(); }
   /// To be called at least every 100 ms.
   void poll_recording();
+  /// To be called before each wait: in lock-step it ends when all TickDone are there that the next tick waits for.
+  void expect_done();
   /// Publishes RunState once a second, and at once if `changed`; not before the run has begun.
   void publish_run_state(bool changed);
 

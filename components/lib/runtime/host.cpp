@@ -92,6 +92,7 @@ class Host::Impl {
       if (conductor_) {
         conductor_->poll_recording();
         conductor_->publish_run_state(false);
+        conductor_->expect_done();
       }
       if (members_.all_ended() && !stays()) break;
       links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());

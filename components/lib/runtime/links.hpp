@@ -1,15 +1,18 @@
-// The DDS side of one process: its participant, and a wait set that calls a function when a reader has samples.
+// The DDS side of one process: its participant, and a wait that calls a function when a reader has samples.
 #pragma once
 
+#include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "constrictor/reflect.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
+#include "cyclone/mailbox.hpp"
 #include "runtime/admission.hpp"
+#include "runtime/arrivals.hpp"
 
 namespace constrictor {
 
@@ -31,7 +34,7 @@ class Links {
     kIfWanted,  ///< only while the process needs them at once; else they are taken after the next wait
   };
 
-  /// Calls `take` when `reader` has samples.
+  /// Calls `take` when `reader` has samples. The reader must not outlive this object.
   void attach(dds_entity_t reader, std::function<void()> take, Wakes wakes = Wakes::kAlways);
   /// Calls `use(message)` for each message that obeys its IDL; others are rejected. Both `reader` and what `use` refers
   /// to must outlive the last wait().
@@ -71,6 +74,9 @@ class Links {
 
   /// Ends the present or else the next wait(). Any thread may call it.
   void wake();
+  /// Lets the samples of a reader end a wait() only when there are so many more of them than at the last wait(), until
+  /// one of them was taken. It saves switches between threads when the samples are useful only together.
+  void expect(dds_entity_t reader, std::size_t samples);
   /// Takes everything that has arrived.
   void take_all();
   /// Waits until a message arrives or wake() is called, for at most `bound_ns`, and takes everything that has arrived.
@@ -78,17 +84,25 @@ class Links {
   void wait(dds_duration_t bound_ns, bool wanted);
 
  private:
-  void attach_to_wait_sets(dds_entity_t entity, std::function<void()> take, Wakes wakes);
+  /// What the listener of a reader is given.
+  struct Place {
+    Arrivals* arrivals;
+    std::size_t source;
+  };
+  struct Attached {
+    dds_entity_t reader;
+    std::function<void()> take;
+    Place place;
+  };
 
-  Admission admission_;  // first, because the readers of this process note their writers in it
+  Arrivals arrivals_;              // before the participant: the listeners of its readers use it
+  std::deque<Attached> attached_;  ///< index: the source in arrivals_. The listeners point to the elements
+  Arrivals::Sources always_ = 0;   ///< the readers with Wakes::kAlways
+  std::optional<dds::Mailbox::EmptiedAtOnce> emptied_at_once_{std::in_place};  ///< while inputs are wanted
+  Admission admission_;  // before the participant: the readers of this process note their writers in it
   dds::Entity domain_;
   dds::Entity participant_;
-  dds::Entity wait_set_;         // of all readers
-  dds::Entity always_wait_set_;  // of the readers with Wakes::kAlways
-  dds::Entity woken_;            // a guard condition in both wait sets
   Reject reject_;
-  std::vector<std::function<void()>> takers_;  ///< index: the number under which the reader is attached
-  std::vector<dds_attach_t> triggered_;
 };
 
 }  // namespace constrictor

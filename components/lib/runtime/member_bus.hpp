@@ -31,7 +31,7 @@ class MemberBus {
             WriterBook* book = nullptr);
 
   void write(const TopicInfo& topic, const Sample& sample) const;
-  /// Readers with their topic ids, for a wait set.
+  /// Readers with their topic ids, to wait for their samples.
   [[nodiscard]] std::vector<std::pair<std::size_t, dds_entity_t>> readers() const;
   /// Takes all samples that have arrived on one topic: `use(sample, publication handle of its writer)`.
   void take(std::size_t topic_id, const std::function<void(const Sample&, dds_instance_handle_t)>& use) const;

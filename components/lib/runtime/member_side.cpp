@@ -222,7 +222,8 @@ bool MemberSide::step_in_thread(LocalMember& local) {
 }
 
 void MemberSide::finish_step(Member& member) {
-  const dds::GatheredSends gathered;  // the outputs and the TickDone
+  // The outputs and the TickDone. The others use the outputs at the next tick.
+  const dds::GatheredSends gathered(dds::GatheredSends::Receivers::kMayWait);
   member.finish_step();
 }
 
@@ -276,6 +277,7 @@ void MemberSide::publish(const TopicInfo& topic, const Sample& sample) {
 void MemberSide::done(const TickDone& step) {
   if (conductor_) return conductor_->on_done(step);
   std::string block;
+  dds::GatheredSends::wake_receivers();
   done_writer_.write(dds::to_wire(step, block));
 }
 

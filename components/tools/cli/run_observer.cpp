@@ -10,6 +10,7 @@
 #include "cyclone/acknowledgements.hpp"
 #include "cyclone/create_domain.hpp"
 #include "cyclone/endpoint.hpp"
+#include "cyclone/mailbox.hpp"
 #include "runtime/wire.hpp"
 
 namespace constrictor::cli {
@@ -24,7 +25,8 @@ constexpr std::int64_t kMostAhead =
 
 struct RunObserver::Readers {
   explicit Readers(std::uint32_t number)
-      : domain(dds::create_domain(number, dds::Reach::kLoopback, dds::kNoLinger)),
+      : domain(
+            (dds::Mailbox::open_for_this_process(), dds::create_domain(number, dds::Reach::kLoopback, dds::kNoLinger))),
         participant(dds::create_participant(number, dds::Reach::kLoopback, {})),
         // Reliable, because the report contains them, or sums of them.
         hello(dds::Reader<msg::Hello>::member(participant.get(), wire::kHello)),

@@ -1,0 +1,129 @@
+// Datagrams that may wait reach a process without waking it; nothing is lost, whether there is a mailbox, it is full,
+// or there is none.
+#include "cyclone/mailbox.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "constrictor/topics.hpp"
+#include "cyclone/create_domain.hpp"
+#include "cyclone/domain_claim.hpp"
+#include "cyclone/endpoint.hpp"
+#include "cyclone/gathered_sends.hpp"
+#include "support/eventually.hpp"
+
+namespace constrictor {
+namespace {
+
+using testing::eventually;
+using Receivers = dds::GatheredSends::Receivers;
+
+/// Two domains of this process that are one on the network, so that Cyclone DDS sends between them as between
+/// processes. Both have a mailbox.
+class MailboxTest : public ::testing::Test {
+ protected:
+  MailboxTest() {
+    EXPECT_TRUE(eventually([&] {
+      return waiting_.readers() == 1 && tick_.readers() == 1 && waitings_.writers() == 1 && ticks_.writers() == 1;
+    }));
+  }
+  [[nodiscard]] dds::Entity join(std::uint32_t own) const {
+    dds::Mailbox::open_for_this_process();
+    return dds::create_domain(own, dds::Reach::kLoopback,
+                              "<CycloneDDS><Domain><Discovery><ExternalDomainId>" + std::to_string(claim_.domain()) +
+                                  "</ExternalDomainId></Discovery></Domain></CycloneDDS>");
+  }
+  /// Writes a sample that may wait.
+  void write(std::int64_t number) const {
+    const dds::GatheredSends gathered(Receivers::kMayWait);
+    msg::Waiting message{};
+    message.tick = number;
+    waiting_.write(message);
+  }
+  void write_tick(std::int64_t number) const {
+    msg::Tick message{};
+    message.index = number;
+    tick_.write(message);
+  }
+  /// The numbers that have been received until there are `count` of them.
+  [[nodiscard]] bool receive(std::size_t count) {
+    return eventually([&] {
+      waitings_.take([&](const msg::Waiting& message) { received_.push_back(message.tick); });
+      return received_.size() >= count;
+    });
+  }
+
+  const DomainClaim claim_;
+  const dds::Entity here_ = join(103);
+  const dds::Entity there_ = join(104);
+  const dds::Entity writing_ = dds::create_participant(103, dds::Reach::kLoopback, {});
+  const dds::Entity reading_ = dds::create_participant(104, dds::Reach::kLoopback, {});
+  const dds::Writer<msg::Waiting> waiting_{writing_.get(), "mail", 256};
+  const dds::Writer<msg::Tick> tick_{writing_.get(), barrier_topics::kTick};
+  const dds::Reader<msg::Waiting> waitings_ = dds::Reader<msg::Waiting>::member(reading_.get(), "mail");
+  const dds::Reader<msg::Tick> ticks_ = dds::Reader<msg::Tick>::member(reading_.get(), barrier_topics::kTick.name);
+  std::vector<std::int64_t> received_;
+};
+
+TEST_F(MailboxTest, MailIsThereBeforeTheDatagramThatWakesTheReceiver) {
+  std::vector<std::int64_t> expected;
+  for (std::int64_t i = 0; i < 200; ++i) {
+    write(2 * i);
+    write(2 * i + 1);
+    expected.insert(expected.end(), {2 * i, 2 * i + 1});
+    write_tick(i);
+    std::int64_t newest = -1;
+    ASSERT_TRUE(eventually([&] {
+      ticks_.take([&](const msg::Tick& message) { newest = message.index; });
+      return newest == i;
+    }));
+    waitings_.take([&](const msg::Waiting& message) { received_.push_back(message.tick); });
+    ASSERT_EQ(received_, expected);
+  }
+  EXPECT_GE(dds::Mailbox::taken(), 400U);
+}
+
+TEST_F(MailboxTest, WhatTheMailboxDoesNotTakeArrivesToo) {
+  std::vector<std::int64_t> expected;
+  for (std::int64_t i = 0; i < 200; ++i) {
+    write(i);
+    expected.push_back(i);
+  }
+  write_tick(0);
+  ASSERT_TRUE(receive(expected.size()));
+  EXPECT_EQ(received_, expected);
+}
+
+TEST_F(MailboxTest, IsEmptiedAtOnceOnRequest) {
+  write(1);
+  {
+    const dds::Mailbox::EmptiedAtOnce at_once;
+    ASSERT_TRUE(receive(1));
+    for (std::int64_t i = 2; i < 50; ++i) {
+      write(i);
+      ASSERT_TRUE(receive(static_cast<std::size_t>(i)));
+    }
+  }
+  write(50);
+  write_tick(0);
+  ASSERT_TRUE(receive(50));
+}
+
+TEST_F(MailboxTest, HeartbeatsBringTheMailOfASilentWriter) {
+  write(7);  // nothing else is sent
+  ASSERT_TRUE(receive(1));
+}
+
+TEST(MailSender, FindsNoMailboxAtAPortWithoutOne) {
+  dds::MailSender sender;
+  EXPECT_FALSE(sender.put(1, "mail"));
+  EXPECT_FALSE(sender.put(1, "mail"));
+}
+
+}  // namespace
+}  // namespace constrictor
