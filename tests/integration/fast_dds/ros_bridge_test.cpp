@@ -199,7 +199,7 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   // Backwards at 0.45 m/s with 0.9 m a wave; turning left backwards is a curvature to the right.
   EXPECT_TRUE(until([&] { return std::abs(desired.speed_m_s + 0.45) < 1e-9; }, 30s))
       << desired.motion << " " << desired.speed_m_s;
-  EXPECT_NEAR(pursuit_curvature_1_m(desired, 0.5), 0.2 / -0.45, 1e-9);
+  EXPECT_NEAR(desired.points[0].curvature_1_m, 0.2 / -0.45, 1e-9);
   probe.signal(SIGTERM);
   ASSERT_EQ(probe.wait(20s), 0);
   EXPECT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s))

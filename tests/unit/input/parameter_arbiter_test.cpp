@@ -75,7 +75,7 @@ TEST_F(ParameterArbiterTest, TheTickIsTheRequestedOneOrTheNext) {
 }
 
 TEST_F(ParameterArbiterTest, ARefusalNamesTheFoundAndTheAcceptedValues) {
-  EXPECT_EQ(decide(change(kFrequency, 2.5, 0)), "navigation.travel.speed_m_s: found 2.5, accepted 0.001 to 2 m/s");
+  EXPECT_EQ(decide(change(kFrequency, 2.5, 0)), "navigation.travel.speed_m_s: found 2.5, accepted 0.05 to 2 Hz");
   EXPECT_EQ(decide(change(kImages, 2.5, 0)),
             "navigation.watch.images: found 2.5, accepted whole numbers from 1 to 100");
   EXPECT_NE(decide(change(kImages, std::nan(""), 0)).find("accepted whole numbers"), std::string::npos);

@@ -99,8 +99,8 @@ class TrackRun {
       };
     });
     const auto guidance = testing::scripted_member("guidance", [this](Wiring& wiring) -> testing::StepFunction {
-      return [this, desired = wiring.latest(topics::kDesiredTrajectory),
-              out = wiring.output(topics::kRobotPose)](const Tick& tick) {
+      return [this, desired = wiring.latest(topics::kDesiredTrajectory), out = wiring.output(topics::kRobotPose),
+              map_out = wiring.output(topics::kFieldMap)](const Tick& tick) {
         if (desired && std::string(desired->motion) == "travel") {
           const double step_m = std::copysign(kDrivenSpeed_m_s, desired->speed_m_s) * tick.dt_s();
           body_->drive(step_m, kCurvatureShare * pursuit_curvature_1_m(*desired, 0.35), tick.dt_s());
@@ -111,6 +111,13 @@ class TrackRun {
         pose.y_m = head.p.y();
         pose.yaw_rad = wrap_angle(head.yaw_rad);
         out.write(pose);
+        if (tick.index % 5 != 0) return;
+        msg::FieldMap map{};
+        map.object_count = 1;
+        map.objects[0] = {
+            1,     msg::kColourGreen, msg::kBlobObject, p_MO_.x(), p_MO_.y(), kObjectRadius_m, 0.03, false,
+            false, tick.index};
+        map_out.write(map);
       };
     });
     const auto eyes = testing::scripted_writer<msg::ObjectPercepts>(
