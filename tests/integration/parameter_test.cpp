@@ -226,7 +226,7 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(command({"reset", "1"}), 0) << output_;
   json after;
   EXPECT_TRUE(eventually([&] { return (after = ask({"param", "get", kFrequency}))["changed_tick"].is_null(); }));
-  EXPECT_EQ(after["value"], 0.7) << after;
+  EXPECT_EQ(after["value"], 0.63) << after;
   run.signal(SIGTERM);
   EXPECT_TRUE(run.wait(20s));
 }

@@ -31,7 +31,7 @@ class TrackObject : public StatefulTask<TrackState> {
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
     if (grip.carrying) return "track_object cannot run while the robot carries an object";
-    if (!input.sightings.objects[input.parameters.object_colour].known) return "no object of this colour was seen yet";
+    if (!input.sightings.objects[input.parameters.object_colour].known) return "the map has no object of this colour";
     if (!is_named(input)) {
       return "object_handle: found " + std::to_string(input.parameters.object_handle) +
              ", accepted 0 or the handle of the object in view";

@@ -146,7 +146,7 @@ def test_messages_are_published_checked(run):
 
 def test_parameters_are_read_set_and_refused(run):
     name = "navigation.travel.speed_m_s"
-    assert run.get_parameter(name) == 0.7
+    assert run.get_parameter(name) == 0.63
     assert run.parameters(name)[name]["unit"] == "m/s"
     tick = run.set_parameter(name, 0.8)
     assert eventually(lambda: json.loads(command("param", "get", name, "--json"))["value"] == 0.8)
