@@ -50,7 +50,8 @@ bool drives(std::string_view motion) {
 
 std::string_view method_of(std::string_view motion, const ControlConfig& config) {
   if (motion == "stand") return "hold";
-  return drives(motion) ? std::string_view(drive_methods().at((config.*kind_of(motion)->parameters).method)) : motion;
+  const Kind* kind = kind_of(motion);
+  return kind && kind->has_choice ? std::string_view(drive_methods().at((config.*kind->parameters).method)) : motion;
 }
 
 Gait gait_of(const msg::DesiredTrajectory& desired, const ControlConfig& config) {

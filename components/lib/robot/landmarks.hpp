@@ -39,22 +39,6 @@ namespace constrictor {
   return best;
 }
 
-/// The landmark of this kind (msg::kBlob...) and colour (msg::kColour...) that is nearest to a point of frame M; null:
-/// there is none.
-[[nodiscard]] inline const msg::MapObject* nearest_landmark(const msg::FieldMap& map, std::uint8_t colour,
-                                                            std::uint8_t kind, double x_m, double y_m) {
-  const msg::MapObject* best = nullptr;
-  double best_m = 0.0;
-  for (const msg::MapObject& landmark : landmarks_of(map)) {
-    if (landmark.colour != colour || landmark.kind != kind) continue;
-    const double distance_m = std::hypot(landmark.x_m - x_m, landmark.y_m - y_m);
-    if (best && distance_m >= best_m) continue;
-    best = &landmark;
-    best_m = distance_m;
-  }
-  return best;
-}
-
 /// The zone of this colour; null: the map has none. There is one for each colour. If the map has several, the one whose
 /// place is known best counts: the others may be something that looked like a zone once, such as an object that lies on
 /// its side.
