@@ -1,6 +1,7 @@
 // Whether a landmark still exists: evidence from images that show it, and from images that should show it and do not.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "constrictor/messages.hpp"
@@ -20,16 +21,22 @@ namespace constrictor::guidance {
 /// [1] probability of these log odds.
 [[nodiscard]] double probability_of(double log_odds);
 
-/// Something round on the ground plane, in the frame of the head at the exposure. Radius and sd in [m].
+/// Something round on the ground plane, in frame V of the view at the exposure. Radius and sd in [m].
 struct Disc {
   Eigen::Vector2d p{0.0, 0.0};
   double radius_m = 0.0;
   double sd_m = 0.0;  ///< standard deviation of the place
+  double height_m = std::numeric_limits<double>::infinity();
 };
 
 /// The percepts of an image, and the bodies that may hide a landmark in it, at its exposure.
 struct View {
-  const RobotModel& model;
+  const CameraModel& camera;
+  Eigen::Vector2d p_VC;  ///< of the camera above the ground plane
+  /// [m] height of a further camera above the ground: what lies above or below its image is not in view, and it sees
+  /// the ground beyond low screens. 0: the head's camera, which sees from existence.min_range_m to
+  /// existence.max_range_m and beyond no screen.
+  double height_m;
   const msg::ObjectPercepts& percepts;
   std::vector<Disc> screens;  ///< they may hide a landmark: other objects of the map, and the modules of the body
 };

@@ -27,17 +27,29 @@ void FieldMapper::replace(Landmark& landmark, const Eigen::Vector2d& z, const Ei
 std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure,
                                          const BodyChain& chain, bool level, std::int64_t tick, double period_s) {
   const ExistenceConfig& config = config_.existence;
-  const double since_s = static_cast<double>(tick - state_.looked_tick) * period_s;
+  const CameraModel* camera = model_.camera_of(percepts.camera);
+  if (camera == nullptr) return {};
+  std::int64_t& looked_tick = state_.looked_tick.at(percepts.camera);
+  const double since_s = static_cast<double>(tick - looked_tick) * period_s;
   const double looks = std::clamp(since_s / config.look_s, 0.0, 1.0);
-  state_.looked_tick = tick;
+  looked_tick = tick;
+  const PlanarPose X_HV = view_of(percepts, exposure);
 
   const auto disc_of = [&](const Landmark& landmark) {
     const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    return Disc{exposure.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
+    return Disc{X_HV.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
   };
-  View view{model_, percepts, {}};
-  for (std::size_t i = kNeck; i < chain.size(); ++i)
-    view.screens.push_back({exposure.to_local(chain[i].p), 0.5 * model_.module_length_m + model_.module_radius_m, 0.0});
+  const bool further = percepts.camera > 0;  // the origin of V is then below the camera
+  View view{*camera,
+            further ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(camera->p_HC.head<2>()),
+            further ? model_.module_radius_m + camera->p_HC.z() : 0.0,
+            percepts,
+            {}};
+  const double module_m = 0.5 * model_.module_length_m + model_.module_radius_m;
+  for (std::size_t i = further ? 0 : kNeck; i < chain.size(); ++i) {
+    if (further && i == camera->module) continue;
+    view.screens.push_back({X_HV.to_local(chain[i].p), module_m, 0.0, 2.0 * model_.module_radius_m});
+  }
   const std::size_t modules = view.screens.size();
   std::vector<Landmark> given_up;
 
@@ -45,7 +57,10 @@ std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, co
     Landmark& landmark = state_.landmarks[i];
     if (landmark.carried) continue;
     const bool seen = landmark.last_seen_tick == tick;
-    if (seen) landmark.log_odds = updated_log_odds(config, landmark.log_odds, true, looks);
+    if (seen && landmark.proved_tick != tick) {
+      landmark.log_odds = updated_log_odds(config, landmark.log_odds, true, looks);
+      landmark.proved_tick = tick;
+    }
     if (seen || !level || landmark.strays > 0 || landmark.hits < config_.confirm) continue;
     view.screens.resize(modules);
     for (const Landmark& other : state_.landmarks) {

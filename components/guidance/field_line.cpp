@@ -14,6 +14,7 @@ constexpr std::size_t kMaxLinePoints = 20000;  // 1 km with the default spacing;
 void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick,
                        double period_s) {
   if (!percept.visible) return;
+  const PlanarPose view = view_of(percept, exposure);
   if (percept.colour != state_.line_colour) {
     state_.line_colour = percept.colour;
     state_.line_x_m.clear();
@@ -24,9 +25,9 @@ void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposu
   const int count = std::min<int>(percept.point_count, msg::kMaxPerceptPoints);
   const int stride = std::max(1, count / 4);
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector2d p_G(percept.x_m[i], percept.y_m[i]);
-    if (!p_G.allFinite() || p_G.norm() > config_.line_map_range_m) continue;
-    const Eigen::Vector2d z = to_parent(exposure, p_G);
+    const Eigen::Vector2d p_V(percept.x_m[i], percept.y_m[i]);
+    if (!p_V.allFinite() || p_V.norm() > config_.line_map_range_m) continue;
+    const Eigen::Vector2d z = to_parent(view, p_V);
     const Eigen::Vector2d p = to_parent(filter_.pose(), z);
 
     // The mapped points near this point give the position and the direction of the line here.
@@ -55,7 +56,7 @@ void FieldMapper::line(const msg::LinePercept& percept, const PlanarPose& exposu
       const Eigen::Vector2d normal = left(angle);
       const double residual_m = normal.dot(p - centre);
       if (std::abs(residual_m) < config_.line_correct_gate_m) {
-        const double sd_m = config_.line_correct_sd_m + 0.03 * p_G.norm();
+        const double sd_m = config_.line_correct_sd_m + 0.03 * p_V.norm();
         filter_.observe_line(residual_m, normal, p - filter_.pose().p, config_.inflation * sd_m * sd_m);
       }
     }

@@ -95,16 +95,17 @@ double FieldMapper::known_radius_m(const msg::Blob& blob, const Eigen::Vector2d&
   return radius_m;
 }
 
-void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used) {
+void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double turn_rad, std::int64_t tick,
+                        std::vector<bool>& used) {
   const bool whole = !blob.cut_left && !blob.cut_right;
   double radius_m = std::isfinite(blob.width_m) && whole ? 0.5 * blob.width_m : kDefaultRadius_m;
   double distance_m = blob.range_m + radius_m, bearing_rad = blob.bearing_rad;
   if (!whole) {
-    radius_m = known_radius_m(blob, to_parent(exposure, distance_m * along(bearing_rad)));
+    radius_m = known_radius_m(blob, to_parent(view, distance_m * along(bearing_rad)));
     std::tie(distance_m, bearing_rad) = centre_of_cut(blob, radius_m);
   }
-  const Eigen::Vector2d sight = along(bearing_rad), across = left(bearing_rad);
-  const Eigen::Vector2d z = to_parent(exposure, distance_m * sight);
+  const Eigen::Vector2d sight = along(bearing_rad + turn_rad), across = left(bearing_rad + turn_rad);
+  const Eigen::Vector2d z = to_parent(view, distance_m * along(bearing_rad));
   const double cut_sd = whole ? 0.0 : kCutShare * radius_m;
   const double range_sd = config_.range_sd_m + config_.range_sd_1_m * distance_m * distance_m + cut_sd;
   const double across_sd = config_.bearing_sd_rad * distance_m + 0.01 + cut_sd;
@@ -166,13 +167,13 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& exposure, std::
   }
 }
 
-void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick) {
+void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick) {
   // The blob has no range, or its centre is out of view. It belongs to a landmark of its colour that is nearby and in
   // the same direction.
   const double farthest_m = std::isfinite(blob.range_m) ? config_.max_range_m : kNear_m;
   for (Landmark& landmark : state_.landmarks) {
     if (landmark.colour != blob.colour || landmark.kind != blob.kind || landmark.carried) continue;
-    const Eigen::Vector2d p = exposure.to_local(filter_.pose().to_local(position(landmark)));
+    const Eigen::Vector2d p = view.to_local(filter_.pose().to_local(position(landmark)));
     const double bearing = std::atan2(p.y(), p.x());
     if (p.norm() < farthest_m && std::abs(wrap_angle_by_shift(bearing - blob.bearing_rad)) < 0.5)
       landmark.last_seen_tick = tick;
@@ -180,6 +181,8 @@ void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& exposure, std
 }
 
 void FieldMapper::objects(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, std::int64_t tick) {
+  const PlanarPose view = view_of(percepts, exposure);
+  const double turn_rad = percepts.camera == 0 ? 0.0 : percepts.X_GV.yaw_rad;
   std::vector<bool> used(state_.landmarks.size(), false);
   const int count = std::min<int>(percepts.blob_count, msg::kMaxBlobs);
   for (int i = 0; i < count; ++i) {
@@ -188,9 +191,9 @@ void FieldMapper::objects(const msg::ObjectPercepts& percepts, const PlanarPose&
     // The visible part of a zone that the image's border cuts says little of where the zone's centre is.
     const bool part = blob.kind == msg::kBlobZone && (blob.cut_left || blob.cut_right);
     if (!std::isfinite(blob.range_m) || part || (blob.cut_left && blob.cut_right)) {
-      glimpse(blob, exposure, tick);
+      glimpse(blob, view, tick);
     } else if (blob.range_m < config_.max_range_m) {
-      place(blob, exposure, tick, used);
+      place(blob, view, turn_rad, tick, used);
     }
   }
   for (std::size_t i = state_.landmarks.size(); i-- > 0;) {

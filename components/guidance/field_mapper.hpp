@@ -15,8 +15,17 @@ using BodyChain = std::vector<PlanarPose>;
 /// [m] radius of an object whose width has not been measured.
 inline constexpr double kDefaultRadius_m = 0.085;
 
+/// Frame V of percepts in the head's present frame. `exposure`: the head at the exposure, in its present frame.
+template <class Percepts>
+[[nodiscard]] PlanarPose view_of(const Percepts& percepts, const PlanarPose& exposure) {
+  if (percepts.camera == 0) return exposure;
+  const msg::Pose2& X_GV = percepts.X_GV;
+  return {to_parent(exposure, {X_GV.x_m, X_GV.y_m}), wrap_angle(exposure.yaw_rad + X_GV.yaw_rad)};
+}
+
 /// Works on a FieldState and a PoseFilter that the caller owns. `exposure` is the pose that the head had when the image
-/// was exposed, in the head's present frame. With it, neither motion nor delay distorts the map.
+/// was exposed, in the head's present frame. With it, neither motion nor delay distorts the map. The percepts may be
+/// those of any camera of the robot.
 class FieldMapper {
  public:
   FieldMapper(FieldState& state, PoseFilter& filter, const RobotModel& model, const GuidanceConfig& config);
@@ -43,12 +52,14 @@ class FieldMapper {
   [[nodiscard]] Eigen::Vector2d position(const Landmark& landmark) const;
   [[nodiscard]] double sd(const Landmark& landmark) const;
   /// Updates, moves or creates the landmark of a blob with a range. `used` marks the landmarks that already have a blob
-  /// in this image.
-  void place(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick, std::vector<bool>& used);
+  /// in this image. `view`: frame V of the percepts in the head's present frame; `turn_rad`: its yaw in the head at the
+  /// exposure.
+  void place(const msg::Blob& blob, const PlanarPose& view, double turn_rad, std::int64_t tick,
+             std::vector<bool>& used);
   /// [m] radius of the landmark that a blob at `z` (in the head's frame) may belong to.
   [[nodiscard]] double known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const;
   /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
-  void glimpse(const msg::Blob& blob, const PlanarPose& exposure, std::int64_t tick);
+  void glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);
   /// Whether the landmark is so likely to exist that it may correct the pose.

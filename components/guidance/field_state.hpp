@@ -1,11 +1,15 @@
 // The map as guidance keeps it. Plain data, serialisable.
 #pragma once
 
+#include <array>
+#include <cereal/types/array.hpp>
 #include <cereal/types/deque.hpp>
 #include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <deque>
 #include <vector>
+
+#include "constrictor/messages.hpp"
 
 namespace constrictor::guidance {
 
@@ -23,10 +27,11 @@ struct Landmark {
   bool felt = false;
   bool carried = false;
   std::int64_t last_seen_tick = 0;
+  std::int64_t proved_tick = -1;  ///< when an image last raised log_odds; the cameras expose at the same ticks
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, log_odds, felt, carried,
-            last_seen_tick);
+    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, log_odds, felt, carried, last_seen_tick,
+            proved_tick);
   }
 };
 
@@ -47,11 +52,11 @@ struct FieldState {
   std::uint16_t next_handle = 1;
   bool carrying = false;
   std::uint8_t line_colour = 0;
-  std::vector<double> line_x_m, line_y_m;          ///< points in M, in the order of their discovery
-  std::vector<std::int64_t> line_tick;             ///< tick of each discovery
-  std::deque<Felt> felt;                           ///< the oldest first
-  std::vector<double> obstacle_x_m, obstacle_y_m;  ///< felt obstacles in M, the oldest first
-  std::int64_t looked_tick = 0;                    ///< of the newest percepts
+  std::vector<double> line_x_m, line_y_m;                    ///< points in M, in the order of their discovery
+  std::vector<std::int64_t> line_tick;                       ///< tick of each discovery
+  std::deque<Felt> felt;                                     ///< the oldest first
+  std::vector<double> obstacle_x_m, obstacle_y_m;            ///< felt obstacles in M, the oldest first
+  std::array<std::int64_t, msg::kMaxCameras> looked_tick{};  ///< of the newest percepts of each camera
   template <class Archive>
   void serialize(Archive& archive) {
     archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, obstacle_x_m,

@@ -27,7 +27,9 @@ bool is_level(const msg::Quaternion& q) { return 1.0 - 2.0 * (q.x * q.x + q.y * 
 Guidance::Guidance(Wiring& wiring, const Setup& setup)
     : TunableComponent(wiring, setup, topics::kGuidanceParameters),
       log_(setup.log),
-      model_(load_robot(setup.robot_file)) {}
+      model_(load_robot(setup.robot_file)) {
+  if (!model_.further_cameras.empty()) further_.emplace(wiring);
+}
 
 void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, bool imu) {
   guidance::OdometryInput input;
@@ -123,6 +125,38 @@ bool Guidance::believed(const Latest<Message>& input, const char* topic, Limits.
   return !complaint;
 }
 
+template <class Message>
+std::vector<const Message*> Guidance::believed(const Events<Message>& input, const char* topic) {
+  std::vector<const Message*> samples;
+  for (const Message& message : input) {
+    const char* complaint = guidance::implausible(message);
+    if (complaint == nullptr && (message.camera == 0 || model_.camera_of(message.camera) == nullptr))
+      complaint = "camera: not one of the robot's further cameras";
+    if (complaint) wiring_.count_refusal(std::string(topic) + "." + complaint);
+    else samples.push_back(&message);
+  }
+  return samples;
+}
+
+void Guidance::map_objects(const Tick& tick, guidance::FieldMapper& mapper, const msg::ObjectPercepts& objects,
+                           const guidance::BodyChain& chain, bool level) {
+  const PlanarPose exposure = past(objects.exposure_tick);
+  mapper.objects(objects, exposure, tick.index);
+  for (const auto& lost : mapper.doubt(objects, exposure, chain, level, tick.index, tick.period_s())) {
+    log_.warning("the {} {} {} is not at ({:.2f}, {:.2f}) m any more, where images should show it: left the map",
+                 name_of(constants::kColour, lost.colour), name_of(constants::kBlob, lost.kind), lost.handle, lost.x_m,
+                 lost.y_m);
+  }
+}
+
+void Guidance::map_further(const Tick& tick, guidance::FieldMapper& mapper, const guidance::BodyChain& chain,
+                           bool level) {
+  for (const auto* line : believed(further_->lines, "perception/further/line"))
+    mapper.line(*line, past(line->exposure_tick), tick.index, tick.period_s());
+  for (const auto* objects : believed(further_->objects, "perception/further/objects"))
+    map_objects(tick, mapper, *objects, chain, level);
+}
+
 void Guidance::step(const Tick& tick) {
   parameters_.step(tick, state_.parameters);
   guidance::PoseFilter filter(state_.filter);
@@ -146,16 +180,9 @@ void Guidance::step(const Tick& tick) {
     guidance::FieldMapper mapper(state_.field, filter, model_, config_);
     if (task_) mapper.carry(*task_, chain, tick.index);
     if (line) mapper.line(*percepts_.line, past(percepts_.line->exposure_tick), tick.index, tick.period_s());
-    if (objects) {
-      const PlanarPose exposure = past(percepts_.objects->exposure_tick);
-      mapper.objects(*percepts_.objects, exposure, tick.index);
-      const bool level = !imu || is_level(imu_->orientation);
-      for (const auto& lost : mapper.doubt(*percepts_.objects, exposure, chain, level, tick.index, tick.period_s())) {
-        log_.warning("the {} {} {} is not at ({:.2f}, {:.2f}) m any more, where images should show it: left the map",
-                     name_of(constants::kColour, lost.colour), name_of(constants::kBlob, lost.kind), lost.handle,
-                     lost.x_m, lost.y_m);
-      }
-    }
+    const bool level = !imu || is_level(imu_->orientation);
+    if (objects) map_objects(tick, mapper, *percepts_.objects, chain, level);
+    if (further_) map_further(tick, mapper, chain, level);
     if (contacts) mapper.touch(*body_.contacts, chain, tick.index, tick.period_s());
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "component/component.hpp"
@@ -48,6 +49,14 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   /// Whether a new message has arrived and is plausible. An implausible message is counted as a refusal.
   template <class Message, class... Limits>
   bool believed(const Latest<Message>& input, const char* topic, Limits... limits);
+  /// The same for the samples of a topic that several cameras share: the plausible ones of the robot's further cameras.
+  template <class Message>
+  std::vector<const Message*> believed(const Events<Message>& input, const char* topic);
+  /// Maps what the further cameras have seen. `level`: the head is not tilted.
+  void map_further(const Tick& tick, guidance::FieldMapper& mapper, const guidance::BodyChain& chain, bool level);
+  /// Maps objects and zones, and gives landmarks up that are not there any more.
+  void map_objects(const Tick& tick, guidance::FieldMapper& mapper, const msg::ObjectPercepts& objects,
+                   const guidance::BodyChain& chain, bool level);
   /// `imu`: the inertial unit measures the attitude of the head.
   void dead_reckon(const Tick& tick, const guidance::BodyChain& chain, bool imu);
   /// Appends a step to the track of dead-reckoned poses.
@@ -61,6 +70,7 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   BodyView body_{wiring_};
   Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
   PerceptView percepts_{wiring_};
+  std::optional<FurtherPerceptView> further_;  // of a robot that has further cameras
   Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
   Output<msg::RobotPose> pose_ = wiring_.output(topics::kRobotPose);
   Output<msg::FieldMap> map_ = wiring_.output(topics::kFieldMap);

@@ -51,7 +51,13 @@ inline const char* implausible(const msg::ImuState& imu) {
 /// NaN means "unknown". Known distances are limited; close to the horizon, distances are large and inaccurate.
 inline bool in_sight(double value) { return std::isnan(value) || std::abs(value) <= 1e4; }
 
+/// A camera is at most as far from the head as the longest robot is long.
+inline bool on_robot(const msg::Pose2& X_GV) {
+  return std::abs(X_GV.x_m) <= 100.0 && std::abs(X_GV.y_m) <= 100.0 && std::abs(X_GV.yaw_rad) <= 6.3;
+}
+
 inline const char* implausible(const msg::LinePercept& line) {
+  if (!on_robot(line.X_GV)) return "X_GV: accepted -100 to 100 m and -6.3 to 6.3 rad";
   const std::size_t points = std::min<std::size_t>(line.point_count, std::size(line.x_m));
   const bool seen = in_sight(line.end_distance_m) && in_sight(line.lookahead_m) && in_sight(line.offset_m) &&
                     in_sight(line.heading_rad) && in_sight(line.curvature_1_m) && in_sight(line.near_m) &&
@@ -61,6 +67,7 @@ inline const char* implausible(const msg::LinePercept& line) {
 }
 
 inline const char* implausible(const msg::ObjectPercepts& objects) {
+  if (!on_robot(objects.X_GV)) return "X_GV: accepted -100 to 100 m and -6.3 to 6.3 rad";
   const std::size_t count = std::min<std::size_t>(objects.blob_count, std::size(objects.blobs));
   const bool seen = std::all_of(objects.blobs, objects.blobs + count, [](const msg::Blob& blob) {
     return in_sight(blob.bearing_rad) && in_sight(blob.range_m) && in_sight(blob.width_m);

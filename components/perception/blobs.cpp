@@ -33,6 +33,8 @@ class Gauge {
     if (region_.low) {
       left_ = region_.left_rad;
       right_ = region_.right_rad;
+      left_hidden_ = region_.left_hidden;
+      right_hidden_ = region_.right_hidden;
     } else if (region_.standing()) {
       find_sides();
     }
@@ -47,6 +49,8 @@ class Gauge {
     bool cut = false;
     double range_m = on_zone ? kNan : lower_edge_range(left_, right_, cut);
     blob.cut_bottom |= cut;
+    blob.cut_left |= left_hidden_;
+    blob.cut_right |= right_hidden_;
     const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
     if (!std::isfinite(range_m)) range_m = range_by_size(blob);
     auto result = finish(blob, left_, right_, range_m);
@@ -57,6 +61,7 @@ class Gauge {
   /// The part that lies flat: the whole region, or the part beside the object.
   std::optional<msg::Blob> zone() const {
     double right = 1e9, left = -1e9, lateral_min = 1e9, lateral_max = -1e9;
+    bool left_hidden = false, right_hidden = false;
     for (int v = region_.v_min; v <= region_.v_max; ++v) {
       int first = -1, last = -1;
       for (int u = region_.u_min; u <= region_.u_max; ++u) {
@@ -65,8 +70,11 @@ class Gauge {
         last = u;
       }
       if (first < 0 || v < camera_.horizon_row(0.5 * (first + last))) continue;
-      left = std::max(left, azimuth({first, v + 0.5}));
-      right = std::min(right, azimuth({last + 1.0, v + 0.5}));
+      const double row_left = azimuth({first, v + 0.5}), row_right = azimuth({last + 1.0, v + 0.5});
+      if (row_left > left) left_hidden = hidden_beyond(first - 1, v);
+      if (row_right < right) right_hidden = hidden_beyond(last + 2, v);
+      left = std::max(left, row_left);
+      right = std::min(right, row_right);
       for (const int u : {first, last + 1}) {
         if (const auto p = camera_.ground(u, v + 0.5)) {
           lateral_min = std::min(lateral_min, p->y());
@@ -81,6 +89,8 @@ class Gauge {
     bool cut = false;
     const double range_m = lower_edge_range(left, right, cut);
     blob.cut_bottom |= cut;
+    blob.cut_left |= left_hidden;
+    blob.cut_right |= right_hidden;
     auto result = finish(blob, left, right, range_m);
     if (result && result->kind == msg::kBlobZone && !std::isfinite(result->width_m) && lateral_max > lateral_min) {
       result->width_m = lateral_max - lateral_min;
@@ -116,6 +126,9 @@ class Gauge {
     return (right_open_ || a > right_ - margin) && (left_open_ || a < left_ + margin);
   }
 
+  /// Whether the robot's body hides what lies beyond the side of the region, in the image of a further camera.
+  [[nodiscard]] bool hidden_beyond(int u, int v) const { return camera_.sees_body() && camera_.own_body(u, v + 0.5); }
+
   /// Whether a flat region at the image's border could be the foot of an object whose upper part is out of view: with
   /// the camera tilted, upright edges lean outwards in the image.
   [[nodiscard]] bool may_be_object(const msg::Blob& blob, double left, double right) const {
@@ -150,6 +163,7 @@ class Gauge {
   /// Azimuths of an object's sides at the horizon, where nothing flat can hide them.
   void find_sides() {
     std::vector<double> lefts, rights;
+    std::size_t lefts_hidden = 0, rights_hidden = 0;
     const double middle = 0.5 * (region_.standing_first + region_.standing_last + 1);
     const int horizon = static_cast<int>(std::floor(camera_.horizon_row(middle)));
     for (int v = horizon - 3; v <= horizon + 2; ++v) {
@@ -159,7 +173,11 @@ class Gauge {
       const Edge r = find_edge(rgb_, regions_, camera_, id_, start, {1.0, 0.0}, kMaxGapPixels);
       if (l.state != EdgeState::kNone) lefts.push_back(azimuth(l.pixel));
       if (r.state != EdgeState::kNone) rights.push_back(azimuth(r.pixel));
+      lefts_hidden += l.state == EdgeState::kCut ? 1 : 0;
+      rights_hidden += r.state == EdgeState::kCut ? 1 : 0;
     }
+    left_hidden_ = camera_.sees_body() && 2 * lefts_hidden > lefts.size();
+    right_hidden_ = camera_.sees_body() && 2 * rights_hidden > rights.size();
     if (lefts.empty() || rights.empty()) return;
     left_ = median(lefts);
     right_ = median(rights);
@@ -168,26 +186,9 @@ class Gauge {
     right_open_ = region_.standing_last == camera_.width() - 1;
   }
 
-  /// [m] horizontal distance of the lower edge from the camera around the middle azimuth; NaN if cut or hidden.
-  /// `cut`: the border of the image or the robot's own head cuts it.
   [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const {
-    std::vector<double> ranges;
-    int lost = 0, cuts = 0;
-    for (int i = 0; i < kPaths; ++i) {
-      const auto plane = vertical_plane(camera_, right + path_share(i, kPaths, kInnerShare) * (left - right));
-      if (!plane) continue;
-      const Edge edge = find_edge(rgb_, regions_, camera_, id_, plane->first_in_image(), plane->down,
-                                  region_.standing() && !region_.low ? kMaxGapPixels : 1e9);
-      if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
-      if (edge.state == EdgeState::kCut) ++cuts;
-      if (edge.state != EdgeState::kSeen) continue;
-      if (const auto p = camera_.ground(edge.pixel.x(), edge.pixel.y(), 50.0)) {
-        ranges.push_back((*p - camera_.position_on_ground()).norm());
-      }
-    }
-    cut = 2 * cuts > kPaths;
-    if (ranges.empty() || lost > static_cast<int>(ranges.size())) return kNan;
-    return median(ranges);
+    const double max_gap = region_.standing() && !region_.low ? kMaxGapPixels : 1e9;
+    return lower_edge_range_m(rgb_, camera_, regions_, id_, right, left, max_gap, cut);
   }
 
   /// [m] horizontal distance of an object of known size: by its width, otherwise by its upper edge; NaN if too little
@@ -241,6 +242,7 @@ class Gauge {
   const ObjectSize& size_;
   double left_ = 0.0, right_ = 0.0;  ///< azimuths of an object's sides
   bool left_open_ = false, right_open_ = false;
+  bool left_hidden_ = false, right_hidden_ = false;  ///< the robot's body hides this side; only in a further camera
 };
 
 }  // namespace

@@ -75,7 +75,7 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& c
     const Eigen::Vector2d p = start + t * direction;
     if (!inside(rgb, p)) break;
     const std::uint8_t other = id_at(regions.ids, p);
-    if (camera.own_head(p.x(), p.y())) {
+    if (camera.own_body(p.x(), p.y())) {
       edge.state = EdgeState::kCut;
       return edge;
     }

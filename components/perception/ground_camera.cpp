@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robot/rotation.hpp"
 
@@ -22,6 +23,21 @@ GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& o
   p_GC_ = R_GH * p_HC_ + Eigen::Vector3d(0, 0, head_height_m);
   p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the head lies on its side
   find_clear_side();
+}
+
+GroundCamera::GroundCamera(const msg::CameraInfo& info, const Eigen::Isometry3d& X_VC, OwnBody body)
+    : width_(info.width),
+      height_(info.height),
+      fx_(info.fx),
+      fy_(info.fy),
+      cx_(info.cx),
+      cy_(info.cy),
+      R_GC_(X_VC.linear()),
+      p_GC_(X_VC.translation()),
+      R_HC_(Eigen::Matrix3d::Identity()),
+      p_HC_(Eigen::Vector3d::Zero()),
+      body_(std::move(body)) {
+  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the robot lies on its side
 }
 
 void GroundCamera::find_clear_side() {
@@ -48,7 +64,8 @@ void GroundCamera::find_clear_side() {
   }
 }
 
-bool GroundCamera::own_head(double u, double v) const {
+bool GroundCamera::own_body(double u, double v) const {
+  if (sees_body()) return body_.covers({(u - cx_) / fx_, (v - cy_) / fy_, 1.0}, 2.0 / fx_);
   if (head_.radius_m <= 0.0) return false;
   const Eigen::Vector3d ray_C((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
   if (clear_.dot(ray_C) > 1e-9) return false;

@@ -1,10 +1,11 @@
-// Projection between the pixels of the head's pin-hole camera and the ground plane.
+// Projection between the pixels of a pin-hole camera of the robot and the ground plane.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "constrictor/messages.hpp"
+#include "perception/own_body.hpp"
 
 namespace constrictor::perception {
 
@@ -15,21 +16,27 @@ struct HeadShape {
 };
 
 /// A pin-hole camera at a known height and attitude above flat ground. Frame G: origin on the ground below the head's
-/// centre, x forward along the head's yaw, y left, z up. Pixel coordinates (u, v) are continuous: the centre of the
-/// first pixel is (0.5, 0.5).
+/// centre, x forward along the head's yaw, y left, z up. For a further camera, the frame V of its view takes the place
+/// of G: origin on the ground below the camera, x along the direction in which it looks, y left, z up. Pixel
+/// coordinates (u, v) are continuous: the centre of the first pixel is (0.5, 0.5).
 class GroundCamera {
  public:
   /// `orientation`: of the head (ImuState); its yaw is ignored. `head_height_m`: height of the head's centre.
   GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
                const HeadShape& head = {});
+  /// A further camera at X_VC, which sees the modules of `body`.
+  GroundCamera(const msg::CameraInfo& info, const Eigen::Isometry3d& X_VC, OwnBody body);
 
   /// Direction of the ray through a pixel, in G, not normalised.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const {
     return R_GC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
   }
 
-  /// Whether the robot's own head covers a pixel, or a place within about two pixels of it.
-  [[nodiscard]] bool own_head(double u, double v) const;
+  /// Whether the robot's own head covers a pixel, or a place within about two pixels of it. For a further camera:
+  /// whether any module of the robot does.
+  [[nodiscard]] bool own_body(double u, double v) const;
+  /// Whether this is a further camera, in whose image the robot's body may hide one side of an object or zone.
+  [[nodiscard]] bool sees_body() const { return !body_.empty(); }
 
   /// Ground point seen at a pixel; none at or above the horizon, or beyond `max_range_m` from the camera.
   [[nodiscard]] std::optional<Eigen::Vector2d> ground(double u, double v, double max_range_m = 20.0) const;
@@ -75,6 +82,7 @@ class GroundCamera {
   Eigen::Matrix3d R_HC_;
   Eigen::Vector3d p_HC_;
   HeadShape head_;
+  OwnBody body_;  ///< empty for the head's camera
   /// A pixel (u, v) with clear_·((u - cx) / fx, (v - cy) / fy, 1) > 0 does not show the head. Zero: there is no such
   /// test.
   Eigen::Vector3d clear_ = Eigen::Vector3d::Zero();

@@ -51,7 +51,7 @@ Seen LineView::look(const Eigen::Vector2d& p) const {
   const auto pixel = camera_.pixel(p);
   if (!pixel || !camera_.inside(*pixel)) return Seen::kOutside;
   const int u = static_cast<int>(pixel->x()), v = static_cast<int>(pixel->y());
-  if (is_standing(u, v) || camera_.own_head(pixel->x(), pixel->y())) return Seen::kStanding;
+  if (is_standing(u, v) || camera_.own_body(pixel->x(), pixel->y())) return Seen::kStanding;
   return labels_.image.at<std::uint8_t>(v, u) == colour_ ? Seen::kLine : Seen::kGround;
 }
 

@@ -21,7 +21,8 @@ Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions&
                   const Sides& sides, double& height_m) {
   constexpr double kInside = 2.5;  // [pixel]
   constexpr double kFlat_m = 0.02, kLow_m = 0.04;
-  const bool left = regions.regions[index].u_min > 0;
+  const Region& region = regions.regions[index];
+  const bool left = region.u_min > 0 && !region.left_hidden;
   const double inside_rad = kInside / camera.focal_pixels();
   if (sides.angle_rad() < 2.0 * inside_rad) return Rise::kDoubtful;
   const auto path =
@@ -59,7 +60,10 @@ void mark_low_objects(const cv::Mat& rgb, const GroundCamera& camera, const Perc
     const Sides sides = sides_of(rgb, camera, regions, i);
     if (sides.left_rad <= sides.right_rad) continue;
     if (Disc::between_tangents(sides.nearest_m, sides.angle_rad()).radius_m > config.object_max_radius_m) continue;
-    const bool cut_left = region.u_min == 0, cut_right = region.u_max == camera.width() - 1;
+    region.left_hidden = sides.left_hidden;
+    region.right_hidden = sides.right_hidden;
+    const bool cut_left = region.u_min == 0 || region.left_hidden;
+    const bool cut_right = region.u_max == camera.width() - 1 || region.right_hidden;
     double height_m = 0.0;
     Rise rise = Rise::kDoubtful;
     if (cut_left != cut_right) {

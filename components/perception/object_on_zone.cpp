@@ -45,6 +45,7 @@ struct ZoneOutline {
 std::optional<ZoneOutline> outline_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                       std::size_t index) {
   const Region& zone = regions.regions[index];
+  if (zone.left_hidden || zone.right_hidden) return std::nullopt;
   if (zone.u_min == 0 || zone.u_max == camera.width() - 1 || zone.v_max == camera.height() - 1) return std::nullopt;
   const Sides sides = sides_of(rgb, camera, regions, index);
   const std::vector<Path> paths = walk_paths(rgb, camera, regions, index, sides);

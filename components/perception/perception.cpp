@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
+#include "perception/further_view.hpp"
 #include "robot/planar_message.hpp"
-#include "robot/robot_model.hpp"
 
 namespace constrictor {
 namespace {
@@ -25,36 +26,65 @@ std::uint64_t fingerprint(const dds_sequence_octet& bytes) {
   return hash;
 }
 
+/// The entry of a tick; otherwise the one nearest to it; null if there is none.
+template <class Entry>
+const Entry* nearest_in_time(const std::deque<Entry>& entries, std::int64_t tick) {
+  const Entry* nearest = nullptr;
+  for (const Entry& entry : entries) {
+    if (nearest == nullptr || std::abs(entry.tick - tick) < std::abs(nearest->tick - tick)) nearest = &entry;
+  }
+  return nearest;
+}
+
 }  // namespace
+
+Perception::Further::Further(Wiring& wiring)
+    : infos(wiring.events(topics::kFurtherCameraInfo)),
+      images(wiring.events(topics::kFurtherCameraImage)),
+      joints(wiring.latest(topics::kJointState)),
+      percepts{wiring.output(topics::kFurtherLinePercept), wiring.output(topics::kFurtherObjectPercepts),
+               wiring.output(topics::kFurtherProcessedImage)} {}
 
 Perception::Perception(Wiring& wiring, const Setup& setup)
     : TunableComponent(wiring, setup, topics::kPerceptionParameters),
       detector_(config_),
-      seed_(setup.component_seed()) {
-  const RobotModel robot = load_robot(setup.robot_file);
-  // The robot lies on its modules: the centre of the head is one radius above the ground.
-  head_height_m_ = robot.module_radius_m;
-  head_ = {0.5 * robot.module_length_m, robot.module_radius_m};
+      seed_(setup.component_seed()),
+      robot_(load_robot(setup.robot_file)),
+      head_{0.5 * robot_.module_length_m, robot_.module_radius_m} {
+  if (robot_.further_cameras.empty()) return;
+  further_.emplace(wiring);
+  state_.further.resize(robot_.further_cameras.size());
 }
 
 msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
-  const Attitude* nearest = nullptr;
-  for (const Attitude& a : state_.attitudes) {
-    if (nearest == nullptr || std::abs(a.tick - tick) < std::abs(nearest->tick - tick)) nearest = &a;
-  }
+  const Attitude* nearest = nearest_in_time(state_.attitudes, tick);
   return nearest ? msg::Quaternion{nearest->w, nearest->x, nearest->y, nearest->z}
                  : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
 }
 
-bool Perception::frozen(const msg::CameraImage& image) {
-  const std::uint64_t now = fingerprint(image.data);
-  state_.equal_images = now == state_.fingerprint ? state_.equal_images + 1 : 1;
-  state_.fingerprint = now;
-  return config_.frozen_after > 0 && state_.equal_images > config_.frozen_after;
+std::vector<double> Perception::angles_at(std::int64_t tick) const {
+  const Posture* nearest = nearest_in_time(state_.postures, tick);
+  return nearest ? nearest->angles_rad : std::vector<double>{};
 }
 
-void Perception::step(const Tick& tick) {
-  if (parameters_.step(tick, state_.parameters)) detector_ = perception::LineAndBlobDetector(config_);
+bool Perception::accepted(const msg::CameraImage& image, const msg::CameraInfo& info, const char* topic,
+                          ImageRepeats& repeats) {
+  const std::string error = perception::image_error(image, info);
+  if (!error.empty()) {
+    wiring_.count_refusal(fmt::format("{}: {}", topic, error));
+    return false;
+  }
+  // The noise of any camera makes each image different.
+  const std::uint64_t now = fingerprint(image.data);
+  repeats.equal_images = now == repeats.fingerprint ? repeats.equal_images + 1 : 1;
+  repeats.fingerprint = now;
+  if (config_.frozen_after == 0 || repeats.equal_images <= config_.frozen_after) return true;
+  wiring_.count_refusal(fmt::format("{}: found the same bytes in {} images, accepted at most {}; the camera is frozen",
+                                    topic, repeats.equal_images, config_.frozen_after));
+  return false;
+}
+
+void Perception::remember_body(const Tick& tick) {
   if (imu_ && imu_.fresh()) {
     const auto& q = imu_->orientation;
     state_.attitudes.push_back({imu_->header.tick, q.w, q.x, q.y, q.z});
@@ -62,52 +92,85 @@ void Perception::step(const Tick& tick) {
     if (config_.slope_time_s > 0.0) state_.slope.learn(q, tick.period_s() / config_.slope_time_s);
     else state_.slope = {};
   }
-  if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
-  if (!image_ || !image_.fresh() || !info_) return;
-  const std::string error = perception::image_error(*image_, *info_);
-  if (!error.empty()) {
-    wiring_.count_refusal("camera/image: " + error);
-    return;
+  if (further_ && further_->joints && further_->joints.fresh()) {
+    const msg::JointState& joints = *further_->joints;
+    const std::size_t count = std::min<std::size_t>(joints.joint_count, robot_.joints.size());
+    state_.postures.push_back({joints.header.tick, {joints.position_rad, joints.position_rad + count}});
+    if (state_.postures.size() > kAttitudes) state_.postures.pop_front();
   }
-  if (frozen(*image_)) {
-    wiring_.count_refusal(
-        fmt::format("camera/image: found the same bytes in {} images, accepted at most {}; the camera "
-                    "is frozen",
-                    state_.equal_images, config_.frozen_after));
-    return;
-  }
-  ++state_.images;
+}
 
+void Perception::look(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
+                      const PlanarPose& X_GV, const PerceptOutputs& outputs) {
+  ++state_.images;
   // The matrix is a view of the message's pixels. The detector does not write to them.
-  const cv::Mat rgb(image_->height, image_->width, CV_8UC3, image_->data._buffer);
-  const msg::Quaternion attitude =
-      state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.level_rad);
-  const perception::GroundCamera camera(*info_, attitude, head_height_m_, head_);
+  const cv::Mat rgb(image.height, image.width, CV_8UC3, image.data._buffer);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
   perception::LineAndBlobDetector::Change errors;
   if (config_.errors.any()) {
     errors = [&](msg::LinePercept& line, msg::ObjectPercepts& objects) {
-      const double exposure_s = static_cast<double>(image_->exposure_tick) * tick.period_s();
-      const double yaw_rad = yaw_of(attitude_at(image_->exposure_tick));
-      perception::PerceptErrors(config_.errors, seed_).apply(exposure_s, yaw_rad, camera, line, objects);
+      const double exposure_s = static_cast<double>(image.exposure_tick) * tick.period_s();
+      const double yaw_rad = yaw_of(attitude_at(image.exposure_tick)) + X_GV.yaw_rad;
+      const std::uint64_t seed = seed_ + (std::uint64_t{image.camera} << 32U);  // each camera has errors of its own
+      perception::PerceptErrors(config_.errors, seed).apply(exposure_s, yaw_rad, camera, line, objects);
     };
   }
   perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, errors);
   state_.sizes.learn(percepts.measured);
 
-  percepts.line.exposure_tick = image_->exposure_tick;
-  percepts.objects.exposure_tick = image_->exposure_tick;
-  line_.write(percepts.line);
-  objects_.write(percepts.objects);
+  const auto complete = [&](auto& percept) {
+    percept.camera = image.camera;
+    percept.X_GV = {X_GV.p.x(), X_GV.p.y(), X_GV.yaw_rad};
+    percept.exposure_tick = image.exposure_tick;
+  };
+  complete(percepts.line);
+  complete(percepts.objects);
+  outputs.line.write(percepts.line);
+  outputs.objects.write(percepts.objects);
 
   msg::CameraImage picture{};
-  picture.width = image_->width;
-  picture.height = image_->height;
-  picture.exposure_tick = image_->exposure_tick;
+  picture.camera = image.camera;
+  picture.width = image.width;
+  picture.height = image.height;
+  picture.exposure_tick = image.exposure_tick;
   picture.data._buffer = percepts.picture.data;
-  picture.data._length = picture.data._maximum = image_->data._length;
+  picture.data._length = picture.data._maximum = image.data._length;
   picture.data._release = false;
-  processed_.write(picture);
+  outputs.processed.write(picture);
+}
+
+void Perception::look_further(const Tick& tick) {
+  const auto known = [&](std::uint8_t number, const char* topic) {
+    if (number >= 1 && number <= state_.further.size()) return true;
+    wiring_.count_refusal(fmt::format("{}.camera: found {}, accepted 1 to {}, the further cameras of the robot", topic,
+                                      number, state_.further.size()));
+    return false;
+  };
+  for (const msg::CameraInfo& info : further_->infos) {
+    if (known(info.camera, "camera/further/info")) state_.further[info.camera - 1U].info = info;
+  }
+  for (const msg::CameraImage& image : further_->images) {
+    if (!known(image.camera, "camera/further/image")) continue;
+    FurtherCamera& from = state_.further[image.camera - 1U];
+    if (from.info.width == 0 || !accepted(image, from.info, "camera/further/image", from.repeats)) continue;
+    const msg::Quaternion attitude =
+        state_.slope.relative_to_ground(attitude_at(image.exposure_tick), config_.level_rad);
+    const auto view = perception::further_view(from.info, robot_, attitude, angles_at(image.exposure_tick));
+    look(tick, image, view.camera, view.X_GV, further_->percepts);
+  }
+}
+
+void Perception::step(const Tick& tick) {
+  if (parameters_.step(tick, state_.parameters)) detector_ = perception::LineAndBlobDetector(config_);
+  remember_body(tick);
+  if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
+  if (image_ && image_.fresh() && info_ && accepted(*image_, *info_, "camera/image", state_.repeats)) {
+    const msg::Quaternion attitude =
+        state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.level_rad);
+    // The robot lies on its modules: the centre of the head is one radius above the ground.
+    look(tick, *image_, perception::GroundCamera(*info_, attitude, robot_.module_radius_m, head_), {}, percepts_);
+  }
+  if (further_) look_further(tick);
 }
 
 ComponentFactory make_perception_factory() {

@@ -3,13 +3,18 @@
 
 #include <cereal/types/array.hpp>
 #include <cereal/types/deque.hpp>
+#include <cereal/types/vector.hpp>
 #include <cstdint>
 #include <deque>
+#include <optional>
+#include <vector>
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
 #include "perception/line_and_blob_detector.hpp"
 #include "robot/ground_slope.hpp"
+#include "robot/planar.hpp"
+#include "robot/robot_model.hpp"
 
 namespace constrictor {
 
@@ -23,45 +28,101 @@ struct Attitude {
   }
 };
 
+/// Angles of the joints at a tick.
+struct Posture {
+  std::int64_t tick = 0;
+  std::vector<double> angles_rad;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(tick, angles_rad);
+  }
+};
+
+/// Finds out whether a camera repeats its image.
+struct ImageRepeats {
+  std::uint64_t fingerprint = 0;  ///< of the last image
+  int equal_images = 0;           ///< number of last images that are equal to the last one, itself included
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(fingerprint, equal_images);
+  }
+};
+
+struct FurtherCamera {
+  msg::CameraInfo info{};  ///< its width is 0 until it has arrived
+  ImageRepeats repeats;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    auto& p = info.X_HC.position_m;
+    auto& q = info.X_HC.orientation;
+    archive(info.module_index, info.width, info.height, info.fx, info.fy, info.cx, info.cy);
+    archive(p.x, p.y, p.z, q.w, q.x, q.y, q.z, repeats);
+  }
+};
+
 struct PerceptionState {
   std::deque<Attitude> attitudes;  ///< of the last ticks, the oldest first
   std::uint8_t line_colour = 0;    ///< named by a task; 0: no task has named one
   std::uint64_t images = 0;        ///< number of processed images
-  std::uint64_t fingerprint = 0;   ///< of the last image
-  int equal_images = 0;            ///< number of last images that are equal to the last one, itself included
+  ImageRepeats repeats;            ///< of the head's camera
   perception::ObjectSizes sizes;   ///< from the images so far
   GroundSlope slope;
   ParameterState parameters;
+  std::vector<FurtherCamera> further;  ///< one for each further camera of the robot
+  std::deque<Posture> postures;        ///< of the last ticks, the oldest first; empty without further cameras
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, fingerprint, equal_images, sizes, slope, parameters);
+    archive(attitudes, line_colour, images, repeats, sizes, slope, parameters, further, postures);
   }
 };
 
 /// Processes each new image with the attitude that the head had when the image was exposed. Publishes nothing before
 /// the first image and the first camera model. The line has the colour that a task named last; before that, the colour
-/// of the configuration.
+/// of the configuration. The images of further cameras are processed in the same way, with the angles that the joints
+/// had at the exposure, and their percepts have topics of their own.
 class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig> {
  public:
   Perception(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
 
  private:
-  /// Whether the camera repeats its image. The noise of any camera makes each image different.
-  [[nodiscard]] bool frozen(const msg::CameraImage& image);
+  /// The topics of the percepts of an image.
+  struct PerceptOutputs {
+    Output<msg::LinePercept> line;
+    Output<msg::ObjectPercepts> objects;
+    Output<msg::CameraImage> processed;
+  };
+  /// The topics of a robot that has further cameras.
+  struct Further {
+    explicit Further(Wiring& wiring);
+    Events<msg::CameraInfo> infos;
+    Events<msg::CameraImage> images;
+    Latest<msg::JointState> joints;
+    PerceptOutputs percepts;
+  };
+
+  void remember_body(const Tick& tick);
+  /// Whether the image can be used; counts a refusal otherwise.
+  [[nodiscard]] bool accepted(const msg::CameraImage& image, const msg::CameraInfo& info, const char* topic,
+                              ImageRepeats& repeats);
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
+  [[nodiscard]] std::vector<double> angles_at(std::int64_t tick) const;
+  /// Writes the percepts of an image. `X_GV`: frame V of the camera's view.
+  void look(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
+            const PlanarPose& X_GV, const PerceptOutputs& outputs);
+  void look_further(const Tick& tick);
 
   perception::LineAndBlobDetector detector_;
   std::uint64_t seed_;  // of the errors that are added to percepts
-  double head_height_m_ = 0.0;
+  RobotModel robot_;
   perception::HeadShape head_;
   Latest<msg::CameraImage> image_ = wiring_.latest(topics::kCameraImage);
   Latest<msg::CameraInfo> info_ = wiring_.latest(topics::kCameraInfo);
   Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
   Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
-  Output<msg::LinePercept> line_ = wiring_.output(topics::kLinePercept);
-  Output<msg::ObjectPercepts> objects_ = wiring_.output(topics::kObjectPercepts);
-  Output<msg::CameraImage> processed_ = wiring_.output(topics::kProcessedImage);
+  PerceptOutputs percepts_{wiring_.output(topics::kLinePercept), wiring_.output(topics::kObjectPercepts),
+                           wiring_.output(topics::kProcessedImage)};
+  std::optional<Further> further_;
 };
 
 /// Declares the component to the runtime.

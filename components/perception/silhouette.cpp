@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "perception/colour_edge.hpp"
 #include "perception/sight.hpp"
@@ -30,8 +31,11 @@ Sides sides_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& re
     const Edge l = find_edge(rgb, regions, camera, id, start, {-1.0, 0.0}, kAnyGap);
     const Edge r = find_edge(rgb, regions, camera, id, start, {1.0, 0.0}, kAnyGap);
     if (l.state == EdgeState::kNone || r.state == EdgeState::kNone) continue;
-    sides.left_rad = std::max(sides.left_rad, azimuth_rad(camera, l.pixel));
-    sides.right_rad = std::min(sides.right_rad, azimuth_rad(camera, r.pixel));
+    const double left_rad = azimuth_rad(camera, l.pixel), right_rad = azimuth_rad(camera, r.pixel);
+    if (left_rad > sides.left_rad) sides.left_hidden = camera.sees_body() && l.state == EdgeState::kCut;
+    if (right_rad < sides.right_rad) sides.right_hidden = camera.sees_body() && r.state == EdgeState::kCut;
+    sides.left_rad = std::max(sides.left_rad, left_rad);
+    sides.right_rad = std::min(sides.right_rad, right_rad);
   }
   return sides;
 }
@@ -61,6 +65,26 @@ std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, con
     paths.push_back(*path);
   }
   return paths;
+}
+
+double lower_edge_range_m(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::uint8_t id,
+                          double right_rad, double left_rad, double max_gap, bool& cut) {
+  std::vector<double> ranges;
+  int lost = 0, cuts = 0;
+  for (int i = 0; i < kPaths; ++i) {
+    const auto plane = vertical_plane(camera, right_rad + path_share(i, kPaths, kInnerShare) * (left_rad - right_rad));
+    if (!plane) continue;
+    const Edge edge = find_edge(rgb, regions, camera, id, plane->first_in_image(), plane->down, max_gap);
+    if (edge.state == EdgeState::kCut || edge.state == EdgeState::kHidden) ++lost;
+    if (edge.state == EdgeState::kCut) ++cuts;
+    if (edge.state != EdgeState::kSeen) continue;
+    if (const auto p = camera.ground(edge.pixel.x(), edge.pixel.y(), 50.0)) {
+      ranges.push_back((*p - camera.position_on_ground()).norm());
+    }
+  }
+  cut = 2 * cuts > kPaths;
+  if (ranges.empty() || lost > static_cast<int>(ranges.size())) return std::numeric_limits<double>::quiet_NaN();
+  return median(ranges);
 }
 
 std::vector<double> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,

@@ -21,7 +21,8 @@ inline constexpr double kMaxGapPixels = 3.0;
 /// The sides of a region: its greatest and least azimuth.
 struct Sides {
   double left_rad = -1e9, right_rad = 1e9;
-  double nearest_m = 0.0;  ///< distance of the lowest row in view
+  double nearest_m = 0.0;                          ///< distance of the lowest row in view
+  bool left_hidden = false, right_hidden = false;  ///< the robot's body hides this side; only in a further camera
   [[nodiscard]] double angle_rad() const { return left_rad - right_rad; }
   [[nodiscard]] double middle_rad() const { return 0.5 * (left_rad + right_rad); }
 };
@@ -43,6 +44,11 @@ struct Path {
 /// Up to kPaths paths, spread over the middle of the region.
 [[nodiscard]] std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                            std::size_t index, const Sides& sides);
+
+/// [m] horizontal distance of the lower edge of a region from the camera, in the middle between two azimuths; NaN if it
+/// is cut or hidden. `max_gap`: as for find_edge(). `cut`: the border of the image or the robot's own body cuts it.
+[[nodiscard]] double lower_edge_range_m(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
+                                        std::uint8_t id, double right_rad, double left_rad, double max_gap, bool& cut);
 
 /// Slopes of the lines of sight to the edge of a region above the horizon, positive upwards, in the middle between two
 /// azimuths; empty if the edge is cut or hidden.

@@ -26,7 +26,14 @@ video::VideoSource source_of(const VideoCaptureConfig& config, const Setup& setu
 }
 
 video::Rectifier rectifier_of(const VideoCaptureConfig& config, const Setup& setup) {
-  const auto robot = load_robot(robot_file_of(setup));
+  const auto file = robot_file_of(setup);
+  const auto robot = load_robot(file);
+  if (!robot.further_cameras.empty()) {
+    throw ConfigurationError(fmt::format(
+        "{}: further_cameras: found a list of {}, accepted none: video_capture reads one camera, that of the head; the "
+        "others would write no images",
+        file.string(), robot.further_cameras.size()));
+  }
   const auto calibration = config.calibration == "none"
                                ? video::calibration_of(robot.camera)
                                : video::load_calibration(data_path(config.calibration), robot.camera);

@@ -21,6 +21,14 @@ struct PerceptView {
   Latest<msg::ObjectPercepts> objects;
 };
 
+/// The percepts of the newest images of the further cameras.
+struct FurtherPerceptView {
+  explicit FurtherPerceptView(Wiring& wiring)
+      : lines(wiring.events(topics::kFurtherLinePercept)), objects(wiring.events(topics::kFurtherObjectPercepts)) {}
+  Events<msg::LinePercept> lines;
+  Events<msg::ObjectPercepts> objects;
+};
+
 /// The robot's estimate of the field around it: the percepts, its own pose, and the map.
 struct FieldView : PerceptView {
   explicit FieldView(Wiring& wiring)

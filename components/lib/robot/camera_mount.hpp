@@ -1,4 +1,4 @@
-// The pose of the camera of the robot file.
+// The poses of the cameras of the robot file.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +7,8 @@
 
 namespace constrictor {
 
-/// X_HC: pose of the camera (z along the view, x right, y down) in the head (x forward, y left, z up).
+/// X_HC: pose of the camera (z along the view, x right, y down) in the module that carries it (x forward, y left, z
+/// up), which is the head for the head's camera.
 [[nodiscard]] Eigen::Isometry3d camera_mount(const CameraModel& camera);
 
 }  // namespace constrictor

@@ -40,7 +40,8 @@ class UrdfWriter {
     xml_.line(1, R"(<material name="body"><color rgba="0.6 0.6 0.6 1"/></material>)");
     for (std::size_t i = 0; i < robot_.module_count; ++i) link(i);
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) joint(i);
-    camera();
+    camera(robot_.camera, "camera_mount");
+    for (const CameraModel& further : robot_.further_cameras) camera(further, "camera_" + further.name + "_mount");
     xml_.line(0, "</robot>");
     return xml_.take();
   }
@@ -92,13 +93,13 @@ class UrdfWriter {
     xml_.line(1, "</joint>");
   }
 
-  void camera() {
-    const Eigen::Isometry3d X_HC = camera_mount(robot_.camera);
-    xml_.line(1, R"(<link name="{}"/>)", kCameraFrame);
-    xml_.line(1, R"(<joint name="camera_mount" type="fixed">)");
-    xml_.line(2, R"(<parent link="{}"/>)", link_name(0));
-    xml_.line(2, R"(<child link="{}"/>)", kCameraFrame);
-    xml_.line(2, R"(<origin xyz="{}" rpy="{}"/>)", text_of(X_HC.translation()), text_of(rpy_of(X_HC.linear())));
+  void camera(const CameraModel& camera, const std::string& joint) {
+    const Eigen::Isometry3d X_LC = camera_in_link(robot_, camera);
+    xml_.line(1, R"(<link name="{}"/>)", camera_frame(camera));
+    xml_.line(1, R"(<joint name="{}" type="fixed">)", joint);
+    xml_.line(2, R"(<parent link="{}"/>)", link_name(camera.module));
+    xml_.line(2, R"(<child link="{}"/>)", camera_frame(camera));
+    xml_.line(2, R"(<origin xyz="{}" rpy="{}"/>)", text_of(X_LC.translation()), text_of(rpy_of(X_LC.linear())));
     xml_.line(1, "</joint>");
   }
 
@@ -118,8 +119,8 @@ class SdfWriter {
     xml_.line(0, R"(<sdf version="1.9">)");
     xml_.line(1, R"(<model name="{}">)", xml_escaped(robot_.name));
     xml_.line(2, "<pose>0 0 {} 0 0 0</pose>", robot_.module_radius_m);
-    xml_.line(2, R"(<frame name="{}" attached_to="{}"><pose>{}</pose></frame>)", kCameraFrame, link_name(0),
-              pose_text(camera_mount(robot_.camera)));
+    frame(robot_.camera);
+    for (const CameraModel& camera : robot_.further_cameras) frame(camera);
     for (std::size_t i = 0; i < robot_.module_count; ++i) link(i);
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) joint(i);
     xml_.line(1, "</model>");
@@ -128,6 +129,11 @@ class SdfWriter {
   }
 
  private:
+  void frame(const CameraModel& camera) {
+    xml_.line(2, R"(<frame name="{}" attached_to="{}"><pose>{}</pose></frame>)", camera_frame(camera),
+              link_name(camera.module), pose_text(camera_in_link(robot_, camera)));
+  }
+
   void link(std::size_t i) {
     const Vector3d centre = centre_in_link(robot_, i);
     const ModuleInertia inertia = module_inertia(robot_);
@@ -153,7 +159,10 @@ class SdfWriter {
       if (use == std::string("collision")) skin();
       xml_.line(3, "</{}>", use);
     }
-    if (i == 0) camera();
+    if (i == 0) camera(robot_.camera, "camera");
+    for (const CameraModel& further : robot_.further_cameras) {
+      if (further.module == i) camera(further, "camera_" + further.name);
+    }
     xml_.line(2, "</link>");
   }
 
@@ -178,13 +187,12 @@ class SdfWriter {
   }
 
   /// A camera of SDF looks along x, its z axis points up in the image.
-  void camera() {
-    const CameraModel& camera = robot_.camera;
-    Eigen::Isometry3d X_HSensor = camera_mount(camera);
-    const Eigen::Matrix3d R_HC = X_HSensor.linear();
-    X_HSensor.linear() << R_HC.col(2), -R_HC.col(0), -R_HC.col(1);
-    xml_.line(3, R"(<sensor name="camera" type="camera">)");
-    xml_.line(4, "<pose>{}</pose>", pose_text(X_HSensor));
+  void camera(const CameraModel& camera, const std::string& name) {
+    Eigen::Isometry3d X_LSensor = camera_in_link(robot_, camera);
+    const Eigen::Matrix3d R_LC = X_LSensor.linear();
+    X_LSensor.linear() << R_LC.col(2), -R_LC.col(0), -R_LC.col(1);
+    xml_.line(3, R"(<sensor name="{}" type="camera">)", name);
+    xml_.line(4, "<pose>{}</pose>", pose_text(X_LSensor));
     xml_.line(4, "<always_on>true</always_on>");
     xml_.line(4, "<update_rate>{}</update_rate>", 1.0 / (camera.period_ticks * tick_s_));
     xml_.line(4, "<camera>");
@@ -206,6 +214,16 @@ class SdfWriter {
 
 std::string joint_name(std::size_t joint) { return fmt::format("joint_{:02}", joint); }
 std::string link_name(std::size_t module) { return module == 0 ? "base_link" : fmt::format("module_{:02}", module); }
+
+std::string camera_frame(const CameraModel& camera) {
+  return camera.name.empty() ? kCameraFrame : fmt::format("camera_{}_optical", camera.name);
+}
+
+Eigen::Isometry3d camera_in_link(const RobotModel& robot, const CameraModel& camera) {
+  Eigen::Isometry3d X_LC = camera_mount(camera);
+  X_LC.translation() += centre_in_link(robot, camera.module);
+  return X_LC;
+}
 
 Vector3d centre_in_link(const RobotModel& robot, std::size_t module) {
   return {module == 0 ? 0.0 : -0.5 * robot.module_length_m, 0, 0};

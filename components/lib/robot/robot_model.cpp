@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "configuration/configuration.hpp"
+#include "robot/further_cameras.hpp"
 
 namespace constrictor {
 namespace {
@@ -110,6 +111,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   imu.finish();
 
   robot.camera = read_camera(root.section("camera"));
+  robot.further_cameras = read_further_cameras(root, robot);
   read_noise(root.section("noise", false), robot);
   root.finish();
   return robot;

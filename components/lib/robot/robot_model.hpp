@@ -36,15 +36,21 @@ struct JointModel {
   }
 };
 
-/// A pin-hole camera in the head module.
+/// A pin-hole camera: that of the head, or a further one.
 struct CameraModel {
+  std::string name;        ///< of a further camera
+  std::size_t module = 0;  ///< that carries the camera; 0: the head
   int width = 320;
   int height = 240;
   double horizontal_fov_rad = 1.57;
-  Eigen::Vector3d p_HC{0.03, 0.0, 0.05};  ///< [m] optical centre C in the head's frame H
+  Eigen::Vector3d p_HC{0.03, 0.0, 0.05};  ///< [m] optical centre C in the frame of the module; H is the head's frame
+  double yaw_rad = 0.0;                   ///< rotation of the optical axis about z, positive left; the head's: 0
   double tilt_rad = 0.3;                  ///< rotation of the optical axis downwards
-  int period_ticks = 5;                   ///< ticks between two images
+  int period_ticks = 5;                   ///< ticks between two images; all cameras expose at the same ticks
   int latency_ticks = 2;                  ///< ticks from exposure until the image is visible to its readers
+
+  /// [pixel] focal length.
+  [[nodiscard]] double focal_pixels() const { return 0.5 * width / std::tan(0.5 * horizontal_fov_rad); }
 };
 
 struct RobotModel {
@@ -54,11 +60,12 @@ struct RobotModel {
   double module_radius_m = 0.0;
   double module_belly_half_width_m = 0.0;  ///< of the flat underside that keeps a module from rolling; 0: round modules
   double module_mass_kg = 0.0;
-  std::vector<JointModel> joints;  ///< module_count - 1 joints, from head to tail
-  double friction_along = 0.05;    ///< Coulomb friction coefficient of the skin along the module's axis
-  double friction_across = 0.5;    ///< Coulomb friction coefficient of the skin across the module's axis
-  double torque_filter_s = 0.15;   ///< time constant of the low-pass filter of the measured joint torque
-  CameraModel camera;
+  std::vector<JointModel> joints;            ///< module_count - 1 joints, from head to tail
+  double friction_along = 0.05;              ///< Coulomb friction coefficient of the skin along the module's axis
+  double friction_across = 0.5;              ///< Coulomb friction coefficient of the skin across the module's axis
+  double torque_filter_s = 0.15;             ///< time constant of the low-pass filter of the measured joint torque
+  CameraModel camera;                        ///< of the head; its number is 0
+  std::vector<CameraModel> further_cameras;  ///< their numbers count from 1
   // Standard deviations of the sensor noise; 0: no noise.
   double joint_position_noise_rad = 0.0;
   double joint_torque_noise_nm = 0.0;
@@ -69,6 +76,11 @@ struct RobotModel {
   double imu_acceleration_noise_m_s2 = 0.0;
   double imu_yaw_drift_rad_sqrt_s = 0.0;  ///< random walk of the yaw of ImuState.orientation
 
+  /// The camera of a number; null if the robot has none of it.
+  [[nodiscard]] const CameraModel* camera_of(std::size_t number) const {
+    if (number == 0) return &camera;
+    return number <= further_cameras.size() ? &further_cameras[number - 1] : nullptr;
+  }
   /// Indices into `joints` of the yaw joints, from head to tail.
   [[nodiscard]] std::vector<std::size_t> yaw_joints() const;
 };

@@ -61,7 +61,8 @@ const std::map<std::string, std::unique_ptr<const Member>>& members() {
   static const auto all = [] {
     static SilentSink sink;
     Setup setup;
-    setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+    // A robot with all sensors: the components read and write the topics of further cameras only if there are some.
+    setup.robot_file = data_path("components/lib/robot/mamba_two_cameras.yaml");
     setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
     setup.mission = "{sequence: [green, red], line_colour: blue}";
     std::map<std::string, std::unique_ptr<const Member>> made;

@@ -191,7 +191,7 @@ TEST(Reference, OwnHeadIsWhereARayPassesTheCapsule) {
       }
       const double distance_m = (p_HC + t * d - Eigen::Vector3d(s, 0.0, 0.0)).norm();
       const bool expected = distance_m < head.radius_m + 0.2 / info.fx;
-      ASSERT_EQ(camera.own_head(u, v), expected) << "camera " << p_HC.transpose() << ", tilt " << tilt;
+      ASSERT_EQ(camera.own_body(u, v), expected) << "camera " << p_HC.transpose() << ", tilt " << tilt;
       ++(expected ? hits : misses);
     }
   }

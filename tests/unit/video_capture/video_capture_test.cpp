@@ -89,7 +89,7 @@ class VideoCaptureTest : public ::testing::Test {
   void start(const std::string& config, bool live) {
     std::ofstream(folder_.path() / "camera.yaml") << config << "\n";
     constrictor::Setup setup;
-    setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+    setup.robot_file = data_path("components/lib/robot/" + robot_);
     setup.output_dir = folder_.path();
     setup.log = Log("camera", folder_.path() / "log");
     const video::OpenVideo open = [camera = camera_] { return std::make_unique<HandFed::Input>(camera); };
@@ -132,6 +132,7 @@ class VideoCaptureTest : public ::testing::Test {
   [[nodiscard]] std::string refusals() { return run_->member("camera").counters().last_refusal; }
 
   const TemporaryFolder folder_;
+  std::string robot_ = "mamba.yaml";
   std::shared_ptr<HandFed> camera_ = std::make_shared<HandFed>();
   std::unique_ptr<LocalRun> run_;
   std::vector<Image> images_;
@@ -287,6 +288,9 @@ TEST_F(VideoCaptureTest, RefusesAConfigurationThatCannotWork) {
   EXPECT_NE(refusal("calibration: no_such.yaml").find("no_such.yaml"), std::string::npos);
   pictures(1, 320, 200);
   EXPECT_NE(refusal(folder_source()).find("proportions"), std::string::npos);
+  robot_ = "mamba_two_cameras.yaml";
+  EXPECT_NE(refusal(folder_source()).find("further_cameras: found a list of 1, accepted none: video_capture reads one"),
+            std::string::npos);
 }
 
 }  // namespace
