@@ -5,7 +5,7 @@
 # CONSTRICTOR_FALSE_ALARMS: g++ 12 gives these warnings for correct uses of std::string at -O3 (GCC bug
 # 105329); they would hide the true ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  set(CONSTRICTOR_FALSE_ALARMS -Wno-stringop-overflow -Wno-array-bounds)
+  set(CONSTRICTOR_FALSE_ALARMS -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds)
 endif()
 add_library(constrictor_options INTERFACE)
 target_compile_options(constrictor_options INTERFACE
@@ -58,14 +58,19 @@ function(constrictor_position_independent target)
   endif()
 endfunction()
 
+# constrictor_compile_together(TARGET): up to eight files of the target are compiled as one, because most of the time
+# goes into the headers that all of them include. Names in the anonymous namespaces of such a target must differ.
+function(constrictor_compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CONSTRICTOR_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # constrictor_compile_quickly(TARGET...): for programs that wait for people or messages, and for tests. CLI11, JSON and
 # GoogleTest compile a third faster at this level, which a user notices at the first build; the speed of these programs
-# does not change noticeably. Up to eight files are compiled as one, because most of the time goes into the headers that
-# all of them include: names in the anonymous namespaces of such a target must differ.
+# does not change noticeably.
 function(constrictor_compile_quickly)
   foreach(target ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ${CONSTRICTOR_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+    constrictor_compile_together(${target})
   endforeach()
 endfunction()
 
@@ -165,6 +170,7 @@ function(constrictor_library name)
   constrictor_include_root(root)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${root}>)
   constrictor_precompile(${name})
+  constrictor_compile_together(${name})
 endfunction()
 
 # constrictor_component(NAME SOURCES ... LINK ...): the library constrictor_NAME with the component's class, and the

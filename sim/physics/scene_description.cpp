@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/pose_message.hpp"
+
 namespace constrictor {
 namespace {
 
 static_assert(static_cast<std::uint8_t>(BodyShape::kCylinder) == msg::kShapeCylinder);
 static_assert(static_cast<std::uint8_t>(BodyShape::kBox) == msg::kShapeBox);
-
-msg::Vector3 vector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 

@@ -15,8 +15,6 @@ static_assert(static_cast<std::uint8_t>(Touched::kSelf) == msg::kTouchedSelf);
 static_assert(static_cast<std::uint8_t>(Touched::kObject) == msg::kTouchedObject);
 static_assert(static_cast<std::uint8_t>(Touched::kObstacle) == msg::kTouchedObstacle);
 
-msg::Vector3 vector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 msg::Quaternion quaternion(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 void add(msg::Vector3& sum, const Eigen::Vector3d& v) {

@@ -1,4 +1,4 @@
-// Poses in space as messages.
+// Poses and vectors in space as messages.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,6 +6,8 @@
 #include "constrictor/messages.hpp"
 
 namespace constrictor {
+
+inline msg::Vector3 vector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 inline msg::Pose3 pose_message(const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d p = pose.translation();

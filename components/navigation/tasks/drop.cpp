@@ -14,8 +14,6 @@
 namespace constrictor {
 namespace {
 
-enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten, kClear };
-
 struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;  ///< heading in M of the straight course over the zone
@@ -33,6 +31,8 @@ struct DropState : PhaseState {
 };
 
 class Drop : public StatefulTask<DropState> {
+  enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten, kClear };
+
  public:
   /// The zone has a place in the map, and the object is let go by touch.
   [[nodiscard]] bool steers_by_sight() const override { return false; }

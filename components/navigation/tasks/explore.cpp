@@ -5,10 +5,8 @@
 namespace constrictor {
 namespace {
 
-enum Phase : int { kLookLeft, kLookRight, kStep };
-
 struct ExploreState {
-  int phase = kStep;
+  int phase = 0;
   double phase_s = 0.0;
   PlanarPose from;  ///< the head when the phase began
   template <class Archive>
@@ -18,6 +16,8 @@ struct ExploreState {
 };
 
 class Explore : public StatefulTask<ExploreState> {
+  enum Phase : int { kLookLeft, kLookRight, kStep };
+
  public:
   void start(const TaskInput& input, Grip&) override { enter(input, kStep); }
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {

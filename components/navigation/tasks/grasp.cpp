@@ -10,8 +10,6 @@
 namespace constrictor {
 namespace {
 
-enum Phase : int { kWrap, kSeat, kSqueeze, kCheck, kOpen };
-
 struct GraspState : PhaseState {
   double seated_s = 0.0;
   int touching = 0;                                  ///< modules near the base that touched within touch_memory_s
@@ -27,6 +25,8 @@ struct GraspState : PhaseState {
 };
 
 class Grasp : public StatefulTask<GraspState> {
+  enum Phase : int { kWrap, kSeat, kSqueeze, kCheck, kOpen };
+
  public:
   /// The object is felt; the camera does not see it.
   [[nodiscard]] bool steers_by_sight() const override { return false; }

@@ -18,8 +18,6 @@ namespace {
 constexpr double kStep_m = 0.12;       // of the head, after a touch movement that did not touch the object
 constexpr std::size_t kSwinging = 12;  // modules that the touch movement can move
 
-enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
-
 struct PregraspState : PhaseState {
   double side = 1.0;        ///< +1: the object stays on the left
   double course_rad = 0.0;  ///< heading of the passing line in M
@@ -43,6 +41,8 @@ struct PregraspState : PhaseState {
 };
 
 class Pregrasp : public StatefulTask<PregraspState> {
+  enum Phase : int { kBendAway, kAdvance, kSettle, kTouch, kUnbend };
+
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
     if (grip.carrying) return "pregrasp cannot run while the robot carries an object";

@@ -12,10 +12,8 @@
 namespace constrictor {
 namespace {
 
-enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm, kLeave, kFace, kApproach };
-
 struct SearchState {
-  int phase = kLookLeft;
+  int phase = 0;
   int looks = 0;  ///< completed looks to both sides
   double phase_s = 0.0;
   double turned_rad = 0.0;
@@ -30,6 +28,8 @@ struct SearchState {
 };
 
 class SearchObject : public StatefulTask<SearchState> {
+  enum Phase : int { kLookLeft, kLookRight, kLookAhead, kAdvance, kTurn, kConfirm, kLeave, kFace, kApproach };
+
  public:
   std::string refusal(const TaskInput& input, const Grip&) const override { return handle_refusal(input); }
   void start(const TaskInput& input, Grip&) override { begin(input); }

@@ -13,8 +13,6 @@
 namespace constrictor::conform {
 namespace {
 
-constexpr double kTick_s = 0.02;
-
 bool same(const msg::CameraInfo& a, const msg::CameraInfo& b) {
   const auto &p = a.X_HC, &q = b.X_HC;
   return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&

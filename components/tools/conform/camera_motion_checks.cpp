@@ -11,7 +11,6 @@
 namespace constrictor::conform {
 namespace {
 
-constexpr double kTick_s = 0.02;
 constexpr double kMoved = 0.25;    // share of the motion; a smaller one counts as none
 constexpr double kClearer = 0.01;  // the right rotation must raise the correlation by this
 const char* const kMotionChecks[] = {"moves", "upside_down", "mirrored", "scale", "stamp_of_motion"};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "barrier/topic_ops.hpp"
+#include "conform/tick_period.hpp"
 #include "constrictor/text.hpp"
 #include "constrictor/topics.hpp"
 

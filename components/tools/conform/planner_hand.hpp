@@ -13,7 +13,6 @@ namespace constrictor::conform {
 
 class PlannerHand {
  public:
-  static constexpr double kTick_s = 0.02;
   /// Goal ids of the built-in planner on task/event and task/status: its own number plus this.
   static constexpr std::uint64_t kGoalBase = std::uint64_t{msg::kAuthorityPlanner} << 48;
 

@@ -11,8 +11,8 @@
 namespace constrictor::conform {
 namespace {
 
-constexpr double kWatch_s = 1.0;      // for which the new process is watched before it gets a command
-constexpr double kStopBound_s = 5.0;  // for clearing a stop
+constexpr double kWatchFirst_s = 1.0;  // for which the new process is watched before it gets a command
+constexpr double kStopBound_s = 5.0;   // for clearing a stop
 
 }  // namespace
 
@@ -57,7 +57,7 @@ std::string PlantConformance::restart_fault(const std::vector<double>& rest_rad,
   while (port_.incarnation() == before && port_.now_s() - begin_s < profile_.restart_within_s) watch(profile_.period_s);
   if (port_.incarnation() == before)
     return fmt::format("no other session within {:.0f} s after the process was ended", profile_.restart_within_s);
-  watch(kWatch_s);
+  watch(kWatchFirst_s);
   const double bound_rad = std::max(profile_.rest_rad, 0.3 * profile_.amplitude_rad);
   std::size_t farthest = 0;
   double strayed_rad = 0.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "conform/tick_period.hpp"
 #include "robot/camera_mount.hpp"
 #include "robot/pose_message.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTick_s = 0.02;
 constexpr int kSub = 2;  // rays in each direction of a pixel
 const Vector3d kGround(0.50, 0.49, 0.47), kSky(0.66, 0.68, 0.72);
 const std::array<Vector3d, msg::kColourCount> kPaint = {

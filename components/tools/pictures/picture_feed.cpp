@@ -18,8 +18,6 @@ namespace {
 // [s] An image that is computed again, and the processed image of an exposure, come a few ticks after their time.
 constexpr double kPatience_s = 0.3;
 
-double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
-
 /// The newest element up to a time, without those before it.
 template <class T>
 std::shared_ptr<const T> newest(std::deque<std::shared_ptr<const T>>& waiting, double time_s) {

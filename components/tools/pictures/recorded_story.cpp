@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
-
 class StoryReader {
  public:
   StoryReader(const fs::path& file, const std::function<void()>& stopped) : stopped_(stopped) { story_.file = file; }

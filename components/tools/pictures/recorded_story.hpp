@@ -22,6 +22,9 @@ class NoPicture : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// [s] time of a message: simulated, or the robot's own.
+inline double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
+
 /// How the pixels of images come.
 enum class Images {
   kNone,      ///< there are none, and they cannot be computed

@@ -123,24 +123,27 @@ class Wall : public ::testing::Test {
   static bool compiles(const std::string& file, const std::string& header) {
     std::ifstream stream(testing::build_path() / "compile_commands.json");
     const auto commands = nlohmann::json::parse(stream);
-    for (const auto& entry : commands) {
-      if (!compiles_it(entry["file"], file)) continue;
-      const std::string command = entry["command"];
-      const std::string compiler = command.substr(0, command.find(" -o "));
-      const Tree tree;
-      tree.add("probe.cpp", "#include \"" + header + "\"\n");
-      const std::string call = "cd '" + entry["directory"].get<std::string>() + "' && " + compiler +
-                               " -fsyntax-only -w '" + (tree.root() / "probe.cpp").string() + "' 2>/dev/null";
-      return std::system(call.c_str()) == 0;
-    }
-    throw std::runtime_error("compile_commands.json does not name " + file);
+    // The command of the file itself counts, and otherwise that of a group of files: a folder may have several targets.
+    const auto by_itself = std::find_if(commands.begin(), commands.end(), [&](const auto& entry) {
+      return entry["file"] == testing::source_path(file).string();
+    });
+    const auto command = by_itself != commands.end()
+                             ? by_itself
+                             : std::find_if(commands.begin(), commands.end(),
+                                            [&](const auto& entry) { return is_group(entry["file"], file); });
+    if (command == commands.end()) throw std::runtime_error("compile_commands.json does not name " + file);
+    const std::string text = (*command)["command"];
+    const std::string compiler = text.substr(0, text.find(" -o "));
+    const Tree tree;
+    tree.add("probe.cpp", "#include \"" + header + "\"\n");
+    const std::string call = "cd '" + (*command)["directory"].get<std::string>() + "' && " + compiler +
+                             " -fsyntax-only -w '" + (tree.root() / "probe.cpp").string() + "' 2>/dev/null";
+    return std::system(call.c_str()) == 0;
   }
 
  private:
-  /// Whether a command that compiles `compiled` serves for `file` of the project: it is that file, or a group of files
-  /// of its folder.
-  static bool compiles_it(const std::string& compiled, const std::string& file) {
-    if (compiled == testing::source_path(file).string()) return true;
+  /// Whether this is a group of files of the folder of `file`.
+  static bool is_group(const std::string& compiled, const std::string& file) {
     const std::string groups = (testing::build_path(fs::path(file).parent_path()) / "CMakeFiles/").string();
     return compiled.starts_with(groups) && compiled.find("/Unity/") != std::string::npos;
   }
