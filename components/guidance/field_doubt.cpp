@@ -8,6 +8,7 @@ namespace constrictor::guidance {
 namespace {
 
 constexpr std::size_t kNeck = 2;  // the modules next to the head lie behind the camera
+constexpr double kPeg_m = 0.04;   // radius of what stands at a point of an obstacle
 
 }  // namespace
 
@@ -24,21 +25,10 @@ void FieldMapper::replace(Landmark& landmark, const Eigen::Vector2d& z, const Ei
   landmark.last_seen_tick = tick;
 }
 
-std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure,
-                                         const BodyChain& chain, bool level, std::int64_t tick, double period_s) {
-  const ExistenceConfig& config = config_.existence;
+std::optional<View> FieldMapper::view_with_body(const msg::ObjectPercepts& percepts, const PlanarPose& X_HV,
+                                                const BodyChain& chain) const {
   const CameraModel* camera = model_.camera_of(percepts.camera);
-  if (camera == nullptr) return {};
-  std::int64_t& looked_tick = state_.looked_tick.at(percepts.camera);
-  const double since_s = static_cast<double>(tick - looked_tick) * period_s;
-  const double looks = std::clamp(since_s / config.look_s, 0.0, 1.0);
-  looked_tick = tick;
-  const PlanarPose X_HV = view_of(percepts, exposure);
-
-  const auto disc_of = [&](const Landmark& landmark) {
-    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    return Disc{X_HV.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
-  };
+  if (camera == nullptr) return std::nullopt;
   const bool further = percepts.camera > 0;  // the origin of V is then below the camera
   View view{*camera,
             further ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(camera->p_HC.head<2>()),
@@ -50,7 +40,30 @@ std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, co
     if (further && i == camera->module) continue;
     view.screens.push_back({X_HV.to_local(chain[i].p), module_m, 0.0, 2.0 * model_.module_radius_m});
   }
-  const std::size_t modules = view.screens.size();
+  return view;
+}
+
+std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure,
+                                         const BodyChain& chain, bool level, std::int64_t tick, double period_s) {
+  const ExistenceConfig& config = config_.existence;
+  const PlanarPose X_HV = view_of(percepts, exposure);
+  std::optional<View> view = view_with_body(percepts, X_HV, chain);
+  if (!view) return {};
+  std::int64_t& looked_tick = state_.looked_tick.at(percepts.camera);
+  const double since_s = static_cast<double>(tick - looked_tick) * period_s;
+  const double looks = std::clamp(since_s / config.look_s, 0.0, 1.0);
+  looked_tick = tick;
+
+  const auto disc_of = [&](const Landmark& landmark) {
+    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
+    return Disc{X_HV.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
+  };
+  for (const Obstacle& obstacle : state_.obstacles) {
+    if (believed(obstacle))
+      view->screens.push_back(
+          {X_HV.to_local(filter_.pose().to_local({obstacle.x_m, obstacle.y_m})), kPeg_m, obstacle.sd_m});
+  }
+  const std::size_t lasting = view->screens.size();
   std::vector<Landmark> given_up;
 
   for (std::size_t i = state_.landmarks.size(); i-- > 0;) {
@@ -62,11 +75,11 @@ std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, co
       landmark.proved_tick = tick;
     }
     if (seen || !level || landmark.strays > 0 || landmark.hits < config_.confirm) continue;
-    view.screens.resize(modules);
+    view->screens.resize(lasting);
     for (const Landmark& other : state_.landmarks) {
-      if (&other != &landmark && other.kind == msg::kBlobObject) view.screens.push_back(disc_of(other));
+      if (&other != &landmark && other.kind == msg::kBlobObject) view->screens.push_back(disc_of(other));
     }
-    if (!clearly_in_view(config, view, disc_of(landmark), landmark.colour)) continue;
+    if (!clearly_in_view(config, *view, disc_of(landmark), landmark.colour)) continue;
     landmark.log_odds = updated_log_odds(config, landmark.log_odds, false, looks);
     if (probability_of(landmark.log_odds) >= config.drop) continue;
     release_slot(landmark);

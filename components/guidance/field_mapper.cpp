@@ -161,10 +161,18 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   landmark.hits = std::min(landmark.hits + 1, kMaxHits);
   landmark.strays = 0;
   landmark.last_seen_tick = tick;
+  learn_height(blob, landmark);
   if (whole && !blob.cut_bottom && std::isfinite(blob.width_m)) {
     const double share = landmark.radius_m > 0.0 ? 1.0 / std::min(landmark.hits, 50) : 1.0;
     landmark.radius_m += share * (0.5 * blob.width_m - landmark.radius_m);
   }
+}
+
+void FieldMapper::learn_height(const msg::Blob& blob, Landmark& landmark) {
+  constexpr double kShare = 0.1;  // of the newest image in the mean
+  if (blob.kind != msg::kBlobObject || blob.cut_bottom || !(blob.height_m > 0.0)) return;
+  if (blob.cut_top) landmark.height_m = std::max(landmark.height_m, blob.height_m);
+  else landmark.height_m += (landmark.height_m > 0.0 ? kShare : 1.0) * (blob.height_m - landmark.height_m);
 }
 
 void FieldMapper::glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick) {
@@ -223,6 +231,7 @@ void FieldMapper::fill(msg::FieldMap& map) const {
     out.x_m = p.x();
     out.y_m = p.y();
     out.radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kNan;
+    out.height_m = landmark.height_m > 0.0 ? landmark.height_m : kNan;
     out.sd_m = sd(landmark);
     out.touched = landmark.felt;
     out.carried = landmark.carried;
@@ -233,9 +242,13 @@ void FieldMapper::fill(msg::FieldMap& map) const {
     const Felt& felt = state_.felt[i];
     map.touches[i] = {felt.x_m, felt.y_m, felt.force_n, felt.module_index, felt.tick, felt.handle};
   }
-  map.obstacle_count = static_cast<std::uint16_t>(state_.obstacle_x_m.size());
-  std::copy(state_.obstacle_x_m.begin(), state_.obstacle_x_m.end(), map.obstacle_x_m);
-  std::copy(state_.obstacle_y_m.begin(), state_.obstacle_y_m.end(), map.obstacle_y_m);
+  map.obstacle_count = 0;
+  for (const Obstacle& obstacle : state_.obstacles) {
+    if (!believed(obstacle)) continue;
+    map.obstacle_x_m[map.obstacle_count] = obstacle.x_m;
+    map.obstacle_y_m[map.obstacle_count] = obstacle.y_m;
+    map.obstacle_felt[map.obstacle_count++] = obstacle.felt;
+  }
 }
 
 }  // namespace constrictor::guidance

@@ -1,7 +1,10 @@
 // Builds the map from percepts and touches, and corrects the pose by the landmarks and by the line.
 #pragma once
 
+#include <optional>
+
 #include "constrictor/messages.hpp"
+#include "guidance/existence.hpp"
 #include "guidance/field_state.hpp"
 #include "guidance/guidance_config.hpp"
 #include "guidance/pose_filter.hpp"
@@ -38,6 +41,10 @@ class FieldMapper {
   /// that the camera sees what it should. Returns the landmarks that were forgotten, with their last places.
   std::vector<Landmark> doubt(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, const BodyChain& chain,
                               bool level, std::int64_t tick, double period_s);
+  /// Maps the obstacles that the image shows, and forgets those that it should show and does not. The arguments are
+  /// those of doubt().
+  void obstacles(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, const BodyChain& chain, bool level,
+                 std::int64_t tick);
   /// Maps the points of the line and corrects the pose by points that are in the map already.
   void line(const msg::LinePercept& percept, const PlanarPose& exposure, std::int64_t tick, double period_s);
   /// Keeps contacts that belong neither to the ground nor to the robot itself, and marks the objects that they confirm.
@@ -58,6 +65,8 @@ class FieldMapper {
              std::vector<bool>& used);
   /// [m] radius of the landmark that a blob at `z` (in the head's frame) may belong to.
   [[nodiscard]] double known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const;
+  /// Averages the heights over the images. An image that cuts the top off gives a lower bound.
+  void learn_height(const msg::Blob& blob, Landmark& landmark);
   /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
   void glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
@@ -70,8 +79,22 @@ class FieldMapper {
   void release_slot(Landmark& landmark);
   /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
-  /// Stores the place of an obstacle in M, unless there is one already.
-  void keep_obstacle(const Eigen::Vector2d& p_M);
+  /// The view of these percepts with the modules that may hide something in it. None if the robot has no such camera.
+  [[nodiscard]] std::optional<View> view_with_body(const msg::ObjectPercepts& percepts, const PlanarPose& X_HV,
+                                                   const BodyChain& chain) const;
+  /// Whether enough images showed the obstacle, or a touch did.
+  [[nodiscard]] bool believed(const Obstacle& obstacle) const;
+  /// The obstacle that a point at `p_M` shows, which was seen along the unit vector `sight` with this standard
+  /// deviation; null: a new one.
+  [[nodiscard]] Obstacle* obstacle_at(const Eigen::Vector2d& p_M, const Eigen::Vector2d& sight, double sd_m);
+  /// Whether a point in the head's frame lies on the body, or on an object of the map.
+  [[nodiscard]] bool is_no_obstacle(const Eigen::Vector2d& p, const BodyChain& chain) const;
+  /// Forgets obstacles that the images should show and do not.
+  void doubt_obstacles(const msg::ObjectPercepts& percepts, const PlanarPose& X_HV, const BodyChain& chain, bool level,
+                       std::int64_t tick);
+  void add_obstacle(const Obstacle& obstacle);
+  /// Stores the place of a touched obstacle in M, unless there is one already.
+  void feel_obstacle(const Eigen::Vector2d& p_M);
   /// Forgets obstacles where the body is now.
   void clear_obstacles(const BodyChain& chain);
   /// [m] position of the centre of an object of this radius that lies in the base of the U, in the head's frame.

@@ -21,6 +21,7 @@ struct Landmark {
   std::int32_t slot = -1;  ///< number of the landmark in the pose filter; -1: the filter does not keep it
   double x_m = 0.0, y_m = 0.0, sd_m = 0.0;  ///< position in M and its standard deviation; valid while slot is -1
   double radius_m = 0.0;                    ///< running mean; 0: unknown
+  double height_m = 0.0;                    ///< the same, of an object
   std::int32_t hits = 0;                    ///< number of percepts of this landmark; counting stops at 1000
   std::int32_t strays = 0;                  ///< number of successive percepts that showed the landmark at another place
   double log_odds = 0.0;                    ///< natural logarithm of the odds that it exists
@@ -30,8 +31,8 @@ struct Landmark {
   std::int64_t proved_tick = -1;  ///< when an image last raised log_odds; the cameras expose at the same ticks
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, hits, strays, log_odds, felt, carried, last_seen_tick,
-            proved_tick);
+    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, height_m, hits, strays, log_odds, felt, carried,
+            last_seen_tick, proved_tick);
   }
 };
 
@@ -47,6 +48,20 @@ struct Felt {
   }
 };
 
+/// A point on the surface of an obstacle.
+struct Obstacle {
+  double x_m = 0.0, y_m = 0.0;  ///< in M
+  double sd_m = 0.0;            ///< standard deviation along the line of sight
+  std::int32_t hits = 0;        ///< number of images that showed it
+  std::int32_t misses = 0;      ///< number of successive images that should have shown it
+  bool felt = false;
+  std::int64_t last_seen_tick = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, y_m, sd_m, hits, misses, felt, last_seen_tick);
+  }
+};
+
 struct FieldState {
   std::vector<Landmark> landmarks;
   std::uint16_t next_handle = 1;
@@ -55,12 +70,11 @@ struct FieldState {
   std::vector<double> line_x_m, line_y_m;                    ///< points in M, in the order of their discovery
   std::vector<std::int64_t> line_tick;                       ///< tick of each discovery
   std::deque<Felt> felt;                                     ///< the oldest first
-  std::vector<double> obstacle_x_m, obstacle_y_m;            ///< felt obstacles in M, the oldest first
+  std::vector<Obstacle> obstacles;                           ///< the oldest first
   std::array<std::int64_t, msg::kMaxCameras> looked_tick{};  ///< of the newest percepts of each camera
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, obstacle_x_m,
-            obstacle_y_m, looked_tick);
+    archive(landmarks, next_handle, carrying, line_colour, line_x_m, line_y_m, line_tick, felt, obstacles, looked_tick);
   }
 };
 

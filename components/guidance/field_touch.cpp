@@ -9,8 +9,6 @@ namespace constrictor::guidance {
 namespace {
 
 constexpr double kPushed_m = 0.04;  // standard deviation of the distance that a touched object may slide in a tick
-constexpr double kSameObstacle_m = 0.06;
-constexpr double kInside_m = 0.015;  // inside a module: an obstacle that is still there keeps the body out
 
 }  // namespace
 
@@ -62,40 +60,13 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
       }
     }
     if (nearest == nullptr) {
-      keep_obstacle(p_M);
+      feel_obstacle(p_M);
       continue;
     }
     state_.felt.back().handle = nearest->handle;
     nearest->felt = true;
     // The touched object may have been pushed. Later percepts of it must correct the landmark, not the robot's pose.
     if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
-  }
-}
-
-void FieldMapper::keep_obstacle(const Eigen::Vector2d& p_M) {
-  for (std::size_t i = 0; i < state_.obstacle_x_m.size(); ++i) {
-    if (std::hypot(state_.obstacle_x_m[i] - p_M.x(), state_.obstacle_y_m[i] - p_M.y()) < kSameObstacle_m) return;
-  }
-  if (state_.obstacle_x_m.size() >= static_cast<std::size_t>(msg::kMaxFeltObstacles)) {
-    state_.obstacle_x_m.erase(state_.obstacle_x_m.begin());
-    state_.obstacle_y_m.erase(state_.obstacle_y_m.begin());
-  }
-  state_.obstacle_x_m.push_back(p_M.x());
-  state_.obstacle_y_m.push_back(p_M.y());
-}
-
-void FieldMapper::clear_obstacles(const BodyChain& chain) {
-  const double half_m = 0.5 * model_.module_length_m;
-  for (std::size_t i = state_.obstacle_x_m.size(); i-- > 0;) {
-    const Eigen::Vector2d p = filter_.pose().to_local({state_.obstacle_x_m[i], state_.obstacle_y_m[i]});
-    const bool inside = std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
-      Eigen::Vector2d local = module.to_local(p);
-      local.x() -= std::clamp(local.x(), -half_m, half_m);
-      return local.norm() < model_.module_radius_m - kInside_m;
-    });
-    if (!inside) continue;
-    state_.obstacle_x_m.erase(state_.obstacle_x_m.begin() + static_cast<std::ptrdiff_t>(i));
-    state_.obstacle_y_m.erase(state_.obstacle_y_m.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
 

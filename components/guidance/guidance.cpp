@@ -142,6 +142,7 @@ void Guidance::map_objects(const Tick& tick, guidance::FieldMapper& mapper, cons
                            const guidance::BodyChain& chain, bool level) {
   const PlanarPose exposure = past(objects.exposure_tick);
   mapper.objects(objects, exposure, tick.index);
+  mapper.obstacles(objects, exposure, chain, level, tick.index);
   for (const auto& lost : mapper.doubt(objects, exposure, chain, level, tick.index, tick.period_s())) {
     log_.warning("the {} {} {} is not at ({:.2f}, {:.2f}) m any more, where images should show it: left the map",
                  name_of(constants::kColour, lost.colour), name_of(constants::kBlob, lost.kind), lost.handle, lost.x_m,

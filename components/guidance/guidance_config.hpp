@@ -99,6 +99,11 @@ struct GuidanceConfig : ParameterSet {
   double line_correct_gate_m = add(line_correct_gate_m, "line.correct_gate_m", 0.2, "m", {0.01, 1.0}, kAtStart,
                                    "Greatest distance between the line in view and in the map");
 
+  int obstacle_confirm = add(obstacle_confirm, "obstacles.confirm", 5, "", {1, 1000}, kWhileRunning,
+                             "Number of images that show an obstacle until it is believed");
+  int obstacle_misses = add(obstacle_misses, "obstacles.misses", 15, "", {1, 1000}, kWhileRunning,
+                            "After so many images that should show it and do not, it is forgotten");
+
   double touch_min_force_n =
       add(touch_min_force_n, "touch.min_force_n", 0.4, "N", {0.0, 100.0}, kWhileRunning, "Weaker touches are ignored");
   double touch_max_normal_z = add(touch_max_normal_z, "touch.max_normal_z", 0.5, "", {0.0, 1.0}, kAtStart,

@@ -70,9 +70,13 @@ inline const char* implausible(const msg::ObjectPercepts& objects) {
   if (!on_robot(objects.X_GV)) return "X_GV: accepted -100 to 100 m and -6.3 to 6.3 rad";
   const std::size_t count = std::min<std::size_t>(objects.blob_count, std::size(objects.blobs));
   const bool seen = std::all_of(objects.blobs, objects.blobs + count, [](const msg::Blob& blob) {
-    return in_sight(blob.bearing_rad) && in_sight(blob.range_m) && in_sight(blob.width_m);
+    return in_sight(blob.bearing_rad) && in_sight(blob.range_m) && in_sight(blob.width_m) && in_sight(blob.height_m);
   });
-  return seen ? nullptr : "blobs: accepted NaN and -1e4 to 1e4";
+  if (!seen) return "blobs: accepted NaN and -1e4 to 1e4";
+  const std::size_t obstacles = std::min<std::size_t>(objects.obstacle_count, std::size(objects.obstacle_x_m));
+  const bool placed =
+      all_within(objects.obstacle_x_m, obstacles, 1e4) && all_within(objects.obstacle_y_m, obstacles, 1e4);
+  return placed ? nullptr : "obstacle_x_m, obstacle_y_m: accepted -1e4 to 1e4";
 }
 
 }  // namespace constrictor::guidance

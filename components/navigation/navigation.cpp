@@ -43,10 +43,7 @@ void Navigation::step(const Tick& tick) {
     return;
   }
   const PlanarPose X_MH{{field_.pose->x_m, field_.pose->y_m}, field_.pose->yaw_rad};
-  if (field_.objects && field_.objects.fresh()) {
-    update_visibility(config_.object, *field_.objects, state_.sightings);
-    measure_heights(robot_, *field_.objects, state_.sightings);
-  }
+  if (field_.objects && field_.objects.fresh()) update_visibility(config_.object, *field_.objects, state_.sightings);
   if (field_.map && field_.map.fresh())
     take_places(config_.object, *field_.map, X_MH.p, state_.goal.parameters.object_handle, state_.sightings);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/camera_mount.hpp"
 #include "robot/landmarks.hpp"
 
 namespace constrictor {
@@ -35,6 +34,7 @@ void take_place(const msg::MapObject* landmark, double usual_radius_m, Range rad
   if (!landmark) return;
   s.x_m = landmark->x_m;
   s.y_m = landmark->y_m;
+  s.height_m = std::isfinite(landmark->height_m) ? landmark->height_m : 0.0;
   s.radius_m =
       std::isfinite(landmark->radius_m) ? std::clamp(landmark->radius_m, radius_m.min, radius_m.max) : usual_radius_m;
 }
@@ -57,40 +57,6 @@ void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPerce
     debounce(config, zone[colour], state.zones[colour]);
     if (object[colour]) state.objects[colour].seen_tick = percepts.exposure_tick;
     if (zone[colour]) state.zones[colour].seen_tick = percepts.exposure_tick;
-  }
-}
-
-double seen_height_m(const RobotModel& robot, const msg::Blob& blob) {
-  if (!std::isfinite(blob.range_m) || !std::isfinite(blob.bearing_rad)) return 0.0;
-  const CameraModel& camera = robot.camera;
-  const double focal = 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad);
-  const double u = 0.5 * (blob.u_min + blob.u_max + 1);
-  const Eigen::Vector3d top_C((u - 0.5 * camera.width) / focal, (blob.v_min - 0.5 * camera.height) / focal, 1.0);
-  const Eigen::Vector3d top_H = camera_mount(camera).linear() * top_C;
-  const double slope = top_H.z() / top_H.head<2>().norm();
-  const Eigen::Vector2d foot(blob.range_m * std::cos(blob.bearing_rad), blob.range_m * std::sin(blob.bearing_rad));
-  const double near_m = (foot - camera.p_HC.head<2>()).norm();
-  // A camera above the object sees the far rim of its top as the highest edge, one below it the near rim.
-  const bool above = slope < 0.0;
-  const double depth_m = above && std::isfinite(blob.width_m) ? std::max(0.0, blob.width_m) : 0.0;
-  return std::max(0.0, robot.module_radius_m + camera.p_HC.z() + (near_m + depth_m) * slope);
-}
-
-void measure_heights(const RobotModel& robot, const msg::ObjectPercepts& percepts, ObjectTrackerState& state) {
-  std::array<const msg::Blob*, msg::kColourCount> largest{};
-  for (std::size_t i = 0; i < percepts.blob_count; ++i) {
-    const msg::Blob& blob = percepts.blobs[i];
-    if (blob.colour >= msg::kColourCount || blob.kind != msg::kBlobObject || blob.cut_bottom) continue;
-    const msg::Blob*& best = largest[blob.colour];
-    if (!best || blob.area_fraction > best->area_fraction) best = &blob;
-  }
-  for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
-    if (!largest[colour]) continue;
-    Sighting& s = state.objects[colour];
-    const double now_m = seen_height_m(robot, *largest[colour]);
-    if (now_m <= 0.0) continue;
-    if (largest[colour]->cut_top) s.height_m = std::max(s.height_m, now_m);
-    else s.height_m += (s.height_m > 0.0 ? 0.1 : 1.0) * (now_m - s.height_m);
   }
 }
 

@@ -9,24 +9,23 @@
 #include "constrictor/messages.hpp"
 #include "navigation/debounce.hpp"
 #include "robot/planar.hpp"
-#include "robot/robot_model.hpp"
 
 namespace constrictor {
 
 /// The object, or the drop zone, of one colour.
 struct Sighting : Visibility {
   std::int64_t seen_tick = -1;  ///< exposure of the newest image that showed it
-  double height_m = 0.0;        ///< estimate, of an object; 0: no image has shown its top yet
   // The landmark of the map.
   bool known = false;        ///< the map has one
   std::uint16_t handle = 0;  ///< of the landmark; 0: the map has none
   double x_m = 0.0;          ///< centre in M
   double y_m = 0.0;
   double radius_m = 0.0;
+  double height_m = 0.0;  ///< of an object; 0: unknown
   [[nodiscard]] Eigen::Vector2d p_M() const { return {x_m, y_m}; }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(seen, missed, visible, seen_tick, height_m, known, handle, x_m, y_m, radius_m);
+    archive(seen, missed, visible, seen_tick, known, handle, x_m, y_m, radius_m, height_m);
   }
 };
 
@@ -55,13 +54,6 @@ struct ObjectTrackerState {
 /// visible already.
 void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPercepts& percepts,
                        ObjectTrackerState& state);
-
-/// [m] height of the upright object of this blob. If the image cuts its top off, this is a lower bound. 0: the range is
-/// unknown. The error is that of the head's pitch, 0.02 m for a degree at 1 m.
-[[nodiscard]] double seen_height_m(const RobotModel& robot, const msg::Blob& blob);
-
-/// Averages the heights of the objects over the images, each by the largest blob of its colour.
-void measure_heights(const RobotModel& robot, const msg::ObjectPercepts& percepts, ObjectTrackerState& state);
 
 /// Takes the places from a new map. Of several objects of a colour that the newest image shows, the one with the handle
 /// `named` counts (0: none is named), otherwise the one that is nearest to the head. While the images show none, the

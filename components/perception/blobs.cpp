@@ -54,7 +54,10 @@ class Gauge {
     const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
     if (!std::isfinite(range_m)) range_m = range_by_size(blob);
     auto result = finish(blob, left_, right_, range_m);
-    if (whole && result && range_m < kMeasuredRange_m) measure(range_m, result->width_m, measured);
+    if (!result) return result;
+    result->height_m = height_m(range_m, blob.cut_top);
+    if (whole && !blob.cut_top && range_m < kMeasuredRange_m && std::isfinite(result->height_m))
+      measured = {0.5 * result->width_m, result->height_m, 1};
     return result;
   }
 
@@ -205,15 +208,14 @@ class Gauge {
     return slope > 1e-3 ? above_m / slope : kNan;
   }
 
-  /// The size of an object whose foot and sides are in view.
-  void measure(double range_m, double width_m, ObjectSize& size) const {
-    double height_m = region_.height_m;
-    if (!region_.low) {
-      std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
-      if (slopes.empty()) return;
-      height_m = camera_.height_m() + range_m * median(slopes);
-    }
-    size = {0.5 * width_m, height_m, 1};
+  /// [m] height above the ground of the object at this range; NaN if unknown. `cut_top`: the height up to the border of
+  /// the image.
+  [[nodiscard]] double height_m(double range_m, bool cut_top) const {
+    if (region_.low) return region_.height_m;
+    std::vector<double> slopes;
+    if (cut_top) slopes.push_back(-descent(camera_, {0.5 * (region_.standing_first + region_.standing_last + 1), 0.0}));
+    else slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
+    return slopes.empty() ? kNan : camera_.height_m() + range_m * median(slopes);
   }
 
   /// Bearing, range and width of a round object between two tangents, converted from the camera to the head.
@@ -222,6 +224,7 @@ class Gauge {
     blob.bearing_rad = middle;
     blob.range_m = kNan;
     blob.width_m = kNan;
+    blob.height_m = kNan;
     if (!std::isfinite(range_m)) return blob;
     if (range_m > config_.blob_max_range_m) return std::nullopt;
     const auto [centre_m, radius_m] = Disc::between_tangents(range_m, left - right);
@@ -242,7 +245,7 @@ class Gauge {
   const ObjectSize& size_;
   double left_ = 0.0, right_ = 0.0;  ///< azimuths of an object's sides
   bool left_open_ = false, right_open_ = false;
-  bool left_hidden_ = false, right_hidden_ = false;  ///< the robot's body hides this side; only in a further camera
+  bool left_hidden_ = false, right_hidden_ = false;  ///< something, or the robot's body, hides this side
 };
 
 }  // namespace

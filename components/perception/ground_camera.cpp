@@ -9,8 +9,15 @@
 namespace constrictor::perception {
 
 GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
-                           const HeadShape& head)
-    : width_(info.width), height_(info.height), fx_(info.fx), fy_(info.fy), cx_(info.cx), cy_(info.cy), head_(head) {
+                           const HeadShape& head, OwnBody body)
+    : width_(info.width),
+      height_(info.height),
+      fx_(info.fx),
+      fy_(info.fy),
+      cx_(info.cx),
+      cy_(info.cy),
+      head_(head),
+      body_(std::move(body)) {
   const Eigen::Matrix3d R_WH = rotation_from(orientation);
   const double yaw = std::atan2(R_WH(1, 0), R_WH(0, 0));
   Eigen::Matrix3d R_GW;
@@ -65,9 +72,9 @@ void GroundCamera::find_clear_side() {
 }
 
 bool GroundCamera::own_body(double u, double v) const {
-  if (sees_body()) return body_.covers({(u - cx_) / fx_, (v - cy_) / fy_, 1.0}, 2.0 / fx_);
-  if (head_.radius_m <= 0.0) return false;
   const Eigen::Vector3d ray_C((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
+  if (sees_body() && body_.covers(ray_C, 2.0 / fx_)) return true;
+  if (head_.radius_m <= 0.0) return false;
   if (clear_.dot(ray_C) > 1e-9) return false;
   const Eigen::Vector3d d = (R_HC_ * ray_C).normalized();
   // Least distance between the ray and the axis of the capsule.

@@ -22,8 +22,9 @@ struct HeadShape {
 class GroundCamera {
  public:
   /// `orientation`: of the head (ImuState); its yaw is ignored. `head_height_m`: height of the head's centre.
+  /// `body`: the modules behind the head that may be in view.
   GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
-               const HeadShape& head = {});
+               const HeadShape& head = {}, OwnBody body = {});
   /// A further camera at X_VC, which sees the modules of `body`.
   GroundCamera(const msg::CameraInfo& info, const Eigen::Isometry3d& X_VC, OwnBody body);
 
@@ -32,10 +33,9 @@ class GroundCamera {
     return R_GC_ * Eigen::Vector3d((u - cx_) / fx_, (v - cy_) / fy_, 1.0);
   }
 
-  /// Whether the robot's own head covers a pixel, or a place within about two pixels of it. For a further camera:
-  /// whether any module of the robot does.
+  /// Whether the robot's own head or another of its modules covers a pixel, or a place within about two pixels of it.
   [[nodiscard]] bool own_body(double u, double v) const;
-  /// Whether this is a further camera, in whose image the robot's body may hide one side of an object or zone.
+  /// Whether modules other than the head may be in view, and hide one side of an object or zone.
   [[nodiscard]] bool sees_body() const { return !body_.empty(); }
 
   /// Ground point seen at a pixel; none at or above the horizon, or beyond `max_range_m` from the camera.
@@ -82,7 +82,7 @@ class GroundCamera {
   Eigen::Matrix3d R_HC_;
   Eigen::Vector3d p_HC_;
   HeadShape head_;
-  OwnBody body_;  ///< empty for the head's camera
+  OwnBody body_;
   /// A pixel (u, v) with clear_·((u - cx) / fx, (v - cy) / fy, 1) > 0 does not show the head. Zero: there is no such
   /// test.
   Eigen::Vector3d clear_ = Eigen::Vector3d::Zero();

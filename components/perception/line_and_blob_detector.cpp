@@ -10,6 +10,7 @@
 #include "perception/line_tracer.hpp"
 #include "perception/low_objects.hpp"
 #include "perception/object_on_zone.hpp"
+#include "perception/obstacles.hpp"
 #include "perception/picture.hpp"
 #include "perception/regions.hpp"
 
@@ -59,9 +60,25 @@ std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& in
   if (image.width < 32 || image.height < 24)
     return cv::format("size: found %d x %d, accepted 32 x 24 or more", image.width, image.height);
   if (const std::string violation = image_violation(image); !violation.empty()) return violation;
-  const bool finite =
-      std::isfinite(info.fx) && std::isfinite(info.fy) && std::isfinite(info.cx) && std::isfinite(info.cy);
-  if (!finite || info.fx <= 0.0 || info.fy <= 0.0) return "not used: camera/info has no focal length above 0";
+  // From a fish-eye of 170 degrees to a telescope of 1 degree.
+  constexpr double kShortest = 0.04, kLongest = 60.0;
+  const double size = std::max(info.width, info.height);
+  const auto bounded = [](double value, double least, double most) { return value >= least && value <= most; };
+  if (!bounded(info.fx, kShortest * size, kLongest * size) || !bounded(info.fy, kShortest * size, kLongest * size)) {
+    return cv::format("not used: camera/info has the focal lengths %g and %g, accepted %g to %g pixels", info.fx,
+                      info.fy, kShortest * size, kLongest * size);
+  }
+  if (!bounded(info.cx, -size, 2.0 * size) || !bounded(info.cy, -size, 2.0 * size)) {
+    return cv::format("not used: camera/info has its centre at (%g, %g), accepted %g to %g pixels", info.cx, info.cy,
+                      -size, 2.0 * size);
+  }
+  constexpr double kFarthest_m = 10.0;  // from the centre of its module
+  const auto& p = info.X_HC.position_m;
+  const auto& q = info.X_HC.orientation;
+  const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  if (!bounded(p.x, -kFarthest_m, kFarthest_m) || !bounded(p.y, -kFarthest_m, kFarthest_m) ||
+      !bounded(p.z, -kFarthest_m, kFarthest_m) || !bounded(square, 0.5, 2.0))
+    return "not used: X_HC of camera/info, accepted a unit quaternion and a position within 10 m";
   return {};
 }
 
@@ -86,6 +103,10 @@ Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& cam
   percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
   percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
   std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);
+  for (const Eigen::Vector2d& p : find_obstacles(smooth_, regions_, camera, config_)) {
+    percepts.objects.obstacle_x_m[percepts.objects.obstacle_count] = p.x();
+    percepts.objects.obstacle_y_m[percepts.objects.obstacle_count++] = p.y();
+  }
   if (change) change(percepts.line, percepts.objects);
   draw_percepts(rgb, labels_.image, camera, percepts.line, percepts.objects, picture_);
   percepts.picture = picture_;

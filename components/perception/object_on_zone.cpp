@@ -10,7 +10,7 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kRisePixels = 2.5;      // above the far rim of the zone
+constexpr double kAboveRimPixels = 2.5;  // above the far rim of the zone
 constexpr int kMaxGapColumns = 2;        // that noise makes in the outline of an object
 constexpr double kAboveCamera_m = 0.01;  // a higher object reaches far above the horizon
 constexpr double kHeightError_m = 0.025;
@@ -38,7 +38,7 @@ struct ZoneOutline {
   /// Whether the line of sight to a pixel passes above the far rim.
   [[nodiscard]] bool below(const GroundCamera& camera, const Eigen::Vector2d& pixel) const {
     const double far_m = disc.far_m(azimuth_rad(camera, pixel) - middle_rad);
-    return descent(camera, pixel) < camera.height_m() / far_m - kRisePixels / camera.focal_pixels();
+    return descent(camera, pixel) < camera.height_m() / far_m - kAboveRimPixels / camera.focal_pixels();
   }
 };
 

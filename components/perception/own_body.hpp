@@ -1,8 +1,13 @@
-// What a further camera sees of the robot's own body.
+// What a camera sees of the robot's own body.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <numbers>
+#include <span>
 #include <vector>
+
+#include "constrictor/messages.hpp"
+#include "robot/robot_model.hpp"
 
 namespace constrictor::perception {
 
@@ -10,8 +15,10 @@ namespace constrictor::perception {
 class OwnBody {
  public:
   OwnBody() = default;
-  /// `X_CM`: poses of the modules; a capsule's straight part reaches `half_length_m` along x to both sides.
-  OwnBody(const std::vector<Eigen::Isometry3d>& X_CM, double half_length_m, double radius_m);
+  /// `X_CM`: poses of the modules; a capsule's straight part reaches `half_length_m` along x to both sides. Modules
+  /// that lie farther from the camera's axis than the angle `view_rad` are left out.
+  OwnBody(const std::vector<Eigen::Isometry3d>& X_CM, double half_length_m, double radius_m,
+          double view_rad = std::numbers::pi);
 
   [[nodiscard]] bool empty() const { return modules_.empty(); }
   /// Whether a ray from the camera meets a module, or comes nearer to it than the angle `margin_rad`, as seen from the
@@ -27,5 +34,9 @@ class OwnBody {
   std::vector<Module> modules_;
   double reach_m_ = 0.0;
 };
+
+/// The modules behind the head that the head's camera may show, with these angles of the joints. Without angles: none.
+[[nodiscard]] OwnBody body_before_head(const msg::CameraInfo& info, const RobotModel& robot,
+                                       std::span<const double> angles_rad);
 
 }  // namespace constrictor::perception

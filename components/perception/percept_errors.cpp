@@ -100,8 +100,13 @@ void PerceptErrors::shift(std::uint64_t interval, msg::LinePercept& line, msg::O
     Random random(seed_ + interval, stream_of("range", *blob));
     blob->range_m *= config_.range_factor * std::max(kLeastFactor, 1.0 + config_.range_noise * random.normal());
     blob->width_m *= config_.range_factor;
+    blob->height_m *= config_.range_factor;
   }
   const double factor = config_.range_factor;
+  for (int i = 0; i < objects.obstacle_count; ++i) {
+    objects.obstacle_x_m[i] *= factor;
+    objects.obstacle_y_m[i] *= factor;
+  }
   for (double* length : {&line.lookahead_m, &line.offset_m, &line.near_m, &line.far_m, &line.end_distance_m})
     *length *= factor;
   line.curvature_1_m /= factor;
@@ -124,6 +129,7 @@ void PerceptErrors::invent(std::uint64_t interval, double yaw_rad, const GroundC
   blob.range_m = random.uniform(kNearest_m, kFarthest_m);
   const double radius_m = random.uniform(kThinnest_m, kThickest_m);
   blob.width_m = 2.0 * radius_m;
+  blob.height_m = kHeight_m;
   // The direction wraps around at the sides of the field of view, so that the object is always in view: an object that
   // leaves the view at one side enters it at the other side.
   const double half_view_rad = kInnerShare * std::atan(0.5 * camera.width() / camera.focal_pixels());

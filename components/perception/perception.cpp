@@ -41,7 +41,6 @@ const Entry* nearest_in_time(const std::deque<Entry>& entries, std::int64_t tick
 Perception::Further::Further(Wiring& wiring)
     : infos(wiring.events(topics::kFurtherCameraInfo)),
       images(wiring.events(topics::kFurtherCameraImage)),
-      joints(wiring.latest(topics::kJointState)),
       percepts{wiring.output(topics::kFurtherLinePercept), wiring.output(topics::kFurtherObjectPercepts),
                wiring.output(topics::kFurtherProcessedImage)} {}
 
@@ -92,10 +91,9 @@ void Perception::remember_body(const Tick& tick) {
     if (config_.slope_time_s > 0.0) state_.slope.learn(q, tick.period_s() / config_.slope_time_s);
     else state_.slope = {};
   }
-  if (further_ && further_->joints && further_->joints.fresh()) {
-    const msg::JointState& joints = *further_->joints;
-    const std::size_t count = std::min<std::size_t>(joints.joint_count, robot_.joints.size());
-    state_.postures.push_back({joints.header.tick, {joints.position_rad, joints.position_rad + count}});
+  if (joints_ && joints_.fresh()) {
+    const std::size_t count = std::min<std::size_t>(joints_->joint_count, robot_.joints.size());
+    state_.postures.push_back({joints_->header.tick, {joints_->position_rad, joints_->position_rad + count}});
     if (state_.postures.size() > kAttitudes) state_.postures.pop_front();
   }
 }
@@ -168,7 +166,10 @@ void Perception::step(const Tick& tick) {
     const msg::Quaternion attitude =
         state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.level_rad);
     // The robot lies on its modules: the centre of the head is one radius above the ground.
-    look(tick, *image_, perception::GroundCamera(*info_, attitude, robot_.module_radius_m, head_), {}, percepts_);
+    const perception::GroundCamera camera(
+        *info_, attitude, robot_.module_radius_m, head_,
+        perception::body_before_head(*info_, robot_, angles_at(image_->exposure_tick)));
+    look(tick, *image_, camera, {}, percepts_);
   }
   if (further_) look_further(tick);
 }

@@ -69,7 +69,7 @@ struct PerceptionState {
   GroundSlope slope;
   ParameterState parameters;
   std::vector<FurtherCamera> further;  ///< one for each further camera of the robot
-  std::deque<Posture> postures;        ///< of the last ticks, the oldest first; empty without further cameras
+  std::deque<Posture> postures;        ///< of the last ticks, the oldest first
   template <class Archive>
   void serialize(Archive& archive) {
     archive(attitudes, line_colour, images, repeats, sizes, slope, parameters, further, postures);
@@ -78,8 +78,8 @@ struct PerceptionState {
 
 /// Processes each new image with the attitude that the head had when the image was exposed. Publishes nothing before
 /// the first image and the first camera model. The line has the colour that a task named last; before that, the colour
-/// of the configuration. The images of further cameras are processed in the same way, with the angles that the joints
-/// had at the exposure, and their percepts have topics of their own.
+/// of the configuration. The angles that the joints had at the exposure show which parts of the image are the robot's
+/// own body. The images of further cameras are processed in the same way, and their percepts have topics of their own.
 class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig> {
  public:
   Perception(Wiring& wiring, const Setup& setup);
@@ -97,7 +97,6 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
     explicit Further(Wiring& wiring);
     Events<msg::CameraInfo> infos;
     Events<msg::CameraImage> images;
-    Latest<msg::JointState> joints;
     PerceptOutputs percepts;
   };
 
@@ -118,6 +117,7 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   perception::HeadShape head_;
   Latest<msg::CameraImage> image_ = wiring_.latest(topics::kCameraImage);
   Latest<msg::CameraInfo> info_ = wiring_.latest(topics::kCameraInfo);
+  Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
   Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
   Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
   PerceptOutputs percepts_{wiring_.output(topics::kLinePercept), wiring_.output(topics::kObjectPercepts),

@@ -42,6 +42,10 @@ struct PerceptionConfig : ParameterSet {
                             "Smaller blobs are ignored");
   double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, kWhileRunning,
                                 "More distant objects and zones are not reported");
+  double obstacle_max_range_m = add(obstacle_max_range_m, "obstacle.max_range_m", 1.2, "m", {0.0, 5.0}, kWhileRunning,
+                                    "More distant obstacles are not reported; 0: none is looked for");
+  double obstacle_min_contrast = add(obstacle_min_contrast, "obstacle.min_contrast", 0.06, "", {0.01, 1.0},
+                                     kWhileRunning, "Least difference to ground and background (full scale: 1)");
   double slope_time_s = add(slope_time_s, "ground.slope_time_s", 4.0, "s", {0.0, 600.0}, kWhileRunning,
                             "Time constant of the mean that finds the slope; 0: the ground is level");
   double level_rad = add(level_rad, "ground.level_rad", 0.015, "rad", {0.0, 0.3}, kWhileRunning,

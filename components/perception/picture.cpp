@@ -111,6 +111,16 @@ void draw_blobs(cv::Mat& picture, const msg::ObjectPercepts& objects) {
   }
 }
 
+/// Marks where obstacles stand on the ground.
+void draw_obstacles(cv::Mat& picture, const GroundCamera& camera, const msg::ObjectPercepts& objects) {
+  for (int i = 0; i < objects.obstacle_count; ++i) {
+    const auto pixel = camera.pixel(Eigen::Vector2d(objects.obstacle_x_m[i], objects.obstacle_y_m[i]));
+    if (!pixel || !camera.inside(*pixel)) continue;
+    const cv::Point foot(static_cast<int>(pixel->x()), static_cast<int>(pixel->y()));
+    cv::line(picture, foot - cv::Point(0, 3), foot + cv::Point(0, 3), cv::Scalar(255, 255, 255), 2, cv::LINE_8);
+  }
+}
+
 }  // namespace
 
 void draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera& camera, const msg::LinePercept& line,
@@ -125,6 +135,7 @@ void draw_percepts(const cv::Mat& rgb, const cv::Mat& labels, const GroundCamera
     cv::line(picture, {0, static_cast<int>(left)}, {rgb.cols - 1, static_cast<int>(right)}, cv::Scalar(90, 90, 110), 1,
              cv::LINE_8);
   }
+  draw_obstacles(picture, camera, objects);
   draw_blobs(picture, objects);
   draw_line(picture, camera, line);
 }

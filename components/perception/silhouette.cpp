@@ -18,6 +18,10 @@ constexpr double kAnyGap = 1e9;  // [pixel] the walk to an edge passes over ever
 Sides sides_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index) {
   const Region& region = regions.regions[index];
   const auto id = static_cast<std::uint8_t>(index + 1);
+  // Something stands before the edge, or the robot's own body is there.
+  const auto is_hidden = [&](const Edge& edge) {
+    return edge.state == EdgeState::kHidden || (camera.sees_body() && edge.state == EdgeState::kCut);
+  };
   Sides sides;
   for (int v = region.v_min; v <= region.v_max; ++v) {
     const std::uint8_t* ids = regions.ids.ptr<std::uint8_t>(v);
@@ -32,8 +36,8 @@ Sides sides_of(const cv::Mat& rgb, const GroundCamera& camera, const Regions& re
     const Edge r = find_edge(rgb, regions, camera, id, start, {1.0, 0.0}, kAnyGap);
     if (l.state == EdgeState::kNone || r.state == EdgeState::kNone) continue;
     const double left_rad = azimuth_rad(camera, l.pixel), right_rad = azimuth_rad(camera, r.pixel);
-    if (left_rad > sides.left_rad) sides.left_hidden = camera.sees_body() && l.state == EdgeState::kCut;
-    if (right_rad < sides.right_rad) sides.right_hidden = camera.sees_body() && r.state == EdgeState::kCut;
+    if (left_rad > sides.left_rad) sides.left_hidden = is_hidden(l);
+    if (right_rad < sides.right_rad) sides.right_hidden = is_hidden(r);
     sides.left_rad = std::max(sides.left_rad, left_rad);
     sides.right_rad = std::min(sides.right_rad, right_rad);
   }

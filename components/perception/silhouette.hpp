@@ -22,7 +22,7 @@ inline constexpr double kMaxGapPixels = 3.0;
 struct Sides {
   double left_rad = -1e9, right_rad = 1e9;
   double nearest_m = 0.0;                          ///< distance of the lowest row in view
-  bool left_hidden = false, right_hidden = false;  ///< the robot's body hides this side; only in a further camera
+  bool left_hidden = false, right_hidden = false;  ///< something, or the robot's body, hides this side
   [[nodiscard]] double angle_rad() const { return left_rad - right_rad; }
   [[nodiscard]] double middle_rad() const { return 0.5 * (left_rad + right_rad); }
 };

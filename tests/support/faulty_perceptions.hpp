@@ -41,6 +41,7 @@ inline std::vector<NamedFault> perception_faults() {
           {"bearing_in_degrees", "bearing", "for an object at"},
           {"range_from_camera", "range", "for the object at"},
           {"half_width", "width", "for the object of"},
+          {"height_above_camera", "height", "for the object of"},
           {"smallest_first", "largest_first", "of the image"},
           {"rows_from_below", "box", "for an object at"},
           {"cut_right", "cut", "right true"},
@@ -127,6 +128,7 @@ inline PartFault perception_fault(const std::string& name, const std::shared_ptr
   if (is("bearing_in_degrees")) blobs([](msg::Blob& b) { b.bearing_rad *= 180.0 / M_PI; });
   if (is("range_from_camera")) blobs([](msg::Blob& b) { b.range_m -= 0.09; });
   if (is("half_width")) blobs([](msg::Blob& b) { b.width_m *= 0.5; });
+  if (is("height_above_camera")) blobs([](msg::Blob& b) { b.height_m -= 0.085; });
   if (is("smallest_first")) objects([](msg::ObjectPercepts& o) { std::reverse(o.blobs, o.blobs + o.blob_count); });
   if (is("rows_from_below"))
     blobs([](msg::Blob& b) {

@@ -6,7 +6,6 @@
 namespace constrictor::conform {
 namespace {
 
-constexpr double kTick_s = 0.02;
 constexpr int kSettle_ticks = 10;  // in which the attitude of a scene is known before its first image
 
 }  // namespace

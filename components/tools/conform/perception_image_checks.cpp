@@ -38,6 +38,7 @@ std::vector<Check> perception_checks() {
       {"bearing", "bearing_rad is the direction from the head to the object", {}, {}, {}},
       {"range", "range_m is the distance from the head to the nearest ground point", {}, {}, {}},
       {"width", "width_m is the visible width", {}, {}, {}},
+      {"height", "height_m is the height of an object above the ground", {}, {}, {}},
       {"largest_first", "of several objects the largest in the image comes first", {}, {}, {}},
       {"box", "the bounding box contains the object, in pixels from the top left corner", {}, {}, {}},
       {"cut", "the border of the image that cuts an object is named", {}, {}, {}},
@@ -196,7 +197,7 @@ void PerceptionConformance::check_refusals() {
   // The model may become visible one tick after the first image.
   refuses(
       "bad_model", [&] { return hand_.show(noisy(), model.width, model.height); }, 4, 1, [&] { hand_.info = model; },
-      "demand focal lengths above 0, and count the image (count_refusal)");
+      "demand focal lengths that a camera can have, and count the image (count_refusal)");
   if (profile_.frozen_after == 0) return report_.skip("frozen", "frozen_after of the profile is 0");
   const std::vector<std::uint8_t> same = noisy();
   refuses(

@@ -79,8 +79,8 @@ void PerceptionConformance::check_bearing() {
 }
 
 void PerceptionConformance::check_size() {
-  std::string range, width;
-  double worst_range = 0.0, worst_width = 0.0;
+  std::string range, width, height;
+  double worst_range = 0.0, worst_width = 0.0, worst_height = 0.0;
   const auto judge = [&](const Standing& body, std::uint8_t kind, const char* what) {
     const msg::Blob* seen = blob(objects_of(scene_with({body})), body.colour, kind);
     if (seen == nullptr) {
@@ -96,6 +96,11 @@ void PerceptionConformance::check_size() {
       range = fmt::format("{:.2f} m, for the {} at {:.2f} m", seen->range_m, what, wanted_m);
     if (!(width_error < profile_.width_share) && width.empty())
       width = fmt::format("{:.2f} m, for the {} of {:.2f} m", seen->width_m, what, 2.0 * body.radius_m);
+    if (kind != msg::kBlobObject) return;
+    const double height_error = std::abs(seen->height_m / body.height_m - 1.0);
+    worst_height = std::max(worst_height, height_error);
+    if (!(height_error < profile_.height_share) && height.empty())
+      height = fmt::format("{:.2f} m, for the {} of {:.2f} m", seen->height_m, what, body.height_m);
   };
   judge(at(msg::kColourGreen, 0.6, 0.1), msg::kBlobObject, "object");
   judge(at(msg::kColourGreen, 1.2, -0.2), msg::kBlobObject, "object");
@@ -104,6 +109,8 @@ void PerceptionConformance::check_size() {
                       "project the lower edge onto the ground; measure from the head's centre, in metres");
   report_.pass_unless("width", width, fmt::format("{:.0f} % wrong at most", 100 * worst_width),
                       "the width at that range, in metres");
+  report_.pass_unless("height", height, fmt::format("{:.0f} % wrong at most", 100 * worst_height),
+                      "from the range and the upper edge, above the ground, in metres");
 }
 
 void PerceptionConformance::check_image_border() {

@@ -22,6 +22,8 @@ struct PerceptionProfile : ParameterSet {
                            "Range of an object or zone, as a share of it");
   double width_share = add(width_share, "tolerance.width", 0.3, "", {0.05, 0.9}, kAtStart,
                            "Width of an object or zone, as a share of it");
+  double height_share =
+      add(height_share, "tolerance.height", 0.2, "", {0.05, 0.9}, kAtStart, "Height of an object, as a share of it");
   int frozen_after = add(frozen_after, "frozen_after", 10, "images", {0, 1000}, kAtStart,
                          "After so many equal images further ones are refused; 0: they need not be");
 };

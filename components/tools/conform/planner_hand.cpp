@@ -25,6 +25,7 @@ void PlannerHand::see(std::uint8_t colour, std::uint8_t kind, double range_m) {
   blob.kind = kind;
   blob.range_m = range_m;
   blob.width_m = kind == msg::kBlobObject ? 0.16 : 0.6;
+  blob.height_m = kind == msg::kBlobObject ? 0.15 : kNaN;
   blob.area_fraction = 0.02;
   blob.u_min = 150, blob.u_max = 170, blob.v_min = 100, blob.v_max = 140;
 }
@@ -35,13 +36,14 @@ void PlannerHand::map_on_zone(std::uint8_t colour) {
   int zone = 0;
   while (zone < map_.object_count && map_.objects[zone].handle != handle) zone += 2;
   map_.object_count = static_cast<std::uint16_t>(std::max<int>(map_.object_count, zone + 2));
-  map_.objects[zone] = {handle, colour, msg::kBlobZone, x_m, y_m, 0.4, 0.03, false, false, port_.tick()};
+  map_.objects[zone] = {handle, colour, msg::kBlobZone, x_m, y_m, 0.4, kNaN, 0.03, false, false, port_.tick()};
   map_.objects[zone + 1] = {static_cast<std::uint16_t>(handle + 1),
                             colour,
                             msg::kBlobObject,
                             x_m + 0.05,
                             y_m,
                             0.08,
+                            0.15,
                             0.03,
                             false,
                             false,

@@ -13,7 +13,8 @@ constexpr std::int32_t kCylinder = 3, kLineStrip = 4, kSphereList = 7, kTextView
 constexpr std::int32_t kDeleteAll = 3;
 
 // Heights and widths of what is drawn [m]. The robot does not measure the heights of objects.
-constexpr double kObjectHeight_m = 0.15, kFlat_m = 0.005, kLineWidth_m = 0.03, kTouch_m = 0.03, kText_m = 0.08;
+constexpr double kObjectHeight_m = 0.15, kFlat_m = 0.005, kLineWidth_m = 0.03, kTouch_m = 0.03, kObstacle_m = 0.05,
+                 kText_m = 0.08;
 // The radius of a landmark whose radius is not known yet [m].
 constexpr double kObjectRadius_m = 0.08, kZoneRadius_m = 0.25;
 
@@ -97,7 +98,8 @@ MarkerArray Drawing::map(const msg::FieldMap& map) {
   for (std::size_t i = 0; i < map.object_count; ++i) {
     const msg::MapObject& object = map.objects[i];
     const bool zone = object.kind == msg::kBlobZone;
-    const double height_m = zone ? kFlat_m : kObjectHeight_m;
+    const double unknown_height_m = zone ? kFlat_m : kObjectHeight_m;
+    const double height_m = std::isnan(object.height_m) ? unknown_height_m : drawable_m(object.height_m);
     const double unknown_m = zone ? kZoneRadius_m : kObjectRadius_m;
     const double radius_m = std::isnan(object.radius_m) ? unknown_m : drawable_m(object.radius_m);
     // An object whose position no touch has confirmed is drawn paler.
@@ -116,6 +118,13 @@ MarkerArray Drawing::map(const msg::FieldMap& map) {
     touches.scale = {kTouch_m, kTouch_m, kTouch_m};
     for (std::size_t i = 0; i < map.touch_count; ++i)
       points.push_back({map.touches[i].x_m, map.touches[i].y_m, head_height_m_});
+  }
+  if (map.obstacle_count > 0) {
+    Marker& obstacles = add("obstacles", 0, kSphereList, msg::kColourUnknown, 1);
+    auto& points = points_of(obstacles);
+    obstacles.scale = {kObstacle_m, kObstacle_m, kObstacle_m};
+    for (std::size_t i = 0; i < map.obstacle_count; ++i)
+      points.push_back({map.obstacle_x_m[i], map.obstacle_y_m[i], kObstacle_m});
   }
   return markers();
 }
@@ -136,7 +145,8 @@ MarkerArray Drawing::objects_in_view(const msg::ObjectPercepts& objects) {
     const msg::Blob& blob = objects.blobs[i];
     if (std::isnan(blob.range_m)) continue;
     const double width_m = std::isnan(blob.width_m) ? 2 * kObjectRadius_m : drawable_m(blob.width_m);
-    const double height_m = blob.kind == msg::kBlobObject ? kObjectHeight_m : kFlat_m;
+    const double object_m = std::isnan(blob.height_m) ? kObjectHeight_m : drawable_m(blob.height_m);
+    const double height_m = blob.kind == msg::kBlobObject ? object_m : kFlat_m;
     const double centre_m = blob.range_m + 0.5 * width_m;  // the range is that of the nearest point
     Marker& body = add("objects_in_view", static_cast<int>(i), kCylinder, blob.colour,
                        blob.kind == msg::kBlobUndecided ? 0.3 : 0.8);

@@ -85,11 +85,13 @@ json map_of(const Newest& newest) {
                        {"x_m", number(object.x_m)},
                        {"y_m", number(object.y_m)},
                        {"radius_m", number(object.radius_m)},
+                       {"height_m", number(object.height_m)},
                        {"sd_m", number(object.sd_m)},
                        {"carried", object.carried}});
   }
   return {{"tick", newest.map->header.tick},
           {"line", line_of(newest.map->line_point_count, newest.map->line_x_m, newest.map->line_y_m)},
+          {"obstacles", line_of(newest.map->obstacle_count, newest.map->obstacle_x_m, newest.map->obstacle_y_m)},
           {"objects", objects}};
 }
 

@@ -135,8 +135,15 @@ json own_map(const Newest& newest, std::uint64_t time_ns) {
     const Eigen::Vector2d p = newest.start->to_parent({object.x_m, object.y_m});
     const double radius_m = std::isfinite(object.radius_m) ? object.radius_m : 0.05;
     const bool zone = object.kind == msg::kBlobZone;
-    list["cylinders"].push_back(cylinder(pose_of(p.x(), p.y(), zone ? kFlat_m : 0.1), radius_m, zone ? kFlat_m : 0.2,
+    const double height_m = zone ? kFlat_m : std::isfinite(object.height_m) ? object.height_m : 0.2;
+    list["cylinders"].push_back(cylinder(pose_of(p.x(), p.y(), zone ? kFlat_m : 0.5 * height_m), radius_m, height_m,
                                          colour_of(object.colour, 0.3)));
+  }
+  constexpr double kPeg_m = 0.02, kPegHeight_m = 0.12;  // what stands at a point of an obstacle
+  for (std::size_t i = 0; i < newest.map->obstacle_count; ++i) {
+    const Eigen::Vector2d p = newest.start->to_parent({newest.map->obstacle_x_m[i], newest.map->obstacle_y_m[i]});
+    list["cylinders"].push_back(
+        cylinder(pose_of(p.x(), p.y(), 0.5 * kPegHeight_m), kPeg_m, kPegHeight_m, colour(0.7, 0.25, 0.55)));
   }
   return list;
 }

@@ -1,5 +1,4 @@
-// What tall, narrow and large objects ask for: their height from the image, a gait that does not knock them over, and a
-// U that is wide enough.
+// What tall, narrow and large objects ask for: a gait that does not knock them over, and a U that is wide enough.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +7,6 @@
 #include "component/data_path.hpp"
 #include "navigation/grip.hpp"
 #include "navigation/motions.hpp"
-#include "navigation/object_tracker.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,28 +17,6 @@ class ObjectShape : public ::testing::Test {
   NavigationConfig config;
   GripSense grip_sense{robot, config.grip};
 
-  /// [pixel] row of a point straight ahead, by the angles at the camera.
-  [[nodiscard]] double row(double ahead_m, double height_m) const {
-    const CameraModel& camera = robot.camera;
-    const double focal = 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad);
-    const double up_rad = std::atan2(height_m - robot.module_radius_m - camera.p_HC.z(), ahead_m - camera.p_HC.x());
-    return 0.5 * camera.height - focal * std::tan(up_rad + camera.tilt_rad);
-  }
-  /// A cylinder straight ahead, as the camera on a level head sees it.
-  [[nodiscard]] msg::Blob cylinder(double range_m, double radius_m, double height_m) const {
-    msg::Blob blob{};
-    blob.colour = msg::kColourGreen;
-    blob.kind = msg::kBlobObject;
-    blob.range_m = range_m;
-    blob.width_m = 2.0 * radius_m;
-    blob.area_fraction = 0.05;
-    const double top = std::min(row(range_m, height_m), row(range_m + 2.0 * radius_m, height_m));
-    blob.cut_top = top < 0.0;
-    blob.u_min = static_cast<std::uint16_t>(robot.camera.width / 2 - 5);
-    blob.u_max = static_cast<std::uint16_t>(robot.camera.width / 2 + 4);
-    blob.v_min = static_cast<std::uint16_t>(std::max(0.0, std::floor(top)));
-    return blob;
-  }
   static Grip held(double radius_m, double height_m) {
     Grip grip;
     grip.carrying = true;
@@ -50,34 +26,6 @@ class ObjectShape : public ::testing::Test {
     return grip;
   }
 };
-
-TEST_F(ObjectShape, TheImageShowsTheHeight) {
-  for (const double height_m : {0.05, 0.08, 0.15, 0.23, 0.3}) {
-    for (const double range_m : {0.7, 1.0, 1.5}) {
-      const msg::Blob blob = cylinder(range_m, 0.06, height_m);
-      ASSERT_FALSE(blob.cut_top);
-      EXPECT_NEAR(seen_height_m(robot, blob), height_m, 0.012 * range_m) << "two pixels; range " << range_m;
-    }
-  }
-}
-
-TEST_F(ObjectShape, ATopBeyondTheImageGivesALowerBound) {
-  ObjectTrackerState state;
-  msg::ObjectPercepts percepts{};
-  percepts.blob_count = 1;
-  percepts.blobs[0] = cylinder(0.3, 0.06, 0.3);
-  ASSERT_TRUE(percepts.blobs[0].cut_top);
-  measure_heights(robot, percepts, state);
-  const Sighting& object = state.objects[msg::kColourGreen];
-  EXPECT_GT(object.height_m, 0.1);
-  EXPECT_LT(object.height_m, 0.3);
-  percepts.blobs[0] = cylinder(1.0, 0.06, 0.3);
-  for (int i = 0; i < 60; ++i) measure_heights(robot, percepts, state);
-  EXPECT_NEAR(object.height_m, 0.3, 0.012);
-  percepts.blobs[0] = cylinder(0.3, 0.06, 0.3);
-  for (int i = 0; i < 60; ++i) measure_heights(robot, percepts, state);
-  EXPECT_NEAR(object.height_m, 0.3, 0.012) << "the nearer view says nothing against it";
-}
 
 // A cylinder on a cart: gravity turns it back about its edge, inertia turns it over.
 TEST_F(ObjectShape, AnObjectTipsWhenInertiaTurnsItOverItsEdge) {

@@ -115,7 +115,7 @@ class TrackRun {
         msg::FieldMap map{};
         map.object_count = 1;
         map.objects[0] = {
-            1,     msg::kColourGreen, msg::kBlobObject, p_MO_.x(), p_MO_.y(), kObjectRadius_m, 0.03, false,
+            1,     msg::kColourGreen, msg::kBlobObject, p_MO_.x(), p_MO_.y(), kObjectRadius_m, 0.15, 0.03, false,
             false, tick.index};
         map_out.write(map);
       };

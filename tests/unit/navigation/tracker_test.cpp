@@ -69,7 +69,7 @@ void images(const msg::ObjectPercepts& percepts, int count, ObjectTrackerState& 
 }
 
 msg::MapObject landmark(std::uint16_t handle, std::uint8_t kind, double x_m, double y_m, double radius_m = 0.08) {
-  return {handle, msg::kColourGreen, kind, x_m, y_m, radius_m, 0.03, false, false, 0};
+  return {handle, msg::kColourGreen, kind, x_m, y_m, radius_m, 0.15, 0.03, false, false, 0};
 }
 
 msg::FieldMap map_of(const std::vector<msg::MapObject>& landmarks) {
@@ -105,11 +105,14 @@ TEST(ObjectTracker, APlaceIsThatOfTheLandmark) {
   EXPECT_EQ(object.handle, 5);
   EXPECT_EQ(object.p_M(), Eigen::Vector2d(1.0, 2.0));
   EXPECT_EQ(object.radius_m, 0.06);
+  EXPECT_EQ(object.height_m, 0.15);
   EXPECT_EQ(state.zones[msg::kColourGreen].p_M(), Eigen::Vector2d(3.0, 4.0));
   EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, 0.3);
-  take_places({}, map_of({landmark(5, msg::kBlobObject, 1.0, 2.0, kNan), landmark(6, msg::kBlobZone, 3.0, 4.0, 9.0)}),
-              {0.0, 0.0}, 0, state);
+  msg::MapObject unmeasured = landmark(5, msg::kBlobObject, 1.0, 2.0, kNan);
+  unmeasured.height_m = kNan;
+  take_places({}, map_of({unmeasured, landmark(6, msg::kBlobZone, 3.0, 4.0, 9.0)}), {0.0, 0.0}, 0, state);
   EXPECT_EQ(object.radius_m, ObjectTrackerConfig().object_radius_m) << "no image has shown its width";
+  EXPECT_EQ(object.height_m, 0.0) << "nor its height";
   EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, 0.6) << "no zone is larger";
   take_places({}, map_of({}), {0.0, 0.0}, 0, state);
   EXPECT_FALSE(object.known) << "the map has given it up";

@@ -258,6 +258,18 @@ TEST(PerceptionComponent, RefusesImagesThatDoNotFitTheCamera) {
   msg::CameraInfo blind = info;
   blind.fx = std::nan("");
   EXPECT_NE(perception::image_error(image, blind), "");
+  // A model that no camera has would let a line's cross-section have billions of points.
+  const auto refused = [&](auto change) {
+    msg::CameraInfo other = info;
+    change(other);
+    return !perception::image_error(image, other).empty();
+  };
+  EXPECT_TRUE(refused([](msg::CameraInfo& i) { i.fx = 1e-9; }));
+  EXPECT_TRUE(refused([](msg::CameraInfo& i) { i.fy = 1e9; }));
+  EXPECT_TRUE(refused([](msg::CameraInfo& i) { i.cx = 1e6; }));
+  EXPECT_TRUE(refused([](msg::CameraInfo& i) { i.X_HC.position_m.z = 1e5; }));
+  EXPECT_TRUE(refused([](msg::CameraInfo& i) { i.X_HC.orientation = {0.0, 0.0, 0.0, 0.0}; }));
+  EXPECT_FALSE(refused([](msg::CameraInfo& i) { i.fx = i.fy = 0.1 * i.width; }));
 }
 
 }  // namespace

@@ -54,7 +54,13 @@ TEST(ObjectSize, ObjectsOfAnyHeightAreFoundAndMeasured) {
           EXPECT_NEAR(blob->range_m, seen_range, 0.06 * seen_range);
           EXPECT_NEAR(blob->width_m, 2.0 * radius, 0.03);
           const perception::ObjectSize& size = percepts.measured.of[msg::kColourRed];
-          if (blob->cut_top) continue;  // the upper edge is out of view: no size follows
+          if (blob->cut_top) {  // the upper edge is out of view: a lower bound, and no size follows
+            EXPECT_GT(blob->height_m, 0.1);
+            EXPECT_LT(blob->height_m, height + 0.02 * range);
+            EXPECT_EQ(size.images, 0);
+            continue;
+          }
+          EXPECT_NEAR(blob->height_m, height, 0.01 + 0.02 * range);
           ASSERT_EQ(size.images, 1);
           EXPECT_NEAR(size.radius_m, radius, 0.015);
           EXPECT_NEAR(size.height_m, height, 0.01 + 0.02 * range);
@@ -73,7 +79,9 @@ TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
         scene.rounds = {Round{msg::kColourRed, {range + radius, -0.05}, radius}};
         const Percepts percepts = look(scene, c);
         EXPECT_EQ(percepts.objects.blob_count, 1);
-        ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
+        const msg::Blob* zone = find(percepts, msg::kBlobZone);
+        ASSERT_NE(zone, nullptr);
+        EXPECT_TRUE(std::isnan(zone->height_m));
         EXPECT_EQ(percepts.measured.of[msg::kColourRed].images, 0);
       }
     }

@@ -159,8 +159,8 @@ class PlannerTest : public ::testing::Test {
   /// this standard deviation; the object was seen in this tick.
   void map_dropped(std::uint8_t colour, double offset_m, double sd_m = 0.03) {
     map_.object_count = 2;
-    map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, sd_m, false, false, tick_};
-    map_.objects[1] = {object_, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, sd_m, false,
+    map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, 0.0, sd_m, false, false, tick_};
+    map_.objects[1] = {object_, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, 0.15, sd_m, false,
                        false,   tick_};
   }
   /// Drops the object until the robot has backed off, and says nothing of where it stands.

@@ -45,17 +45,20 @@ msg::FieldMap field() {
     map.line_y_m[i] = i < 2 ? 0.0 : 1.0;
   }
   map.object_count = 2;
-  map.objects[0] = {7, msg::kColourRed, msg::kBlobObject, 1.5, 0.5, 0.09, 0.02, true, false, 40};
-  map.objects[1] = {9, msg::kColourGreen, msg::kBlobZone, -1.0, 2.0, kNaN, 0.1, false, false, 50};
+  map.objects[0] = {7, msg::kColourRed, msg::kBlobObject, 1.5, 0.5, 0.09, 0.25, 0.02, true, false, 40};
+  map.objects[1] = {9, msg::kColourGreen, msg::kBlobZone, -1.0, 2.0, kNaN, kNaN, 0.1, false, false, 50};
   map.touch_count = 1;
   map.touches[0] = {1.4, 0.4, 2.0, 3, 300, 0};
+  map.obstacle_count = 2;
+  map.obstacle_x_m[1] = 0.8;
+  map.obstacle_y_m[1] = -0.6;
   return map;
 }
 
 TEST(RosDrawing, TheMapShowsLineLandmarksAndTouchesWhereTheyAre) {
   Drawing drawing(kHead_m);
   const auto markers = by_name(drawing.map(field()));
-  ASSERT_EQ(markers.size(), 6u);
+  ASSERT_EQ(markers.size(), 7u);
   const Marker& line = markers.at("line 0");
   EXPECT_STREQ(line.header.frame_id, "odom");
   EXPECT_EQ(line.header.stamp.sec, 7);
@@ -72,6 +75,7 @@ TEST(RosDrawing, TheMapShowsLineLandmarksAndTouchesWhereTheyAre) {
   EXPECT_EQ(object.pose.position.y, 0.5);
   EXPECT_EQ(object.pose.position.z, object.scale.z / 2) << "it must stand on the ground";
   EXPECT_EQ(object.scale.x, 0.18);
+  EXPECT_EQ(object.scale.z, 0.25);
   EXPECT_EQ(object.color.a, 1) << "it was touched";
   EXPECT_GT(object.color.r, object.color.g);
   const Marker& zone = markers.at("zones 9");
@@ -83,6 +87,11 @@ TEST(RosDrawing, TheMapShowsLineLandmarksAndTouchesWhereTheyAre) {
   EXPECT_EQ(touches.type, kSphereList);
   ASSERT_EQ(touches.points._length, 1u);
   EXPECT_EQ(touches.points._buffer[0].x, 1.4);
+  const Marker& obstacles = markers.at("obstacles 0");
+  EXPECT_EQ(obstacles.type, kSphereList);
+  ASSERT_EQ(obstacles.points._length, 2u);
+  EXPECT_EQ(obstacles.points._buffer[1].x, 0.8);
+  EXPECT_EQ(obstacles.points._buffer[1].y, -0.6);
 }
 
 TEST(RosDrawing, AnEmptyMapDeletesWhatWasDrawn) {
@@ -120,6 +129,7 @@ TEST(RosDrawing, PerceptsAreOnTheGroundBelowTheHeadAtTheTimeOfTheExposure) {
   objects.blobs[0].bearing_rad = std::numbers::pi / 2;
   objects.blobs[0].range_m = 1.0;
   objects.blobs[0].width_m = 0.2;
+  objects.blobs[0].height_m = 0.3;
   objects.blobs[1].range_m = kNaN;
   markers = by_name(drawing.objects_in_view(objects));
   ASSERT_EQ(markers.size(), 1u) << "a blob of unknown range has no place";
@@ -127,6 +137,7 @@ TEST(RosDrawing, PerceptsAreOnTheGroundBelowTheHeadAtTheTimeOfTheExposure) {
   EXPECT_NEAR(blob.pose.position.x, 0, 1e-12);
   EXPECT_NEAR(blob.pose.position.y, 1.1, 1e-12) << "the range is that of the nearest point, not of the centre";
   EXPECT_EQ(blob.scale.x, 0.2);
+  EXPECT_EQ(blob.scale.z, 0.3);
   EXPECT_NEAR(blob.pose.position.z + kHead_m, blob.scale.z / 2, 1e-12);
 }
 

@@ -210,11 +210,12 @@ export class Estimate {
     this.map = new THREE.Group();
     // Its points are in the order of discovery, so that neighbours in the list may lie far apart.
     if (map.line.length > 0) this.map.add(dots(map.line, 0.013, 0.006, flat("#303030")));
+    if (map.obstacles.length > 0) this.map.add(dots(map.obstacles, 0.02, 0.12, flat("#b04090")));
     for (const object of map.objects) {
       if (object.x_m === null) continue;
       const radius = object.radius_m ?? 0.05;
       const material = flat(colourOf(object.colour), { wireframe: true, transparent: true, opacity: 0.6 });
-      const height = object.zone ? 0.01 : 0.2;
+      const height = object.zone ? 0.01 : (object.height_m ?? 0.2);
       const shape = new THREE.CylinderGeometry(radius, radius, height, 16, 1, true).rotateX(Math.PI / 2);
       const mesh = new THREE.Mesh(shape, material);
       mesh.position.set(object.x_m, object.y_m, height / 2 + 0.004);

@@ -65,6 +65,8 @@ function drawEstimate(context, state) {
       disc(context, object.x_m, object.y_m, object.radius_m ?? 0.05);
       context.stroke();
     }
+    context.fillStyle = "#b04090";
+    for (const [x, y] of state.map.obstacles) context.fillRect(x - 0.02, y - 0.02, 0.04, 0.04);
   }
   context.setLineDash([]);
   if (state.pose && state.pose[0] !== null) {
