@@ -104,7 +104,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
   }
 
   /// The side of the body on which the object is passed, +1 left, -1 right: the side that the goal names. Otherwise the
-  /// side on which other objects and felt obstacles leave more room for passing and wrapping; the nearer side if both
+  /// side on which other objects and obstacles leave more room for passing and wrapping; the nearer side if both
   /// leave enough.
   [[nodiscard]] double choose_side(const TaskInput& input) const {
     if (input.parameters.direction == msg::kDirectionLeft) return 1.0;
