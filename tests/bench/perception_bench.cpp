@@ -4,6 +4,7 @@
 #include "perception/blobs.hpp"
 #include "perception/line_and_blob_detector.hpp"
 #include "perception/line_tracer.hpp"
+#include "perception/obstacles.hpp"
 #include "perception/picture.hpp"
 #include "perception/smoothing.hpp"
 #include "unit/perception/rendered_scene.hpp"
@@ -83,6 +84,12 @@ void blobs(benchmark::State& state) {
     benchmark::DoNotOptimize(
         find_blobs(steps.smooth, steps.regions, steps.camera, steps.config, msg::kColourBlue, {}, measured));
 }
+void obstacles(benchmark::State& state) {
+  Steps steps;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(find_obstacles(steps.smooth, steps.regions, steps.camera, steps.config));
+}
+
 void picture(benchmark::State& state) {
   Steps steps;
   const Percepts percepts = LineAndBlobDetector(steps.config).detect(steps.rgb, steps.camera, msg::kColourBlue);
@@ -94,6 +101,7 @@ BENCHMARK(classify)->Unit(benchmark::kMillisecond);
 BENCHMARK(regions)->Unit(benchmark::kMillisecond);
 BENCHMARK(line)->Unit(benchmark::kMillisecond);
 BENCHMARK(blobs)->Unit(benchmark::kMillisecond);
+BENCHMARK(obstacles)->Unit(benchmark::kMillisecond);
 BENCHMARK(picture)->Unit(benchmark::kMillisecond);
 
 }  // namespace
