@@ -55,8 +55,7 @@ std::vector<Landmark> FieldMapper::doubt(const msg::ObjectPercepts& percepts, co
   looked_tick = tick;
 
   const auto disc_of = [&](const Landmark& landmark) {
-    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    return Disc{X_HV.to_local(filter_.pose().to_local(position(landmark))), radius_m, sd(landmark)};
+    return Disc{X_HV.to_local(filter_.pose().to_local(position(landmark))), radius_of(landmark), sd(landmark)};
   };
   for (const Obstacle& obstacle : state_.obstacles) {
     if (believed(obstacle))

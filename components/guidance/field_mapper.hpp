@@ -77,6 +77,12 @@ class FieldMapper {
   void replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   /// Takes the landmark out of the pose filter and keeps its place and standard deviation in the landmark itself.
   void release_slot(Landmark& landmark);
+  /// [m] of the landmark, or of a usual object if no image has shown its width.
+  [[nodiscard]] static double radius_of(const Landmark& landmark) {
+    return landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
+  }
+  /// [m] distance of a point from the axis of a module; both in the head's frame.
+  [[nodiscard]] double off_axis_m(const PlanarPose& module, const Eigen::Vector2d& p) const;
   /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
   /// The view of these percepts with the modules that may hide something in it. None if the robot has no such camera.

@@ -41,19 +41,22 @@ Obstacle* FieldMapper::obstacle_at(const Eigen::Vector2d& p_M, const Eigen::Vect
   return nearest;
 }
 
-bool FieldMapper::is_no_obstacle(const Eigen::Vector2d& p, const BodyChain& chain) const {
+double FieldMapper::off_axis_m(const PlanarPose& module, const Eigen::Vector2d& p) const {
   const double half_m = 0.5 * model_.module_length_m;
+  Eigen::Vector2d local = module.to_local(p);
+  local.x() -= std::clamp(local.x(), -half_m, half_m);
+  return local.norm();
+}
+
+bool FieldMapper::is_no_obstacle(const Eigen::Vector2d& p, const BodyChain& chain) const {
   const bool body = std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
-    Eigen::Vector2d local = module.to_local(p);
-    local.x() -= std::clamp(local.x(), -half_m, half_m);
-    return local.norm() < model_.module_radius_m + kBesideBody_m;
+    return off_axis_m(module, p) < model_.module_radius_m + kBesideBody_m;
   });
   if (body) return true;
   const Eigen::Vector2d p_M = to_parent(filter_.pose(), p);
   return std::any_of(state_.landmarks.begin(), state_.landmarks.end(), [&](const Landmark& landmark) {
-    if (landmark.kind != msg::kBlobObject) return false;
-    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    return (position(landmark) - p_M).norm() < radius_m + sd(landmark) + kBesideObject_m;
+    return landmark.kind == msg::kBlobObject &&
+           (position(landmark) - p_M).norm() < radius_of(landmark) + sd(landmark) + kBesideObject_m;
   });
 }
 
@@ -102,8 +105,7 @@ void FieldMapper::doubt_obstacles(const msg::ObjectPercepts& percepts, const Pla
   for (const Landmark& landmark : state_.landmarks) {
     if (landmark.kind != msg::kBlobObject) continue;
     const Eigen::Vector2d p = position(landmark);
-    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    view->screens.push_back(disc_at(p.x(), p.y(), radius_m, sd(landmark)));
+    view->screens.push_back(disc_at(p.x(), p.y(), radius_of(landmark), sd(landmark)));
   }
   // What is seen in the direction of the obstacle, and nearer, hides it.
   for (int i = 0; i < std::min<int>(percepts.obstacle_count, msg::kMaxPerceptObstacles); ++i)
@@ -133,13 +135,10 @@ void FieldMapper::feel_obstacle(const Eigen::Vector2d& p_M) {
 }
 
 void FieldMapper::clear_obstacles(const BodyChain& chain) {
-  const double half_m = 0.5 * model_.module_length_m;
   std::erase_if(state_.obstacles, [&](const Obstacle& obstacle) {
     const Eigen::Vector2d p = filter_.pose().to_local({obstacle.x_m, obstacle.y_m});
     return std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
-      Eigen::Vector2d local = module.to_local(p);
-      local.x() -= std::clamp(local.x(), -half_m, half_m);
-      return local.norm() < model_.module_radius_m - kInside_m;
+      return off_axis_m(module, p) < model_.module_radius_m - kInside_m;
     });
   });
 }

@@ -52,8 +52,7 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     double nearest_m = 1e9;
     for (Landmark& landmark : state_.landmarks) {
       if (landmark.kind != msg::kBlobObject || landmark.hits < config_.confirm) continue;
-      const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-      const double off_m = surface_gap_m((position(landmark) - p_M).norm(), radius_m);
+      const double off_m = surface_gap_m((position(landmark) - p_M).norm(), radius_of(landmark));
       if (off_m < touch_gate_m(sd(landmark)) && off_m < nearest_m) {
         nearest = &landmark;
         nearest_m = off_m;
