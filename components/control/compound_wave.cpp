@@ -26,6 +26,7 @@ void CompoundGait::start(const MethodInput& input, BodyState& body) const {
   // The waves begin with an amplitude of 0, so all of the present posture is a remainder, which fades.
   body.residual_rad = input.commanded_rad;
   body.shape_rad = {};
+  body.lift_rad = {};
   body.wave.amplitude_rad = 0.0;
 }
 

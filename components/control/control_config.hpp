@@ -75,13 +75,15 @@ struct ControlConfig : ParameterSet {
   }
 
   MotionParameters travel = add(travel, "travel", {0, 0.5, 1.07, 0.9}, "Moving without an object");
-  MotionParameters carry = add(carry, "carry", {0, 0.8, 1.2, 0.18}, "Moving with an object in the U");
+  MotionParameters carry =
+      add(carry, "carry", {0, 1.0, 1.2, 0.24}, "Moving along a line or path with an object in the U");
   MotionParameters creep = add(creep, "creep", {0, 0.35, 1.07, 0.7}, "Small steps beside an object");
   MotionParameters wrap = add_gait(wrap, "wrap", {0, 0.45, 1.07, 0.4}, "Wrapping");
   MotionParameters seat = add(seat, "seat", {0, 0.8, 1.2, 0.15}, "Driving the base of the U to the object");
   MotionParameters squeeze = add_gait(squeeze, "squeeze", {0, 0.3, 1.07, 0.14}, "Squeezing");
-  MotionParameters deliver = add(deliver, "deliver", {0, 0.6, 1.07, 0.15}, "The last stretch to a zone");
-  MotionParameters leave = add(leave, "leave", {0, 0.5, 1.07, 0.12}, "Backing off with an open U");
+  MotionParameters deliver =
+      add(deliver, "deliver", {0, 0.8, 1.2, 0.17}, "Turns and nearing a zone with an object in the U");
+  MotionParameters leave = add(leave, "leave", {0, 0.5, 0.9, 0.27}, "Backing off with an open U");
   double lookahead_m = add(lookahead_m, "path.lookahead_m", 0.5, "m", {0.05, 2.0}, kWhileRunning,
                            "The body steers towards the point of the path this far ahead of the head");
   double most_hz = add(most_hz, "wave.most_hz", 1.2, "Hz", {0.05, 2.0}, kWhileRunning,
@@ -103,6 +105,8 @@ struct ControlConfig : ParameterSet {
                                 "Speed of each joint towards a new posture, unless the trajectory names a speed");
   double blend_rate_rad_s = add(blend_rate_rad_s, "posture.blend_rate_rad_s", 0.5, "rad/s", {0.01, 4.0}, kWhileRunning,
                                 "Speed at which each joint leaves an earlier posture");
+  double lift_rad = add(lift_rad, "posture.lift_rad", 0.005, "rad", {0.0, 0.2}, kWhileRunning,
+                        "Angle by which the base of a U is raised while the body moves");
   double sidewinding_yaw_rad = add(sidewinding_yaw_rad, "sidewinding.yaw_rad", 0.5, "rad", {0.05, 1.2}, kWhileRunning,
                                    "Amplitude of the yaw joints when the robot moves by sidewinding");
   double sidewinding_pitch_rad =

@@ -38,6 +38,7 @@ struct BodyState {
   double frequency_hz = 0.0;
   LinkArray shape_rad{};            ///< posture, one angle for each yaw joint
   JointArray residual_rad{};        ///< remainder of an earlier posture; it is added to the setpoints and fades
+  JointArray lift_rad{};            ///< part of the setpoints that raises the base of a U
   JointArray held_rad{};            ///< posture that "hold" keeps
   SlidingState sliding;             ///< begins anew when a motion starts
   std::array<double, 8> scratch{};  ///< for the method's own use; zero when a motion starts
@@ -47,6 +48,7 @@ struct BodyState {
     archive(wave.amplitude_rad, wave.wavelength_m, wave.curvature_1_m, wave.phase_rad, wave.field, frequency_hz);
     for (double& value : shape_rad) archive(value);
     for (double& value : residual_rad) archive(value);
+    for (double& value : lift_rad) archive(value);
     for (double& value : held_rad) archive(value);
     archive(sliding);
     for (double& value : scratch) archive(value);

@@ -15,11 +15,13 @@ struct Kind {
   std::string_view name;
   MotionParameters ControlConfig::*parameters;
   bool has_choice;  ///< its method is a parameter
+  bool lifts;       ///< the base of the U is raised. A raised base is no keel: not where the robot must not drift aside
 };
-constexpr Kind kKinds[] = {{"travel", &ControlConfig::travel, true},   {"carry", &ControlConfig::carry, true},
-                           {"creep", &ControlConfig::creep, true},     {"wrap", &ControlConfig::wrap, false},
-                           {"seat", &ControlConfig::seat, true},       {"squeeze", &ControlConfig::squeeze, false},
-                           {"deliver", &ControlConfig::deliver, true}, {"leave", &ControlConfig::leave, true}};
+constexpr Kind kKinds[] = {
+    {"travel", &ControlConfig::travel, true, false},   {"carry", &ControlConfig::carry, true, true},
+    {"creep", &ControlConfig::creep, true, false},     {"wrap", &ControlConfig::wrap, false, false},
+    {"seat", &ControlConfig::seat, true, true},        {"squeeze", &ControlConfig::squeeze, false, false},
+    {"deliver", &ControlConfig::deliver, true, false}, {"leave", &ControlConfig::leave, true, true}};
 
 /// Null for every other kind of motion.
 const Kind* kind_of(std::string_view motion) {
@@ -63,6 +65,7 @@ Gait gait_of(const msg::DesiredTrajectory& desired, const ControlConfig& config)
   if (desired.speed_m_s == 0.0) return gait;
   gait.frequency_hz = std::clamp(desired.speed_m_s / parameters.advance_m, -config.most_hz, config.most_hz);
   gait.amplitude_rad = parameters.amplitude_rad;
+  if (kind && kind->lifts) gait.lift_rad = config.lift_rad;
   return desired.acceleration_m_s2 > 0.0 ? limited(gait, desired.acceleration_m_s2) : gait;
 }
 

@@ -13,6 +13,7 @@ struct Gait {
   double amplitude_rad = 0.0;  ///< of the links' heading
   double wavelength_m = 1.0;   ///< along the body
   double curvature_1_m = 0.0;  ///< of the path, positive to the left
+  double lift_rad = 0.0;       ///< by which the base of a U is raised
 };
 
 /// Name of the control method for a kind of motion: the configured one if there is a choice. A kind that control does

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace constrictor {
 
@@ -16,6 +17,39 @@ bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
     if (std::abs(x[k] - chain.arc_coordinates()[k]) > kAlike_m) return true;
   }
   return false;
+}
+
+/// The pitch joints that raise the base of a U, with the arms lying on the ground: the nearest one on either side. None
+/// if there is no base, or if the two hinges are not opposite each other, so that raising the base would twist it.
+std::optional<std::array<std::size_t, 2>> hinges(const MethodInput& input, const LinkArray& base_rad) {
+  std::size_t first = input.chain.joint_count(), last = 0;
+  for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
+    if (!is_base(input, base_rad[k])) continue;
+    first = std::min(first, k);
+    last = k;
+  }
+  if (first >= last) return std::nullopt;
+  const auto& joints = input.robot.joints;
+  const std::size_t front_base = input.chain.joint_index(first), rear_base = input.chain.joint_index(last);
+  for (std::size_t apart = 1; apart <= front_base && rear_base + apart < joints.size(); ++apart) {
+    const bool front = joints[front_base - apart].axis == JointAxis::kPitch;
+    const bool rear = joints[rear_base + apart].axis == JointAxis::kPitch;
+    if (front && rear) return std::array{front_base - apart, rear_base + apart};
+    if (front || rear) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// Raises or lowers the base of the U at a limited speed. A raised base does not drag sideways over the ground, and its
+/// weight is on the arms, which push the body.
+void advance_lift(const MethodInput& input, const LinkArray& base_rad, BodyState& body) {
+  constexpr double kRate_rad_s = 0.05;
+  JointArray target_rad{};
+  if (const auto joints = hinges(input, base_rad)) {
+    for (const std::size_t j : *joints) target_rad[j] = -input.gait.lift_rad;  // a pitch joint's positive angle lowers
+  }
+  for (std::size_t j = 0; j < input.robot.joints.size(); ++j)
+    body.lift_rad[j] = approach(body.lift_rad[j], target_rad[j], kRate_rad_s * input.dt_s);
 }
 
 }  // namespace
@@ -59,6 +93,8 @@ void fade_residual(const MethodInput& input, BodyState& body, Setpoints& setpoin
 void ride(const MethodInput& input, const LinkArray& base_rad, BodyState& body, Setpoints& setpoints) {
   const LinkArray angle = input.chain.joint_angles(body.shape_rad, body.wave, input.config.weights);
   fade_residual(input, body, setpoints);
+  advance_lift(input, base_rad, body);
+  for (std::size_t j = 0; j < input.robot.joints.size(); ++j) setpoints.position_rad[j] += body.lift_rad[j];
   for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
     const std::size_t j = input.chain.joint_index(k);
     setpoints.position_rad[j] += angle[k];
@@ -83,6 +119,7 @@ double desired_shape_rate(const MethodInput& input) {
 void keep_residual(const MethodInput& input, BodyState& body) {
   const LinkArray angle = input.chain.joint_angles(body.shape_rad, body.wave, input.config.weights);
   body.residual_rad = input.commanded_rad;
+  for (std::size_t j = 0; j < input.robot.joints.size(); ++j) body.residual_rad[j] -= body.lift_rad[j];
   for (std::size_t k = 0; k < input.chain.joint_count(); ++k) body.residual_rad[input.chain.joint_index(k)] -= angle[k];
 }
 

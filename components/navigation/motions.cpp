@@ -111,6 +111,13 @@ void move_on(const TaskInput& input, double curvature_1_m, double direction, con
   if (grip.carrying) keep_upright(input.config, grip, output);
 }
 
+void move_carefully(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip,
+                    TaskOutput& output) {
+  if (!grip.carrying) return move_on(input, curvature_1_m, direction, grip, output);
+  move_along({"deliver", input.config.deliver_m_s}, curvature_1_m, direction, grip, output);
+  keep_upright(input.config, grip, output);
+}
+
 double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m) {
   const PlanarPose X_MP{p_M, yaw_rad};
   const double along_m = X_MP.to_local(X_MH.p).x();

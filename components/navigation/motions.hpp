@@ -40,6 +40,9 @@ void keep_upright(const NavigationConfig& config, const Grip& grip, TaskOutput& 
 Pace present_pace(const NavigationConfig& config, const Grip& grip);
 /// Moves at the present pace, and keeps an object in the U upright.
 void move_on(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output);
+/// The same where a robot with an object must not drift aside: while it searches, turns, and nears a zone.
+void move_carefully(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip,
+                    TaskOutput& output);
 
 /// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
 /// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.

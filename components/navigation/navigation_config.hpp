@@ -176,12 +176,12 @@ struct PregraspConfig : NavigationSection {
 };
 
 struct GraspConfig : NavigationSection {
-  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.25, "m/s", bounds::kSpeed, kAtStart,
+  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.3, "m/s", bounds::kSpeed, kAtStart,
                               "Speed of the arc along the body at the beginning; later it is the speed of the body");
   double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, kAtStart,
                             "The body begins to move after the arc has slid this far");
   double wrap_speed_min_m_s =
-      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.2, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
+      add(wrap_speed_min_m_s, "wrap_speed_min_m_s", 0.24, "m/s", bounds::kSpeed, kAtStart, "Smallest speed of the arc");
   double wrap_speed_max_m_s =
       add(wrap_speed_max_m_s, "wrap_speed_max_m_s", 0.35, "m/s", bounds::kSpeed, kAtStart, "Largest speed of the arc");
   double wrap_speed_filter_s = add(wrap_speed_filter_s, "wrap_speed_filter_s", 1.0, "s", {0.02, 60.0}, kAtStart,
@@ -217,13 +217,10 @@ struct GraspConfig : NavigationSection {
 };
 
 struct DropConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {5.0, 1.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance to the course [m]");
-  double speed_m_s = add_speed(speed_m_s, "speed_m_s", 0.165, kAtStart, "Speed on the last stretch to the zone");
-  double slow_m = add(slow_m, "slow_m", 1.6, "m", bounds::kLength, kAtStart,
-                      "Length of this last stretch, for the object; before it, the speed is that of carrying");
-  double fix_course_m = add(fix_course_m, "fix_course_m", 0.8, "m", bounds::kLength, kWhileRunning,
+  PidGains steering = add(steering, "steering", {8.0, 1.0, 0.0, 1.6, 0.2}, kWhileRunning, "distance to the course [m]");
+  double fix_course_m = add(fix_course_m, "fix_course_m", 0.4, "m", bounds::kLength, kWhileRunning,
                             "The course over the zone stays fixed when the object is nearer to its centre");
-  double brake_m = add(brake_m, "brake_m", 0.02, "m", bounds::kLength, kAtStart,
+  double brake_m = add(brake_m, "brake_m", 0.04, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
   double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
                       "Distance to another object on the zone before which the object is let go");
@@ -233,9 +230,9 @@ struct DropConfig : NavigationSection {
                              "Time constant of the low-pass on the angle between the course and the U on a slope");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");
-  double open_s = add(open_s, "open_s", 2.0, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
+  double open_s = add(open_s, "open_s", 1.2, "s", {0.1, 60.0}, kAtStart, "Duration of the opening");
   double back_m_s =
-      add_speed(back_m_s, "back.speed_m_s", 0.132, kAtStart, "Speed at which the open U leaves the object");
+      add_speed(back_m_s, "back.speed_m_s", 0.24, kAtStart, "Speed at which the open U leaves the object");
   PidGains back_steering =
       add(back_steering, "back_steering", {5.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "distance from the object [m]");
   double back_m =
@@ -245,7 +242,7 @@ struct DropConfig : NavigationSection {
   double clear_m =
       add(clear_m, "clear_m", 0.6, "m", bounds::kLength, kAtStart,
           "Distance by which the straight robot backs off then, so that its turns do not reach the object");
-  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.8, "rad/s", bounds::kSpeed,
+  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 1.2, "rad/s", bounds::kSpeed,
                                      kAtStart, "Speed of each joint when the body straightens");
   double approach_timeout_s =
       add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, kAtStart,
@@ -254,7 +251,10 @@ struct DropConfig : NavigationSection {
 
 struct NavigationConfig : NavigationSection {
   double travel_m_s = add_speed(travel_m_s, "travel.speed_m_s", 0.63, kWhileRunning, "Speed without an object");
-  double carry_m_s = add_speed(carry_m_s, "carry.speed_m_s", 0.198, kWhileRunning, "Speed with an object in the U");
+  double carry_m_s = add_speed(carry_m_s, "carry.speed_m_s", 0.264, kWhileRunning,
+                               "Speed along a line or path with an object in the U");
+  double deliver_m_s = add_speed(deliver_m_s, "deliver.speed_m_s", 0.187, kWhileRunning,
+                                 "Speed with an object in the U while the robot searches, turns, and nears a zone");
   double creep_m_s =
       add_speed(creep_m_s, "creep.speed_m_s", 0.28, kWhileRunning, "Speed of small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,

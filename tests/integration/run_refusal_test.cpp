@@ -1,4 +1,6 @@
 // Errors that `constrictor run` reports before it starts a process, and the commands `check` and `list`.
+#include <sstream>
+
 #include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
@@ -58,6 +60,18 @@ TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
   EXPECT_EQ(foreign.wait(30s), exit_status::kOk) << foreign.errors();
   EXPECT_NE(foreign.output().find("not checked: the configuration of planner"), std::string::npos) << foreign.output();
   EXPECT_FALSE(fs::exists("runs"));
+}
+
+TEST_F(RunCommand, EveryShippedManifestAndItsConfigurationsAreAccepted) {
+  Process list = command({"list", "manifests", "--names"});
+  ASSERT_EQ(list.wait(20s), exit_status::kOk) << list.errors();
+  std::istringstream names(list.output());
+  int count = 0;
+  for (std::string name; std::getline(names, name); ++count) {
+    Process check = command({"check", "--manifest", name});
+    EXPECT_EQ(check.wait(30s), exit_status::kOk) << name << ": " << check.errors();
+  }
+  EXPECT_GT(count, 0);
 }
 
 TEST_F(RunCommand, ListNamesEverythingThatCanBeChosenByName) {

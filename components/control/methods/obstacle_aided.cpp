@@ -85,6 +85,7 @@ class ObstacleAided : public ControlMethod {
   void start(const MethodInput& input, BodyState& body) const override {
     body.residual_rad = input.commanded_rad;
     body.shape_rad = {};
+    body.lift_rad = {};
     body.wave.amplitude_rad = 0.0;
     body.scratch[kCourse] = Body(input).mean_heading_rad;
   }

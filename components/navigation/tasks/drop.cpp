@@ -90,9 +90,7 @@ class Drop : public StatefulTask<DropState> {
     const Steering steering(config.steering);
     const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
     steering.observe(now_s, error_m, period_s, state_.steering);
-    const Pace pace = d.norm() > config.slow_m ? present_pace(input.config, grip) : Pace{"deliver", config.speed_m_s};
-    move_along(pace, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
-    keep_upright(input.config, grip, output);
+    move_carefully(input, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
     if (state_.phase_s > config.approach_timeout_s)
       return output.abort("the zone was not reached in time");  // the robot still holds the object

@@ -48,7 +48,7 @@ class Explore : public StatefulTask<ExploreState> {
     const std::uint8_t direction = input.parameters.direction;
     const double sense = direction == msg::kDirectionBackwards ? -1.0 : 1.0;
     const double bend = direction == msg::kDirectionLeft ? 1.0 : direction == msg::kDirectionRight ? -1.0 : 0.0;
-    move_on(input, bend * kSideways_1_m, sense, grip, output);
+    move_carefully(input, bend * kSideways_1_m, sense, grip, output);
   }
 };
 

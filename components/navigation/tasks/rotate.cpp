@@ -23,7 +23,7 @@ class Rotate : public StatefulTask<RotateState> {
     const RotateConfig& config = input.config.rotate;
     const double sign = input.parameters.direction == msg::kDirectionLeft ? 1.0 : -1.0;
     const double curvature_1_m = sign * (grip.carrying ? config.carry_curvature_1_m : config.curvature_1_m);
-    move_on(input, curvature_1_m, 1.0, grip, output);
+    move_carefully(input, curvature_1_m, 1.0, grip, output);
     output.phase = "rotate";
     state_.run_s += input.tick.dt_s();
     const double timeout_s = input.parameters.timeout_s;

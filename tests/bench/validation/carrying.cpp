@@ -39,10 +39,13 @@ Scenario with_object_beside_the_body(const RobotModel& robot) {
 /// The setpoints over time: postures, the wave on them, and torque limits.
 class CarryingMotion {
  public:
-  explicit CarryingMotion(const RobotModel& robot)
-      : chain_(robot), joints_(robot.joints.size()), limit_nm_(robot.joints[0].max_torque_nm) {
-    wave_.wavelength_m = 1.07;
-  }
+  CarryingMotion(const RobotModel& robot, const ControlConfig& control)
+      : chain_(robot),
+        joints_(robot.joints.size()),
+        limit_nm_(robot.joints[0].max_torque_nm),
+        most_rad_(kPeriod_s * control.speed_share * robot.joints[0].max_speed_rad_s),
+        control_(control),
+        targets_(joints_, 0.0) {}
 
   [[nodiscard]] std::size_t base_joint(std::size_t k) const { return chain_.joint_index(kBase[k]); }
 
@@ -54,14 +57,21 @@ class CarryingMotion {
     for (const std::size_t joint : kBase) posture[joint] = bend_rad + squeeze_rad / kBase.size();
     posture[kBase.front() - 1] = posture[kBase.back() + 1] = -kOpeningShare * squeeze_rad;
     const bool carries = time_s >= kSqueezed_s;
-    wave_.amplitude_rad = time_s < kBent_s ? 0.0 : carries ? std::min(0.6, 0.35 + 0.25 * (time_s - kSqueezed_s)) : 0.35;
+    const double grown = std::clamp((time_s - kSqueezed_s) / 2.0, 0.0, 1.0);
+    wave_.amplitude_rad = time_s < kBent_s ? 0.0 : std::lerp(0.35, control_.carry.amplitude_rad, grown);
+    wave_.wavelength_m = std::lerp(1.07, control_.carry.wavelength_m, grown);
     wave_.phase_rad += 2.0 * std::numbers::pi * (carries ? 1.1 : 0.4) * kPeriod_s;
     const LinkArray yaw = chain_.joint_angles(posture, wave_, {{0.0, 0.5, 0.8}, 1.047});
 
-    std::vector<double> angles(joints_, 0.0);
+    std::vector<double>& angles = targets_;
+    const std::vector<double> previous = targets_;
     std::vector<double> rates(joints_, 0.0);
     std::vector<double> limits(joints_, limit_nm_);
     for (std::size_t k = 0; k < chain_.joint_count(); ++k) angles[chain_.joint_index(k)] = yaw[k];
+    // The pitch joints on either side of the base: a negative angle raises the base.
+    angles[base_joint(0) - 1] = angles[base_joint(kBase.size() - 1) + 1] = -grown * control_.lift_rad;
+    for (std::size_t j = 0; j < joints_; ++j)
+      angles[j] = std::clamp(angles[j], previous[j] - most_rad_, previous[j] + most_rad_);
     if (time_s >= kBent_s) {
       for (std::size_t k = 0; k < kBase.size(); ++k) limits[base_joint(k)] = carries ? 1.5 : 2.5;
     }
@@ -78,7 +88,10 @@ class CarryingMotion {
   YawChain chain_;
   std::size_t joints_;
   double limit_nm_;
+  double most_rad_;  ///< farthest that control moves a setpoint in a tick
+  ControlConfig control_;
   Wave wave_;
+  std::vector<double> targets_;
   std::vector<double> before_;
   std::vector<double> earlier_;
 };
@@ -92,9 +105,10 @@ double object_force_n(const World& world) {
 
 }  // namespace
 
-CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettings& settings) {
+CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettings& settings,
+                                     const ControlConfig& control) {
   World world(robot, with_object_beside_the_body(robot), settings);
-  CarryingMotion motion(robot);
+  CarryingMotion motion(robot, control);
   const std::vector<std::size_t> yaw = robot.yaw_joints();
   const int settle_ticks = static_cast<int>(std::lround(kMeasured_s / kPeriod_s));
   const int ticks = static_cast<int>(std::lround((kEnd_s - kMeasured_s) / kPeriod_s));

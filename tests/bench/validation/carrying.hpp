@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/validation/gait_run.hpp"
+#include "control/control_config.hpp"
 
 namespace constrictor::validation {
 
@@ -15,8 +16,10 @@ struct CarryingMeasurement {
   double slip_m = 0.0;          ///< how far the object has moved in the frame of the middle of the bend
 };
 
-/// Closes a bend of three yaw joints around a cylinder of 0.4 kg on the robot's left, squeezes it, and undulates with
-/// the gait of the task "carry" of navigation for ten seconds. Takes 28 s of simulated time.
-[[nodiscard]] CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettings& settings);
+/// Closes a bend of three yaw joints around a cylinder of 0.4 kg on the robot's left, squeezes it, and undulates for
+/// ten seconds with the gait of the motion "carry" of `control`, whose pitch joints raise the bend by
+/// `posture.lift_rad`. Takes 28 s of simulated time.
+[[nodiscard]] CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettings& settings,
+                                                   const ControlConfig& control = {});
 
 }  // namespace constrictor::validation

@@ -129,6 +129,17 @@ Section check_convergence() {
                                          {"force on the object [N]", &CarryingMeasurement::object_force_n, 1.0}},
                                         {5.0, 4.0, 2.0, 1.0, 0.5}, {50, 200}, loaded);
   section.tables.push_back(load.table);
+  Table lifts{"Loaded: the base of the bend is raised by the pitch joints beside it.",
+              {"lift [rad]", "speed [m/s]", "rms torque [Nm]", "force on the object [N]", "way in the bend [m]"},
+              {}};
+  for (const double lift_rad : {0.0, 0.002, 0.005, 0.01, 0.02, 0.05}) {
+    ControlConfig control;
+    control.lift_rad = lift_rad;
+    const CarryingMeasurement found = measure_carrying(robot, {}, control);
+    lifts.rows.push_back({shown(lift_rad), shown(found.speed_m_s), shown(found.torque_rms_nm),
+                          shown(found.object_force_n), shown(found.slip_m)});
+  }
+  section.tables.push_back(lifts);
   section.figures.push_back({"Convergence of the gait with an object", "convergence_loaded.png", load.plots});
   return section;
 }

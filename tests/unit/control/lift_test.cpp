@@ -1,0 +1,96 @@
+// The base of a U rises from the ground while the body moves. The heights of the modules are computed here, with the
+// rotations of all joints in space; control knows the body from above only.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "unit/control/control_run.hpp"
+
+namespace constrictor {
+namespace {
+
+constexpr int kFirstOfBase = 11, kLastOfBase = 14;  // modules between the three base joints of set_u()
+constexpr int kFormed_ticks = 300;                  // the U has been formed, and the base has risen
+
+/// [m] height of each module's centre over that of the head, which lies level.
+std::vector<double> heights_m(const RobotModel& robot, const double* joint_rad) {
+  const Eigen::Translation3d half(-0.5 * robot.module_length_m, 0.0, 0.0);
+  Eigen::Isometry3d X_HM = Eigen::Isometry3d::Identity();
+  std::vector<double> heights{0.0};
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const bool yaw = robot.joints[j].axis == JointAxis::kYaw;
+    // The angle turns the head side against the tail side.
+    X_HM = X_HM * half * Eigen::AngleAxisd(-joint_rad[j], yaw ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY()) *
+           half;
+    heights.push_back(X_HM.translation().z());
+  }
+  return heights;
+}
+
+LocalRun run_of_u(const std::string& motion, double speed_m_s, int stands_after_ticks = 1000000) {
+  return make_run([=](const Tick& tick, msg::DesiredTrajectory& desired) {
+    const bool stands = tick.index > stands_after_ticks;
+    set_motion(desired, stands ? "stand" : motion.c_str(), stands ? 2 : 1);
+    desired.speed_m_s = stands ? 0.0 : speed_m_s;
+    set_u(desired);
+    return true;
+  });
+}
+
+std::vector<double> heights_after(LocalRun& run, int ticks) {
+  run.advance(ticks);
+  return heights_m(load_robot(data_path("components/lib/robot/mamba.yaml")),
+                   run.latest(topics::kJointCommand)->position_rad);
+}
+
+TEST(Lift, RaisesTheBaseAndLeavesTheArmsOnTheGround) {
+  for (const char* motion : {"carry", "seat", "leave"}) {
+    LocalRun run = run_of_u(motion, 0.1);
+    const auto z_m = heights_after(run, kFormed_ticks);
+    for (int m = 0; m < static_cast<int>(z_m.size()); ++m) {
+      if (m >= kFirstOfBase && m <= kLastOfBase) {
+        EXPECT_GT(z_m[m], 0.0003) << motion << ", module " << m;
+        EXPECT_LT(z_m[m], 0.003) << motion << ", module " << m;
+      } else if (m < kFirstOfBase - 1 || m > kLastOfBase + 1) {
+        EXPECT_NEAR(z_m[m], 0.0, 0.0015) << motion << ", module " << m;
+      }
+    }
+    EXPECT_GT(z_m[(kFirstOfBase + kLastOfBase) / 2], z_m[kFirstOfBase - 1]) << motion;
+  }
+}
+
+TEST(Lift, KeepsTheBaseOnTheGroundWhereTheRobotMustNotDrift) {
+  for (const char* motion : {"deliver", "squeeze"}) {
+    LocalRun run = run_of_u(motion, 0.1);
+    for (const double z_m : heights_after(run, kFormed_ticks)) EXPECT_EQ(z_m, 0.0) << motion;
+  }
+}
+
+TEST(Lift, ABodyThatDoesNotMoveIsNotRaised) {
+  LocalRun run = run_of_u("carry", 0.0);
+  for (const double z_m : heights_after(run, kFormed_ticks)) EXPECT_EQ(z_m, 0.0);
+}
+
+TEST(Lift, RisesAndFallsWithoutAJump) {
+  LocalRun run = run_of_u("seat", 0.15, kFormed_ticks);
+  run.advance(1);
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
+  double highest_rad = 0.0;
+  auto before = *run.latest(topics::kJointCommand);
+  for (int tick = 0; tick < 2 * kFormed_ticks; ++tick) {
+    run.advance(1);
+    const auto now = *run.latest(topics::kJointCommand);
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      if (robot.joints[j].axis != JointAxis::kPitch) continue;
+      EXPECT_LE(std::abs(now.position_rad[j] - before.position_rad[j]), 0.0011) << "joint " << j << ", tick " << tick;
+      highest_rad = std::max(highest_rad, std::abs(now.position_rad[j]));
+    }
+    before = now;
+  }
+  EXPECT_DOUBLE_EQ(highest_rad, ControlConfig().lift_rad);
+  for (const double z_m : heights_m(robot, before.position_rad)) EXPECT_NEAR(z_m, 0.0, 1e-12) << "it stands";
+}
+
+}  // namespace
+}  // namespace constrictor
