@@ -242,7 +242,7 @@ struct DropConfig : NavigationSection {
   double clear_m =
       add(clear_m, "clear_m", 0.6, "m", bounds::kLength, kAtStart,
           "Distance by which the straight robot backs off then, so that its turns do not reach the object");
-  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 1.2, "rad/s", bounds::kSpeed,
+  double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.8, "rad/s", bounds::kSpeed,
                                      kAtStart, "Speed of each joint when the body straightens");
   double approach_timeout_s =
       add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, kAtStart,

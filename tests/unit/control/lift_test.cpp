@@ -28,20 +28,29 @@ std::vector<double> heights_m(const RobotModel& robot, const double* joint_rad) 
   return heights;
 }
 
-LocalRun run_of_u(const std::string& motion, double speed_m_s, int stands_after_ticks = 1000000) {
+/// The body drives with this motion; after `lift_ticks` it delivers, with the base on the ground.
+LocalRun run_of_u(const std::string& motion, double speed_m_s, int lift_ticks = 1000000) {
   return make_run([=](const Tick& tick, msg::DesiredTrajectory& desired) {
-    const bool stands = tick.index > stands_after_ticks;
-    set_motion(desired, stands ? "stand" : motion.c_str(), stands ? 2 : 1);
-    desired.speed_m_s = stands ? 0.0 : speed_m_s;
+    const bool delivers = tick.index > lift_ticks;
+    set_motion(desired, delivers ? "deliver" : motion.c_str(), delivers ? 2 : 1);
+    desired.speed_m_s = speed_m_s;
     set_u(desired);
     return true;
   });
 }
 
+/// [m] mean heights over three seconds, several periods of the wave: the wave turns the hinges a little to and fro.
 std::vector<double> heights_after(LocalRun& run, int ticks) {
+  constexpr int kMean_ticks = 150;
+  const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   run.advance(ticks);
-  return heights_m(load_robot(data_path("components/lib/robot/mamba.yaml")),
-                   run.latest(topics::kJointCommand)->position_rad);
+  std::vector<double> mean(robot.module_count, 0.0);
+  for (int tick = 0; tick < kMean_ticks; ++tick) {
+    run.advance(1);
+    const auto z_m = heights_m(robot, run.latest(topics::kJointCommand)->position_rad);
+    for (std::size_t m = 0; m < mean.size(); ++m) mean[m] += z_m[m] / kMean_ticks;
+  }
+  return mean;
 }
 
 TEST(Lift, RaisesTheBaseAndLeavesTheArmsOnTheGround) {
@@ -53,10 +62,9 @@ TEST(Lift, RaisesTheBaseAndLeavesTheArmsOnTheGround) {
         EXPECT_GT(z_m[m], 0.0003) << motion << ", module " << m;
         EXPECT_LT(z_m[m], 0.003) << motion << ", module " << m;
       } else if (m < kFirstOfBase - 1 || m > kLastOfBase + 1) {
-        EXPECT_NEAR(z_m[m], 0.0, 0.0015) << motion << ", module " << m;
+        EXPECT_NEAR(z_m[m], 0.0, 0.0003) << motion << ", module " << m;
       }
     }
-    EXPECT_GT(z_m[(kFirstOfBase + kLastOfBase) / 2], z_m[kFirstOfBase - 1]) << motion;
   }
 }
 
@@ -89,7 +97,7 @@ TEST(Lift, RisesAndFallsWithoutAJump) {
     before = now;
   }
   EXPECT_DOUBLE_EQ(highest_rad, ControlConfig().lift_rad);
-  for (const double z_m : heights_m(robot, before.position_rad)) EXPECT_NEAR(z_m, 0.0, 1e-12) << "it stands";
+  for (const double z_m : heights_m(robot, before.position_rad)) EXPECT_NEAR(z_m, 0.0, 1e-12) << "it delivers";
 }
 
 }  // namespace
