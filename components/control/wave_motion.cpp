@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 namespace constrictor {
 
@@ -22,15 +21,10 @@ bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
 /// The pitch joints that raise the base of a U, with the arms lying on the ground: the nearest one on either side. None
 /// if there is no base, or if the two hinges are not opposite each other, so that raising the base would twist it.
 std::optional<std::array<std::size_t, 2>> hinges(const MethodInput& input, const LinkArray& base_rad) {
-  std::size_t first = input.chain.joint_count(), last = 0;
-  for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
-    if (!is_base(input, base_rad[k])) continue;
-    first = std::min(first, k);
-    last = k;
-  }
-  if (first >= last) return std::nullopt;
+  const auto base = base_of(input, base_rad);
+  if (!base || base->first == base->last) return std::nullopt;
   const auto& joints = input.robot.joints;
-  const std::size_t front_base = input.chain.joint_index(first), rear_base = input.chain.joint_index(last);
+  const std::size_t front_base = input.chain.joint_index(base->first), rear_base = input.chain.joint_index(base->last);
   for (std::size_t apart = 1; apart <= front_base && rear_base + apart < joints.size(); ++apart) {
     const bool front = joints[front_base - apart].axis == JointAxis::kPitch;
     const bool rear = joints[rear_base + apart].axis == JointAxis::kPitch;
@@ -53,6 +47,14 @@ void advance_lift(const MethodInput& input, const LinkArray& base_rad, BodyState
 }
 
 }  // namespace
+
+std::optional<UBase> base_of(const MethodInput& input, const LinkArray& shape_rad) {
+  std::optional<UBase> base;
+  for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
+    if (is_base(input, shape_rad[k])) base = UBase{base ? base->first : k, k};
+  }
+  return base;
+}
 
 double approach(double value, double target, double step) { return std::clamp(target, value - step, value + step); }
 

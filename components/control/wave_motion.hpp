@@ -1,6 +1,9 @@
 // Common parts of the moving methods: ramps of the wave's parameters, and the setpoints of a wave on a posture.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include "control/control_method.hpp"
 
 namespace constrictor {
@@ -30,6 +33,14 @@ double desired_shape_rate(const MethodInput& input);
 inline bool is_base(const MethodInput& input, double shape_rad) {
   return shape_rad > input.config.base_bend_rad || shape_rad < -input.config.base_bend_rad;
 }
+
+/// The yaw joints of the base of a U.
+struct UBase {
+  std::size_t first, last;
+};
+
+/// Empty if the posture has no base.
+std::optional<UBase> base_of(const MethodInput& input, const LinkArray& shape_rad);
 
 /// Keeps the difference between the last command and the command of the present wave and posture as the remainder, so
 /// that the setpoints do not jump when the method changes.

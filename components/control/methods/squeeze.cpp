@@ -31,14 +31,9 @@ class Squeeze : public ControlMethod {
  private:
   static LinkArray closed(const MethodInput& input, const LinkArray& open_rad, double total_rad) {
     LinkArray shape_rad = open_rad;
-    std::size_t first = input.chain.joint_count();
-    std::size_t last = 0;
-    for (std::size_t k = 0; k < input.chain.joint_count(); ++k) {
-      if (!is_base(input, open_rad[k])) continue;
-      first = std::min(first, k);
-      last = k;
-    }
-    if (first > last) return shape_rad;
+    const auto base = base_of(input, open_rad);
+    if (!base) return shape_rad;
+    const auto [first, last] = *base;
     const double each_rad = total_rad / static_cast<double>(last - first + 1);
     const double sign = std::copysign(1.0, open_rad[first]);
     for (std::size_t k = first; k <= last; ++k) shape_rad[k] += sign * each_rad;

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "control/joint_limiter.hpp"
 #include "control/yaw_chain.hpp"
 
 namespace constrictor::validation {
@@ -43,9 +45,8 @@ class CarryingMotion {
       : chain_(robot),
         joints_(robot.joints.size()),
         limit_nm_(robot.joints[0].max_torque_nm),
-        most_rad_(kPeriod_s * control.speed_share * robot.joints[0].max_speed_rad_s),
         control_(control),
-        targets_(joints_, 0.0) {}
+        limiter_(robot, control.speed_share, control.lead_s) {}
 
   [[nodiscard]] std::size_t base_joint(std::size_t k) const { return chain_.joint_index(kBase[k]); }
 
@@ -61,26 +62,24 @@ class CarryingMotion {
     wave_.amplitude_rad = time_s < kBent_s ? 0.0 : std::lerp(0.35, control_.carry.amplitude_rad, grown);
     wave_.wavelength_m = std::lerp(1.07, control_.carry.wavelength_m, grown);
     wave_.phase_rad += 2.0 * std::numbers::pi * (carries ? 1.1 : 0.4) * kPeriod_s;
-    const LinkArray yaw = chain_.joint_angles(posture, wave_, {{0.0, 0.5, 0.8}, 1.047});
+    const LinkArray yaw = chain_.joint_angles(posture, wave_, control_.weights);
 
-    std::vector<double>& angles = targets_;
-    const std::vector<double> previous = targets_;
-    std::vector<double> rates(joints_, 0.0);
-    std::vector<double> limits(joints_, limit_nm_);
-    for (std::size_t k = 0; k < chain_.joint_count(); ++k) angles[chain_.joint_index(k)] = yaw[k];
-    // The pitch joints on either side of the base: a negative angle raises the base.
-    angles[base_joint(0) - 1] = angles[base_joint(kBase.size() - 1) + 1] = -grown * control_.lift_rad;
-    for (std::size_t j = 0; j < joints_; ++j)
-      angles[j] = std::clamp(angles[j], previous[j] - most_rad_, previous[j] + most_rad_);
-    if (time_s >= kBent_s) {
-      for (std::size_t k = 0; k < kBase.size(); ++k) limits[base_joint(k)] = carries ? 1.5 : 2.5;
+    Setpoints wanted;
+    JointArray measured_rad{};
+    for (std::size_t j = 0; j < joints_; ++j) {
+      wanted.torque_limit_nm[j] = limit_nm_;
+      measured_rad[j] = world.joint_angle_rad(j);
     }
-    // The rate at the end of the period, from three positions; it needs no derivative of the posture.
-    for (std::size_t i = 0; i < joints_ && !before_.empty(); ++i)
-      rates[i] = (1.5 * (angles[i] - before_[i]) - 0.5 * (before_[i] - earlier_[i])) / kPeriod_s;
-    earlier_ = before_.empty() ? angles : before_;
-    before_ = angles;
-    world.set_servo(angles, rates, limits);
+    for (std::size_t k = 0; k < chain_.joint_count(); ++k) wanted.position_rad[chain_.joint_index(k)] = yaw[k];
+    // The pitch joints on either side of the base: a negative angle raises the base.
+    wanted.position_rad[base_joint(0) - 1] = wanted.position_rad[base_joint(kBase.size() - 1) + 1] =
+        -grown * control_.lift_rad;
+    if (time_s >= kBent_s) {
+      for (std::size_t k = 0; k < kBase.size(); ++k) wanted.torque_limit_nm[base_joint(k)] = carries ? 1.5 : 2.5;
+    }
+    const msg::JointCommand command = limiter_.limit(wanted, measured_rad, kPeriod_s, limited_);
+    world.set_servo(std::span(command.position_rad).first(joints_), std::span(command.velocity_rad_s).first(joints_),
+                    std::span(command.torque_limit_nm).first(joints_));
     world.advance(kPeriod_s);
   }
 
@@ -88,12 +87,10 @@ class CarryingMotion {
   YawChain chain_;
   std::size_t joints_;
   double limit_nm_;
-  double most_rad_;  ///< farthest that control moves a setpoint in a tick
   ControlConfig control_;
+  JointLimiter limiter_;
+  LimiterState limited_;
   Wave wave_;
-  std::vector<double> targets_;
-  std::vector<double> before_;
-  std::vector<double> earlier_;
 };
 
 double object_force_n(const World& world) {

@@ -1,10 +1,11 @@
-// The base of a U rises from the ground while the body moves. The heights of the modules are computed here, with the
-// rotations of all joints in space; control knows the body from above only.
+// The base of a U rises from the ground while the body moves. The heights of the modules follow from the robot's
+// kinematics in space; control knows the body from above only.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
+#include <span>
 #include <string>
 
+#include "robot/kinematics.hpp"
 #include "unit/control/control_run.hpp"
 
 namespace constrictor {
@@ -15,16 +16,9 @@ constexpr int kFormed_ticks = 300;                  // the U has been formed, an
 
 /// [m] height of each module's centre over that of the head, which lies level.
 std::vector<double> heights_m(const RobotModel& robot, const double* joint_rad) {
-  const Eigen::Translation3d half(-0.5 * robot.module_length_m, 0.0, 0.0);
-  Eigen::Isometry3d X_HM = Eigen::Isometry3d::Identity();
-  std::vector<double> heights{0.0};
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const bool yaw = robot.joints[j].axis == JointAxis::kYaw;
-    // The angle turns the head side against the tail side.
-    X_HM = X_HM * half * Eigen::AngleAxisd(-joint_rad[j], yaw ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY()) *
-           half;
-    heights.push_back(X_HM.translation().z());
-  }
+  std::vector<double> heights;
+  for (const auto& pose : module_poses(robot, std::span(joint_rad, robot.joints.size())))
+    heights.push_back(pose.translation().z());
   return heights;
 }
 
