@@ -22,6 +22,7 @@ void FieldMapper::replace(Landmark& landmark, const Eigen::Vector2d& z, const Ei
   landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
   filter_.add(z, noise);
   landmark.strays = 0;
+  landmark.may_have_moved = false;
   landmark.last_seen_tick = tick;
 }
 

@@ -141,7 +141,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   if (best == state_.landmarks.size() && nearest < state_.landmarks.size()) {
     Landmark& moved = state_.landmarks[nearest];
     used[nearest] = true;
-    if (!whole || ++moved.strays < config_.confirm) return;
+    if (!whole || (++moved.strays < config_.confirm && !moved.may_have_moved)) return;
     replace(moved, z, noise, tick);  // the object has been pushed, and keeps its handle
     return;
   }
@@ -153,10 +153,10 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   }
   used[best] = true;
   Landmark& landmark = state_.landmarks[best];
-  if (trusted(landmark)) {
+  if (trusted(landmark) && !landmark.may_have_moved) {
     filter_.observe(static_cast<std::size_t>(landmark.slot), z, noise);
   } else {
-    replace(landmark, z, noise, tick);  // it was missed before, so that it may have been moved a little
+    replace(landmark, z, noise, tick);  // its place is not known well enough to correct the pose
   }
   landmark.hits = std::min(landmark.hits + 1, kMaxHits);
   landmark.strays = 0;

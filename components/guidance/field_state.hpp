@@ -27,12 +27,13 @@ struct Landmark {
   double log_odds = 0.0;                    ///< natural logarithm of the odds that it exists
   bool felt = false;
   bool carried = false;
+  bool may_have_moved = false;  ///< it was released or touched, and not seen since
   std::int64_t last_seen_tick = 0;
   std::int64_t proved_tick = -1;  ///< when an image last raised log_odds; the cameras expose at the same ticks
   template <class Archive>
   void serialize(Archive& archive) {
     archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, height_m, hits, strays, log_odds, felt, carried,
-            last_seen_tick, proved_tick);
+            may_have_moved, last_seen_tick, proved_tick);
   }
 };
 

@@ -64,7 +64,8 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     }
     state_.felt.back().handle = nearest->handle;
     nearest->felt = true;
-    // The touched object may have been pushed. Later percepts of it must correct the landmark, not the robot's pose.
+    // The touched object may have been pushed. The next percept must correct the landmark, not the robot's pose.
+    nearest->may_have_moved = true;
     if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
   }
 }
@@ -122,8 +123,10 @@ void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std
       landmark.y_m = p_M.y();
       landmark.sd_m = 0.05;
     } else {
-      // The body has released the object: the object stays where the base of the U was.
+      // The body has released the object: the object stays where the base of the U was, or near it, because the arms
+      // may push it while they open.
       landmark.carried = false;
+      landmark.may_have_moved = true;
       landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
       filter_.add(base, 0.06 * 0.06 * Eigen::Matrix2d::Identity());
       landmark.last_seen_tick = tick;

@@ -7,7 +7,9 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kStep = 0.5;  // [pixel]
+constexpr double kStep = 0.5;    // [pixel]
+constexpr double kBorder = 1.5;  // [pixel] of the image, ahead
+constexpr double kBeside = 3.0;  // [pixel] of the image, beside
 
 bool inside(const cv::Mat& image, const Eigen::Vector2d& p) {
   return p.x() >= 0.0 && p.y() >= 0.0 && p.x() < image.cols && p.y() < image.rows;
@@ -67,7 +69,9 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& c
   const Region& region = regions.regions[static_cast<std::size_t>(id - 1)];
   const auto value = [&](double t) { return colour_strength(rgb, region.colour, start + t * direction); };
   edge.pixel = start + last * direction;
-  if (!inside(rgb, edge.pixel + 1.5 * direction)) {
+  // A walk along the border may leave a region only because the border cuts its side.
+  const double aside = std::min(edge.pixel.x(), rgb.cols - edge.pixel.x());
+  if (aside < kBeside || !inside(rgb, edge.pixel + kBorder * direction)) {
     edge.state = EdgeState::kCut;
     return edge;
   }

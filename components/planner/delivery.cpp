@@ -9,15 +9,15 @@
 namespace constrictor {
 namespace {
 
-// The release itself counts as a sighting of the carried object, and reaches the map some ticks later.
-constexpr std::int64_t kReleaseTicks = 25;
+// An image of the time before reaches the map some ticks later.
+constexpr std::int64_t kLatencyTicks = 10;
 
 bool may_be(const msg::MapObject& landmark, const DroppedObject& dropped) {
   if (landmark.kind != msg::kBlobObject || landmark.colour != dropped.colour || landmark.carried) return false;
   if (std::find(dropped.others.begin(), dropped.others.end(), landmark.handle) != dropped.others.end()) return false;
   const bool same = dropped.handle == 0 || landmark.handle == dropped.handle ||
                     landmark.handle > std::max(dropped.newest_handle, dropped.handle);
-  return same && landmark.last_seen_tick > dropped.released_tick + kReleaseTicks;
+  return same && landmark.last_seen_tick > dropped.released_tick + kLatencyTicks;
 }
 
 /// The verdict if this landmark is the object.

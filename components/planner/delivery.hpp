@@ -31,7 +31,7 @@ struct DroppedObject {
   /// Highest handle of the map at the release. The map gives the object a new, higher handle if it is seen too far from
   /// where the robot let it go.
   std::uint16_t newest_handle = 0;
-  std::int64_t released_tick = -1;  ///< last tick in which the body held the object
+  std::int64_t released_tick = -1;  ///< last tick in which the body held the object, or left it
   /// The robot may have pushed the object away from the place where the map still has it. Of several landmarks that may
   /// be the object and whose verdict is certain, the one that was seen last counts. The verdict on a landmark that is
   /// outside of its zone by three standard deviations is certain, even if its place is imprecise.
@@ -39,7 +39,7 @@ struct DroppedObject {
   std::vector<std::uint16_t> others{};  ///< handles of other objects of this colour, which it is not
 };
 
-/// Compares the object's place with the zone of its colour. It counts as seen if an image after the release
+/// Compares the object's place with the zone of its colour. It counts as seen if an image after `released_tick`
 /// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
 /// an object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
 /// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.

@@ -44,9 +44,9 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   const bool contradicts = inputs.status && memory_.requested && inputs.status->goal_id == kGoalBase + memory_.goals &&
                            inputs.status->carrying != holding();
   memory_.contradiction_s = contradicts ? memory_.contradiction_s + elapsed_s : 0.0;
-  if (inputs.status && memory_.state == kDrop && inputs.status->carrying) {
-    memory_.released_tick = inputs.tick;
-    if (inputs.map) memory_.newest_handle = newest_handle(*inputs.map);
+  if (memory_.state == kDrop) {
+    memory_.released_tick = inputs.tick;  // the body may push the object until it has left it
+    if (inputs.map && inputs.status && inputs.status->carrying) memory_.newest_handle = newest_handle(*inputs.map);
   }
   if (inputs.status && memory_.state == kPregrasp && inputs.status->goal_id == kGoalBase + memory_.goals &&
       inputs.status->parameters.direction != msg::kDirectionNone)

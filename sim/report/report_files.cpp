@@ -75,6 +75,8 @@ std::string Report::mission_json(const Tick& tick, const std::string& figure_err
   json["seed"] = scene_ ? scene_->seed : seed_;
   json["scenario"] = scenario();
   json["sim_time_s"] = tick.time_s();
+  const bool ended = state_.mission_end_tick >= 0;
+  json["mission_time_s"] = ended ? static_cast<double>(state_.mission_end_tick) * tick.period_s() : std::nan("");
   json["ticks"] = tick.index;
   json["state_hash"] = world_ ? ordered_json(hex(world_->state_hash)) : ordered_json();
   json["reason"] = failure();

@@ -128,7 +128,8 @@ json example_report() {
   return {{"success", false},
           {"believed", "succeeded"},
           {"reason", "green lies 0.51 m from the centre, \"outside\""},
-          {"sim_time_s", 100.0},
+          {"sim_time_s", 102.0},
+          {"mission_time_s", 100.0},
           {"wall_time_s", 9.0},
           {"recoveries", 2},
           {"state_hash", "ab"},
@@ -153,6 +154,7 @@ TEST(MissionResult, IsReadFromTheReport) {
   EXPECT_TRUE(result.believed);
   EXPECT_FALSE(result.error());
   EXPECT_EQ(result.recoveries, 2);
+  EXPECT_DOUBLE_EQ(result.mission_time_s, 100.0);
   EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search"), 60.0);
   EXPECT_DOUBLE_EQ(result.time_in_state_s.at("grasp"), 40.0);
   EXPECT_EQ(result.troubles.at("grasp: no"), 2);
@@ -160,6 +162,16 @@ TEST(MissionResult, IsReadFromTheReport) {
   EXPECT_TRUE(reached(result, 0));
   EXPECT_FALSE(reached(result, 1));
   EXPECT_FALSE(reached(result, 3));
+}
+
+TEST(MissionResult, AMissionThatDidNotEndLastsAsLongAsItsRun) {
+  const TemporaryFolder folder;
+  json report = example_report();
+  report["mission_time_s"] = nullptr;
+  std::ofstream(folder.path() / "report.json") << report;
+  const MissionResult result = read_result(folder.path(), 1);
+  EXPECT_DOUBLE_EQ(result.mission_time_s, 102.0);
+  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search"), 62.0);
 }
 
 TEST(MissionResult, WhateverIsInTheReportDoesNoHarm) {
@@ -195,7 +207,7 @@ class SummaryTest : public ::testing::Test {
       results_.push_back(std::move(result));
     }
     results_[0].success = true;
-    results_[0].sim_time_s = 80.0;
+    results_[0].mission_time_s = 80.0;
   }
   TemporaryFolder folder_;
   std::vector<Variant> variants_ = make_variants({});
@@ -209,7 +221,7 @@ TEST_F(SummaryTest, CountsErrorsAsNotSuccessfulAndWhatWasOnlyBelieved) {
   EXPECT_EQ(summary.successes(), 1u);
   EXPECT_EQ(summary.false_successes, 2u);
   EXPECT_EQ(summary.placement_m.values.size(), 3u) << "only of objects that were dropped";
-  EXPECT_DOUBLE_EQ(summary.sim_time_s.at(0.5), 80.0) << "of successful missions";
+  EXPECT_DOUBLE_EQ(summary.mission_time_s.at(0.5), 80.0) << "of successful missions";
   EXPECT_DOUBLE_EQ(summary.mean_time_in_state_s.at("grasp"), 40.0);
   const auto written = to_json({summary}).at(0);
   EXPECT_EQ(written.at("phases").at("objects grasped").at("runs"), 3);

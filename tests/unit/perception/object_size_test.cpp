@@ -130,6 +130,28 @@ TEST(ObjectSize, TheKnownSizeGivesTheRangeOnAZoneOfTheObjectsColour) {
   }
 }
 
+// The near rim of the zone slopes in the image, so that it is lowest where the border cuts the object.
+TEST(ObjectSize, AnObjectOnAZoneIsNoNearerWhenTheBorderCutsBoth) {
+  int cut = 0;
+  for (const Conditions& c : kAttitudes) {
+    for (const double side : {-1.0, 1.0}) {
+      for (const double bearing : {0.66, 0.7, 0.74, 0.78, 0.82}) {
+        SCOPED_TRACE(describe(c, 0.085, 0.15, side * bearing));
+        const Eigen::Vector2d centre = 0.93 * Eigen::Vector2d(std::cos(bearing), side * std::sin(bearing));
+        Scene scene;
+        scene.rounds = {Round{msg::kColourGreen, centre - Eigen::Vector2d(0.15, 0.0), 0.4},
+                        Round{msg::kColourGreen, centre, 0.085, 0.15}};
+        const Percepts percepts = look(scene, c, 1, known(0.085, 0.15));
+        const msg::Blob* object = find(percepts, msg::kBlobObject);
+        if (object == nullptr || !std::isfinite(object->range_m)) continue;
+        EXPECT_NEAR(object->range_m, 0.93 - 0.085, 0.1);
+        cut += object->cut_left || object->cut_right ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(cut, 10);
+}
+
 TEST(ObjectSize, ALowObjectOfKnownSizeIsFoundOnAZoneOfItsColour) {
   for (const Conditions& c : kAttitudes) {
     for (const double distance : {0.6, 0.9}) {

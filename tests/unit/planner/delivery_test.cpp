@@ -82,8 +82,13 @@ TEST_F(DeliveryTest, AnObjectSeenOutsideItsZoneIsRetrievedAgain) {
   fetch(msg::kColourGreen);
   carry();
   release(msg::kColourGreen);
-  map_dropped(msg::kColourGreen, 0.45);
+  map_dropped(msg::kColourGreen, 0.1);  // the arms push it on while they leave it
   succeed(msg::kEventDroppingDone);
+  EXPECT_EQ(memory_.state, kInspect);
+  steps(20);
+  EXPECT_EQ(memory_.state, kInspect);
+  map_dropped(msg::kColourGreen, 0.45);
+  step();
   EXPECT_EQ(memory_.state, kSearchObject);
   EXPECT_EQ(memory_.object_index, 0);
   EXPECT_EQ(memory_.recoveries, 1);

@@ -103,6 +103,7 @@ TEST(Report, FiguresAreThoseOfTheScript) {
   const std::int64_t last = story.mission_end_tick + 1 + 100;
   EXPECT_EQ(mission["ticks"], last);
   EXPECT_NEAR(mission["sim_time_s"], 0.02 * static_cast<double>(last), 1e-9);
+  EXPECT_NEAR(mission["mission_time_s"], mission["sim_time_s"].get<double>() - 2.0, 1e-9);  // settle_s
   char byte[3];
   std::snprintf(byte, sizeof byte, "%02x", static_cast<unsigned>(last & 0xFF));
   const std::string hash = mission["state_hash"];

@@ -214,7 +214,7 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
       succeeded += result.success ? 1 : 0;
       const std::string& variant = variants_[job.run.variant].name;
       show(fmt::format("seed {}{}: {}", job.run.seed, variants_.size() > 1 ? " with " + variant : "",
-                       result.success ? fmt::format("succeeded in {:.1f} s", result.sim_time_s)
+                       result.success ? fmt::format("succeeded in {:.1f} s", result.mission_time_s)
                                       : (result.error() ? "error: " : "failed: ") + result.reason));
     }
     std::erase_if(jobs, [](const Job& job) { return job.over; });

@@ -84,7 +84,8 @@ MissionResult read_result(const std::filesystem::path& folder, int exit_status) 
   result.success = flag_of(report, "success");
   result.believed = text_of(report, "believed") == "succeeded";
   result.reason = text_of(report, "reason");
-  result.sim_time_s = number_of(report, "sim_time_s");
+  const double run_s = number_of(report, "sim_time_s"), mission_s = number_of(report, "mission_time_s");
+  result.mission_time_s = std::isfinite(mission_s) ? mission_s : run_s;
   result.wall_time_s = number_of(report, "wall_time_s");
   result.rms_cross_track_m = number_of(field(report, "line"), "rms_cross_track_m");
   result.rms_pose_error_m = number_of(field(report, "pose_error"), "rms_m");
@@ -96,7 +97,7 @@ MissionResult read_result(const std::filesystem::path& folder, int exit_status) 
     result.objects.push_back({text_of(object, "colour"), flag_of(object, "grasped"), flag_of(object, "dropped"),
                               flag_of(object, "in_zone"), number_of(object, "zone_distance_m")});
   }
-  result.time_in_state_s = times(field(report, "states"), result.sim_time_s);
+  result.time_in_state_s = times(field(report, "states"), result.mission_time_s);
   for (const auto& event : field(report, "events")) {
     if (const std::string trouble = trouble_of(event); !trouble.empty()) ++result.troubles[trouble];
   }

@@ -25,13 +25,13 @@ struct ObjectResult {
 struct MissionResult {
   std::size_t variant = 0;  ///< index in the evaluation's variants
   std::uint64_t seed = 0;
-  std::filesystem::path folder;  ///< relative to that of the evaluation
-  std::string command;           ///< repeats the run
-  int exit_status = -1;          ///< of `constrictor run`: 0 and 1 are outcomes of the mission, others are errors
-  bool success = false;          ///< by ground truth
-  bool believed = false;         ///< the planner ended the mission as succeeded
-  std::string reason;            ///< why it did not succeed
-  double sim_time_s = kUnknown;
+  std::filesystem::path folder;      ///< relative to that of the evaluation
+  std::string command;               ///< repeats the run
+  int exit_status = -1;              ///< of `constrictor run`: 0 and 1 are outcomes of the mission, others are errors
+  bool success = false;              ///< by ground truth
+  bool believed = false;             ///< the planner ended the mission as succeeded
+  std::string reason;                ///< why it did not succeed
+  double mission_time_s = kUnknown;  ///< until the planner ended the mission, or else until the run ended
   double wall_time_s = kUnknown;
   double rms_cross_track_m = kUnknown;
   double rms_pose_error_m = kUnknown;

@@ -57,7 +57,7 @@ std::string overview(const std::vector<VariantSummary>& summaries) {
         "<td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td class=\"n\">{} m</td>"
         "<td class=\"n\">{}</td></tr>\n",
         xml_escaped(summary.name), summary.runs, summary.successes(), interval_text(summary.successes(), summary.runs),
-        summary.false_successes, summary.errors, known(summary.sim_time_s.at(0.5), 1),
+        summary.false_successes, summary.errors, known(summary.mission_time_s.at(0.5), 1),
         known(summary.placement_m.at(0.5), 3), known(summary.placement_m.at(0.95), 3),
         known(summary.cost_of_transport.at(0.5), 2));
   }
@@ -133,7 +133,7 @@ std::string over_the_value(const std::vector<Variant>& variants, const std::vect
         curve.points.push_back({*x, values.at(0.5), true, {values.at(0.25), values.at(0.75)}});
     };
     add(placement, summary.placement_m);
-    add(time, summary.sim_time_s);
+    add(time, summary.mission_time_s);
   }
   for (Curve* curve : {&success, &placement, &time}) {
     std::sort(curve->points.begin(), curve->points.end(),
@@ -191,7 +191,7 @@ std::string run_rows(const PageContent& content, bool successes) {
         xml_escaped(result.folder.string()), result.seed, xml_escaped(content.variants.at(result.variant).name),
         successes ? "" : "bad",
         successes ? "succeeded" : xml_escaped((result.error() ? "error: " : "") + result.reason),
-        known(result.sim_time_s, 1), known(worst_m, 2), result.recoveries, xml_escaped(result.command));
+        known(result.mission_time_s, 1), known(worst_m, 2), result.recoveries, xml_escaped(result.command));
   }
   return rows;
 }
@@ -220,7 +220,7 @@ std::string make_page(const PageContent& content) {
           over_the_value(content.variants, summaries) + phases(summaries) +
           cumulative("Placement of dropped objects", "distance from the zone's centre [m]", summaries,
                      &VariantSummary::placement_m) +
-          cumulative("Time of successful missions", "simulated time [s]", summaries, &VariantSummary::sim_time_s) +
+          cumulative("Time of successful missions", "simulated time [s]", summaries, &VariantSummary::mission_time_s) +
           cumulative("Cross-track error while following the line", "root mean square of a run [m]", summaries,
                      &VariantSummary::cross_track_m) +
           cumulative("Error of the estimated pose", "root mean square of a run [m]", summaries,

@@ -40,7 +40,7 @@ void add(VariantSummary& summary, const MissionResult& result) {
   for (const auto& object : result.objects) {
     if (object.dropped) add_known(summary.placement_m, object.zone_distance_m);
   }
-  if (result.success) add_known(summary.sim_time_s, result.sim_time_s);
+  if (result.success) add_known(summary.mission_time_s, result.mission_time_s);
   add_known(summary.cross_track_m, result.rms_cross_track_m);
   add_known(summary.pose_error_m, result.rms_pose_error_m);
   add_known(summary.cost_of_transport, result.cost_of_transport);
@@ -79,7 +79,7 @@ ordered_json to_json(const std::vector<VariantSummary>& summaries) {
                     {"false_successes", summary.false_successes},
                     {"phases", phases},
                     {"placement_m", to_json(summary.placement_m)},
-                    {"mission_time_s", to_json(summary.sim_time_s)},
+                    {"mission_time_s", to_json(summary.mission_time_s)},
                     {"rms_cross_track_m", to_json(summary.cross_track_m)},
                     {"rms_pose_error_m", to_json(summary.pose_error_m)},
                     {"cost_of_transport", to_json(summary.cost_of_transport)},
@@ -106,9 +106,9 @@ std::string to_csv(const std::vector<Variant>& variants, const std::vector<Missi
   text += ",state_hash,folder\r\n";
   for (const auto& result : results) {
     text += fmt::format("{},{},{},{:d},{:d},{},{},{},{},{},{},{}", csv(variants.at(result.variant).name), result.seed,
-                        result.exit_status, result.success, result.believed, csv(result.reason), csv(result.sim_time_s),
-                        csv(result.wall_time_s), result.recoveries, csv(result.rms_cross_track_m),
-                        csv(result.rms_pose_error_m), csv(result.cost_of_transport));
+                        result.exit_status, result.success, result.believed, csv(result.reason),
+                        csv(result.mission_time_s), csv(result.wall_time_s), result.recoveries,
+                        csv(result.rms_cross_track_m), csv(result.rms_pose_error_m), csv(result.cost_of_transport));
     for (std::size_t i = 0; i < objects; ++i) {
       if (i >= result.objects.size()) {
         text += ",,,,,";
@@ -140,7 +140,7 @@ std::string to_table(const std::vector<VariantSummary>& summaries) {
     text +=
         fmt::format("{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>11}\n", summary.name, width, summary.runs,
                     summary.successes(), fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high),
-                    summary.errors, known(summary.sim_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
+                    summary.errors, known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
                     known(summary.recoveries.at(0.5), 1));
   }
   return text +

@@ -26,7 +26,7 @@ struct VariantSummary {
   std::size_t false_successes = 0;   ///< missions that only the robot believed to have succeeded
   std::vector<std::size_t> reached;  ///< runs that reached each of kPhases
   Distribution placement_m;          ///< distance of each dropped object from the centre of its zone
-  Distribution sim_time_s;           ///< of successful missions
+  Distribution mission_time_s;       ///< of successful missions
   Distribution cross_track_m;
   Distribution pose_error_m;
   Distribution cost_of_transport;
