@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "robot/u_arms.hpp"
+
 namespace constrictor {
 
 namespace {
@@ -19,12 +21,14 @@ bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
 }
 
 /// The pitch joints that raise the base of a U, with the arms lying on the ground: the nearest one on either side. None
-/// if there is no base, or if the two hinges are not opposite each other, so that raising the base would twist it.
+/// if there is no base, if the arms are too short, or if the two hinges are not opposite each other, so that raising
+/// the base would twist it.
 std::optional<std::array<std::size_t, 2>> hinges(const MethodInput& input, const LinkArray& base_rad) {
   const auto base = base_of(input, base_rad);
   if (!base || base->first == base->last) return std::nullopt;
   const auto& joints = input.robot.joints;
   const std::size_t front_base = input.chain.joint_index(base->first), rear_base = input.chain.joint_index(base->last);
+  if (!arms_carry_base(input.robot, front_base, rear_base)) return std::nullopt;
   for (std::size_t apart = 1; apart <= front_base && rear_base + apart < joints.size(); ++apart) {
     const bool front = joints[front_base - apart].axis == JointAxis::kPitch;
     const bool rear = joints[rear_base + apart].axis == JointAxis::kPitch;

@@ -1,6 +1,11 @@
 #include "navigation/body_fit.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "navigation/grip.hpp"
+#include "robot/u_arms.hpp"
 
 namespace constrictor {
 namespace {
@@ -10,6 +15,15 @@ constexpr double kTunedLength_m = 2.136;  // for which the values of the configu
 // as the weight of an arm times its length demands) the U of 32 modules opened while it turned, and lost the object.
 constexpr double kFirmHold = 2.0 / 3.0;
 constexpr double kFirmFrom = 4.0 / 3.0;
+
+bool carries_on_ground(const RobotModel& robot, const GripConfig& config) {
+  const int wanted = config.base_first_joint;
+  const int first = wanted < 0 ? middle_base_joint(robot, config.base_joints) : wanted;
+  const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
+  const auto last = static_cast<std::size_t>(first + config.base_joints - 1);
+  if (last >= yaw_joints.size()) return false;  // GripSense refuses this base
+  return !arms_carry_base(robot, yaw_joints[static_cast<std::size_t>(first)], yaw_joints[last]);
+}
 
 }  // namespace
 
@@ -45,6 +59,8 @@ NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
   // It needs more time to straighten and more room, or its turns reach the object.
   config.drop.straighten_rate_rad_s /= longer * longer;
   config.drop.clear_m *= longer * longer;
+
+  config.carries_on_ground = carries_on_ground(robot, config.grip);
   return config;
 }
 

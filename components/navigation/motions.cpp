@@ -102,8 +102,12 @@ void keep_upright(const NavigationConfig& config, const Grip& grip, TaskOutput& 
   if (most_m_s2 < kAny_m_s2) output.desired.acceleration_m_s2 = most_m_s2;
 }
 
+Pace carrying_pace(const NavigationConfig& config) {
+  return config.carries_on_ground ? Pace{"deliver", config.deliver_m_s} : Pace{"carry", config.carry_m_s};
+}
+
 Pace present_pace(const NavigationConfig& config, const Grip& grip) {
-  return grip.carrying ? Pace{"carry", config.carry_m_s} : Pace{"travel", config.travel_m_s};
+  return grip.carrying ? carrying_pace(config) : Pace{"travel", config.travel_m_s};
 }
 
 void move_on(const TaskInput& input, double curvature_1_m, double direction, const Grip& grip, TaskOutput& output) {

@@ -36,6 +36,8 @@ void squeeze_u(const NavigationConfig& config, const GripSense& sense, double si
 double tipping_acceleration_m_s2(const Grip& grip);
 /// Limits the waves of the motion so that the arms of the U do not knock over the object of `grip`.
 void keep_upright(const NavigationConfig& config, const Grip& grip, TaskOutput& output);
+/// The pace of a body with an object along a line or path.
+Pace carrying_pace(const NavigationConfig& config);
 /// The pace of a body with or without an object.
 Pace present_pace(const NavigationConfig& config, const Grip& grip);
 /// Moves at the present pace, and keeps an object in the U upright.

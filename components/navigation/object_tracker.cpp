@@ -45,10 +45,14 @@ void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPerce
                        ObjectTrackerState& state) {
   std::array<bool, msg::kColourCount> object{};
   std::array<bool, msg::kColourCount> zone{};
+  for (Sighting& sighting : state.objects) sighting.decided = false;
+  for (Sighting& sighting : state.zones) sighting.decided = false;
   for (std::size_t i = 0; i < percepts.blob_count; ++i) {
     const msg::Blob& blob = percepts.blobs[i];
     if (blob.colour >= msg::kColourCount) continue;
     const bool undecided = blob.kind == msg::kBlobUndecided;
+    if (blob.kind == msg::kBlobObject) state.objects[blob.colour].decided = true;
+    if (blob.kind == msg::kBlobZone) state.zones[blob.colour].decided = true;
     if (blob.kind == msg::kBlobObject || (undecided && state.objects[blob.colour].visible)) object[blob.colour] = true;
     if (blob.kind == msg::kBlobZone || (undecided && state.zones[blob.colour].visible)) zone[blob.colour] = true;
   }

@@ -14,6 +14,7 @@ namespace constrictor {
 
 /// The object, or the drop zone, of one colour.
 struct Sighting : Visibility {
+  bool decided = false;         ///< the newest image shows it, and no blob that may as well be something else
   std::int64_t seen_tick = -1;  ///< exposure of the newest image that showed it
   // The landmark of the map.
   bool known = false;        ///< the map has one
@@ -25,7 +26,7 @@ struct Sighting : Visibility {
   [[nodiscard]] Eigen::Vector2d p_M() const { return {x_m, y_m}; }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(seen, missed, visible, seen_tick, known, handle, x_m, y_m, radius_m, height_m);
+    archive(seen, missed, visible, decided, seen_tick, known, handle, x_m, y_m, radius_m, height_m);
   }
 };
 

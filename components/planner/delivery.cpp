@@ -34,7 +34,7 @@ DeliveryView view_of(const msg::FieldMap& map, const msg::MapObject& object, con
   const bool clearly_outside = view.offset_m - kClearly * sd_m > view.radius_m;
   view.verdict = dropped.may_have_moved && clearly_outside ? Delivery::kOutside
                  : !view.precise                           ? Delivery::kUncertain
-                 : view.offset_m + sd_m <= view.radius_m   ? Delivery::kOnZone
+                 : view.probably_inside(sd_m)              ? Delivery::kOnZone
                  : view.offset_m - sd_m > view.radius_m    ? Delivery::kOutside
                                                            : Delivery::kUncertain;
   return view;

@@ -22,6 +22,11 @@ struct DeliveryView {
   double offset_m = 0.0;     ///< between the centres of object and zone; NaN: one of them is not in the map
   double radius_m = 0.0;     ///< of the zone
   std::uint16_t handle = 0;  ///< of the object's landmark; 0: none was seen
+
+  /// Whether the object's centre lies inside the zone by this length [m], and by kRim_m for what the standard
+  /// deviations do not contain, such as the error of the zone's radius.
+  [[nodiscard]] bool probably_inside(double by_m = 0.0) const { return offset_m + by_m <= radius_m - kRim_m; }
+  static constexpr double kRim_m = 0.03;
 };
 
 /// Which object was dropped, and what counts as having seen it.
@@ -39,13 +44,13 @@ struct DroppedObject {
   std::vector<std::uint16_t> others{};  ///< handles of other objects of this colour, which it is not
 };
 
-/// Compares the object's place with the zone of its colour. It counts as seen if an image after `released_tick`
-/// shows it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of
-/// an object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
+/// Compares the object's place with the zone of its colour. It counts as seen if an image after `released_tick` shows
+/// it. If the standard deviation of its place is more than `seen_sd_m` [m], the verdict is kUncertain: a part of an
+/// object at the image's border does not show where its centre is. Of several landmarks that may be the object, the
 /// most precise one counts, unless the object may have moved; without a handle, every object of the colour may be it.
 /// The standard deviations of object and zone are taken into account: the verdict is kOnZone if the object's centre
-/// lies inside the zone by one standard deviation, kOutside if it lies outside by one. `zone_radius_m`: [m] radius of a
-/// zone whose radius the map does not know.
+/// lies inside the zone by one standard deviation and kRim_m, kOutside if it lies outside by one standard deviation.
+/// `zone_radius_m`: [m] radius of a zone whose radius the map does not know.
 [[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                                          double zone_radius_m);
 

@@ -76,8 +76,11 @@ MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
 
 MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs& inputs) {
   const DeliveryView view = dropped_object(inputs);
+  // The search has found the object, but no image has shown it to the map yet.
+  const bool in_time = memory_.active_s - memory_.entered_s < config_.inspect_s;
+  if (in_view && in_time && view.verdict == Delivery::kUnseen) return kInspect;
   const bool seen = in_view || view.precise;
-  const bool likely = seen && view.verdict == Delivery::kUncertain && view.offset_m <= view.radius_m;
+  const bool likely = seen && view.verdict == Delivery::kUncertain && view.probably_inside();
   return likely || view.verdict == Delivery::kOnZone ? delivered(inputs) : recover(kSearchObject);
 }
 

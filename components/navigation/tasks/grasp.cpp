@@ -140,8 +140,7 @@ class Grasp : public StatefulTask<GraspState> {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
     // The robot drives as it does with an object: the base pushes an object that is inside the U, and so touches it.
-    move_in_shape({"carry", input.config.carry_m_s}, 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(),
-                  output);
+    move_in_shape(carrying_pace(input.config), 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
     keep_upright(input.config, grip, output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input, grip);

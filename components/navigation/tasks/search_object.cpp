@@ -48,7 +48,7 @@ class SearchObject : public StatefulTask<SearchState> {
       confirm(input, grip, object, output);
       return;
     }
-    if (object.visible && object.missed == 0 && is_named(input)) {
+    if (object.visible && object.decided && is_named(input)) {
       output.emit(msg::kEventObjectFound, colour, seen_handle(input, colour));
       enter(input, kConfirm);
       confirm(input, grip, object, output);

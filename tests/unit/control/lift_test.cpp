@@ -2,6 +2,7 @@
 // kinematics in space; control knows the body from above only.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -66,6 +67,22 @@ TEST(Lift, KeepsTheBaseOnTheGroundWhereTheRobotMustNotDrift) {
   for (const char* motion : {"deliver", "squeeze"}) {
     LocalRun run = run_of_u(motion, 0.1);
     for (const double z_m : heights_after(run, kFormed_ticks)) EXPECT_EQ(z_m, 0.0) << motion;
+  }
+}
+
+TEST(Lift, AShortArmDoesNotCarryTheBase) {
+  for (const int towards_tail : {0, 1, 2}) {
+    LocalRun run = make_run([=](const Tick&, msg::DesiredTrajectory& desired) {
+      set_motion(desired, "carry", 1);
+      desired.speed_m_s = 0.1;
+      desired.shape_count = 12;
+      for (int k = 5; k <= 7; ++k) desired.shape_rad[k + towards_tail] = 1.047;
+      return true;
+    });
+    const auto z_m = heights_after(run, kFormed_ticks);
+    const double highest_m = *std::max_element(z_m.begin(), z_m.end());
+    if (towards_tail < 2) EXPECT_GT(highest_m, 0.0003) << towards_tail;
+    else EXPECT_EQ(highest_m, 0.0) << "the rear arm has five modules, 0.45 m";
   }
 }
 

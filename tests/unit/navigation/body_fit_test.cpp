@@ -11,6 +11,7 @@
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "navigation/grip.hpp"
+#include "navigation/motions.hpp"
 
 namespace constrictor {
 namespace {
@@ -97,6 +98,19 @@ TEST(BodyFit, AShortBodyWithAnObjectBendsByTheSameAngle) {
   EXPECT_NEAR(fitted.drop.steering.limit, tuned.drop.steering.limit * 1.5, 1e-9);
   EXPECT_EQ(fitted.rotate.curvature_1_m, tuned.rotate.curvature_1_m);
   EXPECT_EQ(fitted.grip.hold_torque_nm, tuned.grip.hold_torque_nm);
+}
+
+TEST(BodyFit, AnObjectIsCarriedOnARaisedBaseIfBothArmsCarryIt) {
+  for (const std::size_t modules : {16U, 18U}) {
+    const NavigationConfig fitted = fitted_to(robot_with(modules), {});
+    EXPECT_STREQ(carrying_pace(fitted).motion, "deliver") << modules << " modules: the rear arm has three or five";
+    EXPECT_EQ(carrying_pace(fitted).speed_m_s, fitted.deliver_m_s);
+  }
+  for (const std::size_t modules : {20U, 24U, 32U})
+    EXPECT_STREQ(carrying_pace(fitted_to(robot_with(modules), {})).motion, "carry") << modules << " modules";
+  NavigationConfig near_tail;
+  near_tail.grip.base_first_joint = 8;
+  EXPECT_STREQ(carrying_pace(fitted_to(robot_with(24), near_tail)).motion, "deliver");
 }
 
 TEST(BodyFit, TheHoldStaysBelowTheTorqueOfTheJoints) {

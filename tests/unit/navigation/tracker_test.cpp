@@ -86,8 +86,10 @@ TEST(ObjectTracker, AnUndecidedBlobKeepsAVisibleZoneVisible) {
   EXPECT_EQ(zone.seen_tick, -1);
   images(one_blob(msg::kBlobZone), 5, state);
   EXPECT_TRUE(zone.visible);
+  EXPECT_TRUE(zone.decided);
   images(one_blob(msg::kBlobUndecided, 70), 30, state);
   EXPECT_TRUE(zone.visible);
+  EXPECT_FALSE(zone.decided);
   EXPECT_EQ(zone.seen_tick, 70);
   images({}, 30, state);
   EXPECT_FALSE(zone.visible);

@@ -97,7 +97,7 @@ TEST_F(DeliveryTest, AnObjectSeenOutsideItsZoneIsRetrievedAgain) {
 }
 
 TEST_F(DeliveryTest, AtTheBorderTheLookEndsWithTheLikelierCase) {
-  for (const double offset_m : {0.38, 0.42}) {
+  for (const double offset_m : {0.36, 0.38, 0.42}) {
     forget();
     release_green();
     for (int i = 0; i < 950; ++i) {  // inspect_s is 20 s
@@ -106,7 +106,7 @@ TEST_F(DeliveryTest, AtTheBorderTheLookEndsWithTheLikelierCase) {
       ASSERT_EQ(memory_.state, kInspect) << offset_m;
     }
     for (int i = 0; i < 100 && memory_.state == kInspect; ++i) step();
-    EXPECT_EQ(memory_.state, offset_m < 0.4 ? kTurnRound : kSearchObject);
+    EXPECT_EQ(memory_.state, offset_m < 0.37 ? kTurnRound : kSearchObject);  // the rim counts as outside
   }
 }
 
@@ -178,6 +178,18 @@ TEST_F(DeliveryTest, AnUncertainObjectThatStaysInViewIsJudgedByTheMap) {
     succeed(msg::kEventObjectFound);
     EXPECT_EQ(memory_.state, offset_m < 0.4 ? kTurnRound : kSearchObject);
   }
+}
+
+// Navigation has found the object in the newest image, which reaches the map a little later.
+TEST_F(DeliveryTest, TheLookGoesOnUntilTheMapHasTheObject) {
+  release_green();
+  steps(20);
+  succeed(msg::kEventObjectFound);
+  EXPECT_EQ(memory_.state, kInspect);
+  EXPECT_EQ(memory_.recoveries, 0);
+  map_dropped(msg::kColourGreen, 0.1);
+  step();
+  EXPECT_EQ(memory_.state, kTurnRound);
 }
 
 TEST_F(DeliveryTest, AnUncertainObjectThatIsOnlyGlimpsedIsSearchedFor) {
