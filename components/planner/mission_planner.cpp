@@ -265,8 +265,9 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
                  ? std::optional(delivered(inputs))
                  : std::nullopt;
     case kSearchLine:
+      if (memory_.standstill.leads_away()) return std::nullopt;
       if (zone) return kDrop;
-      if (!line || memory_.standstill.leads_away()) return std::nullopt;
+      if (!line) return std::nullopt;
       if (leads_wanted_way(inputs)) return kTransport;
       // Turning back helps only where the line leads to the zone, and not again where it has just failed.
       if (remembered_m(inputs) < config_.remembered_range_m ||
@@ -318,7 +319,8 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     return astray ? std::optional(memory_.state) : std::nullopt;
   }
   const StateRow& row = row_of(memory_.state);
-  if (memory_.state == kTransport && stands_still(inputs)) return recover(row.failed);
+  const bool nears_zone = memory_.state == kDrop && inputs.status && inputs.status->carrying;
+  if ((memory_.state == kTransport || nears_zone) && stands_still(inputs)) return recover(row.failed);
   if (memory_.state == kInspect)
     return in_state_s > config_.inspect_s ? std::optional(after_inspection(false, inputs)) : std::nullopt;
   if (memory_.state == kApproachAnew)

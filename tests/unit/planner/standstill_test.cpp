@@ -82,5 +82,35 @@ TEST_F(PlannerTest, ARobotIsCaughtWhenItsObjectStaysWhileTheHeadSwings) {
   EXPECT_NEAR(backwards_s[1] - backwards_s[0], config_.explore_s, 0.5) << "the moves that lead away are short";
 }
 
+// A peg stood between the arms. The zone was in view, and each drop that timed out was followed by another one.
+TEST_F(PlannerTest, ARobotThatIsCaughtNearAZoneIsLedAwayBeforeItDropsTheObject) {
+  config_.standstill_s = 15.0;
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  steps(4);
+  ASSERT_EQ(memory_.state, MissionState::kDrop);
+  map_dropped(msg::kColourGreen, 0.5);
+  map_.objects[1].carried = true;
+  std::vector<std::uint8_t> directions;
+  const double from_s = time_s_;
+  for (int i = 0; i < 3000; ++i) {
+    if (const auto wanted = step(); wanted && memory_.state == MissionState::kSearchLine)
+      directions.push_back(wanted->parameters.direction);
+    if (memory_.state == MissionState::kDrop && !directions.empty()) break;
+    if (directions.empty()) {
+      ASSERT_LT(time_s_ - from_s, config_.standstill_s + 1.0);
+    }
+  }
+  EXPECT_EQ(memory_.state, MissionState::kDrop);
+  EXPECT_EQ(memory_.recoveries, 1);
+  ASSERT_GE(directions.size(), 4U);
+  EXPECT_EQ(directions[0], msg::kDirectionBackwards);
+  EXPECT_EQ(directions[1], msg::kDirectionBackwards);
+  EXPECT_EQ(directions[2], msg::kDirectionRight);
+  EXPECT_EQ(directions[3], msg::kDirectionForwards);
+}
+
 }  // namespace
 }  // namespace constrictor
