@@ -20,31 +20,16 @@ bool fields_differ(const YawChain& chain, const LinkArray& shape_rad) {
   return false;
 }
 
-/// The pitch joints that raise the base of a U, with the arms lying on the ground: the nearest one on either side. None
-/// if there is no base, if the arms are too short, or if the two hinges are not opposite each other, so that raising
-/// the base would twist it.
-std::optional<std::array<std::size_t, 2>> hinges(const MethodInput& input, const LinkArray& base_rad) {
-  const auto base = base_of(input, base_rad);
-  if (!base || base->first == base->last) return std::nullopt;
-  const auto& joints = input.robot.joints;
-  const std::size_t front_base = input.chain.joint_index(base->first), rear_base = input.chain.joint_index(base->last);
-  if (!arms_carry_base(input.robot, front_base, rear_base)) return std::nullopt;
-  for (std::size_t apart = 1; apart <= front_base && rear_base + apart < joints.size(); ++apart) {
-    const bool front = joints[front_base - apart].axis == JointAxis::kPitch;
-    const bool rear = joints[rear_base + apart].axis == JointAxis::kPitch;
-    if (front && rear) return std::array{front_base - apart, rear_base + apart};
-    if (front || rear) return std::nullopt;
-  }
-  return std::nullopt;
-}
-
 /// Raises or lowers the base of the U at a limited speed. A raised base does not drag sideways over the ground, and its
 /// weight is on the arms, which push the body.
 void advance_lift(const MethodInput& input, const LinkArray& base_rad, BodyState& body) {
   constexpr double kRate_rad_s = 0.05;
   JointArray target_rad{};
-  if (const auto joints = hinges(input, base_rad)) {
-    for (const std::size_t j : *joints) target_rad[j] = -input.gait.lift_rad;  // a pitch joint's positive angle lowers
+  if (const auto base = base_of(input, base_rad)) {
+    const auto hinges =
+        base_hinges(input.robot, input.chain.joint_index(base->first), input.chain.joint_index(base->last));
+    // A pitch joint's positive angle lowers what is in front of it.
+    for (std::size_t i = 0; hinges && i < hinges->size(); ++i) target_rad[(*hinges)[i]] = -input.gait.lift_rad;
   }
   for (std::size_t j = 0; j < input.robot.joints.size(); ++j)
     body.lift_rad[j] = approach(body.lift_rad[j], target_rad[j], kRate_rad_s * input.dt_s);

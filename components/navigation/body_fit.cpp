@@ -1,6 +1,7 @@
 #include "navigation/body_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -22,7 +23,7 @@ bool carries_on_ground(const RobotModel& robot, const GripConfig& config) {
   const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
   const auto last = static_cast<std::size_t>(first + config.base_joints - 1);
   if (last >= yaw_joints.size()) return false;  // GripSense refuses this base
-  return !arms_carry_base(robot, yaw_joints[static_cast<std::size_t>(first)], yaw_joints[last]);
+  return !base_hinges(robot, yaw_joints[static_cast<std::size_t>(first)], yaw_joints[last]);
 }
 
 }  // namespace
@@ -59,6 +60,17 @@ NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
   // It needs more time to straighten and more room, or its turns reach the object.
   config.drop.straighten_rate_rad_s /= longer * longer;
   config.drop.clear_m *= longer * longer;
+
+  // With shorter links, of which a body without pitch joints has two in place of one, the base of the same length has
+  // more joints, and each of them bends less.
+  constexpr int kMostBaseJoints = 8;
+  const int base_joints = config.grip.base_joints;
+  config.grip.base_joints =
+      std::clamp(static_cast<int>(std::lround(base_joints / link_share(robot))), base_joints, kMostBaseJoints);
+  const double bend = static_cast<double>(base_joints) / config.grip.base_joints;
+  for (double* angle_rad : {&config.grip.base_angle_rad, &config.grip.widest_angle_rad, &config.grip.closing_rad,
+                            &config.drop.open_angle_rad})
+    *angle_rad *= bend;
 
   config.carries_on_ground = carries_on_ground(robot, config.grip);
   return config;

@@ -39,15 +39,20 @@ TEST_P(ShippedScenario, Succeeds) {
   EXPECT_TRUE(std::filesystem::exists(report_dir / "figure.png"));
 }
 
-TEST(RobotWithoutContactSensors, DeliversItsObjects) {
+class OtherRobot : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(OtherRobot, DeliversItsObjects) {
   const TemporaryFolder folder;
   const std::filesystem::path report_dir = folder.path() / "out";
-  Process run({program("constrictor"), "run", "--robot", "mamba_no_skin", "--report", report_dir.string()});
+  Process run({program("constrictor"), "run", "--robot", GetParam(), "--report", report_dir.string()});
   EXPECT_EQ(run.wait(std::chrono::seconds(560)), exit_status::kOk) << run.output() << run.errors();
   const auto report = nlohmann::json::parse(std::ifstream(report_dir / "report.json"), nullptr, false);
   ASSERT_TRUE(report.is_object()) << run.output();
   EXPECT_EQ(report["success"], true) << report["reason"];
 }
+
+INSTANTIATE_TEST_SUITE_P(Robots, OtherRobot, ::testing::Values("mamba_no_skin", "mamba_yaw_only"),
+                         [](const auto& made) { return made.param; });
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, ShippedScenario, ::testing::ValuesIn(shipped_scenarios()),
                          [](const auto& made) { return made.param; });

@@ -113,6 +113,19 @@ TEST(BodyFit, AnObjectIsCarriedOnARaisedBaseIfBothArmsCarryIt) {
   EXPECT_STREQ(carrying_pace(fitted_to(robot_with(24), near_tail)).motion, "deliver");
 }
 
+TEST(BodyFit, WithShorterLinksTheBaseOfTheSameUHasMoreJoints) {
+  RobotModel robot = robot_with(24);
+  for (JointModel& joint : robot.joints) joint.axis = JointAxis::kYaw;
+  const NavigationConfig tuned, fitted = fitted_to(robot, tuned);
+  EXPECT_EQ(fitted.grip.base_joints, 6);
+  EXPECT_NEAR(6.0 * fitted.grip.base_angle_rad, 3.0 * tuned.grip.base_angle_rad, 1e-9);
+  EXPECT_NEAR(6.0 * fitted.grip.closing_rad, 3.0 * tuned.grip.closing_rad, 1e-9);
+  EXPECT_NEAR(6.0 * fitted.drop.open_angle_rad, 3.0 * tuned.drop.open_angle_rad, 1e-9);
+  EXPECT_TRUE(fitted.carries_on_ground) << "no pitch joint raises the base";
+  const double tuned_m = GripSense(robot_with(24), tuned.grip).largest_radius_m();
+  EXPECT_NEAR(GripSense(robot, fitted.grip).largest_radius_m(), tuned_m, 0.02);
+}
+
 TEST(BodyFit, TheHoldStaysBelowTheTorqueOfTheJoints) {
   RobotModel robot = robot_with(64);
   const NavigationConfig fitted = fitted_to(robot, {});

@@ -9,6 +9,7 @@
 
 #include "configuration/configuration.hpp"
 #include "robot/joint_limits.hpp"
+#include "robot/u_arms.hpp"
 #include "support/project.hpp"
 
 namespace constrictor {
@@ -52,6 +53,26 @@ TEST(RobotModel, ASkinWithoutContactSensorsIsStated) {
   EXPECT_TRUE(load_robot(kRobots / "mamba.yaml").contact_sensors);
   EXPECT_TRUE(load_robot(kRobots / "mamba.yaml").imu);
   EXPECT_FALSE(load_robot(kRobots / "mamba_no_skin.yaml").contact_sensors);
+}
+
+TEST(RobotModel, ABodyWithoutPitchJointsHasTwiceAsManyLinksInThePlane) {
+  const RobotModel robot = load_robot(kRobots / "mamba_yaw_only.yaml");
+  EXPECT_EQ(robot.yaw_joints().size(), 23U);
+  EXPECT_DOUBLE_EQ(link_share(robot), 0.5);
+  EXPECT_DOUBLE_EQ(link_share(load_robot(kRobots / "mamba.yaml")), 1.0);
+  EXPECT_FALSE(base_hinges(robot, 9, 14)) << "no joint can raise the base";
+}
+
+TEST(RobotModel, TheHingesOfABaseAreThePitchJointsBesideIt) {
+  const RobotModel robot = load_robot(kRobots / "mamba.yaml");
+  const auto hinges = base_hinges(robot, 10, 14);
+  ASSERT_TRUE(hinges);
+  EXPECT_EQ((*hinges)[0], 9U);
+  EXPECT_EQ((*hinges)[1], 15U);
+  EXPECT_FALSE(base_hinges(robot, 10, 10)) << "a base of one joint has no length";
+  EXPECT_TRUE(base_hinges(robot, 12, 16));
+  EXPECT_FALSE(base_hinges(robot, 14, 18)) << "the rear arm has five modules, 0.45 m";
+  EXPECT_FALSE(base_hinges(robot, 4, 8)) << "the front arm has five modules";
 }
 
 TEST(RobotModel, SerpensIsElastic) { EXPECT_GT(load_robot(kRobots / "serpens.yaml").joints[5].stiffness_nm_rad, 0.0); }
