@@ -98,7 +98,7 @@ struct SearchConfig : ParameterSet {
   double turn_curvature_1_m = add(turn_curvature_1_m, "turn_curvature_1_m", 2.3, "1/m", bounds::kCurvature, kAtStart,
                                   "Curvature of turns on the spot");
   double confirm_s =
-      add(confirm_s, "confirm_s", 1.0, "s", bounds::kTime, kAtStart, "The object must stay in view for this time");
+      add(confirm_s, "confirm_s", 0.5, "s", bounds::kTime, kAtStart, "The object must stay in view for this time");
 };
 
 struct TrackConfig : NavigationSection {

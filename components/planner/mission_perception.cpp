@@ -255,6 +255,7 @@ Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) cons
 // moves without a remembered place, alternate between turning left, turning right, forwards and backwards.
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
   const unsigned attempt = memory_.searches++;
+  memory_.searched_s = memory_.active_s;
   const auto turn_rad = wanted_turn_rad(inputs);
   memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12 && !refusals().rejected();
   Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};

@@ -83,6 +83,10 @@ void MissionPlanner::enter(MissionState state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
     memory_.standstill.begin();
+    // A new search begins with what it remembers. The count goes on while a search alternates with the following of a
+    // line that is lost again at once.
+    constexpr double kAnew_s = 10.0;
+    if (memory_.active_s - memory_.searched_s > kAnew_s) memory_.searches = 0;
   }
   if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
   if (state != kFollowLine) memory_.wrong_way = false;
@@ -311,7 +315,10 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
     const bool exploring = memory_.search_task == msg::kTaskExplore;
     const double requested_for_s = memory_.active_s - memory_.requested_s;
     const double move_s = exploring ? config_.explore_s : config_.rotate_s;
-    if (requested_for_s > (memory_.standstill.leading() ? move_s : scaled_s(move_s))) return memory_.state;
+    // A move that leads away from where the memory points is short.
+    const bool short_move =
+        memory_.standstill.leading() || (!memory_.search_by_memory && wanted_turn_rad(inputs).has_value());
+    if (requested_for_s > (short_move ? move_s : scaled_s(move_s))) return memory_.state;
     if (!memory_.search_by_memory) return std::nullopt;
     if (!exploring) return has_turned(inputs) ? std::optional(memory_.state) : std::nullopt;
     const auto turn_rad = wanted_turn_rad(inputs);

@@ -91,7 +91,8 @@ struct MissionMemory {
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
   std::uint16_t zone_images = 0;
   std::uint16_t line_images = 0;
-  std::uint16_t searches = 0;                    ///< requests of the two searches so far; selects the next move
+  std::uint16_t searches = 0;                    ///< requests of the present search so far; selects the next move
+  double searched_s = 0.0;                       ///< time of the newest one
   std::uint8_t search_task = msg::kTaskNone;     ///< task of the present search: explore or rotate
   Standstill standstill;                         ///< of a search or transport with an object
   bool wrong_way = false;                        ///< the robot follows the line the wrong way, and will turn round
@@ -110,10 +111,10 @@ struct MissionMemory {
   void serialize(Archive& archive) {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
-            object_images, zone_images, line_images, searches, search_task, search_by_memory, direction, trail, reason,
-            standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle, released_tick,
-            placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way,
-            rechecked, turned_back_s);
+            object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
+            trail, reason, standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle,
+            released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals,
+            wrong_way, rechecked, turned_back_s);
   }
 };
 

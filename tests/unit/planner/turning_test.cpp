@@ -67,5 +67,29 @@ TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
   EXPECT_EQ(memory_.state, kDrop);
 }
 
+// The count of moves went on from search to search: now and then a new search began with moves that ignore the memory,
+// and a robot with an object drove away from the line for 32 s.
+TEST_F(PlannerTest, ANewSearchBeginsWithWhatItRemembers) {
+  find_line();
+  memory_.searches = 13;
+  memory_.searched_s = memory_.active_s - 11.0;
+  fetch(msg::kColourGreen);
+  EXPECT_TRUE(memory_.search_by_memory);
+  EXPECT_EQ(memory_.searches, 1);
+}
+
+TEST_F(PlannerTest, AMoveThatIgnoresTheMemoryIsShort) {
+  find_line();
+  fetch(msg::kColourGreen);
+  memory_.searches = 12;
+  memory_.requested = false;
+  const double from_s = time_s_;
+  step();
+  ASSERT_FALSE(memory_.search_by_memory);
+  const std::uint64_t goal = memory_.goals;
+  while (memory_.goals == goal && time_s_ - from_s < 60.0) step();
+  EXPECT_NEAR(time_s_ - from_s, config_.explore_s, 0.2) << "holding_factor does not count";
+}
+
 }  // namespace
 }  // namespace constrictor
