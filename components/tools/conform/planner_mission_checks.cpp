@@ -119,6 +119,8 @@ bool PlannerConformance::check_delivery(std::size_t index) {
   hand_->map_on_zone(colour);
   hand_->see_no_objects();
   hand_->report(msg::kEventDroppingDone, msg::kGoalSucceeded);
+  hand_->run(0.4);
+  hand_->map_on_zone(colour);  // an image that was taken after the body left the object shows it, too
   const bool last = index + 1 == mission_.sequence.size();
   const bool counted = hand_->run(profile_.end_s, [&] {
     const msg::MissionStatus& mission = hand_->missions().back();
