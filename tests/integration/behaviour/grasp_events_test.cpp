@@ -165,16 +165,16 @@ TEST_F(GraspEvents, ReportsGraspLostWhenTheObjectLeavesTheClosingBody) {
 
 TEST_F(GraspEvents, ReportsGraspLostByTorqueAndTouchWhenACarriedObjectIsTakenAway) {
   begin(
-      scene("perturbations: [{object: 0, when_displaced_m: 1.2, duration_s: 0.3, force_n: [0, 0, 40]}, "
-            "{object: 0, when_displaced_m: 1.2, duration_s: 0.6, force_n: [-15, 0, 0]}]\n"));
+      scene("perturbations: [{object: 0, when_displaced_m: 1.8, duration_s: 0.3, force_n: [0, 0, 40]}, "
+            "{object: 0, when_displaced_m: 1.8, duration_s: 0.6, force_n: [-15, 0, 0]}]\n"));
   grasp();
   ASSERT_FALSE(HasFatalFailure());
   start(msg::kTaskExplore, &msg::TaskParameters::direction, msg::kDirectionForwards);
-  const double held_nm = mean_base_torque_nm(1.0);
+  const double held_nm = mean_base_torque_nm(3.6);  // four periods of the gait
   EXPECT_GT(std::abs(held_nm), 0.5);
   ASSERT_TRUE(until(
       [&] {
-        return object().distance_m({1.2, 0.15, 0.0}) > 1.2;
+        return object().distance_m({1.2, 0.15, 0.0}) > 1.8;
       },
       60.0))
       << object().distance_m({1.2, 0.15, 0.0});

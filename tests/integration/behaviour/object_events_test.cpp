@@ -68,14 +68,14 @@ TEST_F(ObjectEvents, SearchIgnoresAnObjectOfAnotherColour) {
 }
 
 TEST_F(ObjectEvents, SearchReportsObjectLostWhenTheFoundObjectVanishes) {
-  begin(scene("[1.2, 0.1]", thrown(0.6)));
+  begin(scene("[1.2, 0.1]", thrown(0.45)));
   start_green(msg::kTaskSearchObject);
   ASSERT_TRUE(until_event(msg::kEventObjectFound, 3.0));
-  EXPECT_LT(first(msg::kEventObjectFound)->time_s, 0.6);
+  EXPECT_LT(first(msg::kEventObjectFound)->time_s, 0.45);
   ASSERT_TRUE(until_event(msg::kEventObjectLost, 3.0));
   const Happened& lost = *first(msg::kEventObjectLost);
   EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
-  EXPECT_NEAR(lost.time_s, 0.6 + 1.0, 0.5);  // navigation waits for ten images without the object
+  EXPECT_NEAR(lost.time_s, 0.45 + 1.0, 0.5);  // navigation waits for ten images without the object
   EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "the search continues";
 }
 
