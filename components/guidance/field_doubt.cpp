@@ -13,7 +13,8 @@ constexpr double kPeg_m = 0.04;   // radius of what stands at a point of an obst
 }  // namespace
 
 bool FieldMapper::trusted(const Landmark& landmark) const {
-  return landmark.hits < config_.confirm || probability_of(landmark.log_odds) >= config_.existence.trust;
+  const bool exists = landmark.hits < config_.confirm || probability_of(landmark.log_odds) >= config_.existence.trust;
+  return exists && !landmark.may_have_moved;
 }
 
 void FieldMapper::replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise,

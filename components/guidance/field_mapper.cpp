@@ -153,7 +153,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   }
   used[best] = true;
   Landmark& landmark = state_.landmarks[best];
-  if (trusted(landmark) && !landmark.may_have_moved) {
+  if (trusted(landmark)) {
     filter_.observe(static_cast<std::size_t>(landmark.slot), z, noise);
   } else {
     replace(landmark, z, noise, tick);  // its place is not known well enough to correct the pose

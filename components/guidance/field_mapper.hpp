@@ -71,7 +71,7 @@ class FieldMapper {
   void glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   void forget(std::size_t index);
-  /// Whether the landmark is so likely to exist that it may correct the pose.
+  /// Whether the landmark so likely exists, and stands where it was seen, that it may correct the pose.
   [[nodiscard]] bool trusted(const Landmark& landmark) const;
   /// Takes a landmark that has moved to the place of the percept, without an effect on the pose.
   void replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);

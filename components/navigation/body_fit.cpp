@@ -18,8 +18,7 @@ constexpr double kFirmHold = 2.0 / 3.0;
 constexpr double kFirmFrom = 4.0 / 3.0;
 
 bool carries_on_ground(const RobotModel& robot, const GripConfig& config) {
-  const int wanted = config.base_first_joint;
-  const int first = wanted < 0 ? middle_base_joint(robot, config.base_joints) : wanted;
+  const int first = first_base_joint(robot, config);
   const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
   const auto last = static_cast<std::size_t>(first + config.base_joints - 1);
   if (last >= yaw_joints.size()) return false;  // GripSense refuses this base

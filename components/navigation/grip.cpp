@@ -26,10 +26,13 @@ int middle_base_joint(const RobotModel& robot, int base_joints) {
   return best;
 }
 
+int first_base_joint(const RobotModel& robot, const GripConfig& config) {
+  return config.base_first_joint < 0 ? middle_base_joint(robot, config.base_joints) : config.base_first_joint;
+}
+
 GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
     : robot_(robot), config_(config), first_(0), yaw_joints_(robot.yaw_joints()) {
-  const int wanted = config.base_first_joint;
-  const int first = wanted < 0 ? middle_base_joint(robot, config.base_joints) : wanted;
+  const int first = first_base_joint(robot, config);
   const int joints = static_cast<int>(yaw_joints_.size());
   if (first + config.base_joints > joints) {
     throw ConfigurationError(

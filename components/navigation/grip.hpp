@@ -37,6 +37,8 @@ struct Grip {
 /// The first yaw joint of the base of the U, counted from the head, with which both arms of the U are about equally
 /// long. The front arm drives and steers: in a short body it stays long enough for that, and the rear arm is short.
 [[nodiscard]] int middle_base_joint(const RobotModel& robot, int base_joints);
+/// The same, unless the configuration names another one.
+[[nodiscard]] int first_base_joint(const RobotModel& robot, const GripConfig& config);
 
 /// Which joints and modules of a robot form the base of the U, and what they measure.
 class GripSense {

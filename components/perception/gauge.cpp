@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "perception/colour_edge.hpp"
@@ -116,10 +117,11 @@ bool Gauge::edge_goes_on() const {
   constexpr int kAside = 3, kStep = 4;  // pixels
   int object_lowest = 0, flat_lowest = 0;
   for (int v = region_.v_min; v <= region_.v_max; ++v) {
+    bool object_right = in_object(region_.u_min + kAside, v);
     for (int u = region_.u_min + kAside; u + kAside < region_.u_max; ++u) {
-      if (in_object(u, v) == in_object(u + 1, v)) continue;
+      const bool object_left = std::exchange(object_right, in_object(u + 1, v));
+      if (object_left == object_right) continue;
       const int left = u - kAside, right = u + 1 + kAside;
-      const bool object_right = in_object(u + 1, v);
       if (regions_.ids.at<std::uint8_t>(v, object_right ? right : left) == id_) object_lowest = v;
       if (regions_.ids.at<std::uint8_t>(v, object_right ? left : right) == id_) flat_lowest = v;
     }

@@ -85,7 +85,7 @@ struct MissionMemory {
   PlacedObjects placed;                     ///< the delivered objects
   std::uint32_t rechecked = 0;              ///< bit i: the robot has looked at object i again since the newest drop
   std::uint32_t displaced = 0;              ///< bit i: object i was delivered, and was then pushed off its zone
-  std::int64_t released_tick = -1;  ///< last tick in which the body still held the object of the newest drop; -1: none
+  std::int64_t released_tick = -1;  ///< last tick in which the body held or left the object last dropped; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
