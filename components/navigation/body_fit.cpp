@@ -11,7 +11,6 @@
 namespace constrictor {
 namespace {
 
-constexpr double kTunedLength_m = 2.136;  // for which the values of the configuration were found
 // The base of a body that is longer by a third holds an object with this share of a joint's torque: with less (2.7 Nm,
 // as the weight of an arm times its length demands) the U of 32 modules opened while it turned, and lost the object.
 constexpr double kFirmHold = 2.0 / 3.0;
@@ -28,7 +27,7 @@ bool carries_on_ground(const RobotModel& robot, const GripConfig& config) {
 }  // namespace
 
 NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
-  const double length = robot.module_length_m * static_cast<double>(robot.module_count) / kTunedLength_m;
+  const double length = length_share(robot);
   const double longer = std::max(1.0, length);
   const double shorter = std::min(1.0, length);
 

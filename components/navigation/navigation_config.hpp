@@ -26,7 +26,7 @@ struct GripConfig : ParameterSet {
                            "Angle by which each base joint has to close until the base fits the object: the U opens "
                            "wider if it would be less");
   double tipping_share =
-      add(tipping_share, "tipping_share", 1.0, "", {0.1, 100.0}, kAtStart,
+      add(tipping_share, "tipping_share", 0.87, "", {0.1, 100.0}, kAtStart,
           "Largest lateral acceleration of the arms, relative to the one that tips the object in the U over; the gaits "
           "become smaller for tall and narrow objects");
   double opening_share =
@@ -176,7 +176,7 @@ struct PregraspConfig : NavigationSection {
 };
 
 struct GraspConfig : NavigationSection {
-  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.3, "m/s", bounds::kSpeed, kAtStart,
+  double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.34, "m/s", bounds::kSpeed, kAtStart,
                               "Speed of the arc along the body at the beginning; later it is the speed of the body");
   double wrap_still_m = add(wrap_still_m, "wrap_still_m", 0.3, "m", bounds::kLength, kAtStart,
                             "The body begins to move after the arc has slid this far");

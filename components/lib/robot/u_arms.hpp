@@ -29,6 +29,12 @@ namespace constrictor {
   return std::nullopt;
 }
 
+/// Length of the body relative to that of `mamba`, for which the values of navigation and control were found.
+[[nodiscard]] inline double length_share(const RobotModel& robot) {
+  constexpr double kTuned_m = 2.136;
+  return robot.module_length_m * static_cast<double>(robot.module_count) / kTuned_m;
+}
+
 /// The distance of neighbouring yaw joints, the links of the body seen from above, relative to that of `mamba`, for
 /// which angles of the base and weights of links were found; at most 1.
 [[nodiscard]] inline double link_share(const RobotModel& robot) {

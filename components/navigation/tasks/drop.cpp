@@ -32,6 +32,7 @@ struct DropState : PhaseState {
 
 class Drop : public StatefulTask<DropState> {
   enum Phase : int { kApproach, kOver, kStop, kOpen, kBack, kStraighten, kClear };
+  static constexpr double kFarther = 1.5;  ///< times back_m: the robot backs off as far if its arms reach an object
 
  public:
   /// The zone has a place in the map, and the object is let go by touch.
@@ -108,8 +109,7 @@ class Drop : public StatefulTask<DropState> {
     double at_m = 0.0;
     for (const msg::MapObject& other : input.map ? landmarks_of(*input.map) : std::span<const msg::MapObject>{}) {
       if (other.kind != msg::kBlobObject || other.carried || other.handle == grip.handle) continue;
-      const double radius_m = std::isfinite(other.radius_m) ? other.radius_m : input.config.object.object_radius_m;
-      const double apart_m = grip.radius_m + radius_m + input.config.drop.room_m;
+      const double apart_m = grip.radius_m + radius_m(other, input) + input.config.drop.room_m;
       const Eigen::Vector2d p_C = X_MC.to_local({other.x_m, other.y_m});
       if (p_C.norm() > zone_m || std::abs(p_C.y()) > apart_m) continue;
       at_m = std::min(at_m, p_C.x() - std::sqrt(apart_m * apart_m - p_C.y() * p_C.y()));
@@ -157,8 +157,29 @@ class Drop : public StatefulTask<DropState> {
     move_in_shape({"leave", config.back_m_s}, steering.curvature(input.tick.dt_s(), state_.back), -1.0, shape,
                   input.grip_sense.yaw_joint_count(), output);
     keep_upright(input.config, grip, output);
-    if ((input.X_MH.p - state_.from.p).norm() >= config.back_m || state_.phase_s > config.back_timeout_s)
+    const double backed_m = (input.X_MH.p - state_.from.p).norm();
+    const bool enough = backed_m >= config.back_m && !arms_reach_an_object(input, grip);
+    if (enough || backed_m >= kFarther * config.back_m || state_.phase_s > config.back_timeout_s)
       enter(input, kStraighten);
+  }
+
+  /// True while the arms, which sweep outwards when the body straightens, would push an object of the map: it lies
+  /// before the base and nearer to it than the end of the longer arm.
+  [[nodiscard]] static bool arms_reach_an_object(const TaskInput& input, const Grip& grip) {
+    constexpr double kRoom_m = 0.1;  // the map's error, and the base, which moves when the arms do
+    const Eigen::Vector2d p_HU = input.grip_sense.held_object_H(input.body, 0.0);
+    const PlanarPose X_MU{input.X_MH.to_parent(p_HU), input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
+    const double arm_m = std::max((input.body.front().p - p_HU).norm(), (input.body.back().p - p_HU).norm());
+    for (const msg::MapObject& other : input.map ? landmarks_of(*input.map) : std::span<const msg::MapObject>{}) {
+      if (other.kind != msg::kBlobObject || other.carried || other.handle == grip.handle) continue;
+      const Eigen::Vector2d p_U = X_MU.to_local({other.x_m, other.y_m});
+      if (p_U.x() > 0.0 && p_U.norm() - radius_m(other, input) < arm_m + kRoom_m) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] static double radius_m(const msg::MapObject& object, const TaskInput& input) {
+    return std::isfinite(object.radius_m) ? object.radius_m : input.config.object.object_radius_m;
   }
 
   void straighten(const TaskInput& input, Grip& grip, TaskOutput& output) {

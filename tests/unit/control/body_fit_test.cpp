@@ -17,6 +17,22 @@ TEST(ControlFit, NothingChangesForTheDefaultRobot) {
   EXPECT_EQ(fitted.weights.head, tuned.weights.head);
   EXPECT_EQ(fitted.weights.rigid_bend_rad, tuned.weights.rigid_bend_rad);
   EXPECT_EQ(fitted.base_bend_rad, tuned.base_bend_rad);
+  EXPECT_EQ(fitted.deliver.amplitude_rad, tuned.deliver.amplitude_rad);
+}
+
+TEST(ControlFit, ALongerBodyUndulatesLessWhenItNearsAZone) {
+  RobotModel robot = robot_named("mamba");
+  const ControlConfig tuned;
+  double before_rad = tuned.deliver.amplitude_rad;
+  for (const std::size_t modules : {28U, 32U, 40U}) {
+    robot.module_count = modules;
+    const ControlConfig fitted = fitted_to(robot, tuned);
+    EXPECT_LT(fitted.deliver.amplitude_rad, before_rad - 0.05) << modules;
+    EXPECT_EQ(fitted.carry.amplitude_rad, tuned.carry.amplitude_rad) << modules;
+    before_rad = fitted.deliver.amplitude_rad;
+  }
+  robot.module_count = 16;
+  EXPECT_EQ(fitted_to(robot, tuned).deliver.amplitude_rad, tuned.deliver.amplitude_rad);
 }
 
 // The same U, with the bend of each joint shared by two, moves alike: rigid in the base, and little at the head.

@@ -56,6 +56,14 @@ class DropRun {
     }
     return X_MU_.p.x() - 1.0;
   }
+  /// Adds another object to the map. `p_M`: [m] its place; the robot lets its own go at the origin and backs off to -x.
+  void add_object(const Eigen::Vector2d& p_M) {
+    msg::MapObject& object = map_.objects[map_.object_count++];
+    object.handle = 9;
+    object.x_m = p_M.x();
+    object.y_m = p_M.y();
+    object.radius_m = kDropped_m;
+  }
   /// Runs until the robot has backed off.
   void run() {
     while (phase_ != "straighten" && tick_.index < 2000) step();
@@ -137,6 +145,28 @@ TEST(Drop, TheArmsStayStraightWhileTheObjectIsInTheMiddle) {
     EXPECT_NEAR(level.most_1_m(), 0.0, 0.03) << side;
     EXPECT_NEAR(level.least_1_m(), 0.0, 0.03) << side;
     EXPECT_NEAR(level.backed_m(), NavigationConfig().drop.back_m, 0.05) << side;
+  }
+}
+
+// The rear arm pushed the first object by 0.3 m when the robot straightened after the drop of the second one.
+TEST(Drop, TheRobotBacksOffFartherIfItsArmsWouldPushAnotherObject) {
+  const double back_m = NavigationConfig().drop.back_m;
+  for (const double y_m : {0.6, -0.6}) {
+    DropRun near(1.0, 0.0, 0.0), beyond(1.0, 0.0, 0.0), behind(1.0, 0.0, 0.0), all_round(1.0, 0.0, 0.0);
+    near.add_object({-0.4, y_m});
+    near.run();
+    EXPECT_GT(near.backed_m(), back_m + 0.05) << y_m;
+    EXPECT_LT(near.backed_m(), 1.5 * back_m) << "no farther than needed; " << y_m;
+    beyond.add_object({0.5, y_m});
+    beyond.run();
+    EXPECT_NEAR(beyond.backed_m(), back_m, 0.05) << "out of reach; " << y_m;
+    behind.add_object({-back_m - 0.5, y_m});
+    behind.run();
+    EXPECT_NEAR(behind.backed_m(), back_m, 0.05) << "behind the base, where the arms do not sweep; " << y_m;
+    for (const double x_m : {-0.3, -0.6, -0.9}) all_round.add_object({x_m, y_m});
+    all_round.add_object({-1.4, y_m});
+    all_round.run();
+    EXPECT_LT(all_round.backed_m(), 1.5 * back_m + 0.05) << "not for ever; " << y_m;
   }
 }
 
