@@ -203,6 +203,8 @@ MissionState MissionPlanner::end_of_sequence() {
     left += (left.empty() ? "" : ", ") + std::string(name_of(constants::kColour, config_.sequence[i]));
   }
   if (left.empty()) return kDone;
+  // A task that was refused says what is wrong with the object; the number of attempts would hide it.
+  if (refusals().rejected()) return fail(fmt::format("not delivered: {}; {}", left, memory_.refusals.reason));
   return fail(fmt::format("not delivered: {}; put aside after {} failures, tried once more, failed in state {}", left,
                           config_.attempts, name_of(memory_.state)));
 }

@@ -94,6 +94,21 @@ TEST_F(Evaluate, PartsOfSeveralMachinesGiveTheSameResultsAsOneWhole) {
   EXPECT_EQ(hashes("all"), hashes("whole"));
   EXPECT_EQ(summary("all").at("variants").size(), 2u);
   EXPECT_EQ(summary("all").at("planned_runs"), 6);
+  Process part = evaluate(40, "part", with({"--merge", (dir_ / "one").string()}));
+  EXPECT_EQ(part.wait(60s), exit_status::kFailed);
+  EXPECT_NE(part.errors().find("3 of 6 runs are in none of these folders: runs/"), std::string::npos) << part.errors();
+}
+
+TEST_F(Evaluate, ARefusedEvaluationLeavesItsFolderForTheCorrectedCommand) {
+  Process wrong = evaluate(40, "e", {"--seeds", "1", "--vary", "robto:links=1"});
+  ASSERT_EQ(wrong.wait(30s), exit_status::kConfiguration) << wrong.errors();
+  EXPECT_TRUE(fs::is_empty(dir_ / "e"));
+  Process right = evaluate(40, "e", {"--seeds", "1", "--vary", "noise.camera_sd=0,0.5"});
+  ASSERT_EQ(right.wait(60s), exit_status::kOk) << right.errors();
+  // What is there already stays, whatever else is asked of it.
+  Process later = evaluate(40, "e", {"--seeds", "1", "--vary", "robto:links=1"});
+  EXPECT_EQ(later.wait(30s), exit_status::kUsage) << later.errors();
+  EXPECT_EQ(hashes("e").size(), 2u);
 }
 
 TEST_F(Evaluate, ARunThatFailsStopsNothingAndIsDoneAgain) {
@@ -137,6 +152,9 @@ TEST_F(Evaluate, RefusesWhatItCannotDo) {
   Process full = evaluate(40, "full", {"--seeds", "1"});
   EXPECT_EQ(full.wait(30s), exit_status::kUsage);
   EXPECT_NE(full.errors().find("is not empty and holds no evaluation"), std::string::npos) << full.errors();
+  Process file = evaluate(40, "full/file", {"--seeds", "1"});
+  EXPECT_EQ(file.wait(30s), exit_status::kUsage);
+  EXPECT_NE(file.errors().find("full/file cannot become a folder"), std::string::npos) << file.errors();
 }
 
 }  // namespace

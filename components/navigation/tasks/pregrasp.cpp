@@ -52,10 +52,8 @@ class Pregrasp : public StatefulTask<PregraspState> {
     constexpr double kMeasured = 1.06;  // the camera measures the radius to a few percent
     const double largest_m = input.grip_sense.largest_radius_m();
     if (object.radius_m > kMeasured * largest_m)
-      return fmt::format(
-          "the object is too large: found a radius of {:.3f} m, accepted at most {:.3f} m, which the U "
-          "of the body can hold",
-          object.radius_m, largest_m);
+      return fmt::format("the object is too large for the U: found a radius of {:.3f} m, accepted at most {:.3f} m",
+                         object.radius_m, largest_m);
     return handle_refusal(input);
   }
 

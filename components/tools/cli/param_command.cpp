@@ -211,6 +211,9 @@ int set_parameter(const ParamOptions& options) {
       if (!view)
         view = no_run ? ParameterView{} : read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
       const auto found = view->parameters.find(name);
+      if (found == view->parameters.end() && !view->parameters.empty() && view->silent.empty())
+        throw Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", name,
+                                  did_you_mean(name, view->parameters)));
       const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
       value = value_from(known, text);
       if (!value)

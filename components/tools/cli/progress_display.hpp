@@ -10,13 +10,14 @@
 
 namespace constrictor::cli {
 
-/// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds.
+/// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds if it has changed.
 class ProgressDisplay {
  public:
   void show_status(const std::string& line) {
     const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ && (now - shown_ < kEvery)) return;
+    if (!terminal_ && (now - shown_ < kEvery || line == last_)) return;
     shown_ = now;
+    last_ = line;
     if (terminal_) std::printf("\r\033[K%s", line.c_str());
     else std::printf("%s\n", line.c_str());
     std::fflush(stdout);
@@ -31,6 +32,7 @@ class ProgressDisplay {
   static constexpr std::chrono::seconds kEvery{5};
   bool terminal_ = ::isatty(STDOUT_FILENO) == 1;
   std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+  std::string last_;
 };
 
 /// Simulated time over wall time in about the last second.

@@ -150,6 +150,20 @@ TEST_F(RefusalTest, AnObjectThatIsAlwaysRefusedIsPutAside) {
   EXPECT_EQ(memory_.recoveries, 0);
 }
 
+// People want to know what is wrong with the object, not how often it was tried.
+TEST_F(RefusalTest, AMissionThatGivesUpAnObjectSaysWhyItWasRefused) {
+  config_.sequence = {msg::kColourGreen};
+  see(msg::kColourGreen, msg::kBlobObject, 1.0);
+  for (int i = 0; i < 40 && memory_.state != kFailed; ++i) {
+    run(8.0, "the object is too large", [](const WantedTask& wanted) { return wanted.task == msg::kTaskTrackObject; });
+    if (memory_.state != kSearchObject) continue;
+    succeed(msg::kEventObjectFound);
+    open_ = memory_.requested;  // to track the object
+  }
+  EXPECT_EQ(memory_.state, kFailed);
+  EXPECT_EQ(memory_.reason, "not delivered: green; the object is too large");
+}
+
 TEST_F(RefusalTest, ARefusalOfInputIsNoticedAtOnce) {
   find_line();
   // `input` has refused the newest request: navigation keeps its old goal, and no event comes.

@@ -1,12 +1,14 @@
 // `constrictor evaluate`: runs many missions, and writes their results together.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <ctime>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "cli/evaluate/evaluation.hpp"
@@ -73,6 +75,36 @@ void write_summary(const Evaluation& evaluation, const EvaluationRequest& reques
   fmt::print("\n{}", to_table(summaries));
 }
 
+/// Begins the evaluation. A folder that was made for it does not stay if it is refused.
+std::unique_ptr<Evaluation> begin(EvaluationRequest& request) {
+  const bool own_folder = request.folder.empty();
+  if (own_folder) request.folder = new_folder(request.run);
+  try {
+    return std::make_unique<Evaluation>(request);
+  } catch (...) {
+    std::error_code ignored;
+    if (own_folder) fs::remove(request.folder, ignored);
+    throw;
+  }
+}
+
+/// Names the runs that no merged folder has. Returns false if there are any.
+bool report_missing(const Evaluation& evaluation, const std::vector<MissionResult>& results) {
+  std::set<fs::path> found;
+  for (const auto& result : results) found.insert(result.folder);
+  std::vector<std::string> missing;
+  for (const auto& run : evaluation.runs())
+    if (!found.contains(run.folder)) missing.push_back(run.folder.string());
+  if (missing.empty()) return true;
+  constexpr std::size_t kNamed = 5;
+  const std::size_t named = std::min(kNamed, missing.size());
+  fmt::print(stderr, "{} of {} are in none of these folders: {}{}; the same command without --merge does them\n",
+             missing.size(), counted(evaluation.runs().size(), "run"),
+             fmt::join(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+             missing.size() > named ? ", ..." : "");
+  return false;
+}
+
 int evaluate(const EvaluateOptions& given) {
   EvaluationRequest request = given.request;
   if (!given.merge.empty() && request.folder.empty()) throw UsageError("--merge: --output FOLDER is missing");
@@ -80,8 +112,8 @@ int evaluate(const EvaluateOptions& given) {
   else request.seeds = given.merge.empty() ? parse_seeds("1..10") : seeds_of(given.merge);
   parse_shard(given.shard, request);
   if (request.jobs == 0) request.jobs = std::max(1u, std::thread::hardware_concurrency());
-  if (request.folder.empty()) request.folder = new_folder(request.run);
-  Evaluation evaluation(request);
+  const std::unique_ptr<Evaluation> begun = begin(request);
+  Evaluation& evaluation = *begun;
   if (!given.merge.empty()) merge_evaluations(given.merge, request);
   const std::string folder = evaluation.folder().string();
   int signal = 0;
@@ -100,6 +132,7 @@ int evaluate(const EvaluateOptions& given) {
     return 128 + signal;
   }
   const auto results = evaluation.results();
+  if (!given.merge.empty() && !report_missing(evaluation, results)) return exit_status::kFailed;
   const auto errors = static_cast<std::size_t>(
       std::count_if(results.begin(), results.end(), [](const MissionResult& result) { return result.error(); }));
   if (errors > 0) {
@@ -139,7 +172,8 @@ void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
                  "NAME=FILE: configuration file of a component, instead of its default; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--faults", run.faults_file, "file of faults (YAML) to inject into every run");
-  app.add_option("--max-sim-time", run.max_sim_time_s, "[s] end each run at this simulated time")
+  app.add_option("--max-sim-time", run.max_sim_time_s,
+                 "[s] end each run at this simulated time (default, or 0: no limit but the report component's)")
       ->check(number(0.0, 1e6, "s"));
 }
 
@@ -162,8 +196,8 @@ void add_evaluate(CLI::App& app, Action& action) {
        "constrictor evaluate short --seeds 1..10 --vary noise.camera_sd=0,0.02,0.05",
        "constrictor evaluate short --seeds 1..100 --shard 1/2 --output part1",
        "constrictor evaluate short --seeds 1..100 --merge part1 part2 --output all"},
-      "0 all runs are done, whether or not their missions succeeded; 64 wrong usage; 70 a run ended with an error;\n"
-      "  78 wrong configuration; 130 Ctrl-C, 143 SIGTERM",
+      "0 all runs are done, whether or not their missions succeeded; 1 the folders of --merge lack runs;\n"
+      "  64 wrong usage; 70 a run ended with an error; 78 wrong configuration; 130 Ctrl-C, 143 SIGTERM",
       kDataEnvironment));
 }
 

@@ -48,6 +48,12 @@ void remove_bulk(const fs::path& folder) {
   for (const auto& path : bulk) fs::remove_all(path);
 }
 
+void remove_content(const fs::path& folder) {
+  std::vector<fs::path> content;
+  for (const auto& entry : fs::directory_iterator(folder)) content.push_back(entry.path());
+  for (const auto& path : content) fs::remove_all(path);
+}
+
 std::string quoted(const std::string& word) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("./_=-+:,").find(static_cast<char>(c)) != std::string_view::npos;
@@ -78,10 +84,16 @@ Evaluation::Evaluation(EvaluationRequest request) : request_(std::move(request))
   variants_ = make_variants(variations);
   request_.run = absolute_options(request_.run, plan);
   request_.folder = fs::absolute(request_.folder);
-  claim_folder();
-  for (const auto& variant : variants_) {
-    options_.push_back(options_of(variant, request_.run, request_.folder / "variants" / variant.folder));
-    check_components(options_.back(), make_launch_plan(options_.back()));
+  const bool begun_before = claim_folder();
+  try {
+    for (const auto& variant : variants_) {
+      options_.push_back(options_of(variant, request_.run, request_.folder / "variants" / variant.folder));
+      check_components(options_.back(), make_launch_plan(options_.back()));
+    }
+  } catch (const ConfigurationError&) {
+    // A refused evaluation leaves its folder empty, so that the corrected command may use it.
+    if (!begun_before) remove_content(request_.folder);
+    throw;
   }
   for (const auto seed : request_.seeds) {
     for (std::size_t i = 0; i < variants_.size(); ++i) runs_.push_back({i, seed, folder_of(variants_[i], seed)});
@@ -92,9 +104,14 @@ Evaluation::~Evaluation() {
   if (lock_ >= 0) ::close(lock_);
 }
 
-void Evaluation::claim_folder() {
+bool Evaluation::claim_folder() {
   EvaluationRecord wanted{scenario_, request_.vary, request_.seeds, identities_of(request_.run)};
-  fs::create_directories(request_.folder);
+  std::error_code error;
+  fs::create_directories(request_.folder, error);
+  if (error || !fs::is_directory(request_.folder)) {
+    throw UsageError(fmt::format("--output: {} cannot become a folder: {}", request_.folder.string(),
+                                 error ? error.message() : "it is a file"));
+  }
   const auto found = read_record(request_.folder);
   if (!found && !fs::is_empty(request_.folder))
     throw UsageError(fmt::format("--output: {} is not empty and holds no evaluation", request_.folder.string()));
@@ -117,6 +134,7 @@ void Evaluation::claim_folder() {
     throw UsageError(fmt::format("--output: another `constrictor evaluate` is doing shard {} of {} in {}",
                                  request_.shard, request_.shards, request_.folder.string()));
   }
+  return found.has_value();
 }
 
 std::vector<std::string> Evaluation::arguments(const PlannedRun& run) const {

@@ -39,7 +39,8 @@ class Evaluation {
   using Print = std::function<void(const std::string& line)>;
 
   /// Makes the folder and the files of the variants, and checks all files. An evaluation that is already in the folder
-  /// is continued if it has the same files and options; the seeds may differ. Throws UsageError or ConfigurationError.
+  /// is continued if it has the same files and options; the seeds may differ. Throws UsageError or ConfigurationError;
+  /// a folder that was empty is empty again then.
   explicit Evaluation(EvaluationRequest request);
 
   /// All runs, in the order in which they are done: all variants of a seed, then those of the next seed.
@@ -58,7 +59,8 @@ class Evaluation {
 
  private:
   struct Job;
-  void claim_folder();
+  /// Returns true if the folder holds a part of this evaluation already.
+  bool claim_folder();
   void start(const PlannedRun& run, std::vector<Job>& jobs);
   /// Notes the end of a run and removes what is not to be kept of it.
   MissionResult finish(const Job& job, int status);
