@@ -17,6 +17,10 @@ fail() { echo "evaluate_on_hosts: $1" >&2; exit 64; }
 if [ "${1:-}" = --help ]; then sed -n '2,13s/^# //p' "$0"; exit 0; fi
 hosts="" output="" parts="" command=constrictor ssh=ssh
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
+  case "$1" in
+    --hosts|--output|--parts|--command|--ssh) ;;
+    *) fail "unknown option $1 (see --help)" ;;
+  esac
   if [ $# -lt 2 ]; then fail "$1 needs a value (see --help)"; fi
   case "$1" in
     --hosts) hosts=$2 ;;
@@ -24,7 +28,6 @@ while [ $# -gt 0 ] && [ "$1" != -- ]; do
     --parts) parts=$2 ;;
     --command) command=$2 ;;
     --ssh) ssh=$2 ;;
-    *) fail "unknown option $1 (see --help)" ;;
   esac
   shift 2
 done
@@ -34,9 +37,12 @@ if [ -z "$hosts" ] || [ -z "$output" ]; then fail "--hosts and --output are need
 for word in "$@"; do
   case "$word" in --output*|--shard*|--merge*) fail "$word belongs to this script" ;; esac
 done
-command -v parallel >/dev/null || fail "GNU parallel is missing: apt-get install parallel"
 parts=${parts:-$((4 * $(tr , '\n' <<<"$hosts" | wc -l)))}
 [[ "$parts" =~ ^[1-9][0-9]*$ ]] || fail "--parts: found $parts, accepted a number from 1"
+if ! command -v parallel >/dev/null; then
+  echo "evaluate_on_hosts: GNU parallel is missing: apt-get install parallel" >&2
+  exit 69
+fi
 
 mkdir -p "$output/parts"
 output=$(realpath "$output")
@@ -69,8 +75,10 @@ if [ ${#folders[@]} -eq 0 ]; then
   echo "evaluate_on_hosts: no part came back; see $output/parts/jobs.log and $(dirname "$(archive_of 1)")/stderr" >&2
   exit 1
 fi
-"$command" evaluate "$@" --merge "${folders[@]}" --output "$output/whole"
+merged=0
+"$command" evaluate "$@" --merge "${folders[@]}" --output "$output/whole" || merged=$?
 if [ "$status" -ne 0 ]; then
   echo "evaluate_on_hosts: parts are missing; call again to do them ($output/parts/jobs.log)" >&2
   exit 1
 fi
+exit "$merged"

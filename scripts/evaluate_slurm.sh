@@ -16,13 +16,16 @@ if [ "${1:-}" = --help ]; then sed -n '2,11s/^# //p' "$0"; exit 0; fi
 output="" parts=16 command=constrictor options="" wait=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
   if [ "$1" = --wait ]; then wait=(--wait); shift; continue; fi
+  case "$1" in
+    --output|--parts|--command|--sbatch) ;;
+    *) fail "unknown option $1 (see --help)" ;;
+  esac
   if [ $# -lt 2 ]; then fail "$1 needs a value (see --help)"; fi
   case "$1" in
     --output) output=$2 ;;
     --parts) parts=$2 ;;
     --command) command=$2 ;;
     --sbatch) options=$2 ;;
-    *) fail "unknown option $1 (see --help)" ;;
   esac
   shift 2
 done
@@ -33,7 +36,10 @@ if [ -z "$output" ]; then fail "--output is needed (see --help)"; fi
 for word in "$@"; do
   case "$word" in --output*|--shard*|--merge*) fail "$word belongs to this script" ;; esac
 done
-command -v sbatch >/dev/null || fail "sbatch is missing: this script belongs on a host of a Slurm cluster"
+if ! command -v sbatch >/dev/null; then
+  echo "evaluate_slurm: sbatch is missing: this script belongs on a host of a Slurm cluster" >&2
+  exit 69
+fi
 
 mkdir -p "$output/parts" "$output/logs"
 output=$(realpath "$output")

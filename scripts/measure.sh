@@ -10,11 +10,11 @@ measure() {
   if [ "${1:-}" = --help ]; then sed -n '2,/^[^#]/s/^# //p' "$0"; exit 0; fi
   output=$(realpath -m "$(dirname "$0")/../build/$name")
   while [ $# -gt 0 ]; do
-    if [ $# -lt 2 ]; then echo "$name: $1 needs a value" >&2; exit 2; fi
+    case "$1" in --output|--robot) ;; *) echo "$name: unknown option $1 (see --help)" >&2; exit 64 ;; esac
+    if [ $# -lt 2 ]; then echo "$name: $1 needs a value (see --help)" >&2; exit 64; fi
     case "$1" in
       --output) output=$(realpath -m "$2") ;;
       --robot) options+=(--robot "$(realpath "$2")") ;;
-      *) echo "$name: unknown option $1 (see --help)" >&2; exit 2 ;;
     esac
     shift 2
   done
