@@ -20,6 +20,13 @@ TEST(ControlFit, NothingChangesForTheDefaultRobot) {
   EXPECT_EQ(fitted.deliver.amplitude_rad, tuned.deliver.amplitude_rad);
 }
 
+TEST(ControlFit, ARobotWithoutContactSensorsKeepsTheBaseOnTheGround) {
+  const ControlConfig tuned;
+  EXPECT_GT(tuned.lift_rad, 0.0);
+  EXPECT_EQ(fitted_to(robot_named("mamba"), tuned).lift_rad, tuned.lift_rad);
+  EXPECT_EQ(fitted_to(robot_named("mamba_no_skin"), tuned).lift_rad, 0.0);
+}
+
 TEST(ControlFit, ALongerBodyUndulatesLessWhenItNearsAZone) {
   RobotModel robot = robot_named("mamba");
   const ControlConfig tuned;
