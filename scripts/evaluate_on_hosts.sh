@@ -18,17 +18,14 @@ if [ "${1:-}" = --help ]; then sed -n '2,13s/^# //p' "$0"; exit 0; fi
 hosts="" output="" parts="" command=constrictor ssh=ssh
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
   case "$1" in
-    --hosts|--output|--parts|--command|--ssh) ;;
+    --hosts) hosts=${2-} ;;
+    --output) output=${2-} ;;
+    --parts) parts=${2-} ;;
+    --command) command=${2-} ;;
+    --ssh) ssh=${2-} ;;
     *) fail "unknown option $1 (see --help)" ;;
   esac
   if [ $# -lt 2 ]; then fail "$1 needs a value (see --help)"; fi
-  case "$1" in
-    --hosts) hosts=$2 ;;
-    --output) output=$2 ;;
-    --parts) parts=$2 ;;
-    --command) command=$2 ;;
-    --ssh) ssh=$2 ;;
-  esac
   shift 2
 done
 if [ "${1:-}" != -- ] || [ $# -lt 2 ]; then fail "the arguments of \`constrictor evaluate\` are missing after --"; fi

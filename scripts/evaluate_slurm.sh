@@ -17,16 +17,13 @@ output="" parts=16 command=constrictor options="" wait=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
   if [ "$1" = --wait ]; then wait=(--wait); shift; continue; fi
   case "$1" in
-    --output|--parts|--command|--sbatch) ;;
+    --output) output=${2-} ;;
+    --parts) parts=${2-} ;;
+    --command) command=${2-} ;;
+    --sbatch) options=${2-} ;;
     *) fail "unknown option $1 (see --help)" ;;
   esac
   if [ $# -lt 2 ]; then fail "$1 needs a value (see --help)"; fi
-  case "$1" in
-    --output) output=$2 ;;
-    --parts) parts=$2 ;;
-    --command) command=$2 ;;
-    --sbatch) options=$2 ;;
-  esac
   shift 2
 done
 if [ "${1:-}" != -- ] || [ $# -lt 2 ]; then fail "the arguments of \`constrictor evaluate\` are missing after --"; fi

@@ -85,7 +85,7 @@ bool MissionPlanner::is_delivered(std::uint8_t colour, double x_m, double y_m, c
   double reach_m = config_.on_zone_m;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
     if (config_.sequence[i] != colour || (memory_.displaced >> i & 1u) == 0) continue;
-    reach_m = std::min(reach_m, std::isfinite(zone->radius_m) ? zone->radius_m : config_.zone_radius_m);
+    reach_m = std::min(reach_m, radius_or(*zone, config_.zone_radius_m));
   }
   return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < reach_m;
 }

@@ -15,6 +15,11 @@ namespace constrictor {
   return {map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects)};
 }
 
+/// [m] radius of the object or zone; `usual_radius_m` if no image has shown its whole width.
+[[nodiscard]] inline double radius_or(const msg::MapObject& landmark, double usual_radius_m) {
+  return std::isfinite(landmark.radius_m) ? landmark.radius_m : usual_radius_m;
+}
+
 /// [m] between a touched point and the surface of an object of this radius, at a distance from its centre.
 [[nodiscard]] inline double surface_gap_m(double distance_m, double radius_m) {
   return std::abs(distance_m - radius_m);
@@ -30,8 +35,8 @@ namespace constrictor {
   double best_m = 0.0;
   for (const msg::MapObject& landmark : landmarks_of(map)) {
     if (landmark.kind != msg::kBlobObject) continue;
-    const double radius_m = std::isfinite(landmark.radius_m) ? landmark.radius_m : usual_radius_m;
-    const double gap_m = surface_gap_m(std::hypot(landmark.x_m - x_m, landmark.y_m - y_m), radius_m);
+    const double distance_m = std::hypot(landmark.x_m - x_m, landmark.y_m - y_m);
+    const double gap_m = surface_gap_m(distance_m, radius_or(landmark, usual_radius_m));
     if (gap_m >= touch_gate_m(landmark.sd_m) || (best && gap_m >= best_m)) continue;
     best = &landmark;
     best_m = gap_m;

@@ -108,8 +108,9 @@ class Drop : public StatefulTask<DropState> {
     const double zone_m = input.sightings.zones[input.parameters.drop_zone_colour].radius_m;
     double at_m = 0.0;
     for (const msg::MapObject& other : input.map ? landmarks_of(*input.map) : std::span<const msg::MapObject>{}) {
-      if (other.kind != msg::kBlobObject || other.carried || other.handle == grip.handle) continue;
-      const double apart_m = grip.radius_m + radius_m(other, input) + input.config.drop.room_m;
+      if (!is_another_object(other, grip)) continue;
+      const double apart_m =
+          grip.radius_m + radius_or(other, input.config.object.object_radius_m) + input.config.drop.room_m;
       const Eigen::Vector2d p_C = X_MC.to_local({other.x_m, other.y_m});
       if (p_C.norm() > zone_m || std::abs(p_C.y()) > apart_m) continue;
       at_m = std::min(at_m, p_C.x() - std::sqrt(apart_m * apart_m - p_C.y() * p_C.y()));
@@ -171,15 +172,17 @@ class Drop : public StatefulTask<DropState> {
     const PlanarPose X_MU{input.X_MH.to_parent(p_HU), input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
     const double arm_m = std::max((input.body.front().p - p_HU).norm(), (input.body.back().p - p_HU).norm());
     for (const msg::MapObject& other : input.map ? landmarks_of(*input.map) : std::span<const msg::MapObject>{}) {
-      if (other.kind != msg::kBlobObject || other.carried || other.handle == grip.handle) continue;
+      if (!is_another_object(other, grip)) continue;
       const Eigen::Vector2d p_U = X_MU.to_local({other.x_m, other.y_m});
-      if (p_U.x() > 0.0 && p_U.norm() - radius_m(other, input) < arm_m + kRoom_m) return true;
+      if (p_U.x() > 0.0 && p_U.norm() - radius_or(other, input.config.object.object_radius_m) < arm_m + kRoom_m)
+        return true;
     }
     return false;
   }
 
-  [[nodiscard]] static double radius_m(const msg::MapObject& object, const TaskInput& input) {
-    return std::isfinite(object.radius_m) ? object.radius_m : input.config.object.object_radius_m;
+  /// An object that is not the one in the U, or let go by it.
+  [[nodiscard]] static bool is_another_object(const msg::MapObject& landmark, const Grip& grip) {
+    return landmark.kind == msg::kBlobObject && !landmark.carried && landmark.handle != grip.handle;
   }
 
   void straighten(const TaskInput& input, Grip& grip, TaskOutput& output) {

@@ -135,14 +135,18 @@ int with_json(const std::string& name, const ParamOptions& options, int (*run)(c
   }
 }
 
+Refused no_such_parameter(const std::string& name, const ParameterView& view) {
+  return Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", name,
+                             did_you_mean(name, view.parameters)));
+}
+
 int get_parameter(const ParamOptions& options) {
   const dds::Domain domain(find_domain(options.view.domain));
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
     report_silent(view);
-    throw Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", options.name,
-                              did_you_mean(options.name, view.parameters)));
+    throw no_such_parameter(options.name, view);
   }
   const msg::Parameter& p = found->second.parameter;
   if (options.view.json) {
@@ -212,8 +216,7 @@ int set_parameter(const ParamOptions& options) {
         view = no_run ? ParameterView{} : read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
       const auto found = view->parameters.find(name);
       if (found == view->parameters.end() && !view->parameters.empty() && view->silent.empty())
-        throw Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", name,
-                                  did_you_mean(name, view->parameters)));
+        throw no_such_parameter(name, *view);
       const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
       value = value_from(known, text);
       if (!value)

@@ -44,12 +44,7 @@ class DropRun {
     zone.x_m = 1.0;
     zone.radius_m = 0.5;
     task_->start(input(), grip_);
-    if (other_m) {
-      map_.object_count = 1;
-      map_.objects[0].handle = 9;
-      map_.objects[0].x_m = 1.0 + *other_m;
-      map_.objects[0].radius_m = kDropped_m;
-    }
+    if (other_m) add_object({1.0 + *other_m, 0.0});
     while (phase_ != "stop" && tick_.index < 2000) {
       X_MU_.p.x() += kBacking_m_s * tick_.period_s();
       step();

@@ -38,19 +38,12 @@ fs::path folder_of(const Variant& variant, std::uint64_t seed) {
   return fs::path("runs") / variant.folder / fmt::format("seed_{:04}", seed);
 }
 
-/// Removes the files that only people read; the results stay.
-void remove_bulk(const fs::path& folder) {
-  const std::set<std::string> kept{"report.json", kOutcome, "run.log"};
-  std::vector<fs::path> bulk;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!kept.contains(entry.path().filename().string())) bulk.push_back(entry.path());
-  }
-  for (const auto& path : bulk) fs::remove_all(path);
-}
-
-void remove_content(const fs::path& folder) {
+/// Removes what is in the folder but the files of these names.
+void remove_content(const fs::path& folder, const std::set<std::string>& kept = {}) {
   std::vector<fs::path> content;
-  for (const auto& entry : fs::directory_iterator(folder)) content.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!kept.contains(entry.path().filename().string())) content.push_back(entry.path());
+  }
   for (const auto& path : content) fs::remove_all(path);
 }
 
@@ -166,7 +159,8 @@ MissionResult Evaluation::finish(const Job& job, int status) {
   write_whole(folder / kOutcome, outcome.dump(1) + "\n");
   MissionResult result = *result_of(job.run);
   const bool bulky = request_.keep == "all" || (request_.keep == "failed" && !result.success);
-  if (!bulky) remove_bulk(folder);
+  // Files that only people read go; the results stay.
+  if (!bulky) remove_content(folder, {"report.json", kOutcome, "run.log"});
   return result;
 }
 
