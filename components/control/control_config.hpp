@@ -125,7 +125,7 @@ struct ControlConfig : ParameterSet {
   double concertina_wavelength_m = add(concertina_wavelength_m, "concertina.wavelength_m", 1.07, "m", {0.3, 5.0},
                                        kWhileRunning, "Wavelength of the folds along the body");
   SlidingParameters sliding{
-      add(sliding.surface_1_s, "sliding_mode.surface_1_s", 8.0, "1/s", {0.1, 100.0}, kWhileRunning,
+      add(sliding.surface_1_s, "sliding_mode.surface_1_s", 14.0, "1/s", {0.1, 100.0}, kWhileRunning,
           "Slope of the sliding surface: rate at which an error of the angle fades on it"),
       add(sliding.reaching_rad_s2, "sliding_mode.reaching_rad_s2", 60.0, "rad/s2", {0.1, 1000.0}, kWhileRunning,
           "Acceleration towards the sliding surface, outside of the boundary layer"),
@@ -133,7 +133,7 @@ struct ControlConfig : ParameterSet {
           "Half width of the boundary layer; at least as wide as the tick allows"),
       add(sliding.estimate_s, "sliding_mode.estimate_s", 0.05, "s", {0.0, 10.0}, kWhileRunning,
           "Time constant of the estimate of unknown torques"),
-      add(sliding.mass_share, "sliding_mode.mass_share", 0.5, "", {0.0, 2.0}, kWhileRunning,
+      add(sliding.mass_share, "sliding_mode.mass_share", 1.0, "", {0.0, 2.0}, kWhileRunning,
           "Share of the modules' mass that the law counts with: a body lighter than this share swings"),
       add(sliding.inertia, "sliding_mode.inertia", 0, sliding_inertias(), kWhileRunning,
           "Inertia that the law knows: of the whole body, or of each joint by itself")};

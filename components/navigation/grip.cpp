@@ -8,18 +8,29 @@
 
 namespace constrictor {
 
+namespace {
+
+constexpr double kFrontArm_m = 0.75;  // a U with a shorter front arm (16 modules: 0.62 m) hardly reaches a zone
+
+/// [m] Length of the arm in front of the base of a U.
+double front_arm_m(const RobotModel& robot, std::size_t first_base_joint) {
+  return static_cast<double>(first_base_joint + 1) * robot.module_length_m;
+}
+
+}  // namespace
+
 int middle_base_joint(const RobotModel& robot, int base_joints) {
-  constexpr double kFrontArm_m = 0.75;  // a U with a shorter front arm (16 modules: 0.62 m) hardly reaches a zone
   const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
   const int last = static_cast<int>(yaw_joints.size()) - base_joints - 1;  // one joint remains behind the base
   int best = std::max(0, last);
   int best_difference = static_cast<int>(robot.module_count);
   for (int k = 0; k <= last; ++k) {
-    const int front = static_cast<int>(yaw_joints[static_cast<std::size_t>(k)]) + 1;  // modules of the arm
+    const std::size_t first_joint = yaw_joints[static_cast<std::size_t>(k)];
+    const int front = static_cast<int>(first_joint) + 1;  // modules of the arm
     const int last_base_joint = static_cast<int>(yaw_joints[static_cast<std::size_t>(k + base_joints - 1)]);
     const int rear = static_cast<int>(robot.module_count) - 1 - last_base_joint;
     const int difference = std::abs(front - rear);
-    if (front * robot.module_length_m < kFrontArm_m || difference > best_difference) continue;
+    if (front_arm_m(robot, first_joint) < kFrontArm_m || difference > best_difference) continue;
     best = k;  // of two places that are equally good, the one with the longer front arm
     best_difference = difference;
   }
@@ -34,15 +45,27 @@ GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
     : robot_(robot), config_(config), first_(0), yaw_joints_(robot.yaw_joints()) {
   const int first = first_base_joint(robot, config);
   const int joints = static_cast<int>(yaw_joints_.size());
-  if (first + config.base_joints > joints) {
+  if (config.base_first_joint >= 0 && first + config.base_joints > joints) {
     throw ConfigurationError(
         fmt::format("navigation: grip.base_first_joint: found {} with {} base_joints, accepted at most {} for "
                     "the {} yaw joints of the robot {}",
                     first, config.base_joints, joints - config.base_joints, joints, robot.name));
   }
   first_ = static_cast<std::size_t>(first);
-  for (int i = 0; i < config.base_joints; ++i)
-    base_joints_.push_back(yaw_joints_[first_ + static_cast<std::size_t>(i)]);
+  for (int i = first; i < std::min(joints, first + config.base_joints); ++i)
+    base_joints_.push_back(yaw_joints_[static_cast<std::size_t>(i)]);
+
+  const double arm_m = front_arm_m(robot, base_joints_.front());
+  if (config.base_first_joint < 0 && first + config.base_joints >= joints) {
+    refusal_ =
+        fmt::format("the robot {} cannot grasp: its {} yaw joints are too few for the {} of a U and one behind it",
+                    robot.name, joints, config.base_joints);
+  } else if (config.base_first_joint < 0 && arm_m < kFrontArm_m) {
+    refusal_ = fmt::format(
+        "the robot {} cannot grasp: the arm in front of its U would be {:.2f} m long, accepted at "
+        "least {:.2f} m (module.count, module.length_m)",
+        robot.name, arm_m, kFrontArm_m);
+  }
 }
 
 std::array<double, msg::kMaxJoints> GripSense::open_shape(double side, double angle_rad) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "navigation/navigation_config.hpp"
@@ -43,8 +44,12 @@ struct Grip {
 /// Which joints and modules of a robot form the base of the U, and what they measure.
 class GripSense {
  public:
-  /// Throws ConfigurationError if the robot has no such base.
+  /// Throws ConfigurationError if the configuration names a base that the robot does not have.
   GripSense(const RobotModel& robot, const GripConfig& config);
+
+  /// Why no U of this body can hold an object, for people; empty: it can. The body then has no room for a U with an arm
+  /// that drives and steers in front of it. A base that the configuration names is taken as it is.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
   /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.
   [[nodiscard]] std::array<double, msg::kMaxJoints> open_shape(double side, double angle_rad) const;
@@ -106,6 +111,7 @@ class GripSense {
   std::size_t first_;                     ///< yaw joint with which the base begins, counted from the head
   std::vector<std::size_t> yaw_joints_;   ///< indices among all joints
   std::vector<std::size_t> base_joints_;  ///< indices among all joints
+  std::string refusal_;
 };
 
 }  // namespace constrictor

@@ -1,8 +1,12 @@
 #include "navigation/navigation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
+#include <optional>
 
+#include "component/mission.hpp"
 #include "component/task_parameters.hpp"
 #include "component/task_refusal.hpp"
 #include "constrictor/text.hpp"
@@ -14,13 +18,31 @@ namespace {
 
 constexpr double kSwayPeriod_s = 1.5;  // until control has told its own
 
+/// Throws ConfigurationError if the mission demands a grasp of which this body is not capable.
+void check_mission(const std::optional<Mission>& mission, const RobotModel& robot, const GripSense& sense) {
+  if (!mission || mission->sequence.empty()) return;
+  if (!sense.refusal().empty()) {
+    throw ConfigurationError(fmt::format("mission.sequence: found {} object(s), accepted none: {}",
+                                         mission->sequence.size(), sense.refusal()));
+  }
+  const double radius_m = mission->known.object_radius_m.value_or(0.0);
+  if (radius_m > sense.largest_radius_m()) {
+    throw ConfigurationError(
+        fmt::format("mission.known.object_radius_m: found {:.3f}, accepted at most {:.3f}: the U of {} holds no larger "
+                    "object",
+                    radius_m, sense.largest_radius_m(), robot.name));
+  }
+}
+
 }  // namespace
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
     : TunableComponent(wiring, fitted_to(load_robot(setup.robot_file), load_configuration<NavigationConfig>(setup)),
                        topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
-      grip_sense_(robot_, config_.grip) {}
+      grip_sense_(robot_, config_.grip) {
+  check_mission(parse_mission(setup.mission), robot_, grip_sense_);
+}
 
 bool Navigation::senses_ready() const {
   return body_.joints && field_.pose && body_.contacts && body_.joints.age_ticks() <= config_.stale_after_ticks &&

@@ -63,6 +63,11 @@ struct ScenarioFriction {
   double robot_robot = 0.2;
 };
 
+/// How the robot's body differs from its robot file. No component knows it.
+struct ScenarioBody {
+  double mass_scale = 1.0;  ///< factor on the robot file's mass of a module
+};
+
 struct ScenarioLight {
   Eigen::Vector3d direction{0.3, -0.4, 0.85};  ///< unit vector from the scene to the light
   double intensity = 1.0;
@@ -80,6 +85,7 @@ struct Scenario {
   std::vector<ScenarioObstacle> obstacles;
   std::vector<ScenarioPerturbation> perturbations;
   ScenarioFriction friction;
+  ScenarioBody body;
   ScenarioLight light;
   Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  ///< linear RGB
   Eigen::Vector2d start_m{0.0, 0.0};             ///< centre of the head; the body lies straight behind it

@@ -166,6 +166,10 @@ void read_surroundings(Configuration& root, Scenario& scenario) {
   scenario.friction.robot_robot = friction.number("robot_robot", {0.0, 5.0}, scenario.friction.robot_robot);
   friction.finish();
 
+  Configuration body = root.section("body", false);
+  scenario.body.mass_scale = body.number("mass_scale", {0.2, 5.0}, scenario.body.mass_scale);
+  body.finish();
+
   Configuration light = root.section("light", false);
   if (light.has("direction")) {
     const std::vector<double> direction = light.numbers("direction", {-1.0, 1.0}, 3, 3);

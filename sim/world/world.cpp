@@ -34,10 +34,16 @@ RigidBody body_of(const dMass& mass, const Eigen::Isometry3d& X_WB) {
   return {mass.mass, {mass.I[0], mass.I[5], mass.I[10]}, X_WB};
 }
 
+/// The robot as it is in this scene; the components know only the robot file.
+RobotModel real_robot(RobotModel robot, const Scenario& scenario) {
+  robot.module_mass_kg *= scenario.body.mass_scale;
+  return robot;
+}
+
 }  // namespace
 
 World::World(const RobotModel& robot, const Scenario& scenario, const SolverSettings& settings)
-    : robot_(robot),
+    : robot_(real_robot(robot, scenario)),
       scenario_(scenario),
       settings_(settings),
       dynamics_(make_dynamics(mechanism(), settings)),

@@ -1,6 +1,7 @@
 // "sliding_mode": the wave of "undulation", which the joints follow by torques instead of angles. README.md derives the
 // law and its limits.
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMostReached = 0.5;  // share of the distance to the surface that is covered in a tick, at most
+/// A damper D on an inertia J does not swing up to D = J / (kNoSwing dt), if it acts one tick late.
+constexpr double kNoSwing = 4.0;
 
 /// The joints of one axis as vectors.
 struct Axis {
@@ -57,7 +60,8 @@ class SlidingMode : public ControlMethod {
       state.rate_rad_s = input.rate_rad_s;
       state.started = true;
     }
-    for (const JointAxis axis : {JointAxis::kYaw, JointAxis::kPitch}) push(input, Axis(input, axis), state, setpoints);
+    push(input, Axis(input, JointAxis::kYaw), state, setpoints);
+    give_way(input, Axis(input, JointAxis::kPitch), setpoints);
     state.reference2_rad = state.reference_rad;
     state.reference_rad = setpoints.position_rad;
     state.rate_rad_s = input.rate_rad_s;
@@ -67,7 +71,20 @@ class SlidingMode : public ControlMethod {
   }
 
  private:
-  /// The torques of the joints of one axis. `setpoints.position_rad` is the reference of this tick.
+  /// The torques of the pitch joints. The ground, which the law does not know, keeps them straight: its push in the
+  /// estimate of unknown torques made the body rear up. Soft springs without any estimate are enough.
+  static void give_way(const MethodInput& input, const Axis& axis, Setpoints& setpoints) {
+    if (axis.joints.empty()) return;
+    const SlidingParameters& law = input.config.sliding;
+    const VectorXd angle = axis.of(input.measured_rad);
+    const MatrixXd inertia = JointInertia(input.robot, axis.joints, law.mass_share).matrix(angle);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(inertia, Eigen::EigenvaluesOnly);
+    const double damping_nm_s = modes.eigenvalues()(0) / (kNoSwing * input.dt_s);
+    const VectorXd error = angle - axis.of(setpoints.position_rad);
+    axis.put(-damping_nm_s * (axis.of(input.rate_rad_s) + law.surface_1_s * error), setpoints.torque_nm);
+  }
+
+  /// The torques of the yaw joints. `setpoints.position_rad` is the reference of this tick.
   static void push(const MethodInput& input, const Axis& axis, SlidingState& state, Setpoints& setpoints) {
     if (axis.joints.empty()) return;
     const SlidingParameters& law = input.config.sliding;

@@ -10,8 +10,9 @@ namespace {
 
 // The arrays in messages have room for this many modules (kMaxModules in common.idl).
 constexpr std::int64_t kMostModules = 64;
-// To grip an object, navigation bends three yaw joints. Four in front of them steer, and one behind them opens.
-constexpr std::size_t kFewestYawJoints = 8;
+// The wave of 8 modules of `mamba`, with 4 yaw joints, does not move them; 10 follow a line. A grasp needs a longer
+// body, which navigation checks.
+constexpr std::size_t kFewestYawJoints = 5;
 
 JointModel read_joint(Configuration& joints) {
   JointModel joint;

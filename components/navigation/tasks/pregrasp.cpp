@@ -45,6 +45,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
 
  public:
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
+    if (!input.grip_sense.refusal().empty()) return input.grip_sense.refusal();
     if (grip.carrying) return "pregrasp cannot run while the robot carries an object";
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     const double unseen_s = static_cast<double>(input.tick.index - object.seen_tick) * input.tick.period_s();

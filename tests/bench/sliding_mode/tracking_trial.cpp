@@ -32,9 +32,10 @@ Tracking run(const RobotModel& robot, const Trial& trial) {
   RobotModel real = robot;
   real.friction_along *= trial.friction_share;
   real.friction_across *= trial.friction_share;
-  real.module_mass_kg *= trial.mass_share;
-  World world(real, Scenario{});
-  MethodDriver driver(robot, {trial.method, trial.config, trial.period_s, trial.frequency_hz});
+  Scenario scenario;
+  scenario.body.mass_scale = trial.mass_share;
+  World world(real, scenario);
+  MethodDriver driver(robot, {trial.method, trial.config, trial.period_s, trial.frequency_hz, trial.curvature_1_m});
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> noise(0.0, robot.joint_position_noise_rad);
   const std::size_t n = robot.joints.size(), middle = n / 4 * 2;
@@ -67,6 +68,10 @@ Tracking run(const RobotModel& robot, const Trial& trial) {
     if (tick < settle) continue;
     for (const std::size_t j : yaw) errors.push_back(world.joint_angle_rad(j) - before[j]);
     headings.push_back(heading_of(world));
+    for (std::size_t module = 0; module < world.module_count(); ++module) {
+      const double above_m = world.module_pose(module).translation().z() - robot.module_radius_m;
+      found.raised_m = std::max(found.raised_m, above_m);
+    }
     found.course.push_back({(tick + 1) * trial.period_s, before[middle], world.joint_angle_rad(middle)});
   }
   found.error_rad = rms(errors, false);

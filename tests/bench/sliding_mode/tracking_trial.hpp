@@ -18,6 +18,7 @@ struct Trial {
   double duration_s = 16.0;     ///< the first kSettle_s are not measured
   double friction_share = 1.0;  ///< of the skin's friction that the robot file states
   double mass_share = 1.0;      ///< likewise; control goes on counting with the robot file
+  double curvature_1_m = 0.0;   ///< of the path
 };
 
 /// A moment of one joint.
@@ -31,6 +32,7 @@ struct Tracking {
   double heading_rad = 0.0;    ///< rms of the heading of the line from tail to head about its mean
   double torque_nm = 0.0;      ///< rms over all joints and steps
   double speed_m_s = 0.0;      ///< of the body's middle, along a straight line
+  double raised_m = 0.0;       ///< largest height of a module's centre above its height on the ground
   double power_w = 0.0;        ///< positive work of the joints in a second
   std::vector<Moment> course;  ///< of the yaw joint in the middle of the body
 };

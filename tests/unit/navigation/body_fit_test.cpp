@@ -4,14 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "barrier/local_run.hpp"
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "navigation/grip.hpp"
 #include "navigation/motions.hpp"
+#include "navigation/navigation.hpp"
+#include "support/scripted_members.hpp"
 
 namespace constrictor {
 namespace {
@@ -62,6 +67,61 @@ TEST(BodyFit, ABaseBeyondTheTailIsRefused) {
                  "navigation: grip.base_first_joint: found 10 with 3 base_joints, accepted at most 9 for "
                  "the 12 yaw joints of the robot mamba");
   }
+}
+
+/// Why navigation does not grasp with this body.
+std::string refusal_of(const RobotModel& robot) {
+  const NavigationConfig config = fitted_to(robot, {});
+  return GripSense(robot, config.grip).refusal();
+}
+
+/// The bound follows from lengths: the arm in front of the base, which drives and steers, has at least 0.75 m, and one
+/// yaw joint lies behind the three of the base.
+TEST(BodyFit, ABodyWithoutRoomForTheArmsOfAUCannotGrasp) {
+  for (const std::size_t modules : {10U, 12U, 14U, 15U})
+    EXPECT_NE(refusal_of(robot_with(modules)).find("cannot grasp"), std::string::npos) << modules << " modules";
+  for (std::size_t modules = 16; modules <= 64; ++modules)
+    EXPECT_EQ(refusal_of(robot_with(modules)), "") << modules << " modules";
+  RobotModel longer = robot_with(14);
+  longer.module_length_m = 0.12;  // the same number of joints, and an arm of 0.84 m
+  EXPECT_EQ(refusal_of(longer), "");
+  RobotModel yaw_only = load_robot(data_path("components/lib/robot/mamba_yaw_only.yaml"));
+  EXPECT_EQ(refusal_of(yaw_only), "");
+  yaw_only.module_count = 12;
+  yaw_only.joints.resize(11);
+  EXPECT_NE(refusal_of(yaw_only).find("accepted at least 0.75 m"), std::string::npos) << refusal_of(yaw_only);
+}
+
+/// The error of a navigation that gets this mission, or "" if it accepts it.
+std::string error_of(const std::string& robot_file, const std::string& mission) {
+  Setup setup;
+  setup.robot_file = robot_file;
+  setup.mission = mission;
+  try {
+    const LocalRun run({testing::still_robot(), make_navigation_factory()}, setup);
+  } catch (const ConfigurationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BodyFit, AMissionThatNeedsAGraspIsRefusedBeforeItStarts) {
+  const std::string mamba = data_path("components/lib/robot/mamba.yaml");
+  std::ifstream from(mamba);
+  std::string text{std::istreambuf_iterator<char>(from), {}};
+  text.replace(text.find("count: 24"), 9, "count: 12");
+  const std::string small = ::testing::TempDir() + "/mamba_12.yaml";
+  std::ofstream(small) << text;
+
+  EXPECT_EQ(error_of(mamba, "{sequence: [green], line_colour: blue}"), "");
+  EXPECT_EQ(error_of(small, "{sequence: [], line_colour: blue}"), "");
+  const std::string found = error_of(small, "{sequence: [green, red], line_colour: blue}");
+  EXPECT_NE(found.find("mission.sequence: found 2 object(s), accepted none: the robot mamba cannot grasp: the arm"),
+            std::string::npos)
+      << found;
+  EXPECT_EQ(error_of(mamba, "{sequence: [green], line_colour: blue, known: {object_radius_m: 0.1}}"), "");
+  const std::string large = error_of(mamba, "{sequence: [green], line_colour: blue, known: {object_radius_m: 0.15}}");
+  EXPECT_NE(large.find("mission.known.object_radius_m: found 0.150, accepted at most 0.1"), std::string::npos) << large;
 }
 
 /// The values of all parameters, by key.

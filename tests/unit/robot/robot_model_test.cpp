@@ -95,10 +95,10 @@ TEST(RobotModel, CameraSeesTheGroundJustAheadAndTheHorizon) {
 
 TEST(RobotModel, ErrorNamesTheMistake) {
   EXPECT_EQ(error_of_changed_file("mass_kg: 0.3", "mass_kg: -1"), "module.mass_kg: found -1, accepted 0.01 to 20");
-  EXPECT_EQ(error_of_changed_file("count: 24", "count: 12"),
-            "module.count: found 12 modules with 6 yaw joints, accepted a robot with at least 8 yaw joints (16 modules "
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 8"),
+            "module.count: found 8 modules with 4 yaw joints, accepted a robot with at least 5 yaw joints (10 modules "
             "if the axes alternate)");
-  EXPECT_EQ(error_of_changed_file("count: 24", "count: 16"), "");
+  EXPECT_EQ(error_of_changed_file("count: 24", "count: 10"), "");
   EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\nimu: {present: false}"), "");
   EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\nimu: {presence: false}").substr(0, 41),
             "imu.presence: found an unknown key, accep");

@@ -54,14 +54,25 @@ TEST_P(SlidingMode, MovesTheRobotAlongThoughFrictionAndMassDiffer) {
   const Tracking found = run(mamba(), trial);
   Trial angles = trial;
   angles.method = "undulation";
-  EXPECT_LT(found.error_rad, 0.06) << "a tenth of the joints' amplitude";
-  EXPECT_GT(found.speed_m_s, 0.75 * run(mamba(), angles).speed_m_s);
+  EXPECT_LT(found.error_rad, 0.04) << "a twelfth of the joints' amplitude";
+  EXPECT_GT(found.speed_m_s, 0.9 * run(mamba(), angles).speed_m_s);
   EXPECT_LT(found.torque_nm, 1.5) << "the joints do not swing";
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, SlidingMode,
                          ::testing::Values(std::pair(1.0, 1.0), std::pair(0.7, 1.0), std::pair(1.3, 1.0),
                                            std::pair(1.0, 0.7), std::pair(1.0, 1.3)));
+
+// The estimate of unknown torques took the push of the ground for a disturbance: in turns the body reared up by 0.03 m.
+TEST(SlidingModeAlone, TheBodyStaysOnTheGroundInATurn) {
+  for (const double curvature_1_m : {-0.8, 0.8}) {
+    Trial turn = sliding();
+    turn.curvature_1_m = curvature_1_m;
+    const Tracking found = run(mamba(), turn);
+    EXPECT_LT(found.raised_m, 0.003) << curvature_1_m;
+    EXPECT_LT(found.error_rad, 0.06) << curvature_1_m;
+  }
+}
 
 TEST(SlidingModeAlone, WithoutTheModelTheTickIsTooLong) {
   // The same law with the inertia of each joint by itself and without the estimate of unknown torques. A shorter tick

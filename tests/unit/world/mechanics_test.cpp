@@ -189,5 +189,15 @@ TEST_P(Mechanics, ARobotOnASlopeHoldsUpToItsFrictionAngleAndThenAccelerates) {
   }
 }
 
+TEST_P(Mechanics, AScenarioMakesTheBodyHeavierThanItsRobotFileSays) {
+  Scenario heavy;
+  heavy.body.mass_scale = 1.3;
+  World world(mamba(), heavy, settings());
+  hold(world, 0.0, 6.0, 1.0);
+  double weight_n = 0.0;
+  for (const ModuleContact& contact : world.contacts()) weight_n += contact.force_n.z();
+  EXPECT_NEAR(weight_n, 1.3 * 24 * 0.3 * kG, 0.01 * 24 * 0.3 * kG);
+}
+
 }  // namespace
 }  // namespace constrictor
