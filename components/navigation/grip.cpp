@@ -7,7 +7,6 @@
 #include <cstdlib>
 
 namespace constrictor {
-
 namespace {
 
 constexpr double kFrontArm_m = 0.75;  // a U with a shorter front arm (16 modules: 0.62 m) hardly reaches a zone
@@ -44,23 +43,25 @@ int first_base_joint(const RobotModel& robot, const GripConfig& config) {
 GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
     : robot_(robot), config_(config), first_(0), yaw_joints_(robot.yaw_joints()) {
   const int first = first_base_joint(robot, config);
+  const int end = first + config.base_joints;
   const int joints = static_cast<int>(yaw_joints_.size());
-  if (config.base_first_joint >= 0 && first + config.base_joints > joints) {
+  const bool named = config.base_first_joint >= 0;
+  if (named && end > joints) {
     throw ConfigurationError(
         fmt::format("navigation: grip.base_first_joint: found {} with {} base_joints, accepted at most {} for "
                     "the {} yaw joints of the robot {}",
                     first, config.base_joints, joints - config.base_joints, joints, robot.name));
   }
   first_ = static_cast<std::size_t>(first);
-  for (int i = first; i < std::min(joints, first + config.base_joints); ++i)
-    base_joints_.push_back(yaw_joints_[static_cast<std::size_t>(i)]);
+  for (int i = first; i < std::min(joints, end); ++i) base_joints_.push_back(yaw_joints_[static_cast<std::size_t>(i)]);
 
+  if (named) return;
   const double arm_m = front_arm_m(robot, base_joints_.front());
-  if (config.base_first_joint < 0 && first + config.base_joints >= joints) {
+  if (end >= joints) {
     refusal_ =
         fmt::format("the robot {} cannot grasp: its {} yaw joints are too few for the {} of a U and one behind it",
                     robot.name, joints, config.base_joints);
-  } else if (config.base_first_joint < 0 && arm_m < kFrontArm_m) {
+  } else if (arm_m < kFrontArm_m) {
     refusal_ = fmt::format(
         "the robot {} cannot grasp: the arm in front of its U would be {:.2f} m long, accepted at "
         "least {:.2f} m (module.count, module.length_m)",

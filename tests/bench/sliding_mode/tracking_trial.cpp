@@ -29,12 +29,10 @@ double rms(const std::vector<double>& values, bool about_mean) {
 }  // namespace
 
 Tracking run(const RobotModel& robot, const Trial& trial) {
-  RobotModel real = robot;
-  real.friction_along *= trial.friction_share;
-  real.friction_across *= trial.friction_share;
   Scenario scenario;
+  scenario.friction.ground_scale = trial.friction_share;
   scenario.body.mass_scale = trial.mass_share;
-  World world(real, scenario);
+  World world(robot, scenario);
   MethodDriver driver(robot, {trial.method, trial.config, trial.period_s, trial.frequency_hz, trial.curvature_1_m});
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> noise(0.0, robot.joint_position_noise_rad);
