@@ -86,6 +86,11 @@ struct ControlConfig : ParameterSet {
   MotionParameters leave = add(leave, "leave", {0, 0.5, 0.9, 0.27}, "Backing off with an open U");
   double lookahead_m = add(lookahead_m, "path.lookahead_m", 0.5, "m", {0.05, 2.0}, kWhileRunning,
                            "The body steers towards the point of the path this far ahead of the head");
+  double most_curvature_1_m =
+      add(most_curvature_1_m, "path.most_curvature_1_m", 1.2, "1/m", {0.05, 5.0}, kWhileRunning,
+          "Largest curvature of the way to a path of several pieces; a single arc is followed as it is");
+  double carry_curvature_1_m = add(carry_curvature_1_m, "path.carry_curvature_1_m", 1.0, "1/m", {0.05, 5.0},
+                                   kWhileRunning, "The same for a body in a posture, such as a U with an object");
   double most_hz = add(most_hz, "wave.most_hz", 1.2, "Hz", {0.05, 2.0}, kWhileRunning,
                        "Most undulations per second: a faster motion stays slower than desired");
   WaveWeights weights{

@@ -62,6 +62,10 @@ Gait gait_of(const msg::DesiredTrajectory& desired, const ControlConfig& config)
   Gait gait;
   gait.wavelength_m = parameters.wavelength_m;
   gait.curvature_1_m = pursuit_curvature_1_m(desired, config.lookahead_m);
+  if (desired.point_count > 1) {
+    const double most_1_m = desired.shape_count > 0 ? config.carry_curvature_1_m : config.most_curvature_1_m;
+    gait.curvature_1_m = std::clamp(gait.curvature_1_m, -most_1_m, most_1_m);
+  }
   if (desired.speed_m_s == 0.0) return gait;
   gait.frequency_hz = std::clamp(desired.speed_m_s / parameters.advance_m, -config.most_hz, config.most_hz);
   gait.amplitude_rad = parameters.amplitude_rad;

@@ -56,6 +56,12 @@ double updated_log_odds(const ExistenceConfig& config, double log_odds, bool see
   return std::min(bound, log_odds + looks * evidence);
 }
 
+double log_odds_of(double probability) {
+  constexpr double kLeast = 0.01;
+  const double p = std::clamp(probability, kLeast, 1.0 - kLeast);
+  return std::log(p / (1.0 - p));
+}
+
 double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 bool clearly_in_view(const ExistenceConfig& config, const View& view, const Disc& landmark, std::uint8_t colour) {

@@ -18,6 +18,10 @@ namespace constrictor::guidance {
 /// detection and of a false alarm as inverse sensor model.
 [[nodiscard]] double updated_log_odds(const ExistenceConfig& config, double log_odds, bool seen, double looks);
 
+/// [1] natural logarithm of the odds of this probability, which counts as at least 0.01 and at most 0.99: a percept
+/// may err although it does not say so.
+[[nodiscard]] double log_odds_of(double probability);
+
 /// [1] probability of these log odds.
 [[nodiscard]] double probability_of(double log_odds);
 

@@ -78,6 +78,7 @@ void FieldMapper::create(const msg::Blob& blob, const Eigen::Vector2d& z, const 
   landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
   landmark.hits = 1;
   landmark.last_seen_tick = tick;
+  landmark.object_log_odds = log_odds_of(blob.object_probability);
   filter_.add(z, noise);
   state_.landmarks.push_back(landmark);
 }
@@ -160,12 +161,21 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   }
   landmark.hits = std::min(landmark.hits + 1, kMaxHits);
   landmark.strays = 0;
+  learn_kind(blob, tick, landmark);
   landmark.last_seen_tick = tick;
   learn_height(blob, landmark);
   if (whole && !blob.cut_bottom && std::isfinite(blob.width_m)) {
     const double share = landmark.radius_m > 0.0 ? 1.0 / std::min(landmark.hits, 50) : 1.0;
     landmark.radius_m += share * (0.5 * blob.width_m - landmark.radius_m);
   }
+}
+
+void FieldMapper::learn_kind(const msg::Blob& blob, std::int64_t tick, Landmark& landmark) {
+  constexpr double kLookTicks = 25.0;  // images that follow each other faster have common errors
+  constexpr double kMost = 9.0;        // log odds of 0.9999
+  const double looks = std::clamp(static_cast<double>(tick - landmark.last_seen_tick) / kLookTicks, 0.0, 1.0);
+  landmark.object_log_odds =
+      std::clamp(landmark.object_log_odds + looks * log_odds_of(blob.object_probability), -kMost, kMost);
 }
 
 void FieldMapper::learn_height(const msg::Blob& blob, Landmark& landmark) {
@@ -236,6 +246,7 @@ void FieldMapper::fill(msg::FieldMap& map) const {
     out.touched = landmark.felt;
     out.carried = landmark.carried;
     out.last_seen_tick = landmark.last_seen_tick;
+    out.object_probability = probability_of(landmark.object_log_odds);
   }
   map.touch_count = static_cast<std::uint16_t>(state_.felt.size());
   for (std::size_t i = 0; i < state_.felt.size(); ++i) {

@@ -67,6 +67,8 @@ class FieldMapper {
   [[nodiscard]] double known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const;
   /// Averages the heights over the images. An image that cuts the top off gives a lower bound.
   void learn_height(const msg::Blob& blob, Landmark& landmark);
+  /// Adds what the percept says of whether the landmark is an object or a zone.
+  void learn_kind(const msg::Blob& blob, std::int64_t tick, Landmark& landmark);
   /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
   void glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick);
   void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);

@@ -25,6 +25,7 @@ struct Landmark {
   std::int32_t hits = 0;                    ///< number of percepts of this landmark; counting stops at 1000
   std::int32_t strays = 0;                  ///< number of successive percepts that showed the landmark at another place
   double log_odds = 0.0;                    ///< natural logarithm of the odds that it exists
+  double object_log_odds = 0.0;             ///< the same of the odds that it is an object and no zone
   bool felt = false;
   bool carried = false;
   bool may_have_moved = false;  ///< it was released or touched, and not seen since
@@ -32,8 +33,8 @@ struct Landmark {
   std::int64_t proved_tick = -1;  ///< when an image last raised log_odds; the cameras expose at the same ticks
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, height_m, hits, strays, log_odds, felt, carried,
-            may_have_moved, last_seen_tick, proved_tick);
+    archive(handle, colour, kind, slot, x_m, y_m, sd_m, radius_m, height_m, hits, strays, log_odds, object_log_odds,
+            felt, carried, may_have_moved, last_seen_tick, proved_tick);
   }
 };
 

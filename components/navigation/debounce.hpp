@@ -18,11 +18,11 @@ struct DebounceConfig : ParameterSet {
   int lost_after = 0;
 
  protected:
-  /// Adds the two rows. `what`: begins their meaning, for example "The line".
-  explicit DebounceConfig(const std::string& what) {
+  /// Adds the two rows. `what`: begins their meaning, for example "The line". `lost_images`: default of the second.
+  DebounceConfig(const std::string& what, int lost_images) {
     found_after = add(found_after, "found_after_images", 3, "images", {1, 100}, kWhileRunning,
                       what + " is visible after this number of consecutive images with it");
-    lost_after = add(lost_after, "lost_after_images", 10, "images", {1, 100}, kWhileRunning,
+    lost_after = add(lost_after, "lost_after_images", lost_images, "images", {1, 100}, kWhileRunning,
                      what + " is not visible after this number of consecutive images without it");
   }
 };

@@ -86,11 +86,22 @@ double GripSense::largest_radius_m() const {
   return 0.5 * side_m() / std::tan(0.5 * std::min(config_.base_angle_rad, 3.0)) - robot_.module_radius_m;
 }
 
+double GripSense::closed_angle_rad(double radius_m) const {
+  return 2.0 * std::atan(0.5 * side_m() / (radius_m + robot_.module_radius_m));
+}
+
 double GripSense::open_angle_rad(double radius_m) const {
   if (base_joints_.size() < 2) return config_.base_angle_rad;
-  const double closed_rad = 2.0 * std::atan(0.5 * side_m() / (radius_m + robot_.module_radius_m));
   const double least_rad = std::min(config_.widest_angle_rad, config_.base_angle_rad);
-  return std::clamp(closed_rad - config_.closing_rad, least_rad, config_.base_angle_rad);
+  return std::clamp(closed_angle_rad(radius_m) - config_.closing_rad, least_rad, config_.base_angle_rad);
+}
+
+double GripSense::open_angle_rad(const Grip& grip) const {
+  const double usual_rad = open_angle_rad(grip.radius_m);
+  if (grip.wrap_scale == 1.0 || base_joints_.size() < 2) return usual_rad;
+  const double least_rad = std::min(config_.widest_angle_rad, usual_rad);
+  const double most_rad = std::max(usual_rad, closed_angle_rad(grip.radius_m) - 0.5 * config_.closing_rad);
+  return std::clamp(usual_rad / grip.wrap_scale, least_rad, most_rad);
 }
 
 double GripSense::largest_closing_nm(const msg::JointState& joints, double side) const {

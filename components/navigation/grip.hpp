@@ -19,6 +19,7 @@ struct Grip {
   std::uint8_t colour = 0;
   std::uint16_t handle = 0;
   double radius_m = 0.085;                          ///< of the object
+  double wrap_scale = 1.0;                          ///< width of the open U relative to the usual one
   double height_m = 0.0;                            ///< of the object; 0: unknown
   double hold_torque_nm = 0.0;                      ///< cap of the base joints while carrying
   Eigen::Vector2d p_MO{0.0, 0.0};                   ///< [m] where the body touched the object
@@ -29,7 +30,8 @@ struct Grip {
   double below_s = 0.0;        ///< time for which both have been below their thresholds
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(pregrasped, carrying, side, colour, handle, radius_m, height_m, hold_torque_nm, p_MO.x(), p_MO.y());
+    archive(pregrasped, carrying, side, colour, handle, radius_m, wrap_scale, height_m, hold_torque_nm, p_MO.x(),
+            p_MO.y());
     for (double& angle : shape_rad) archive(angle);
     archive(torque_nm, contact_share, below_s);
   }
@@ -57,6 +59,9 @@ class GripSense {
   /// that would not leave closing_rad to close. A U with parallel arms is as wide as the largest object, which wedges
   /// between the arms before it reaches the base.
   [[nodiscard]] double open_angle_rad(double radius_m) const;
+  /// The same for the object of `grip`, with its wrap_scale: a wider U is bent less, but not less than
+  /// widest_angle_rad; a narrower one is bent more, but leaves half of closing_rad to close.
+  [[nodiscard]] double open_angle_rad(const Grip& grip) const;
   /// [m] radius of the largest object that the U with the angles base_angle_rad can hold: the circle that touches the
   /// middle of each link between the base joints of the U, minus the radius of a module.
   [[nodiscard]] double largest_radius_m() const;
@@ -105,6 +110,8 @@ class GripSense {
     return feels ? config_.hold_margin_rad : config_.unfelt_margin_rad;
   }
   [[nodiscard]] double side_m() const;  ///< length of a link between two base joints
+  /// [rad] angle of each base joint in the U that touches an object of this radius.
+  [[nodiscard]] double closed_angle_rad(double radius_m) const;
 
   const RobotModel& robot_;
   const GripConfig& config_;

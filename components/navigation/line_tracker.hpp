@@ -22,7 +22,7 @@ struct LineTrackerState : Visibility {
 };
 
 struct LineTrackerConfig : DebounceConfig {
-  LineTrackerConfig() : DebounceConfig("The line") {}
+  LineTrackerConfig() : DebounceConfig("The line", 10) {}
   double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", {0.1, 2.0}, kWhileRunning,
                            "Distance ahead of the head at which the offset of the line is taken");
 };

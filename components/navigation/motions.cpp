@@ -28,7 +28,7 @@ void set_posture(const Grip& grip, TaskOutput& output) {
 }
 
 void set_open_u(const GripSense& sense, double side, const Grip& grip, TaskOutput& output) {
-  const auto shape_rad = sense.open_shape(side, sense.open_angle_rad(grip.radius_m));
+  const auto shape_rad = sense.open_shape(side, sense.open_angle_rad(grip));
   output.desired.shape_count = static_cast<std::uint16_t>(sense.yaw_joint_count());
   std::copy_n(shape_rad.begin(), sense.yaw_joint_count(), output.desired.shape_rad);
 }
@@ -57,6 +57,20 @@ void move_in_shape(const Pace& pace, double curvature_1_m, double direction,
   set_pace(pace, curvature_1_m, direction, output);
   output.desired.shape_count = static_cast<std::uint16_t>(shape_count);
   for (std::size_t k = 0; k < shape_count; ++k) output.desired.shape_rad[k] = shape_rad[k];
+}
+
+void move_on_path(const TaskInput& input, const std::vector<Eigen::Vector2d>& points_M, const Grip& grip,
+                  TaskOutput& output) {
+  constexpr double kLongest_m = 50.0;  // well within the ranges of the message
+  move_on(input, 0.0, 1.0, grip, output);
+  output.desired.point_count = 0;
+  double arc_m = 0.0;
+  for (std::size_t i = 0; i + 1 < points_M.size() && i < msg::kMaxTrajectoryPoints && arc_m < kLongest_m; ++i) {
+    const Eigen::Vector2d p_H = input.X_MH.to_local(points_M[i]);
+    const Eigen::Vector2d d = input.X_MH.to_local(points_M[i + 1]) - p_H;
+    output.desired.points[output.desired.point_count++] = {arc_m, p_H.x(), p_H.y(), std::atan2(d.y(), d.x()), 0.0};
+    arc_m += d.norm();
+  }
 }
 
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output) {

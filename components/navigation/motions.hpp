@@ -18,6 +18,11 @@ void move_along(const Pace& pace, double curvature_1_m, double direction, const 
 /// The same in a given posture: angles of the first `shape_count` yaw joints.
 void move_in_shape(const Pace& pace, double curvature_1_m, double direction,
                    const std::array<double, msg::kMaxJoints>& shape_rad, std::size_t shape_count, TaskOutput& output);
+/// Moves at the present pace along the straight lines between these points of M, and straight on after the last one.
+/// Control steers to the path. At least two points, each at another place than the one before; what lies beyond
+/// kMaxTrajectoryPoints, or far away, is left out.
+void move_on_path(const TaskInput& input, const std::vector<Eigen::Vector2d>& points_M, const Grip& grip,
+                  TaskOutput& output);
 /// Bends the three yaw joints next to the head by `each_rad` each, positive left. The other joints are straight, or
 /// hold the object.
 void bend_head(double each_rad, double rate_rad_s, const Grip& grip, TaskOutput& output);

@@ -190,6 +190,10 @@ void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
   for (const EventRecord& record : output.events) {
     write_event(record.event, msg::kGoalRunning, record.colour, record.handle, "");
   }
+  state_.goal.run_s += input.tick.dt_s();
+  const double limit_s = time_limit_s(state_.goal.parameters);
+  if (output.state == msg::kGoalRunning && state_.goal.run_s > limit_s && !state_.task->keeps_time())
+    output.abort(fmt::format("the time limit of {:g} s passed", limit_s));
   if (output.state != msg::kGoalRunning) end_goal(output.state, output.reason);
 }
 

@@ -18,6 +18,7 @@ struct GoalState {
   std::uint8_t task = msg::kTaskNone;
   std::uint8_t state = msg::kGoalIdle;
   msg::TaskParameters parameters{};
+  double run_s = 0.0;  ///< time since the start, without that in which the task waited for percepts
   double progress = 0.0;
   std::string phase;
   std::string reason;
@@ -26,7 +27,7 @@ struct GoalState {
   void serialize(Archive& archive) {
     auto& p = parameters;
     archive(goal_id, task, state, p.line_colour, p.object_colour, p.object_handle, p.drop_zone_colour, p.direction,
-            p.timeout_s, progress, phase, reason);
+            p.timeout_s, p.clearance_m, p.wrap_scale, run_s, progress, phase, reason);
   }
 };
 

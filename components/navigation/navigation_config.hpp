@@ -72,10 +72,7 @@ struct FollowLineConfig : NavigationSection {
                        "Consecutive images that must show the end of the line");
 };
 
-struct FollowPathConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {8.0, 2.0, 0.0, 1.2, 0.2}, kWhileRunning, "path's offset [m]");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.35, "m", bounds::kLength, kWhileRunning,
-                           "The robot steers towards the point of the path this far ahead of the head");
+struct FollowPathConfig : ParameterSet {
   double reached_m = add(reached_m, "reached_m", 0.1, "m", bounds::kLength, kWhileRunning,
                          "The path ends this far before its last point");
   double lost_m = add(lost_m, "lost_m", 1.0, "m", bounds::kLength, kAtStart,
@@ -244,9 +241,6 @@ struct DropConfig : NavigationSection {
           "Distance by which the straight robot backs off then, so that its turns do not reach the object");
   double straighten_rate_rad_s = add(straighten_rate_rad_s, "straighten_rate_rad_s", 0.8, "rad/s", bounds::kSpeed,
                                      kAtStart, "Speed of each joint when the body straightens");
-  double approach_timeout_s =
-      add(approach_timeout_s, "approach_timeout_s", 120.0, "s", bounds::kTime, kAtStart,
-          "The task is aborted, with the object in the U, if the zone's centre is not reached within this time");
 };
 
 struct NavigationConfig : NavigationSection {

@@ -31,7 +31,7 @@ struct Sighting : Visibility {
 };
 
 struct ObjectTrackerConfig : DebounceConfig {
-  ObjectTrackerConfig() : DebounceConfig("An object") {}
+  ObjectTrackerConfig() : DebounceConfig("An object", 15) {}
   double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, kAtStart,
                                "Radius of an object until an image shows its whole width");
   double min_radius_m =

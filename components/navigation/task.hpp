@@ -41,6 +41,11 @@ struct TaskInput {
   const msg::Path* path = nullptr;      ///< of the command; only in refusal() and start()
 };
 
+/// [s] time limit of a goal; infinite if it has none.
+[[nodiscard]] inline double time_limit_s(const msg::TaskParameters& parameters) {
+  return parameters.timeout_s > 0.0 ? parameters.timeout_s : std::numeric_limits<double>::infinity();
+}
+
 /// An event of the tables, with the object, zone or line that it is about.
 struct EventRecord {
   std::uint8_t event = msg::kEventNone;
@@ -86,6 +91,8 @@ class Task {
   }
   /// Whether the task must not move while the camera, or perception, is silent.
   [[nodiscard]] virtual bool steers_by_sight() const { return true; }
+  /// Whether the task itself reacts to the time limit of its goal. Every other task is aborted when it passes.
+  [[nodiscard]] virtual bool keeps_time() const { return false; }
   virtual void start(const TaskInput& input, Grip& grip) = 0;
   virtual void step(const TaskInput& input, Grip& grip, TaskOutput& output) = 0;
   [[nodiscard]] virtual std::string save() const = 0;

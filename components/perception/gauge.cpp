@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMeasuredRange_m = 1.5;  // objects that are nearer show their size
+constexpr double kBeside_sd = -2.0;  // of the flat part beside an upright one, which the same region shows to be lower
 constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than the camera shows no range by its height
+
+/// Probability that a normally distributed quantity, measured this number of standard deviations above a bound, is
+/// above it.
+double probability_above(double deviations) { return 0.5 * std::erfc(-deviations / std::numbers::sqrt2); }
 
 }  // namespace
 
@@ -41,6 +47,7 @@ std::optional<msg::Blob> Gauge::object(bool on_zone, ObjectSize& measured) const
   msg::Blob blob = box(region_.standing_first, region_.standing_last);
   if (left_ <= right_) return std::nullopt;
   blob.kind = msg::kBlobObject;
+  blob.object_probability = probability_above(std::max(region_.rise_sd, 0.0));
   bool cut = false;
   double range_m = on_zone ? kNan : lower_edge_range(left_, right_, cut);
   blob.cut_bottom |= cut;
@@ -83,6 +90,9 @@ std::optional<msg::Blob> Gauge::zone() const {
   msg::Blob blob = box(region_.u_min, region_.u_max);
   if (region_.standing()) blob.cut_top = false;  // only the object beside it reaches up there
   blob.kind = region_.doubtful || may_be_object(blob, left, right) ? msg::kBlobUndecided : msg::kBlobZone;
+  blob.object_probability = blob.kind == msg::kBlobUndecided ? 0.5
+                            : region_.standing()             ? probability_above(kBeside_sd)
+                                                             : probability_above(std::min(region_.rise_sd, 0.0));
   bool cut = false;
   const double range_m = lower_edge_range(left, right, cut);
   blob.cut_bottom |= cut;

@@ -14,6 +14,7 @@ constexpr double kAboveRimPixels = 2.5;  // above the far rim of the zone
 constexpr int kMaxGapColumns = 2;        // that noise makes in the outline of an object
 constexpr double kAboveCamera_m = 0.01;  // a higher object reaches far above the horizon
 constexpr double kHeightError_m = 0.025;
+constexpr double kCertain_sd = 2.0;  // three columns or more rise above the rim, as wide as an object of known size
 
 /// Successive columns; empty if last < first.
 struct Columns {
@@ -123,6 +124,7 @@ void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, co
     if (!fits(camera, regions, i, columns, *outline, size, left_rad - right_rad)) continue;
     Region& object = split(camera, columns, *outline, i, regions);
     object.stand_low(left_rad, right_rad, size.height_m);
+    object.rise_sd = kCertain_sd;
     object.on_zone = true;
   }
 }

@@ -124,6 +124,7 @@ void PerceptErrors::invent(std::uint64_t interval, double yaw_rad, const GroundC
   if (random.uniform() >= config_.false_share || objects.blob_count >= std::size(objects.blobs)) return;
   msg::Blob blob{};
   blob.kind = msg::kBlobObject;
+  blob.object_probability = 1.0;
   blob.colour = kColours[random.next() % kColours.size()];
   const double direction_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
   blob.range_m = random.uniform(kNearest_m, kFarthest_m);

@@ -139,6 +139,7 @@ bool is_fringe(const Regions& all, std::size_t index) {
 }
 
 void find_standing_columns(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camera, Region& region) {
+  constexpr double kEdgePixels = 1.0;  // standard deviation of an edge
   region.standing_first = ids.cols;
   region.standing_last = -1;
   for (int u = region.u_min; u <= region.u_max; ++u) {
@@ -147,6 +148,7 @@ void find_standing_columns(const cv::Mat& ids, std::uint8_t id, const GroundCame
       if (ids.at<std::uint8_t>(v, u) != id) continue;
       region.standing_first = std::min(region.standing_first, u);
       region.standing_last = u;
+      region.rise_sd = std::max(region.rise_sd, (limit + kHorizonMarginPixels - v) / kEdgePixels);
       break;
     }
   }

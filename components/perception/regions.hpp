@@ -30,6 +30,8 @@ struct Region {
   bool doubtful = false;                   ///< too little is in view to distinguish a low object from a zone
   double left_rad = 0.0, right_rad = 0.0;  ///< azimuths of its sides
   double height_m = 0.0;
+  /// By how many standard deviations the region rises above the bound between flat and upright; negative: below it.
+  double rise_sd = 0.0;
   bool left_hidden = false, right_hidden = false;  ///< something, or the robot's body, hides this side
 
   [[nodiscard]] bool standing() const { return standing_last > standing_first; }

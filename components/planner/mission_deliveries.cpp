@@ -68,7 +68,7 @@ MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
       return at_last_object() && !looked ? kInspect : delivered(inputs);
     }
     case Delivery::kOutside:
-      return recover(kSearchObject);
+      return recover(kSearchObject, "it was seen outside its zone");
     default:
       return kInspect;
   }
@@ -81,12 +81,14 @@ MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs&
   if (in_view && in_time && view.verdict == Delivery::kUnseen) return kInspect;
   const bool seen = in_view || view.precise;
   const bool likely = seen && view.verdict == Delivery::kUncertain && view.probably_inside();
-  return likely || view.verdict == Delivery::kOnZone ? delivered(inputs) : recover(kSearchObject);
+  return likely || view.verdict == Delivery::kOnZone ? delivered(inputs)
+                                                     : recover(kSearchObject, "it was not seen on its zone");
 }
 
 MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.delivered |= std::uint32_t{1} << memory_.object_index;
   memory_.displaced &= ~memory_.delivered;
+  attempts() = {};
   const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
   const std::uint16_t seen = dropped_object(inputs).handle;  // the map may have given the object a new handle
   const std::uint16_t handle = seen != 0 ? seen : memory_.dropped_handle;
@@ -117,8 +119,9 @@ void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double el
   if (gone != memory_.placed.end()) take_back(gone);
 }
 
-DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const PlannerInputs& inputs) const {
-  constexpr double kNear_m = 1.6;  // an object of this colour that is farther from the zone is another one
+DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const PlannerInputs& inputs,
+                                           bool any_distance) const {
+  constexpr double kNear_m = 1.6;  // an unknown object of this colour that is farther from the zone may be another one
   const std::uint8_t colour = config_.sequence[object.index];
   bool all = true;  // all objects of this colour are delivered: an object that appears now is one of them
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) all = all && (config_.sequence[i] != colour || done(i));
@@ -128,7 +131,13 @@ DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const Pla
   const DroppedObject dropped{colour,      object.handle, all ? object.newest_handle : kNoOther,
                               object.tick, true,          twins(object.index)};
   const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
-  return view.offset_m < kNear_m ? view : DeliveryView{};
+  const auto landmarks = landmarks_of(*inputs.map);
+  const bool known = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
+    return object.handle != 0 && landmark.handle == object.handle;
+  });
+  // An object that images no longer show on its zone has gone, and what has appeared elsewhere is it.
+  const bool own = view.handle != 0 && (view.handle == object.handle || !known);
+  return own || any_distance || view.offset_m < kNear_m ? view : DeliveryView{};
 }
 
 bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except) {
@@ -141,7 +150,7 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
     const bool touched = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
       return object.handle != 0 && landmark.handle == object.handle && landmark.sd_m > config_.seen_sd_m;
     });
-    const Delivery verdict = placed_object(object, inputs).verdict;
+    const Delivery verdict = placed_object(object, inputs, true).verdict;
     return touched || verdict == Delivery::kOutside || verdict == Delivery::kUncertain;
   };
   const auto found = std::find_if(memory_.placed.begin(), memory_.placed.end(), doubtful);
@@ -188,10 +197,6 @@ bool MissionPlanner::choose_object() {
     memory_.aside = 0;
     next = next_open();
   }
-  if (next != memory_.object_index) {
-    memory_.failures = 0;
-    memory_.side = msg::kDirectionNone;
-  }
   memory_.object_index = static_cast<std::uint16_t>(next);
   return next < config_.sequence.size();
 }
@@ -200,23 +205,22 @@ MissionState MissionPlanner::end_of_sequence() {
   std::string left;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
     if (done(i)) continue;
-    left += (left.empty() ? "" : ", ") + std::string(name_of(constants::kColour, config_.sequence[i]));
+    left += (left.empty() ? "" : "; ") + std::string(name_of(constants::kColour, config_.sequence[i]));
+    if (i >= memory_.attempts.size() || memory_.attempts[i].failures == 0) continue;
+    const Attempts& tried = memory_.attempts[i];
+    left += fmt::format(" ({} attempts failed, the last in {})", tried.failures, tried.reason);
   }
-  if (left.empty()) return kDone;
-  // A task that was refused says what is wrong with the object; the number of attempts would hide it.
-  if (refusals().rejected()) return fail(fmt::format("not delivered: {}; {}", left, memory_.refusals.reason));
-  return fail(fmt::format("not delivered: {}; put aside after {} failures, tried once more, failed in state {}", left,
-                          config_.attempts, name_of(memory_.state)));
+  return left.empty() ? kDone : fail("not delivered: " + left);
 }
 
-MissionState MissionPlanner::try_differently() {
-  ++memory_.failures;
+MissionState MissionPlanner::try_differently(const std::string& why) {
+  Attempts& tried = attempts();
+  ++tried.failures;
+  tried.reason = fmt::format("{}: {}", name_of(memory_.state), why);
   memory_.dropped = false;
-  const int allowed = memory_.second_pass ? 1 : config_.attempts;
-  if (memory_.failures < allowed) return memory_.failures > 1 ? kApproachAnew : kSearchObject;
+  const int allowed = config_.attempts + (memory_.second_pass ? 1 : 0);
+  if (tried.failures < allowed) return tried.failures > 1 ? kApproachAnew : kSearchObject;
   memory_.aside |= std::uint32_t{1} << memory_.object_index;
-  memory_.failures = 0;
-  memory_.side = msg::kDirectionNone;
   memory_.released_tick = -1;
   return choose_object() ? kSearchLineOrObject : end_of_sequence();
 }

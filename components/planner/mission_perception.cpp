@@ -35,7 +35,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   const std::uint8_t wanted = colour();
   const auto* object = nearest(*inputs.objects, [&](const msg::Blob& blob) {
     return wanted != msg::kColourUnknown && blob.colour == wanted && blob.kind == msg::kBlobObject &&
-           !is_delivered(blob, inputs);
+           blob.object_probability >= config_.object_probability && !is_delivered(blob, inputs);
   });
   const auto* zone = nearest(*inputs.objects, [&](const msg::Blob& blob) {
     return blob.colour == wanted && blob.kind == msg::kBlobZone && is_zone(blob, inputs);
@@ -44,14 +44,14 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   count(memory_.object_images, object && object->range_m <= config_.object_range_m);
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
   count(memory_.line_images, inputs.line->visible && inputs.line->colour == config_.line_colour);
-  if (any_zone && any_zone->range_m < 2.0) memory_.zone_seen_s = memory_.active_s;
-  if (inputs.pose && !holding() && inputs.line->colour == config_.line_colour)
+  if (any_zone && any_zone->range_m < config_.end_zone_m) memory_.zone_seen_s = memory_.active_s;
+  if (inputs.pose && outbound() && inputs.line->colour == config_.line_colour)
     memory_.trail.note_beyond(*inputs.line, *inputs.pose);
   // At the beginning of a state the head may still point to the side.
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
   if (follows && !memory_.wrong_way && inputs.pose && memory_.line_images >= config_.confirm_images &&
       memory_.active_s - memory_.entered_s > 1.0) {
-    memory_.trail.record(*inputs.line, *inputs.pose, memory_.state == kFollowLine);
+    memory_.trail.record(*inputs.line, *inputs.pose, outbound());
   }
 }
 
@@ -127,7 +127,7 @@ std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& input
     if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
       return wrap_angle(std::atan2(y_m, x_m) - course_rad(pose));
   }
-  const auto heading_rad = memory_.trail.heading_rad(pose, !holding());
+  const auto heading_rad = memory_.trail.heading_rad(pose, outbound());
   if (!heading_rad) return std::nullopt;
   return wrap_angle(*heading_rad - course_rad(pose));
 }
@@ -135,12 +135,12 @@ std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& input
 bool MissionPlanner::leads_wanted_way(const PlannerInputs& inputs) const {
   if (!inputs.pose) return true;
   if (leads_to_new_ground(inputs)) return true;
-  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, !holding());
+  const auto direction_rad = memory_.trail.direction_rad(*inputs.pose, outbound());
   return !direction_rad || std::abs(wrap_angle(*direction_rad - course_rad(*inputs.pose))) < config_.aligned_rad;
 }
 
 bool MissionPlanner::leads_to_new_ground(const PlannerInputs& inputs) const {
-  return !holding() && inputs.line && inputs.pose && memory_.trail.leads_to_new_ground(*inputs.line, *inputs.pose);
+  return outbound() && inputs.line && inputs.pose && memory_.trail.leads_to_new_ground(*inputs.line, *inputs.pose);
 }
 
 bool MissionPlanner::has_turned(const PlannerInputs& inputs) const {
@@ -185,6 +185,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       break;
     case msg::kTaskDrop:
       parameters.drop_zone_colour = colour();
+      parameters.timeout_s = config_.drop_timeout_s;
       break;
     case msg::kTaskRotate: {
       parameters.line_colour = config_.line_colour;
@@ -197,14 +198,16 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       choose_search(inputs, wanted);
       break;
     case msg::kTaskExplore:  // of kApproachAnew; each time to another side
-      parameters.direction = memory_.failures % 3 == 2   ? msg::kDirectionBackwards
-                             : memory_.failures % 3 == 0 ? msg::kDirectionLeft
-                                                         : msg::kDirectionRight;
+      parameters.direction = next_departure(attempts());
       break;
     default:
-      // After a failure, the robot passes the object on the other side.
-      if (wanted.task == msg::kTaskPregrasp && memory_.failures > 0 && memory_.side != msg::kDirectionNone)
-        parameters.direction = memory_.side == msg::kDirectionLeft ? msg::kDirectionRight : msg::kDirectionLeft;
+      if (wanted.task == msg::kTaskPregrasp || wanted.task == msg::kTaskGrasp) {
+        // In a grasp, the side is the one on which the object was passed.
+        const Way way = next_way(attempts());
+        if (wanted.task == msg::kTaskPregrasp) parameters.direction = way.direction;
+        if (wanted.task == msg::kTaskPregrasp) parameters.clearance_m = way.clearance_m;
+        if (wanted.task == msg::kTaskGrasp) parameters.wrap_scale = way.wrap_scale;
+      }
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
       if (memory_.state == kInspect && inspects_by_handle(inputs)) parameters.object_handle = memory_.dropped_handle;

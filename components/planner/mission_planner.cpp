@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "constrictor/constants.hpp"
 #include "constrictor/text.hpp"
 
 namespace constrictor {
@@ -50,11 +51,15 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   }
   if (inputs.status && memory_.state == kPregrasp && inputs.status->goal_id == kGoalBase + memory_.goals &&
       inputs.status->parameters.direction != msg::kDirectionNone)
-    memory_.side = inputs.status->parameters.direction;
+    attempts().side = inputs.status->parameters.direction;
   count_percepts(inputs);
   watch_placed_objects(inputs, elapsed_s);
   if (memory_.requested || refusals().any()) {
-    if (const auto to = next(inputs)) enter(*to);
+    if (const auto to = next(inputs)) {
+      const bool aims = *to != memory_.state && (memory_.state == kGrasp || *to == kTurnRound);
+      enter(*to);
+      if (aims) aim(inputs);
+    }
   }
   if (const std::string reason = refusals().give_up(memory_.active_s); !reason.empty()) enter(fail(reason));
   memory_.hindrance = hindrance(inputs);
@@ -163,14 +168,19 @@ MissionState MissionPlanner::fail(const std::string& reason) {
   return kFailed;
 }
 
-MissionState MissionPlanner::recover(MissionState to) {
+Attempts& MissionPlanner::attempts() {
+  if (memory_.attempts.size() <= memory_.object_index) memory_.attempts.resize(memory_.object_index + std::size_t{1});
+  return memory_.attempts[memory_.object_index];
+}
+
+MissionState MissionPlanner::recover(MissionState to, const std::string& why) {
   if (memory_.recoveries >= config_.max_recoveries) {
     return fail("more than " + std::to_string(config_.max_recoveries) + " recoveries, the last in state " +
                 name_of(memory_.state));
   }
   ++memory_.recoveries;
   const bool lost_object = to == kSearchObject && memory_.state != kSearchObject;
-  return lost_object ? try_differently() : to;
+  return lost_object ? try_differently(why) : to;
 }
 
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
@@ -185,7 +195,7 @@ std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
     if (own) refusals().accept(requested_task());
     if (const auto to = next_by_event(*event, inputs)) return to;
     if (!own) continue;
-    if (const auto to = next_by_goal_state(event->goal_state, inputs)) return to;
+    if (const auto to = next_by_goal_state(event->goal_state, text_of(event->detail), inputs)) return to;
   }
   if (const auto to = next_by_status(inputs)) return to;
   if (const auto to = next_by_percepts(inputs); to && !barred(*to)) return to;
@@ -197,28 +207,15 @@ std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& 
   if (event.event == msg::kEventObjectReached || event.event == msg::kEventObjectPregrasped)
     memory_.object_handle = event.object_handle;
   for (const auto& loss : row_of(memory_.state).losses) {
-    if (loss.event != msg::kEventNone && loss.event == event.event) return recover(loss.to);
+    if (loss.event == msg::kEventNone || loss.event != event.event) continue;
+    const std::string detail = text_of(event.detail);
+    return recover(loss.to, detail.empty() ? words_of(constants::kEvent, event.event) : detail);
   }
   return std::nullopt;
 }
 
-// Zones lie where the mission began. An end of the line with zones nearby is therefore the wrong end for a robot
-// without an object. Once an object was found, the direction is known, and the end belongs to a short piece of line
-// behind the robot.
-std::optional<MissionState> MissionPlanner::end_of_line(const PlannerInputs& inputs) {
-  if (memory_.state != kFollowLine && memory_.state != kTransport) return std::nullopt;
-  const bool other_end = config_.sequence.empty() && memory_.state == kFollowLine && !leads_wanted_way(inputs);
-  if (memory_.wrong_way || other_end) return recover(kTurnRound);
-  const bool zones_about = memory_.active_s - memory_.zone_seen_s < 3.0;
-  if (zones_about && memory_.direction_known && memory_.state == kFollowLine) return recover(kSearchLineOrObject);
-  memory_.line_ended_s = memory_.active_s;
-  if (memory_.state == kTransport) return recover(kSearchLine);
-  if (!zones_about) return config_.sequence.empty() ? kDone : kSearchObject;
-  if (leads_wanted_way(inputs)) memory_.trail.reverse();
-  return recover(kTurnRound);
-}
-
-std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs) {
+std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal_state, const std::string& reason,
+                                                               const PlannerInputs& inputs) {
   const StateRow& row = row_of(memory_.state);
   const bool failed = goal_state == msg::kGoalAborted || goal_state == msg::kGoalCancelled;
   if (goal_state != msg::kGoalSucceeded && !failed) return std::nullopt;
@@ -226,7 +223,8 @@ std::optional<MissionState> MissionPlanner::next_by_goal_state(std::uint8_t goal
   // At real-time pace the status may arrive before the event that says the same.
   if (!failed && (memory_.state == kFollowLine || memory_.state == kTransport)) return end_of_line(inputs);
   if (!failed) return memory_.state == kDrop ? after_drop(inputs) : row.succeeded;
-  return turns(memory_.state) || memory_.state == kApproachAnew ? row.failed : recover(row.failed);
+  if (turns(memory_.state) || memory_.state == kApproachAnew) return row.failed;
+  return recover(row.failed, reason.empty() ? "the task was given up" : reason);
 }
 
 std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& inputs) {
@@ -235,11 +233,11 @@ std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& 
   if (status.goal_id != kGoalBase + memory_.goals) return next_without_answer(inputs);
   if (status.goal_state == msg::kGoalRefused) return refused(text_of(status.reason), inputs);
   refusals().accept(requested_task());
-  if (const auto to = next_by_goal_state(status.goal_state, inputs)) return to;
+  if (const auto to = next_by_goal_state(status.goal_state, text_of(status.reason), inputs)) return to;
   // During grasp and drop, `carrying` changes within the state.
   if (memory_.contradiction_s < kMissionPatience_s || memory_.state == kGrasp || memory_.state == kDrop)
     return std::nullopt;
-  return recover(status.carrying ? kSearchLine : kSearchObject);
+  return recover(status.carrying ? kSearchLine : kSearchObject, "navigation holds no object");
 }
 
 std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs& inputs) {
@@ -291,15 +289,6 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
   }
 }
 
-// The search turns a robot that sees the line towards the wanted direction. That may not succeed: beside the last piece
-// of the line, the turning head sees only the line behind it. Then the robot turns round on the line itself.
-std::optional<MissionState> MissionPlanner::follow_found_line(const PlannerInputs& inputs) {
-  const bool right_way = may_follow(inputs);
-  const bool tired = memory_.active_s - memory_.entered_s > config_.any_way_s && !leads_wanted_way(inputs);
-  memory_.wrong_way = !right_way && tired;
-  return right_way || tired ? std::optional(kFollowLine) : std::nullopt;
-}
-
 std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& inputs) {
   if (memory_.active_s > config_.mission_timeout_s) {
     return fail("the time limit of the mission passed in state " + std::string(name_of(memory_.state)));
@@ -335,8 +324,11 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   if (turns(memory_.state))
     return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
-  const double limit_s = follows ? scaled_s(config_.follow_timeout_s) : config_.task_timeout_s;
-  return in_state_s > limit_s ? std::optional(recover(row.failed)) : std::nullopt;
+  const bool at_end = memory_.state == kSearchObject && config_.zones_at == kZonesAnywhere;
+  const double limit_s = follows  ? scaled_s(config_.follow_timeout_s)
+                         : at_end ? std::min(config_.end_search_s, config_.task_timeout_s)
+                                  : config_.task_timeout_s;
+  return in_state_s > limit_s ? std::optional(recover(row.failed, "its time limit passed")) : std::nullopt;
 }
 
 }  // namespace constrictor

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "planner/attempts.hpp"
 #include "planner/delivery.hpp"
 #include "planner/line_trail.hpp"
 #include "planner/mission_state.hpp"
@@ -73,19 +74,18 @@ struct MissionMemory {
   double turned_back_s = -1e9;   ///< active time at which turning back to the line last ended without success
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
-  std::uint16_t object_index = 0;  ///< the first object of the sequence that is neither delivered nor put aside
-  std::uint32_t delivered = 0;     ///< bit i: object i of the sequence was seen on its zone, or dropped by others
-  std::uint32_t aside = 0;         ///< bit i: object i was put aside after too many failures
-  bool second_pass = false;        ///< the objects that were put aside are tried once more
-  int failures = 0;                ///< approaches, grasps, transports and drops of the present object that failed
-  std::uint8_t side = msg::kDirectionNone;  ///< on which the last pregrasp passed the object: left or right
-  bool dropped = false;                     ///< the planner's drop is done, and its result is not yet decided
-  std::uint16_t dropped_handle = 0;         ///< of the dropped object; 0: unknown
-  std::uint16_t newest_handle = 0;          ///< highest handle of the map at the release
-  PlacedObjects placed;                     ///< the delivered objects
-  std::uint32_t rechecked = 0;              ///< bit i: the robot has looked at object i again since the newest drop
-  std::uint32_t displaced = 0;              ///< bit i: object i was delivered, and was then pushed off its zone
-  std::int64_t released_tick = -1;  ///< last tick in which the body held or left the object last dropped; -1: none
+  std::uint16_t object_index = 0;    ///< the first object of the sequence that is neither delivered nor put aside
+  std::uint32_t delivered = 0;       ///< bit i: object i of the sequence was seen on its zone, or dropped by others
+  std::uint32_t aside = 0;           ///< bit i: object i was put aside after too many failures
+  bool second_pass = false;          ///< the objects that were put aside are tried once more
+  std::vector<Attempts> attempts;    ///< by place in the sequence; later entries are missing until they are needed
+  bool dropped = false;              ///< the planner's drop is done, and its result is not yet decided
+  std::uint16_t dropped_handle = 0;  ///< of the dropped object; 0: unknown
+  std::uint16_t newest_handle = 0;   ///< highest handle of the map at the release
+  PlacedObjects placed;              ///< the delivered objects
+  std::uint32_t rechecked = 0;       ///< bit i: the robot has looked at object i again since the newest drop
+  std::uint32_t displaced = 0;       ///< bit i: object i was delivered, and was then pushed off its zone
+  std::int64_t released_tick = -1;   ///< last tick in which the body held or left the object last dropped; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
@@ -112,7 +112,7 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
-            trail, reason, standstill, aside, second_pass, failures, side, dropped, dropped_handle, newest_handle,
+            trail, reason, standstill, aside, second_pass, attempts, dropped, dropped_handle, newest_handle,
             released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals,
             wrong_way, rechecked, turned_back_s);
   }
@@ -141,13 +141,18 @@ class MissionPlanner {
   // The next state, by cause; empty: the state stays.
   [[nodiscard]] std::optional<MissionState> next(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs);
-  [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state, const PlannerInputs& inputs);
+  /// `reason`: why the goal ended, in words; it may be empty.
+  [[nodiscard]] std::optional<MissionState> next_by_goal_state(std::uint8_t goal_state, const std::string& reason,
+                                                               const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_status(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_percepts(const PlannerInputs& inputs);
   /// The state after a search without an object that sees the line; empty: it must go on.
   [[nodiscard]] std::optional<MissionState> follow_found_line(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> next_by_time(const PlannerInputs& inputs);
   [[nodiscard]] std::optional<MissionState> end_of_line(const PlannerInputs& inputs);
+  /// The same where zones may be anywhere: the robot goes on with the other direction. Without an object it first looks
+  /// for one here.
+  [[nodiscard]] MissionState end_of_explored_line();
   /// The state after the drop: the next object if the map shows the dropped object on its zone, another attempt if the
   /// map shows it elsewhere, otherwise a look at it.
   [[nodiscard]] MissionState after_drop(const PlannerInputs& inputs);
@@ -159,12 +164,14 @@ class MissionPlanner {
   /// Counts a delivered object as undelivered again when the map has shown it outside its zone for a while.
   void watch_placed_objects(const PlannerInputs& inputs, double elapsed_s);
   /// The verdict on a delivered object as the map shows it now; kUnseen if no image has shown it since.
-  [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs) const;
+  /// While the map has the object at its zone, an unknown one of its colour counts only if it is near that zone, or at
+  /// `any_distance`.
+  [[nodiscard]] DeliveryView placed_object(const PlacedObject& object, const PlannerInputs& inputs,
+                                           bool any_distance = false) const;
   /// Before the mission ends: selects a delivered object for another look if the map is not certain that it is still on
   /// its zone, because the robot has touched it since it was seen. Each object is looked at once after a drop;
   /// `except`, which was delivered just now, is not. Nor is an object without a handle whose colour another object of
-  /// the mission has. False if there is no such object. To be called after choose_object(), which has forgotten
-  /// failures.
+  /// the mission has. False if there is no such object.
   [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
   /// Whether the look must be at the landmark of the object in question: it was delivered before, and the map has it.
   [[nodiscard]] bool inspects_by_handle(const PlannerInputs& inputs) const;
@@ -185,11 +192,14 @@ class MissionPlanner {
   bool choose_object();
   /// The state at the end of the sequence: failed if an object was put aside and not delivered later.
   [[nodiscard]] MissionState end_of_sequence();
-  /// Counts a failure with the present object. Returns the state of the next attempt, which differs from the last one,
-  /// or puts the object aside and returns the state in which the next one is looked for.
-  [[nodiscard]] MissionState try_differently();
-  /// Counts a recovery and returns `to`; returns kFailed if there were too many.
-  [[nodiscard]] MissionState recover(MissionState to);
+  /// Counts a failure with the present object. Returns the state of the next attempt, which differs from all earlier
+  /// ones, or puts the object aside and returns the state in which the next one is looked for. `why`: for people.
+  [[nodiscard]] MissionState try_differently(const std::string& why);
+  /// Counts a recovery and returns `to`; returns kFailed if there were too many. `why` the state has ended is kept if
+  /// the object is to be retrieved anew.
+  [[nodiscard]] MissionState recover(MissionState to, const std::string& why = "the object was lost");
+  /// The attempts with the present object.
+  [[nodiscard]] Attempts& attempts();
   [[nodiscard]] MissionState fail(const std::string& reason);
   void enter(MissionState state);
   // Refused requests.
@@ -250,6 +260,12 @@ class MissionPlanner {
   [[nodiscard]] bool stands_still(const PlannerInputs& inputs);
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
+  /// Whether the state wants to follow the line outbound. Where zones may be anywhere, this is the direction that is
+  /// being explored, with an object or without one; the trail is reversed at each end of the line.
+  [[nodiscard]] bool outbound() const { return !holding() || config_.zones_at == kZonesAnywhere; }
+  /// Where zones may be anywhere: reverses the trail if what the robot wants next, according to the map, lies the other
+  /// way along the line.
+  void aim(const PlannerInputs& inputs);
   /// A duration given for the robot without an object; with an object in the U everything takes longer.
   [[nodiscard]] double scaled_s(double empty_s) const { return holding() ? empty_s * config_.holding_factor : empty_s; }
 

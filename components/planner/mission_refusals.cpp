@@ -31,7 +31,7 @@ MissionState MissionPlanner::refused(const std::string& reason, const PlannerInp
   if (memory_.state == kInspect) return after_inspection(false, inputs);
   const MissionState to = row_of(memory_.state).failed;
   const bool lost_object = to == kSearchObject && memory_.state != kApproachAnew;
-  return lost_object ? try_differently() : to;
+  return lost_object ? try_differently(reason) : to;
 }
 
 std::optional<MissionState> MissionPlanner::next_without_answer(const PlannerInputs& inputs) {

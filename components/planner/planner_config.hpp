@@ -26,6 +26,15 @@ struct PlannerConfig : ParameterSet {
           "each object on the zone of its colour; without colours it follows the line to its end");
   std::uint8_t line_colour = add(line_colour, "line_colour", msg::kColourBlue, colour_names(),
                                  "Colour of the line that the robot follows, unless the scenario states a mission");
+  std::uint8_t zones_at = add(zones_at, "zones_at", kZonesAtBeginning, zones_at_names(),
+                              "Where zones may lie, unless the scenario states it");
+  double end_zone_m = add(end_zone_m, "end_zone_m", 2.0, "m", {0.0, 20.0}, kAtStart,
+                          "An end of the line is among zones if one was nearer than this");
+  double end_zone_s = add(end_zone_s, "end_zone_s", 3.0, "s", {0.0, 600.0}, kAtStart, "and was seen within this time");
+  double end_search_s = add(end_search_s, "end_search_s", 30.0, "s", {1, 3600}, kAtStart,
+                            "Time limit of search object where zones may be anywhere along the line");
+  double object_probability = add(object_probability, "object_probability", 0.5, "", {0.0, 1.0}, kAtStart,
+                                  "The planner approaches what is an object with at least this probability");
   int confirm_images = add(confirm_images, "confirm_images", 3, "images", {1, 100}, kAtStart,
                            "Consecutive images that must show the line, an object or a zone");
   double object_range_m = add(object_range_m, "object_range_m", 1.6, "m", {0.2, 20}, kAtStart,
@@ -76,6 +85,8 @@ struct PlannerConfig : ParameterSet {
                                 "A search for the line counts as a recovery after this time");
   double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, kAtStart,
                               "Time limit of search object, track, pregrasp, grasp and drop, each");
+  double drop_timeout_s = add(drop_timeout_s, "drop_timeout_s", 120.0, "s", {1, 3600}, kAtStart,
+                              "Time limit of nearing the zone; the robot then searches for it anew");
   double follow_timeout_s = add(follow_timeout_s, "follow_timeout_s", 120.0, "s", {1, 3600}, kAtStart,
                                 "Time limit of following the line in one direction");
   double mission_timeout_s =
@@ -100,7 +111,19 @@ struct PlannerConfig : ParameterSet {
                            "The mission fails after more recoveries than this");
 
   /// Takes over what the mission states to be known beforehand.
-  void know(const PriorKnowledge& known) { zone_radius_m = known.zone_radius_m.value_or(zone_radius_m); }
+  void know(const PriorKnowledge& known) {
+    zone_radius_m = known.zone_radius_m.value_or(zone_radius_m);
+    zones_at = known.zones_at.value_or(zones_at);
+  }
+
+  /// Takes over the time limits that the mission states.
+  void keep(const TimeLimits& limits) {
+    mission_timeout_s = limits.mission_s.value_or(mission_timeout_s);
+    search_timeout_s = limits.search_s.value_or(search_timeout_s);
+    follow_timeout_s = limits.follow_s.value_or(follow_timeout_s);
+    task_timeout_s = limits.task_s.value_or(task_timeout_s);
+    drop_timeout_s = limits.drop_s.value_or(drop_timeout_s);
+  }
 
   /// Checks what spans several rows. Throws ConfigurationError.
   void complete(const Configuration& root) const {
@@ -119,6 +142,7 @@ struct PlannerConfig : ParameterSet {
     config.sequence = stated->sequence;
     config.line_colour = stated->line_colour;
     config.know(stated->known);
+    config.keep(stated->limits);
   }
   return config;
 }

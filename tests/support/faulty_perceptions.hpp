@@ -37,6 +37,7 @@ inline std::vector<NamedFault> perception_faults() {
           {"doubles", "object", "2 objects"},
           {"wrong_colour", "object_colour", "for an object of colour"},
           {"all_objects", "object_kind", "a zone"},
+          {"no_probability", "object_probability", "for an object"},
           {"bearing_to_the_right", "bearing_sign", "for an object at"},
           {"bearing_in_degrees", "bearing", "for an object at"},
           {"range_from_camera", "range", "for the object at"},
@@ -124,6 +125,7 @@ inline PartFault perception_fault(const std::string& name, const std::shared_ptr
       if (b.colour == msg::kColourYellow) b.colour = msg::kColourGreen;
     });
   if (is("all_objects")) blobs([](msg::Blob& b) { b.kind = msg::kBlobObject; });
+  if (is("no_probability")) blobs([](msg::Blob& b) { b.object_probability = 0.0; });
   if (is("bearing_to_the_right")) blobs([](msg::Blob& b) { b.bearing_rad = -b.bearing_rad; });
   if (is("bearing_in_degrees")) blobs([](msg::Blob& b) { b.bearing_rad *= 180.0 / M_PI; });
   if (is("range_from_camera")) blobs([](msg::Blob& b) { b.range_m -= 0.09; });

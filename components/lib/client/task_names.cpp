@@ -45,6 +45,15 @@ std::string direction_words() { return listed(constants::kDirection, 1); }
 std::optional<std::uint8_t> task_by_name(const std::string& name) { return chosen(constants::kTask, name); }
 std::optional<std::uint8_t> event_by_name(const std::string& name) { return chosen(constants::kEvent, name); }
 
+std::string TaskNumber::accepted() const { return fmt::format("{} up to {:g}", unit, most); }
+
+std::span<const TaskNumber> task_numbers() {
+  static constexpr TaskNumber kNumbers[] = {{"timeout_s", "seconds", 3600.0, &msg::TaskParameters::timeout_s},
+                                            {"clearance_m", "metres", 1.0, &msg::TaskParameters::clearance_m},
+                                            {"wrap_scale", "numbers", 2.0, &msg::TaskParameters::wrap_scale}};
+  return kNumbers;
+}
+
 std::string set_task_parameter(msg::TaskParameters& parameters, const std::string& key, const std::string& value) {
   const std::string name = plain(key);
   const auto colour = value_of(constants::kColour, value);
@@ -68,17 +77,17 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
     parameters.object_handle = handle;
     return {};
   }
-  if (name == "timeout_s") {
-    double timeout_s = 0.0;
-    if (!(stream >> timeout_s) || !stream.eof() || !(timeout_s > 0.0 && timeout_s <= 3600.0)) {
-      return fmt::format("{}: found '{}', accepted seconds up to 3600", key, value);
-    }
-    parameters.timeout_s = timeout_s;
+  for (const TaskNumber& row : task_numbers()) {
+    if (name != row.name) continue;
+    double number = 0.0;
+    if (!(stream >> number) || !stream.eof() || !row.accepts(number))
+      return fmt::format("{}: found '{}', accepted {}", key, value, row.accepted());
+    parameters.*row.field = number;
     return {};
   }
   return fmt::format(
       "parameter: found '{}', accepted line_colour, object_colour, object_handle, drop_zone_colour, direction, "
-      "timeout_s, path",
+      "timeout_s, clearance_m, wrap_scale, path",
       key);
 }
 

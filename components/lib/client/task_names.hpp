@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,17 @@ std::string direction_words();
 /// The value with this name; empty if there is none.
 std::optional<std::uint8_t> task_by_name(const std::string& name);
 std::optional<std::uint8_t> event_by_name(const std::string& name);
+
+/// A parameter that is a positive number.
+struct TaskNumber {
+  const char* name;
+  const char* unit;  ///< plural
+  double most;
+  double msg::TaskParameters::*field;
+  [[nodiscard]] bool accepts(double number) const { return number > 0.0 && number <= most; }
+  [[nodiscard]] std::string accepted() const;  ///< for error messages
+};
+std::span<const TaskNumber> task_numbers();
 
 /// Sets one parameter, for example "line_colour" to "blue". Returns the problem; empty: none.
 std::string set_task_parameter(msg::TaskParameters& parameters, const std::string& key, const std::string& value);

@@ -15,8 +15,27 @@ PriorKnowledge read_knowledge(Configuration root) {
   read("object_max_radius_m", {0.02, 2.0}, known.object_max_radius_m);
   read("zone_radius_m", {0.05, 5.0}, known.zone_radius_m);
   read("line_width_m", {0.01, 0.3}, known.line_width_m);
+  if (root.has("zones_at")) {
+    const std::vector<std::string> names = zones_at_names();
+    const auto name = std::find(names.begin(), names.end(), root.text("zones_at", names));
+    known.zones_at = static_cast<std::uint8_t>(name - names.begin());
+  }
   root.finish();
   return known;
+}
+
+TimeLimits read_limits(Configuration root) {
+  TimeLimits limits;
+  const auto read = [&root](const char* key, double longest_s, std::optional<double>& value) {
+    if (root.has(key)) value = root.number(key, {1.0, longest_s});
+  };
+  read("mission_s", 86400.0, limits.mission_s);
+  read("search_s", 3600.0, limits.search_s);
+  read("follow_s", 3600.0, limits.follow_s);
+  read("task_s", 3600.0, limits.task_s);
+  read("drop_s", 3600.0, limits.drop_s);
+  root.finish();
+  return limits;
 }
 
 }  // namespace
@@ -30,6 +49,7 @@ Mission read_mission(Configuration root) {
   if (std::count(mission.sequence.begin(), mission.sequence.end(), mission.line_colour) > 0)
     throw root.error("line_colour", "found the colour of an object, accepted another colour");
   if (root.has("known")) mission.known = read_knowledge(root.section("known"));
+  if (root.has("time_limits")) mission.limits = read_limits(root.section("time_limits"));
   root.finish();
   return mission;
 }

@@ -20,16 +20,34 @@ struct PriorKnowledge {
   std::optional<double> object_max_radius_m;  ///< no object is larger
   std::optional<double> zone_radius_m;
   std::optional<double> line_width_m;
+  std::optional<std::uint8_t> zones_at;  ///< kZones…
+};
+
+/// Where zones may lie.
+inline constexpr std::uint8_t kZonesAtBeginning = 0;  ///< where the mission begins, at an end of the line
+inline constexpr std::uint8_t kZonesAnywhere = 1;     ///< anywhere along the line
+/// The names of these values in configuration.
+[[nodiscard]] inline std::vector<std::string> zones_at_names() { return {"beginning", "anywhere"}; }
+
+/// The time limits of the mission [s], all in simulated or robot time. One that is not given keeps the value of the
+/// planner's configuration, which says what follows when it passes.
+struct TimeLimits {
+  std::optional<double> mission_s;  ///< whole mission
+  std::optional<double> search_s;   ///< a search for the line
+  std::optional<double> follow_s;   ///< following the line in one direction
+  std::optional<double> task_s;     ///< search object, track, pregrasp, grasp and drop, each
+  std::optional<double> drop_s;     ///< nearing the zone with the object
 };
 
 struct Mission {
   std::vector<std::uint8_t> sequence;           ///< colours of the objects (msg::kColour…) in the order of retrieval
   std::uint8_t line_colour = msg::kColourBlue;  ///< of the line that the robot follows
   PriorKnowledge known;
+  TimeLimits limits;
 };
 
-/// Reads `{sequence: [green, red], line_colour: blue, known: {zone_radius_m: 0.25}}`; `known` may be left out. Throws
-/// ConfigurationError, also if the line has the colour of an object.
+/// Reads `{sequence: [green, red], line_colour: blue, known: {zone_radius_m: 0.25}, time_limits: {mission_s: 600}}`;
+/// `known` and `time_limits` may be left out. Throws ConfigurationError, also if the line has the colour of an object.
 [[nodiscard]] Mission read_mission(Configuration root);
 
 /// The same from the text of Setup::mission; nothing if the text is empty.

@@ -20,13 +20,14 @@ struct DropState : PhaseState {
   bool course_fixed = false;
   SteeringState steering;
   HeldMotion object;
+  double drive_s = 0.0;            ///< time of nearing the zone
   PlanarPose from;                 ///< the head when the phase began
   Eigen::Vector2d p_MO{0.0, 0.0};  ///< where the object was let go
   SteeringState back;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, from, p_MO.x(), p_MO.y(),
-            back);
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, drive_s, from, p_MO.x(),
+            p_MO.y(), back);
   }
 };
 
@@ -37,6 +38,7 @@ class Drop : public StatefulTask<DropState> {
  public:
   /// The zone has a place in the map, and the object is let go by touch.
   [[nodiscard]] bool steers_by_sight() const override { return false; }
+  [[nodiscard]] bool keeps_time() const override { return true; }
   std::string refusal(const TaskInput& input, const Grip& grip) const override {
     if (!grip.carrying) return "drop cannot run: the robot carries no object";
     if (!input.sightings.zones[input.parameters.drop_zone_colour].known)
@@ -93,7 +95,8 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, error_m, period_s, state_.steering);
     move_carefully(input, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
-    if (state_.phase_s > config.approach_timeout_s)
+    state_.drive_s += input.tick.dt_s();
+    if (state_.drive_s > time_limit_s(input.parameters))
       return output.abort("the zone was not reached in time");  // the robot still holds the object
     if (past_m >= stop_m(input, grip, X_MC) - config.brake_m) {
       enter(input, kStop);

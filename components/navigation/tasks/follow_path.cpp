@@ -1,12 +1,11 @@
-// Follow path: the robot follows a polyline of waypoints in the map instead of a painted line; a PID steers towards a
-// point of the path ahead. This task is not the paper's: it serves planners that use waypoints. It ends when the head
-// is at the last one.
+// Follow path: the robot follows a polyline of waypoints in the map instead of a painted line. Control gets the part of
+// the path that lies ahead, and steers to it. This task is not the paper's: it serves planners that use waypoints. It
+// ends when the head is at the last one.
 #include <algorithm>
 #include <cereal/types/vector.hpp>
 #include <cmath>
 
 #include "navigation/motions.hpp"
-#include "navigation/pid.hpp"
 
 namespace constrictor {
 namespace {
@@ -16,10 +15,9 @@ struct FollowPathState {
   std::size_t segment = 0;       ///< the head is beside this segment; never decreases, so that a path may cross itself
   double along_m = 0.0;          ///< the head's place along the segment, from its first point
   double before_m = 0.0;         ///< length of all earlier segments
-  PidState pid;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(x_m, y_m, segment, along_m, before_m, pid);
+    archive(x_m, y_m, segment, along_m, before_m);
   }
 };
 
@@ -37,15 +35,10 @@ class FollowPath : public StatefulTask<FollowPathState> {
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const auto& config = input.config.follow_path;
-    PidGains gains = config.steering;
-    if (grip.carrying) gains.limit = input.config.follow_line.carry_limit_1_m;
     advance(input.X_MH.p, state_);
     const PlanarPose X_MP{at(state_, state_.segment, state_.along_m), heading(state_, state_.segment)};
     output.cross_track_m = X_MP.to_local(input.X_MH.p).y();
-
-    // The error is not averaged over a gait period, as it is for a painted line: the delay would make the robot swing.
-    const double ahead_m = input.X_MH.to_local(ahead(config.lookahead_m)).y();
-    move_on(input, pid_step(gains, ahead_m, input.tick.dt_s(), state_.pid), 1.0, grip, output);
+    move_on_path(input, ahead(X_MP.p), grip, output);
     output.phase = "follow";
     double total_m = 0.0;
     for (std::size_t i = 0; i + 1 < state_.x_m.size(); ++i) total_m += length(state_, i);
@@ -94,12 +87,16 @@ class FollowPath : public StatefulTask<FollowPathState> {
       ++path.segment;
     }
   }
-  /// The point of the path at this distance ahead; beyond the last point the last segment continues straight.
-  [[nodiscard]] Eigen::Vector2d ahead(double distance_m) const {
-    std::size_t i = state_.segment;
-    double along_m = state_.along_m + distance_m;
-    while (i + 2 < state_.x_m.size() && along_m > length(state_, i)) along_m -= length(state_, i++);
-    return at(state_, i, along_m);
+  /// The path from the place beside the head to its end, in M. Beside the last point, the last segment continues.
+  [[nodiscard]] std::vector<Eigen::Vector2d> ahead(const Eigen::Vector2d& p_MP) const {
+    constexpr double kApart_m = 1e-3;
+    std::vector<Eigen::Vector2d> points = {p_MP};
+    for (std::size_t i = state_.segment + 1; i < state_.x_m.size(); ++i) {
+      if ((point(state_, i) - points.back()).norm() > kApart_m) points.push_back(point(state_, i));
+    }
+    const double yaw_rad = heading(state_, state_.x_m.size() - 2);
+    if (points.size() < 2) points.emplace_back(p_MP + Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad)));
+    return points;
   }
 };
 

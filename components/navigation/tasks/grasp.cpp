@@ -42,6 +42,8 @@ class Grasp : public StatefulTask<GraspState> {
   }
   void start(const TaskInput& input, Grip& grip) override {
     grip.pregrasped = false;
+    const double scale = input.parameters.wrap_scale;
+    grip.wrap_scale = scale > 0.0 ? scale : 1.0;
     state_.touched_s.fill(1e9);
     if (grip.handle == 0) grip.handle = input.parameters.object_handle;
     state_.before = input.X_MH;
@@ -57,7 +59,7 @@ class Grasp : public StatefulTask<GraspState> {
 
  private:
   static std::array<double, msg::kMaxJoints> open_u(const TaskInput& input, const Grip& grip) {
-    return input.grip_sense.open_shape(grip.side, input.grip_sense.open_angle_rad(grip.radius_m));
+    return input.grip_sense.open_shape(grip.side, input.grip_sense.open_angle_rad(grip));
   }
 
   void wrap(const TaskInput& input, Grip& grip, TaskOutput& output) {

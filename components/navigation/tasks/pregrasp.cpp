@@ -92,7 +92,9 @@ class Pregrasp : public StatefulTask<PregraspState> {
 
   /// [m] between the object's centre and the middle line of the passing body.
   [[nodiscard]] double passing_m(const TaskInput& input) const {
-    return state_.radius_m + input.robot.module_radius_m + input.config.pregrasp.clearance_m;
+    const double wanted_m = input.parameters.clearance_m;
+    const double clearance_m = wanted_m > 0.0 ? wanted_m : input.config.pregrasp.clearance_m;
+    return state_.radius_m + input.robot.module_radius_m + clearance_m;
   }
 
   /// [rad] heading in M of the straight line from the head that passes the object at the distance passing_m.

@@ -18,6 +18,7 @@ struct RotateState {
 
 class Rotate : public StatefulTask<RotateState> {
  public:
+  [[nodiscard]] bool keeps_time() const override { return true; }
   void start(const TaskInput&, Grip&) override {}
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
     const RotateConfig& config = input.config.rotate;
@@ -26,8 +27,8 @@ class Rotate : public StatefulTask<RotateState> {
     move_carefully(input, curvature_1_m, 1.0, grip, output);
     output.phase = "rotate";
     state_.run_s += input.tick.dt_s();
-    const double timeout_s = input.parameters.timeout_s;
-    if (!std::isfinite(timeout_s) || timeout_s <= 0.0) return;
+    const double timeout_s = time_limit_s(input.parameters);
+    if (!std::isfinite(timeout_s)) return;
     output.progress = std::min(1.0, state_.run_s / timeout_s);
     if (state_.run_s < timeout_s) return;
     output.emit(msg::kEventTimeout);

@@ -226,7 +226,10 @@ void add_task(CLI::App& app, Action& action) {
            {"direction", "of rotate: left, right; of explore: " + direction_words() +
                              "; of pregrasp: the side of the object, left or right (default: the nearer with room)"},
            {"timeout-s",
-            "[s] of rotate: end it after this simulated time, up to 3600 (default: rotate until another request)"}}) {
+            "[s] of any task: rotate ends after this simulated time, every other task is aborted (default: no limit)"},
+           {"clearance-m",
+            "[m] of pregrasp: between body and object while the body passes it, up to 1 (default: usual)"},
+           {"wrap-scale", "of grasp: width of the open U relative to the usual one for the object (default: 1)"}}) {
     start_app->add_option(std::string("--") + name, options->parameters[name], text);
   }
   start_app

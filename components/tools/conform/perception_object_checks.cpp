@@ -50,11 +50,24 @@ void PerceptionConformance::check_objects() {
                       "images are RGB, red first; the numbers of the colours are in common.idl");
   std::string kind;
   percepts = objects_of(scene_with({at(msg::kColourGreen, 0.9, 0.0)}));
-  if (blob(percepts, msg::kColourGreen, msg::kBlobObject) == nullptr) kind = "an object is not kBlobObject";
+  std::string probability;
+  const auto judge = [&](const msg::Blob* seen, bool object) {
+    if (seen == nullptr) return;
+    const double p = seen->object_probability;
+    const bool fits = p >= 0.0 && p <= 1.0 && (object ? p >= 0.5 : p <= 0.5);
+    if (!fits) probability = fmt::format("{:.2f} for {}", p, object ? "an object" : "a zone");
+  };
+  const msg::Blob* object = blob(percepts, msg::kColourGreen, msg::kBlobObject);
+  if (object == nullptr) kind = "an object is not kBlobObject";
+  judge(object, true);
   percepts = objects_of(scene_with({{msg::kColourRed, 1.1, 0.1, 0.3, 0.0}}));
-  if (blob(percepts, msg::kColourRed, msg::kBlobZone) == nullptr) kind = "a zone is not kBlobZone";
+  const msg::Blob* zone = blob(percepts, msg::kColourRed, msg::kBlobZone);
+  if (zone == nullptr) kind = "a zone is not kBlobZone";
+  judge(zone, false);
   report_.pass_unless("object_kind", kind, "an object, a zone",
                       "what reaches above the horizon, or is too narrow for its depth, stands up");
+  report_.pass_unless("object_probability", probability, "agrees with the kind",
+                      "0.5 or more for kBlobObject, 0.5 or less for kBlobZone; 1 and 0 if you know no better");
 }
 
 void PerceptionConformance::check_bearing() {

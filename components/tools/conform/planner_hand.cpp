@@ -23,6 +23,7 @@ void PlannerHand::see(std::uint8_t colour, std::uint8_t kind, double range_m) {
   msg::Blob& blob = objects_.blobs[0];
   blob.colour = colour;
   blob.kind = kind;
+  blob.object_probability = kind == msg::kBlobObject ? 0.99 : 0.01;
   blob.range_m = range_m;
   blob.width_m = kind == msg::kBlobObject ? 0.16 : 0.6;
   blob.height_m = kind == msg::kBlobObject ? 0.15 : kNaN;
@@ -36,7 +37,7 @@ void PlannerHand::map_on_zone(std::uint8_t colour) {
   int zone = 0;
   while (zone < map_.object_count && map_.objects[zone].handle != handle) zone += 2;
   map_.object_count = static_cast<std::uint16_t>(std::max<int>(map_.object_count, zone + 2));
-  map_.objects[zone] = {handle, colour, msg::kBlobZone, x_m, y_m, 0.4, kNaN, 0.03, false, false, port_.tick()};
+  map_.objects[zone] = {handle, colour, msg::kBlobZone, x_m, y_m, 0.4, kNaN, 0.03, false, false, port_.tick(), 0.01};
   map_.objects[zone + 1] = {static_cast<std::uint16_t>(handle + 1),
                             colour,
                             msg::kBlobObject,
@@ -47,7 +48,8 @@ void PlannerHand::map_on_zone(std::uint8_t colour) {
                             0.03,
                             false,
                             false,
-                            port_.tick()};
+                            port_.tick(),
+                            1.0};
 }
 
 void PlannerHand::report(std::uint8_t event, std::uint8_t goal_state, std::uint16_t handle, std::int64_t other_goal) {

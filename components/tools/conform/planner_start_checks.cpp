@@ -44,7 +44,7 @@ std::vector<Check> planner_checks() {
 }
 
 Mission mission_of(const std::string& yaml) {
-  return parse_mission(yaml).value_or(Mission{{msg::kColourGreen, msg::kColourRed}, msg::kColourBlue, {}});
+  return parse_mission(yaml).value_or(Mission{{msg::kColourGreen, msg::kColourRed}, msg::kColourBlue, {}, {}});
 }
 
 void PlannerConformance::run() {

@@ -134,12 +134,12 @@ void add_session(py::module_& module) {
           [](Session& session, const std::string& task, std::optional<std::string> line_colour,
              std::optional<std::string> object_colour, std::optional<std::string> drop_zone_colour,
              std::optional<std::string> direction, std::optional<std::uint16_t> object_handle,
-             std::optional<double> timeout_s, std::vector<std::pair<double, double>> path) {
+             std::map<std::string, double> numbers, std::vector<std::pair<double, double>> path) {
             return session.start(task, {std::move(line_colour), std::move(object_colour), std::move(drop_zone_colour),
-                                        std::move(direction), object_handle, timeout_s, std::move(path)});
+                                        std::move(direction), object_handle, std::move(numbers), std::move(path)});
           },
           Free(), py::arg("task"), py::kw_only(), py::arg("line_colour"), py::arg("object_colour"),
-          py::arg("drop_zone_colour"), py::arg("direction"), py::arg("object_handle"), py::arg("timeout_s"),
+          py::arg("drop_zone_colour"), py::arg("direction"), py::arg("object_handle"), py::arg("numbers"),
           py::arg("path"))
       .def("wait_for_end", &Session::wait_for_end, Free(), py::arg("goal"), py::arg("timeout"))
       .def(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "client/components.hpp"
 #include "client/parameters.hpp"
 #include "client/polling.hpp"
+#include "client/task_names.hpp"
 #include "component/task_parameters.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
@@ -253,10 +255,13 @@ std::uint64_t Session::start(const std::string& task, const TaskArguments& given
   colour("drop_zone_colour", given.drop_zone_colour, request.parameters.drop_zone_colour);
   if (given.direction) request.parameters.direction = constant(constants::kDirection, "direction", *given.direction, 1);
   if (given.object_handle) request.parameters.object_handle = *given.object_handle;
-  if (given.timeout_s) {
-    if (!(*given.timeout_s > 0.0 && *given.timeout_s <= 3600.0))
-      throw std::invalid_argument(fmt::format("timeout_s: found {}, accepted seconds up to 3600", *given.timeout_s));
-    request.parameters.timeout_s = *given.timeout_s;
+  for (const auto& [name, number] : given.numbers) {
+    const auto rows = task_numbers();
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const TaskNumber& r) { return r.name == name; });
+    if (row == rows.end()) throw std::invalid_argument("unknown parameter " + name);
+    if (!row->accepts(number))
+      throw std::invalid_argument(fmt::format("{}: found {}, accepted {}", name, number, row->accepted()));
+    request.parameters.*row->field = number;
   }
   if (given.path.size() > msg::kMaxPathPoints)
     throw std::invalid_argument(

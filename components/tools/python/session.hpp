@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -44,7 +45,7 @@ struct SessionOptions {
 struct TaskArguments {
   std::optional<std::string> line_colour, object_colour, drop_zone_colour, direction;
   std::optional<std::uint16_t> object_handle;
-  std::optional<double> timeout_s;
+  std::map<std::string, double> numbers;  ///< by the names of task_numbers()
   std::vector<std::pair<double, double>> path;
 };
 

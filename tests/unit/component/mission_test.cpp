@@ -14,7 +14,8 @@ namespace {
 TEST(Mission, IsReadFromTheTextOfTheLauncher) {
   const auto mission = parse_mission(
       "{sequence: [red, yellow], line_colour: green, known: {object_height_m: 0.06, object_radius_m: 0.05, "
-      "object_max_radius_m: 0.1, zone_radius_m: 0.25, line_width_m: 0.04}}");
+      "object_max_radius_m: 0.1, zone_radius_m: 0.25, line_width_m: 0.04, zones_at: anywhere}, "
+      "time_limits: {mission_s: 600, search_s: 60, follow_s: 50, task_s: 90, drop_s: 40}}");
   ASSERT_TRUE(mission);
   EXPECT_EQ(mission->sequence, (std::vector<std::uint8_t>{msg::kColourRed, msg::kColourYellow}));
   EXPECT_EQ(mission->line_colour, msg::kColourGreen);
@@ -23,6 +24,12 @@ TEST(Mission, IsReadFromTheTextOfTheLauncher) {
   EXPECT_EQ(mission->known.object_max_radius_m, 0.1);
   EXPECT_EQ(mission->known.zone_radius_m, 0.25);
   EXPECT_EQ(mission->known.line_width_m, 0.04);
+  EXPECT_EQ(mission->known.zones_at, kZonesAnywhere);
+  EXPECT_EQ(mission->limits.mission_s, 600.0);
+  EXPECT_EQ(mission->limits.search_s, 60.0);
+  EXPECT_EQ(mission->limits.follow_s, 50.0);
+  EXPECT_EQ(mission->limits.task_s, 90.0);
+  EXPECT_EQ(mission->limits.drop_s, 40.0);
   EXPECT_FALSE(parse_mission(""));
 }
 
@@ -31,7 +38,7 @@ TEST(Mission, MayKnowNothing) {
        {"", "{sequence: [], line_colour: blue}", "{sequence: [red], line_colour: blue, known: {}}"}) {
     const PriorKnowledge known = prior_knowledge(text);
     EXPECT_FALSE(known.object_height_m || known.object_radius_m || known.object_max_radius_m || known.zone_radius_m ||
-                 known.line_width_m)
+                 known.line_width_m || known.zones_at)
         << text;
   }
 }
@@ -46,6 +53,10 @@ TEST(Mission, RefusesWhatCannotBe) {
         {"{sequence: [red], line_colour: blue, known: {weight_kg: 3}}", "known.weight_kg"},
         {"{sequence: [red], line_colour: blue, known: {zone_radius_m: 0}}", "known.zone_radius_m: found 0"},
         {"{sequence: [red], line_colour: blue, known: {object_height_m: .nan}}", "known.object_height_m: found "},
+        {"{sequence: [red], line_colour: blue, known: {zones_at: end}}",
+         "known.zones_at: found end, accepted one of beginning, anywhere"},
+        {"{sequence: [red], line_colour: blue, time_limits: {drop_s: 0}}", "time_limits.drop_s: found 0"},
+        {"{sequence: [red], line_colour: blue, time_limits: {grasp_s: 9}}", "time_limits.grasp_s"},
         {"{sequence: [red], line_colour: blue, known: 3}", "known"}}) {
     try {
       static_cast<void>(parse_mission(text));

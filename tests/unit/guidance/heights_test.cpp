@@ -1,4 +1,4 @@
-// Heights of objects in the map.
+// Heights of objects in the map, and how certain it is that they are objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,6 +31,25 @@ TEST(Map, HeightsAreAveragedAndThoseOfCutTopsAreLowerBounds) {
   EXPECT_EQ(see(0.18, true, 60), below_m) << "the nearer view says nothing against it";
   EXPECT_EQ(see(-1.0, false, 1), below_m);
   EXPECT_EQ(m.map().object_count, 1);
+}
+
+// Bayes' rule for independent looks multiplies odds: 0.8 and 0.8 give 16 to 1, whatever the images between them.
+TEST(Map, TheProbabilityOfAnObjectFollowsFromAllLooks) {
+  Mapping m;
+  auto green = Mapping::blob(msg::kColourGreen, msg::kBlobObject, 1.0, 0.0, 0.08);
+  green.object_probability = 0.8;
+  m.config.confirm = 1;
+  m.see({green});
+  EXPECT_NEAR(m.map().objects[0].object_probability, 0.8, 1e-9);
+  m.see({green}, 5);  // 0.5 s later: one more look
+  EXPECT_NEAR(m.map().objects[0].object_probability, 16.0 / 17.0, 1e-9);
+  green.object_probability = 0.5;
+  m.see({green}, 50);
+  EXPECT_NEAR(m.map().objects[0].object_probability, 16.0 / 17.0, 1e-9) << "such images say nothing";
+  green.object_probability = 1.0;
+  m.see({green}, 100);
+  EXPECT_LT(m.map().objects[0].object_probability, 1.0);
+  EXPECT_GT(m.map().objects[0].object_probability, 0.999);
 }
 
 }  // namespace

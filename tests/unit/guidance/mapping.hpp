@@ -28,6 +28,7 @@ struct Mapping {
     msg::Blob b{};
     b.colour = colour;
     b.kind = kind;
+    b.object_probability = kind == msg::kBlobObject ? 0.99 : kind == msg::kBlobZone ? 0.01 : 0.5;
     b.bearing_rad = std::atan2(y, x);
     b.range_m = std::hypot(x, y) - radius;
     b.width_m = 2.0 * radius;

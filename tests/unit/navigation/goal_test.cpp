@@ -99,6 +99,21 @@ TEST(Goals, RotateEndsByItsTimeoutWithTheEvent) {
   EXPECT_EQ(r.run->latest(topics::kTaskStatus)->progress, 1.0);
 }
 
+TEST(Goals, EveryOtherTaskIsAbortedWhenItsTimeLimitPasses) {
+  msg::TaskCommand explore = start(1, msg::kTaskExplore);
+  explore.parameters.timeout_s = 2.0;
+  msg::TaskCommand unlimited = start(2, msg::kTaskExplore);
+  unlimited.parameters.timeout_s = 0.0;  // of a writer that sets what it does not use to 0
+  GoalRun r({{10, explore}, {150, unlimited}});
+  r.run->advance(105);
+  EXPECT_EQ(r.ends(1), 0);
+  r.run->advance(40);
+  EXPECT_EQ(r.count(1, msg::kGoalAborted), 1);
+  EXPECT_STREQ(r.run->latest(topics::kTaskStatus)->reason, "the time limit of 2 s passed");
+  r.run->advance(300);
+  EXPECT_EQ(r.ends(2), 0);
+}
+
 TEST(Goals, ANewGoalPreemptsAndACancelCancels) {
   msg::TaskCommand cancel{};
   cancel.goal_id = 2;

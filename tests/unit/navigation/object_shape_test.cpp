@@ -71,6 +71,23 @@ TEST_F(ObjectShape, TheUOpensWiderForLargeObjects) {
   EXPECT_EQ(grip_sense.open_angle_rad(grip_sense.largest_radius_m()), config.grip.widest_angle_rad);
 }
 
+// The middles of the links between the base joints touch a circle: its radius is the width of the U.
+TEST_F(ObjectShape, AWrapMayBeWiderOrNarrower) {
+  Grip grip = held(0.07, 0.15);
+  const double usual_rad = grip_sense.open_angle_rad(grip);
+  EXPECT_EQ(usual_rad, grip_sense.open_angle_rad(grip.radius_m));
+  grip.wrap_scale = 1.15;
+  EXPECT_NEAR(grip_sense.open_angle_rad(grip), usual_rad / 1.15, 1e-12);
+  grip.wrap_scale = 2.0;
+  EXPECT_EQ(grip_sense.open_angle_rad(grip), config.grip.widest_angle_rad);
+  grip.wrap_scale = 0.9;
+  EXPECT_NEAR(grip_sense.open_angle_rad(grip), usual_rad / 0.9, 1e-12);
+  grip.wrap_scale = 0.1;
+  const double touching_m = grip.radius_m + robot.module_radius_m;
+  const double closed_rad = 2.0 * std::atan(robot.module_length_m / touching_m);
+  EXPECT_NEAR(grip_sense.open_angle_rad(grip), closed_rad - 0.5 * config.grip.closing_rad, 1e-9) << "room to close";
+}
+
 TEST_F(ObjectShape, TheSqueezeClosesTheWideU) {
   const Grip grip = held(0.11, 0.15);
   TaskOutput output;

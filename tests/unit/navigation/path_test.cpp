@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "barrier/local_run.hpp"
@@ -119,6 +120,32 @@ TEST(FollowPath, TheErrorIsPositiveLeftOfThePath) {
   PathRun r(testing::follow_path_command({{0, 0}, {3, 0}}));  // the point begins 0.1 m to the left
   r.run.advance(14);
   EXPECT_NEAR(r.run.latest(topics::kTaskStatus)->cross_track_m, 0.1, 0.02);
+}
+
+TEST(FollowPath, ControlGetsThePathThatLiesAhead) {
+  PathRun r(testing::follow_path_command({{0, 0}, {1, 0}, {1.5, 0.5}, {1.5, 2.0}}));
+  PlanarPose X_MH;
+  bool compared = false;
+  r.run.subscribe<msg::RobotPose>(topics::kRobotPose, [&](const msg::RobotPose& pose) {
+    X_MH = {{pose.x_m, pose.y_m}, pose.yaw_rad};
+  });
+  r.run.subscribe<msg::DesiredTrajectory>(topics::kDesiredTrajectory, [&](const msg::DesiredTrajectory& desired) {
+    if (std::string(desired.motion) != "travel" || compared) return;
+    compared = true;
+    EXPECT_EQ(desired.point_count, 3);
+    EXPECT_TRUE(has_valid_path(desired));
+    const double begin_m = X_MH.p.x();  // the place on the first line beside the head
+    for (const auto& [arc_m, x_m, y_m] : {std::tuple{0.0, begin_m, 0.0},
+                                          {1.0 - begin_m, 1.0, 0.0},
+                                          {1.0 - begin_m + std::sqrt(0.125), 1.25, 0.25},
+                                          {1.0 - begin_m + std::sqrt(0.5) + 1.0, 1.5, 1.5}}) {
+      const Eigen::Vector2d p_M = X_MH.to_parent(pose_at(desired, arc_m).p);
+      EXPECT_NEAR(p_M.x(), x_m, 0.01) << arc_m;
+      EXPECT_NEAR(p_M.y(), y_m, 0.01) << arc_m;
+    }
+  });
+  r.run.advance(30);
+  EXPECT_TRUE(compared);
 }
 
 TEST(FollowPath, TheErrorIsNaNWithoutAGoal) {

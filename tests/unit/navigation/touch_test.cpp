@@ -120,9 +120,9 @@ TEST_F(TouchTest, AHeldObjectLiesBetweenTheArmsOnItsSide) {
 TEST_F(TouchTest, EachTouchBelongsToTheObjectThatStandsThere) {
   msg::FieldMap map{};
   map.object_count = 3;
-  map.objects[0] = {7, msg::kColourGreen, msg::kBlobObject, 1.0, 0.12, 0.08, 0.15, 0.01, false, false, 0};
-  map.objects[1] = {8, msg::kColourRed, msg::kBlobObject, 1.0, -0.115, 0.08, 0.15, 0.01, false, false, 0};
-  map.objects[2] = {9, msg::kColourRed, msg::kBlobZone, 0.5, 0.1, 0.08, 0.15, 0.01, false, false, 0};
+  map.objects[0] = {7, msg::kColourGreen, msg::kBlobObject, 1.0, 0.12, 0.08, 0.15, 0.01, false, false, 0, 1.0};
+  map.objects[1] = {8, msg::kColourRed, msg::kBlobObject, 1.0, -0.115, 0.08, 0.15, 0.01, false, false, 0, 1.0};
+  map.objects[2] = {9, msg::kColourRed, msg::kBlobZone, 0.5, 0.1, 0.08, 0.15, 0.01, false, false, 0, 0.0};
   std::vector<Touch> touches(4);
   touches[0].p_H = {0.0, 0.04};   // the head is at (1, 0): the green one, 0.12 m to the left
   touches[1].p_H = {0.0, -0.04};  // the red one

@@ -114,9 +114,18 @@ class TrackRun {
         if (tick.index % 5 != 0) return;
         msg::FieldMap map{};
         map.object_count = 1;
-        map.objects[0] = {
-            1,     msg::kColourGreen, msg::kBlobObject, p_MO_.x(), p_MO_.y(), kObjectRadius_m, 0.15, 0.03, false,
-            false, tick.index};
+        map.objects[0] = {1,
+                          msg::kColourGreen,
+                          msg::kBlobObject,
+                          p_MO_.x(),
+                          p_MO_.y(),
+                          kObjectRadius_m,
+                          0.15,
+                          0.03,
+                          false,
+                          false,
+                          tick.index,
+                          1.0};
         map_out.write(map);
       };
     });

@@ -69,7 +69,12 @@ void images(const msg::ObjectPercepts& percepts, int count, ObjectTrackerState& 
 }
 
 msg::MapObject landmark(std::uint16_t handle, std::uint8_t kind, double x_m, double y_m, double radius_m = 0.08) {
-  return {handle, msg::kColourGreen, kind, x_m, y_m, radius_m, 0.15, 0.03, false, false, 0};
+  return {handle, msg::kColourGreen,
+          kind,   x_m,
+          y_m,    radius_m,
+          0.15,   0.03,
+          false,  false,
+          0,      kind == msg::kBlobObject ? 1.0 : 0.0};
 }
 
 msg::FieldMap map_of(const std::vector<msg::MapObject>& landmarks) {

@@ -88,6 +88,25 @@ TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
   }
 }
 
+TEST(ObjectSize, TheProbabilityOfAnObjectRisesWithItsHeight) {
+  for (const Conditions& c : kAttitudes) {
+    double before = 0.0;
+    for (const double height : {0.0, 0.01, 0.03, 0.06, 0.12}) {
+      SCOPED_TRACE(describe(c, 0.08, height, 0.6));
+      Scene scene;
+      scene.rounds = {Round{msg::kColourRed, {0.68, 0.0}, 0.08, height}};
+      const Percepts percepts = look(scene, c);
+      ASSERT_EQ(percepts.objects.blob_count, 1);
+      const msg::Blob& blob = percepts.objects.blobs[0];
+      EXPECT_GE(blob.object_probability, before);
+      EXPECT_EQ(blob.kind == msg::kBlobObject, blob.object_probability >= 0.5);
+      EXPECT_TRUE(height > 0.0 || blob.object_probability < 0.05);
+      EXPECT_TRUE(height < 0.06 || blob.object_probability > 0.99);
+      before = blob.object_probability;
+    }
+  }
+}
+
 TEST(ObjectSize, WhatTheBorderCutsIsNeverMistaken) {
   for (const Conditions& c : kAttitudes) {
     for (const double bearing : {-0.85, -0.75, -0.65, 0.65, 0.75, 0.85}) {

@@ -44,9 +44,9 @@ Percepts percepts() {
   p.objects.exposure_tick = 45;
   p.objects.blob_count = 2;
   p.objects.blobs[0] = {
-      msg::kColourGreen, msg::kBlobObject, 0.3, 0.8, 0.17, 0.15, 0.05, false, false, false, false, 1, 2, 3, 4};
-  p.objects.blobs[1] = {msg::kColourRed, msg::kBlobZone, -0.2,  1.1, 0.8, 0.0, 0.02, false,
-                        false,           false,          false, 1,   2,   3,   4};
+      msg::kColourGreen, msg::kBlobObject, 0.99, 0.3, 0.8, 0.17, 0.15, 0.05, false, false, false, false, 1, 2, 3, 4};
+  p.objects.blobs[1] = {msg::kColourRed, msg::kBlobZone, 0.01,  -0.2,  1.1, 0.8, 0.0, 0.02,
+                        false,           false,          false, false, 1,   2,   3,   4};
   return p;
 }
 

@@ -258,8 +258,7 @@ TEST_F(DeliveryTest, AnObjectThatResistsIsPutAsideAndTriedOnceMoreAtTheEnd) {
   see_object(msg::kColourGreen);
   fail_once(msg::kDirectionLeft);
   EXPECT_EQ(memory_.state, kFailed);
-  EXPECT_EQ(memory_.reason,
-            "not delivered: green; put aside after 2 failures, tried once more, failed in state pregrasp");
+  EXPECT_EQ(memory_.reason, "not delivered: green (3 attempts failed, the last in pregrasp: object pregrasp lost)");
 }
 
 TEST_F(DeliveryTest, TheSecondAttemptAtTheEndMaySucceed) {

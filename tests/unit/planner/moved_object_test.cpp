@@ -127,6 +127,30 @@ TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThat
   }
 }
 
+// The body swept the green object 2.4 m away. The map may still have it on its zone, which no image has shown since.
+TEST_F(PushedObjectTest, AnObjectThatAppearsFarAwayMayBeTheDeliveredOne) {
+  for (const bool still_mapped : {true, false}) {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+    deliver_green_and_release_red();
+    memory_.placed.at(0).handle = 8;
+    for (int i = 0; i < 70 && memory_.state == kInspect && memory_.object_index == 1; ++i) {
+      map_red_and_green(2.4, 0.03);
+      map_.objects[4] = map_.objects[3];
+      map_.objects[4].handle = 8;
+      map_.objects[4].x_m = pose_.x_m + 0.1;
+      map_.objects[4].last_seen_tick = tick_ - 3000;
+      map_.object_count = still_mapped ? 5 : 4;
+      step();
+    }
+    EXPECT_EQ(memory_.object_index, 0) << still_mapped;
+    EXPECT_EQ(memory_.state, still_mapped ? kInspect : kSearchObject) << "where the map still has it, it looks first";
+    EXPECT_EQ(memory_.delivered, 2u);
+  }
+}
+
 /// Two green objects for one green zone of 0.4 m radius.
 class TwinsTest : public PlannerTest {
  protected:

@@ -161,7 +161,8 @@ TEST_F(RefusalTest, AMissionThatGivesUpAnObjectSaysWhyItWasRefused) {
     open_ = memory_.requested;  // to track the object
   }
   EXPECT_EQ(memory_.state, kFailed);
-  EXPECT_EQ(memory_.reason, "not delivered: green; the object is too large");
+  EXPECT_EQ(memory_.reason,
+            "not delivered: green (6 attempts failed, the last in track object: the object is too large)");
 }
 
 TEST_F(RefusalTest, ARefusalOfInputIsNoticedAtOnce) {

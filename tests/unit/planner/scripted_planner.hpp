@@ -92,6 +92,7 @@ class PlannerTest : public ::testing::Test {
     objects_.blob_count = 1;
     objects_.blobs[0].colour = colour;
     objects_.blobs[0].kind = kind;
+    objects_.blobs[0].object_probability = kind == msg::kBlobObject ? 0.99 : 0.01;
     objects_.blobs[0].range_m = range_m;
   }
   void see_nothing() {
@@ -159,9 +160,9 @@ class PlannerTest : public ::testing::Test {
   /// this standard deviation; the object was seen in this tick.
   void map_dropped(std::uint8_t colour, double offset_m, double sd_m = 0.03) {
     map_.object_count = 2;
-    map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, 0.0, sd_m, false, false, tick_};
-    map_.objects[1] = {object_, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, 0.15, sd_m, false,
-                       false,   tick_};
+    map_.objects[0] = {1, colour, msg::kBlobZone, pose_.x_m, pose_.y_m, 0.4, 0.0, sd_m, false, false, tick_, 0.0};
+    map_.objects[1] = {
+        object_, colour, msg::kBlobObject, pose_.x_m + offset_m, pose_.y_m, 0.08, 0.15, sd_m, false, false, tick_, 1.0};
   }
   /// Drops the object until the robot has backed off, and says nothing of where it stands.
   void release(std::uint8_t colour) {

@@ -115,6 +115,13 @@ TEST(PlannerConfig, TheMissionOfTheScenarioTakesPrecedence) {
   EXPECT_EQ(config.sequence, (std::vector<std::uint8_t>{msg::kColourYellow}));
   EXPECT_EQ(config.line_colour, msg::kColourRed);
   EXPECT_EQ(load_planner_config({}, "").sequence.size(), 2U);
+  const PlannerConfig limited = load_planner_config(
+      {},
+      "{sequence: [red], line_colour: blue, known: {zones_at: anywhere}, time_limits: {mission_s: 600, drop_s: 40}}");
+  EXPECT_EQ(limited.zones_at, kZonesAnywhere);
+  EXPECT_EQ(limited.mission_timeout_s, 600.0);
+  EXPECT_EQ(limited.drop_timeout_s, 40.0);
+  EXPECT_EQ(limited.task_timeout_s, PlannerConfig{}.task_timeout_s);
   EXPECT_EQ(load_planner_config({}, "{sequence: [red], line_colour: blue, known: {zone_radius_m: 0.25}}").zone_radius_m,
             0.25);
   EXPECT_TRUE(load_planner_config({}, "{sequence: [], line_colour: blue}").sequence.empty());

@@ -16,7 +16,8 @@ TEST_F(PlannerTest, DrivesOnBeforeItTurnsToAZoneWithinItsTurningCircle) {
   fetch(msg::kColourGreen);
   face(0.2);
   map_.object_count = 1;
-  map_.objects[0] = {1, msg::kColourGreen, msg::kBlobZone, pose_.x_m, pose_.y_m + 1.0, 0.3, 0.0, 0.03, false, false, 0};
+  map_.objects[0] = {1,  msg::kColourGreen, msg::kBlobZone, pose_.x_m, pose_.y_m + 1.0, 0.3, 0.0, 0.03, false, false, 0,
+                     0.0};
   see_line(true);
   for (int i = 0; i < 600; ++i) {
     if (const auto wanted = step()) {
@@ -57,7 +58,8 @@ TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
   find_line();
   fetch(msg::kColourGreen);
   map_.object_count = 1;
-  map_.objects[0] = {1, msg::kColourGreen, msg::kBlobZone, pose_.x_m - 3.0, pose_.y_m, 0.4, 0.0, 0.03, false, false, 0};
+  map_.objects[0] = {1,  msg::kColourGreen, msg::kBlobZone, pose_.x_m - 3.0, pose_.y_m, 0.4, 0.0, 0.03, false, false, 0,
+                     0.0};
   see(msg::kColourGreen, msg::kBlobZone, 0.8);  // the head faces backwards along x
   steps(20);
   EXPECT_EQ(memory_.state, kSearchLine);

@@ -45,8 +45,8 @@ msg::FieldMap field() {
     map.line_y_m[i] = i < 2 ? 0.0 : 1.0;
   }
   map.object_count = 2;
-  map.objects[0] = {7, msg::kColourRed, msg::kBlobObject, 1.5, 0.5, 0.09, 0.25, 0.02, true, false, 40};
-  map.objects[1] = {9, msg::kColourGreen, msg::kBlobZone, -1.0, 2.0, kNaN, kNaN, 0.1, false, false, 50};
+  map.objects[0] = {7, msg::kColourRed, msg::kBlobObject, 1.5, 0.5, 0.09, 0.25, 0.02, true, false, 40, 1.0};
+  map.objects[1] = {9, msg::kColourGreen, msg::kBlobZone, -1.0, 2.0, kNaN, kNaN, 0.1, false, false, 50, 0.0};
   map.touch_count = 1;
   map.touches[0] = {1.4, 0.4, 2.0, 3, 300, 0};
   map.obstacle_count = 2;

@@ -171,16 +171,21 @@ class Run(Domain):
         direction: Optional[str] = None,
         object_handle: Optional[int] = None,
         timeout_s: Optional[float] = None,
+        clearance_m: Optional[float] = None,
+        wrap_scale: Optional[float] = None,
         path: Sequence[Tuple[float, float]] = (),
     ) -> Goal:
         """Starts one of constrictor.TASKS and waits until the robot has accepted it. It ends the running task.
 
-        timeout_s: [s] of ``rotate``, in the robot's time. path: 2 to 64 points (x, y) [m] of ``follow_path``, in the
-        frame of guidance/map. Which task needs what: idl/CLIENTS.md. Raises ValueError if a parameter is wrong or
-        missing, RefusedError with the robot's reason, NoAnswerError.
+        timeout_s: [s] after which ``rotate`` ends and every other task is aborted, in the robot's time. clearance_m:
+        [m] of ``pregrasp``, between body and object. wrap_scale: of ``grasp``, width of the open U, 1: usual. path: 2
+        to 64 points (x, y) [m] of ``follow_path``, in the frame of guidance/map. Which task needs what:
+        idl/CLIENTS.md. Raises ValueError if a parameter is wrong or missing, RefusedError with the robot's reason,
+        NoAnswerError.
         """
         if object_handle is not None:
             in_range("object_handle", object_handle, 0, 65535)
+        numbers = {"timeout_s": timeout_s, "clearance_m": clearance_m, "wrap_scale": wrap_scale}
         goal = self._session.start(
             task,
             line_colour=line_colour,
@@ -188,7 +193,7 @@ class Run(Domain):
             drop_zone_colour=drop_zone_colour,
             direction=direction,
             object_handle=object_handle,
-            timeout_s=timeout_s,
+            numbers={name: float(value) for name, value in numbers.items() if value is not None},
             path=[(float(x), float(y)) for x, y in path],
         )
         return Goal(self, goal, task)

@@ -1,0 +1,131 @@
+// How the attempts with one object differ, and what of them reaches navigation.
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "planner/attempts.hpp"
+#include "scripted_planner.hpp"
+
+namespace constrictor {
+namespace {
+
+using enum MissionState;
+
+TEST(AttemptsTest, NoTwoOfThirtyAreEqual) {
+  std::set<std::tuple<int, double, double, int>> ways;
+  Attempts attempts;
+  for (; attempts.failures < 30; ++attempts.failures) {
+    const Way way = next_way(attempts);
+    const std::uint8_t side = way.direction == msg::kDirectionNone ? msg::kDirectionLeft : way.direction;
+    EXPECT_NE(side, attempts.side) << "the other side each time";
+    attempts.side = side;
+    ways.insert({side, way.clearance_m, way.wrap_scale, next_departure(attempts)});
+  }
+  EXPECT_EQ(ways.size(), 30u);
+}
+
+TEST(AttemptsTest, TheFirstLeavesEverythingToNavigation) {
+  const Way way = next_way({});
+  EXPECT_EQ(way.direction, msg::kDirectionNone);
+  EXPECT_EQ(way.clearance_m, 0.0);
+  EXPECT_EQ(way.wrap_scale, 0.0);
+}
+
+class AttemptPlanner : public PlannerTest {
+ protected:
+  /// From the search of the object to its grasp, which is lost.
+  void lose_grasp() {
+    if (memory_.state == kApproachAnew) succeed(msg::kEventNone);
+    succeed(msg::kEventObjectFound);
+    succeed(msg::kEventObjectReached);
+    ASSERT_EQ(memory_.state, kPregrasp);
+    passed_ = last_;
+    status_.parameters.direction = msg::kDirectionLeft;
+    steps(5);  // until navigation has taken the goal
+    succeed(msg::kEventObjectPregrasped);
+    ASSERT_EQ(memory_.state, kGrasp);
+    grasped_ = last_;
+    abort(msg::kEventObjectGraspLost);
+  }
+  WantedTask passed_, grasped_;
+};
+
+TEST_F(AttemptPlanner, TheThirdAttemptKeepsAnotherDistanceAndWrapsWider) {
+  find_line();
+  drive(4.0);
+  succeed(msg::kEventEndOfLine);
+  ASSERT_EQ(memory_.state, kSearchObject);
+  for (int i = 0; i < 2; ++i) {
+    lose_grasp();
+    EXPECT_EQ(passed_.parameters.clearance_m, 0.0);
+    EXPECT_EQ(grasped_.parameters.wrap_scale, 0.0);
+  }
+  lose_grasp();
+  EXPECT_EQ(passed_.parameters.clearance_m, 0.10);
+  EXPECT_EQ(passed_.parameters.wrap_scale, 0.0) << "a parameter of grasp";
+  EXPECT_EQ(grasped_.parameters.wrap_scale, 1.15);
+  EXPECT_EQ(grasped_.parameters.clearance_m, 0.0) << "a parameter of pregrasp";
+}
+
+TEST_F(AttemptPlanner, ADoubtfulObjectIsNotApproached) {
+  find_line();
+  drive(4.0);
+  see(msg::kColourGreen, msg::kBlobObject, 1.2);
+  objects_.blobs[0].object_probability = 0.4;
+  steps(10);
+  EXPECT_EQ(memory_.state, kFollowLine);
+  objects_.blobs[0].object_probability = 0.6;
+  steps(4);
+  EXPECT_EQ(memory_.state, kTrackObject);
+}
+
+class ZonesAnywhere : public PlannerTest {
+ protected:
+  ZonesAnywhere() { config_.zones_at = kZonesAnywhere; }
+};
+
+TEST_F(ZonesAnywhere, AnObjectIsCarriedOnInTheDirectionThatIsNotExploredYet) {
+  find_line();
+  fetch(msg::kColourGreen);
+  face(0.0);  // the line goes on ahead
+  see_line(true);
+  steps(4);
+  EXPECT_EQ(memory_.state, kTransport);
+  succeed(msg::kEventEndOfLine);
+  EXPECT_EQ(memory_.state, kTurnBack) << "no zone here: to the other end";
+  turn();
+  EXPECT_EQ(memory_.state, kTransport);
+  EXPECT_LT(std::cos(pose_.yaw_rad), -0.5);
+}
+
+TEST_F(ZonesAnywhere, AnObjectIsCarriedBackToAZoneThatTheMapHasThere) {
+  find_line();
+  map_.object_count = 1;
+  map_.objects[0] = {1, msg::kColourGreen, msg::kBlobZone, 0.0, 0.0, 0.4, 0.0, 0.03, false, false, 0, 0.0};
+  fetch(msg::kColourGreen);
+  see_line(true);
+  steps(4);
+  EXPECT_EQ(memory_.state, kTransport) << "the head faces back already";
+}
+
+TEST_F(ZonesAnywhere, AnEndOfTheLineAmongZonesMayHaveObjects) {
+  find_line();
+  drive(2.0);
+  see(msg::kColourRed, msg::kBlobZone, 1.5);
+  step();
+  succeed(msg::kEventEndOfLine);
+  EXPECT_EQ(memory_.state, kSearchObject);
+  see_nothing();
+  for (int i = 0; i < 1600 && memory_.state == kSearchObject; ++i) step();  // end_search_s is 30 s
+  EXPECT_EQ(memory_.state, kSearchLineOrObject);
+  for (int i = 0; i < 4000 && memory_.state == kSearchLineOrObject; ++i) {
+    face(pose_.yaw_rad + (last_.parameters.direction == msg::kDirectionRight ? -0.02 : 0.02));
+    see_line(std::abs(std::cos(pose_.yaw_rad)) > 0.8);
+    step();
+  }
+  EXPECT_EQ(memory_.state, kFollowLine);
+  EXPECT_LT(std::cos(pose_.body_yaw_rad), 0.0) << "now the other way";
+}
+
+}  // namespace
+}  // namespace constrictor
