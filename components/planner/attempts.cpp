@@ -9,7 +9,8 @@ Way next_way(const Attempts& attempts) {
   struct Size {
     double clearance_m, wrap_scale;
   };
-  constexpr std::array kSizes = {Size{0.0, 0.0}, Size{0.10, 1.15}, Size{0.02, 0.9}, Size{0.10, 0.9}, Size{0.02, 1.15}};
+  // First nearer, because most attempts fail without a touch, and wider, because a wide U takes the object in easily.
+  constexpr std::array kSizes = {Size{0.0, 0.0}, Size{0.02, 1.15}, Size{0.10, 0.9}, Size{0.02, 0.9}, Size{0.10, 1.15}};
   Way way;
   if (attempts.failures <= 0) return way;
   if (attempts.side == msg::kDirectionLeft) way.direction = msg::kDirectionRight;

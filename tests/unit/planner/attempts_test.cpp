@@ -50,7 +50,7 @@ class AttemptPlanner : public PlannerTest {
   WantedTask passed_, grasped_;
 };
 
-TEST_F(AttemptPlanner, TheThirdAttemptKeepsAnotherDistanceAndWrapsWider) {
+TEST_F(AttemptPlanner, TheThirdAttemptPassesNearerAndWrapsWider) {
   find_line();
   drive(4.0);
   succeed(msg::kEventEndOfLine);
@@ -61,7 +61,7 @@ TEST_F(AttemptPlanner, TheThirdAttemptKeepsAnotherDistanceAndWrapsWider) {
     EXPECT_EQ(grasped_.parameters.wrap_scale, 0.0);
   }
   lose_grasp();
-  EXPECT_EQ(passed_.parameters.clearance_m, 0.10);
+  EXPECT_EQ(passed_.parameters.clearance_m, 0.02);
   EXPECT_EQ(passed_.parameters.wrap_scale, 0.0) << "a parameter of grasp";
   EXPECT_EQ(grasped_.parameters.wrap_scale, 1.15);
   EXPECT_EQ(grasped_.parameters.clearance_m, 0.0) << "a parameter of pregrasp";
