@@ -34,6 +34,7 @@ std::vector<Check> perception_checks() {
       {"object", "an object on the ground is seen once", {}, {}, {}},
       {"object_colour", "the colour of an object is named", {}, {}, {}},
       {"object_kind", "what stands up is an object, what lies flat is a zone", {}, {}, {}},
+      {"object_probability", "the probability of an object agrees with the kind", {}, {}, {}},
       {"bearing_sign", "the bearing of an object on the left is positive", {}, {}, {}},
       {"bearing", "bearing_rad is the direction from the head to the object", {}, {}, {}},
       {"range", "range_m is the distance from the head to the nearest ground point", {}, {}, {}},
