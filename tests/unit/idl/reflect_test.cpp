@@ -137,7 +137,9 @@ TEST(CanonicalBytes, AreTheFieldsInOrderWithoutPadding) {
   parameters.drop_zone_colour = 3;
   parameters.direction = 4;
   parameters.timeout_s = 1.0;
-  EXPECT_EQ(bytes_of(parameters), std::string("\x01\x02\x34\x12\x03\x04\0\0\0\0\0\0\xf0\x3f", 14));
+  parameters.clearance_m = 2.0;
+  EXPECT_EQ(bytes_of(parameters),
+            std::string("\x01\x02\x34\x12\x03\x04\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\0\x40", 22) + std::string(8, '\0'));
   msg::Ready ready{};
   std::strcpy(ready.component, "ab");
   ready.epoch = 1;
