@@ -118,12 +118,15 @@ TEST_F(GraspEvents, GraspsCarriesAndDropsAnObjectOnItsZone) {
 
 // The zone is farther away than the time limit allows: the robot keeps the object and does not drop it elsewhere.
 TEST_F(GraspEvents, KeepsTheObjectWhenItsZoneIsNotReachedInTime) {
-  begin(scene(), "approach_timeout_s: 120", "approach_timeout_s: 2");
+  begin(scene());
   grasp();
   ASSERT_FALSE(HasFatalFailure());
   start(msg::kTaskExplore, &msg::TaskParameters::direction, msg::kDirectionForwards);
   until([&] { return in_view(head(), {-0.9, 0.5, 0.0}, 1.8); }, 20.0);
-  start(msg::kTaskDrop, &msg::TaskParameters::drop_zone_colour, msg::kColourGreen);
+  start(msg::kTaskDrop, [](msg::TaskParameters& p) {
+    p.drop_zone_colour = msg::kColourGreen;
+    p.timeout_s = 2.0;
+  });
   EXPECT_EQ(until_end(10.0), msg::kGoalAborted);
   EXPECT_FALSE(first(msg::kEventDroppingDone));
   EXPECT_TRUE(run_->latest(topics::kTaskStatus)->carrying);
