@@ -75,7 +75,7 @@ TEST_F(ObjectEvents, SearchReportsObjectLostWhenTheFoundObjectVanishes) {
   ASSERT_TRUE(until_event(msg::kEventObjectLost, 3.0));
   const Happened& lost = *first(msg::kEventObjectLost);
   EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
-  EXPECT_NEAR(lost.time_s, 0.45 + 1.0, 0.5);  // navigation waits for ten images without the object
+  EXPECT_NEAR(lost.time_s, 0.45 + 1.5, 0.5);  // navigation waits for 15 images without the object
   EXPECT_EQ(until_end(1.0), msg::kGoalIdle) << "the search continues";
 }
 
@@ -102,7 +102,7 @@ TEST_F(ObjectEvents, TrackReportsObjectLostWhenTheObjectVanishes) {
   const Happened& lost = *first(msg::kEventObjectLost);
   EXPECT_FALSE(first(msg::kEventObjectReached));
   EXPECT_FALSE(in_view(lost.head, lost.object, 3.0));
-  EXPECT_NEAR(lost.time_s, 3.0 + 1.0, 0.6);
+  EXPECT_NEAR(lost.time_s, 3.0 + 1.5, 0.6);
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
 }
 
