@@ -174,7 +174,7 @@ std::int64_t Navigation::silent_images() const {
   return std::min(age_ticks(field_.line), age_ticks(field_.objects)) / robot_.camera.period_ticks;
 }
 
-void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
+void Navigation::run_task(TaskInput input, TaskOutput& output) {
   const bool seen_before = !state_.blind;
   state_.blind = state_.task->steers_by_sight() && silent_images() > config_.blind_after_images;
   if (state_.blind) {
@@ -183,6 +183,7 @@ void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
     state_.goal.phase = "blind";
     return;
   }
+  input.run_s = state_.goal.run_s += input.tick.dt_s();
   state_.task->step(input, state_.grip, output);
   state_.goal.phase = output.phase;
   if (output.direction != msg::kDirectionNone) state_.goal.parameters.direction = output.direction;
@@ -190,9 +191,8 @@ void Navigation::run_task(const TaskInput& input, TaskOutput& output) {
   for (const EventRecord& record : output.events) {
     write_event(record.event, msg::kGoalRunning, record.colour, record.handle, "");
   }
-  state_.goal.run_s += input.tick.dt_s();
   const double limit_s = time_limit_s(state_.goal.parameters);
-  if (output.state == msg::kGoalRunning && state_.goal.run_s > limit_s && !state_.task->keeps_time())
+  if (output.state == msg::kGoalRunning && input.run_s > limit_s && !state_.task->keeps_time())
     output.abort(fmt::format("the time limit of {:g} s passed", limit_s));
   if (output.state != msg::kGoalRunning) end_goal(output.state, output.reason);
 }

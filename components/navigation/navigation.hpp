@@ -18,7 +18,7 @@ struct GoalState {
   std::uint8_t task = msg::kTaskNone;
   std::uint8_t state = msg::kGoalIdle;
   msg::TaskParameters parameters{};
-  double run_s = 0.0;  ///< time since the start, without that in which the task waited for percepts
+  double run_s = 0.0;  ///< TaskInput::run_s
   double progress = 0.0;
   std::string phase;
   std::string reason;
@@ -79,7 +79,7 @@ class Navigation : public TunableComponent<NavigationState, NavigationConfig> {
   /// Number of images whose percepts should have come since the newest ones; 0: none has ever come, as without camera.
   [[nodiscard]] std::int64_t silent_images() const;
   /// The task's step; while the task is blind, the robot stands.
-  void run_task(const TaskInput& input, TaskOutput& output);
+  void run_task(TaskInput input, TaskOutput& output);
   /// Reports the loss of a held object and aborts the running goal.
   void monitor_grip(const TaskInput& input, TaskOutput& output);
   void end_goal(std::uint8_t state, const std::string& reason);

@@ -1,19 +1,12 @@
 #include "navigation/object_handles.hpp"
 
-#include <algorithm>
-#include <span>
-
 #include "robot/landmarks.hpp"
 
 namespace constrictor {
-namespace {
 
-std::span<const msg::MapObject> known_landmarks(const TaskInput& input) {
-  if (!input.map) return {};
-  return landmarks_of(*input.map);
+const msg::MapObject* named_object(const TaskInput& input) {
+  return input.map ? object_of_handle(*input.map, input.parameters.object_handle) : nullptr;
 }
-
-}  // namespace
 
 std::uint16_t seen_handle(const TaskInput& input, std::uint8_t colour) {
   return colour < msg::kColourCount ? input.sightings.objects[colour].handle : std::uint16_t{0};
@@ -27,12 +20,9 @@ bool is_named(const TaskInput& input) {
 std::string handle_refusal(const TaskInput& input) {
   const std::uint16_t named = input.parameters.object_handle;
   const std::uint8_t colour = input.parameters.object_colour;
-  const auto meant = [&](const msg::MapObject& landmark) {
-    return landmark.kind == msg::kBlobObject && landmark.handle == named &&
-           (colour == msg::kColourUnknown || landmark.colour == colour);
-  };
-  const auto landmarks = known_landmarks(input);
-  if (named == 0 || std::any_of(landmarks.begin(), landmarks.end(), meant)) return {};
+  const msg::MapObject* object = named_object(input);
+  const bool meant = object && (colour == msg::kColourUnknown || object->colour == colour);
+  if (named == 0 || meant) return {};
   return "object_handle: found " + std::to_string(named) + ", accepted 0 or an object of this colour in the map";
 }
 

@@ -39,6 +39,7 @@ struct TaskInput {
   bool motion_done;                     ///< control has finished the newest motion
   double sway_period_s;                 ///< in which the gait lets the head sway once
   const msg::Path* path = nullptr;      ///< of the command; only in refusal() and start()
+  double run_s = 0.0;                   ///< of the goal, with this step; waiting for percepts does not count
 };
 
 /// [s] time limit of a goal; infinite if it has none.

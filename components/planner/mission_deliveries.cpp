@@ -131,10 +131,7 @@ DeliveryView MissionPlanner::placed_object(const PlacedObject& object, const Pla
   const DroppedObject dropped{colour,      object.handle, all ? object.newest_handle : kNoOther,
                               object.tick, true,          twins(object.index)};
   const auto view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
-  const auto landmarks = landmarks_of(*inputs.map);
-  const bool known = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
-    return object.handle != 0 && landmark.handle == object.handle;
-  });
+  const bool known = object_of_handle(*inputs.map, object.handle) != nullptr;
   // An object that images no longer show on its zone has gone, and what has appeared elsewhere is it.
   const bool own = view.handle != 0 && (view.handle == object.handle || !known);
   return own || any_distance || view.offset_m < kNear_m ? view : DeliveryView{};
@@ -146,10 +143,8 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
     // Without a handle, another object of its colour may be taken for it: a look proves nothing.
     const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), config_.sequence[object.index]);
     if (alike > 1 && object.handle == 0) return false;
-    const auto landmarks = landmarks_of(*inputs.map);
-    const bool touched = std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
-      return object.handle != 0 && landmark.handle == object.handle && landmark.sd_m > config_.seen_sd_m;
-    });
+    const msg::MapObject* landmark = object_of_handle(*inputs.map, object.handle);
+    const bool touched = landmark && landmark->sd_m > config_.seen_sd_m;
     const Delivery verdict = placed_object(object, inputs, true).verdict;
     return touched || verdict == Delivery::kOutside || verdict == Delivery::kUncertain;
   };
@@ -171,10 +166,7 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
 
 bool MissionPlanner::inspects_by_handle(const PlannerInputs& inputs) const {
   if ((memory_.rechecked >> memory_.object_index & 1u) == 0 || !inputs.map) return false;
-  const auto landmarks = landmarks_of(*inputs.map);
-  return std::any_of(landmarks.begin(), landmarks.end(), [&](const msg::MapObject& landmark) {
-    return landmark.kind == msg::kBlobObject && landmark.handle == memory_.dropped_handle;
-  });
+  return object_of_handle(*inputs.map, memory_.dropped_handle) != nullptr;
 }
 
 void MissionPlanner::take_back(PlacedObjects::iterator gone) {

@@ -201,13 +201,12 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       parameters.direction = next_departure(attempts());
       break;
     default:
-      if (wanted.task == msg::kTaskPregrasp || wanted.task == msg::kTaskGrasp) {
-        // In a grasp, the side is the one on which the object was passed.
+      if (wanted.task == msg::kTaskPregrasp) {
         const Way way = next_way(attempts());
-        if (wanted.task == msg::kTaskPregrasp) parameters.direction = way.direction;
-        if (wanted.task == msg::kTaskPregrasp) parameters.clearance_m = way.clearance_m;
-        if (wanted.task == msg::kTaskGrasp) parameters.wrap_scale = way.wrap_scale;
+        parameters.direction = way.direction;
+        parameters.clearance_m = way.clearance_m;
       }
+      if (wanted.task == msg::kTaskGrasp) parameters.wrap_scale = next_way(attempts()).wrap_scale;
       parameters.object_colour = colour();
       parameters.object_handle = memory_.object_handle;
       if (memory_.state == kInspect && inspects_by_handle(inputs)) parameters.object_handle = memory_.dropped_handle;

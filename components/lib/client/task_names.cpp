@@ -45,12 +45,13 @@ std::string direction_words() { return listed(constants::kDirection, 1); }
 std::optional<std::uint8_t> task_by_name(const std::string& name) { return chosen(constants::kTask, name); }
 std::optional<std::uint8_t> event_by_name(const std::string& name) { return chosen(constants::kEvent, name); }
 
-std::string TaskNumber::accepted() const { return fmt::format("{} up to {:g}", unit, most); }
+std::string TaskNumber::accepted() const { return fmt::format("{} up to {:g}", unit, info.max); }
 
 std::span<const TaskNumber> task_numbers() {
-  static constexpr TaskNumber kNumbers[] = {{"timeout_s", "seconds", 3600.0, &msg::TaskParameters::timeout_s},
-                                            {"clearance_m", "metres", 1.0, &msg::TaskParameters::clearance_m},
-                                            {"wrap_scale", "numbers", 2.0, &msg::TaskParameters::wrap_scale}};
+  using Fields = Description<msg::TaskParameters>;
+  static constexpr TaskNumber kNumbers[] = {{Fields::k_timeout_s, "seconds", &msg::TaskParameters::timeout_s},
+                                            {Fields::k_clearance_m, "metres", &msg::TaskParameters::clearance_m},
+                                            {Fields::k_wrap_scale, "numbers", &msg::TaskParameters::wrap_scale}};
   return kNumbers;
 }
 
@@ -78,7 +79,7 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
     return {};
   }
   for (const TaskNumber& row : task_numbers()) {
-    if (name != row.name) continue;
+    if (name != row.info.name) continue;
     double number = 0.0;
     if (!(stream >> number) || !stream.eof() || !row.accepts(number))
       return fmt::format("{}: found '{}', accepted {}", key, value, row.accepted());

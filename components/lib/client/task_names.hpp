@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "constrictor/description.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor {
@@ -26,13 +27,12 @@ std::string direction_words();
 std::optional<std::uint8_t> task_by_name(const std::string& name);
 std::optional<std::uint8_t> event_by_name(const std::string& name);
 
-/// A parameter that is a positive number.
+/// A parameter that is a positive number. Its name and its bound are those of the IDL.
 struct TaskNumber {
-  const char* name;
-  const char* unit;  ///< plural
-  double most;
+  FieldInfo info;
+  const char* unit;  ///< in words, plural
   double msg::TaskParameters::*field;
-  [[nodiscard]] bool accepts(double number) const { return number > 0.0 && number <= most; }
+  [[nodiscard]] bool accepts(double number) const { return number > 0.0 && number <= info.max; }
   [[nodiscard]] std::string accepted() const;  ///< for error messages
 };
 std::span<const TaskNumber> task_numbers();

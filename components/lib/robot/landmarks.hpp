@@ -15,6 +15,15 @@ namespace constrictor {
   return {map.objects, std::min<std::size_t>(map.object_count, msg::kMaxMapObjects)};
 }
 
+/// The object with this handle; null: the map has none, or the handle is 0.
+[[nodiscard]] inline const msg::MapObject* object_of_handle(const msg::FieldMap& map, std::uint16_t handle) {
+  if (handle == 0) return nullptr;
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.kind == msg::kBlobObject && landmark.handle == handle) return &landmark;
+  }
+  return nullptr;
+}
+
 /// [m] radius of the object or zone; `usual_radius_m` if no image has shown its whole width.
 [[nodiscard]] inline double radius_or(const msg::MapObject& landmark, double usual_radius_m) {
   return std::isfinite(landmark.radius_m) ? landmark.radius_m : usual_radius_m;

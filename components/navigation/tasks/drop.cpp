@@ -20,14 +20,13 @@ struct DropState : PhaseState {
   bool course_fixed = false;
   SteeringState steering;
   HeldMotion object;
-  double drive_s = 0.0;            ///< time of nearing the zone
   PlanarPose from;                 ///< the head when the phase began
   Eigen::Vector2d p_MO{0.0, 0.0};  ///< where the object was let go
   SteeringState back;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, drive_s, from, p_MO.x(),
-            p_MO.y(), back);
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, from, p_MO.x(), p_MO.y(),
+            back);
   }
 };
 
@@ -95,8 +94,7 @@ class Drop : public StatefulTask<DropState> {
     steering.observe(now_s, error_m, period_s, state_.steering);
     move_carefully(input, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
-    state_.drive_s += input.tick.dt_s();
-    if (state_.drive_s > time_limit_s(input.parameters))
+    if (input.run_s > time_limit_s(input.parameters))
       return output.abort("the zone was not reached in time");  // the robot still holds the object
     if (past_m >= stop_m(input, grip, X_MC) - config.brake_m) {
       enter(input, kStop);

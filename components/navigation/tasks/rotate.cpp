@@ -8,12 +8,10 @@
 namespace constrictor {
 namespace {
 
+/// The task needs no more than the time of its goal.
 struct RotateState {
-  double run_s = 0.0;  ///< since the start
   template <class Archive>
-  void serialize(Archive& archive) {
-    archive(run_s);
-  }
+  void serialize(Archive&) {}
 };
 
 class Rotate : public StatefulTask<RotateState> {
@@ -26,11 +24,10 @@ class Rotate : public StatefulTask<RotateState> {
     const double curvature_1_m = sign * (grip.carrying ? config.carry_curvature_1_m : config.curvature_1_m);
     move_carefully(input, curvature_1_m, 1.0, grip, output);
     output.phase = "rotate";
-    state_.run_s += input.tick.dt_s();
     const double timeout_s = time_limit_s(input.parameters);
     if (!std::isfinite(timeout_s)) return;
-    output.progress = std::min(1.0, state_.run_s / timeout_s);
-    if (state_.run_s < timeout_s) return;
+    output.progress = std::min(1.0, input.run_s / timeout_s);
+    if (input.run_s < timeout_s) return;
     output.emit(msg::kEventTimeout);
     output.succeed();
   }

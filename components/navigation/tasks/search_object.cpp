@@ -7,7 +7,6 @@
 
 #include "navigation/motions.hpp"
 #include "navigation/object_handles.hpp"
-#include "robot/landmarks.hpp"
 
 namespace constrictor {
 namespace {
@@ -81,12 +80,7 @@ class SearchObject : public StatefulTask<SearchState> {
     const std::uint8_t colour = input.parameters.object_colour;
     std::optional<Eigen::Vector2d> best;
     if (input.sightings.objects[colour].known) best = input.sightings.objects[colour].p_M();
-    if (input.map && input.parameters.object_handle != 0) {
-      for (const msg::MapObject& landmark : landmarks_of(*input.map)) {
-        if (landmark.kind == msg::kBlobObject && landmark.handle == input.parameters.object_handle)
-          best = Eigen::Vector2d(landmark.x_m, landmark.y_m);
-      }
-    }
+    if (const msg::MapObject* named = named_object(input)) best = Eigen::Vector2d(named->x_m, named->y_m);
     const bool nearby = best && (*best - input.X_MH.p).norm() < input.config.search.remembered_m;
     return nearby ? best : std::nullopt;
   }
