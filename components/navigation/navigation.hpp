@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "component/object_bounds.hpp"
 #include "component/parameters.hpp"
 #include "component/robot_views.hpp"
 #include "navigation/direct_motion.hpp"
@@ -62,10 +63,11 @@ struct NavigationState {
 /// and TaskStatus every tick and TaskEvent on occurrence. Each goal is answered once, accepted or refused with a
 /// reason, and each accepted goal ends once. Without a goal, and while pose, joints or contacts are missing or stale,
 /// the robot stands still in its posture and keeps hold of an object.
-class Navigation : public TunableComponent<NavigationState, NavigationConfig> {
+class Navigation : public TunableComponent<NavigationState, NavigationConfig>, public ObjectHolder {
  public:
   Navigation(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
+  [[nodiscard]] double largest_radius_m() const override { return grip_sense_.largest_radius_m(); }
 
  private:
   [[nodiscard]] bool senses_ready() const;

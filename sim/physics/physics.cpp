@@ -65,6 +65,19 @@ void Physics::step(const Tick& tick) {
   world_.advance(config_.period_s());
 }
 
+std::optional<DemandedObject> Physics::largest_object(const std::vector<std::uint8_t>& colours) const {
+  std::optional<DemandedObject> largest;
+  const auto& objects = world_.scenario().objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (std::find(colours.begin(), colours.end(), objects[i].colour) == colours.end()) continue;
+    const bool box = objects[i].shape == BodyShape::kBox;
+    const double radius_m = box ? 0.5 * objects[i].size_m.head<2>().minCoeff() : objects[i].size_m.x();
+    if (!largest || radius_m > largest->radius_m)
+      largest = DemandedObject{"objects[" + std::to_string(i) + (box ? "].size_m / 2" : "].radius_m"), radius_m};
+  }
+  return largest;
+}
+
 std::string Physics::save() const {
   std::ostringstream stream;
   cereal::PortableBinaryOutputArchive archive(stream);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "component/object_bounds.hpp"
 #include "plant/plant_gate.hpp"
 #include "sim/physics/perturbation_script.hpp"
 #include "sim/physics/physics_config.hpp"
@@ -11,7 +12,7 @@
 
 namespace constrictor {
 
-class Physics final : public Plant {
+class Physics final : public Plant, public ObjectSource {
  public:
   /// Reads the robot, the scenario with its seed, and the configuration. Throws ConfigurationError.
   Physics(Wiring& wiring, const Setup& setup);
@@ -24,6 +25,8 @@ class Physics final : public Plant {
   /// World, sensors, perturbations, gate and stops: about 10 kB for the case study.
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;
+
+  [[nodiscard]] std::optional<DemandedObject> largest_object(const std::vector<std::uint8_t>& colours) const override;
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_.state(); }

@@ -62,6 +62,35 @@ TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
   EXPECT_FALSE(fs::exists("runs"));
 }
 
+TEST_F(RunCommand, RefusesASceneWhoseObjectsTheBodyCannotHold) {
+  // mamba's U holds up to 0.119 m (components/navigation/README.md).
+  const std::string scene =
+      "line: {colour: blue, width_m: 0.05, begin_m: [0.3, 0.0], segments: [{length_m: 1.0}]}\n"
+      "objects:\n"
+      "  - {colour: green, position_m: [2.0, 0.0], shape: cylinder, radius_m: 0.1, height_m: 0.15, mass_kg: 0.4}\n"
+      "  - {colour: red, position_m: [2.5, 0.0], shape: cylinder, radius_m: 0.13, height_m: 0.15, mass_kg: 0.4}\n"
+      "  - {colour: yellow, position_m: [3.0, 0.0], shape: box, size_m: [0.22, 0.3, 0.15], mass_kg: 0.4}\n"
+      "zones:\n"
+      "  - {colour: green, position_m: [-1.0, 0.5], radius_m: 0.4}\n"
+      "  - {colour: red, position_m: [-1.0, -0.5], radius_m: 0.4}\n"
+      "  - {colour: yellow, position_m: [-2.0, 0.5], radius_m: 0.4}\n"
+      "start: {position_m: [0.0, 0.0]}\n";
+  const auto check = [&](const std::string& sequence) {
+    write("scene.yaml", "name: scene\nmission: {line_colour: blue, sequence: " + sequence + "}\n" + scene);
+    Process refused = command({"check", (dir_ / "scene.yaml").string()});
+    const auto status = refused.wait(30s);
+    return std::pair(status, refused.errors());
+  };
+  const auto [fits, silence] = check("[green, yellow]");
+  EXPECT_EQ(fits, exit_status::kOk) << "the red object is too large, but not demanded; the box fits by its shorter side"
+                                    << silence;
+  const auto [status, errors] = check("[green, red]");
+  EXPECT_EQ(status, exit_status::kConfiguration);
+  EXPECT_NE(errors.find("scene.yaml: objects[1].radius_m: found 0.130 m with seed 1, accepted at most 0.119 m"),
+            std::string::npos)
+      << errors;
+}
+
 TEST_F(RunCommand, EveryShippedManifestAndItsConfigurationsAreAccepted) {
   Process list = command({"list", "manifests", "--names"});
   ASSERT_EQ(list.wait(20s), exit_status::kOk) << list.errors();

@@ -12,6 +12,8 @@
 #include "component/data_path.hpp"
 #include "component/device_owner.hpp"
 #include "component/hardware_link.hpp"
+#include "component/mission.hpp"
+#include "component/object_bounds.hpp"
 
 namespace constrictor {
 namespace {
@@ -64,6 +66,31 @@ Setup setup_of(const HostOptions& options, const ComponentFactory& factory) {
   return setup;
 }
 
+/// What the components that were built say of the objects of the mission.
+class ObjectSizes {
+ public:
+  explicit ObjectSizes(const std::string& mission) {
+    if (const auto read = parse_mission(mission)) colours_ = read->sequence;
+  }
+  void ask(const Component& component) {
+    if (const auto* source = dynamic_cast<const ObjectSource*>(&component)) largest_ = source->largest_object(colours_);
+    if (const auto* holder = dynamic_cast<const ObjectHolder*>(&component)) bound_m_ = holder->largest_radius_m();
+  }
+  /// Why the robot cannot hold all objects; nothing: it can, or these components do not know.
+  [[nodiscard]] std::optional<std::string> violation(const HostOptions& options) const {
+    if (!largest_ || !bound_m_ || largest_->radius_m <= *bound_m_) return std::nullopt;
+    return fmt::format(
+        "{}: {}: found {:.3f} m with seed {}, accepted at most {:.3f} m: the robot can hold no larger object, and "
+        "mission.sequence demands this one",
+        options.setup.scenario_file.string(), largest_->key, largest_->radius_m, options.setup.seed, *bound_m_);
+  }
+
+ private:
+  std::vector<std::uint8_t> colours_;
+  std::optional<DemandedObject> largest_;
+  std::optional<double> bound_m_;
+};
+
 }  // namespace
 
 std::vector<std::string> topics_of_components(const HostOptions& options,
@@ -99,15 +126,18 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
   std::vector<std::string> errors;
   std::set<std::string> reported;
   std::vector<Hello> hellos;
+  std::optional<ObjectSizes> sizes;
   for (const auto& factory : factories) {
     Setup setup = setup_of(options, factory);
     try {
+      if (!sizes) sizes.emplace(setup.mission);
       UnconnectedWiring wiring;
       const auto component = factory.create(wiring, setup);
       const auto latency = options.latency_ticks.find(factory.name);
       if (factory.name == options.plant) {
         if (auto why = pace_violation(options, *component); !why.empty()) errors.push_back(std::move(why));
       }
+      sizes->ask(*component);
       wiring.hello.component = factory.name;
       wiring.hello.timing = component->timing();
       if (latency != options.latency_ticks.end())
@@ -116,6 +146,9 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
     } catch (const std::exception& error) {
       if (reported.insert(error.what()).second) errors.push_back(factory.name + ": " + error.what());
     }
+  }
+  if (sizes) {
+    if (auto why = sizes->violation(options)) errors.push_back(std::move(*why));
   }
   if (auto why = depth_violation(hellos, options.plant)) errors.push_back(std::move(*why));
   return errors;

@@ -12,7 +12,8 @@ namespace constrictor {
 /// Builds each component once from its files (robot, scenario, configuration), with ports that are connected to
 /// nothing, and destroys it again. Joins no DDS domain and writes no file. Returns one line "NAME: what is wrong" for
 /// each component that cannot be built; an error that several components report is returned once.
-/// Also compares the latencies of these components with the depths of the topics between them.
+/// Also compares the latencies of these components with the depths of the topics between them, and the objects that the
+/// mission demands with those that the robot can hold, if both are known here.
 [[nodiscard]] std::vector<std::string> check_components(const HostOptions& options,
                                                         const std::vector<ComponentFactory>& factories);
 
