@@ -54,7 +54,11 @@ std::optional<msg::Blob> Gauge::object(bool on_zone, ObjectSize& measured) const
   blob.cut_left |= left_hidden_;
   blob.cut_right |= right_hidden_;
   const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
-  if (!std::isfinite(range_m)) range_m = range_by_size(blob);
+  // Something stands before the foot of the object. Whoever guesses its height then guesses where it is.
+  const bool foot_hidden = !std::isfinite(range_m) && !on_zone && !blob.cut_bottom;
+  const bool size_known = size_.known() || config_.height_stated;
+  if (!std::isfinite(range_m) && (size_known || !foot_hidden)) range_m = range_by_size(blob);
+  if (whole && ends_in_zone(range_m)) range_m = range_by_size(blob);
   auto result = finish(blob, left_, right_, range_m);
   if (!result) return result;
   result->height_m = height_m(range_m, blob.cut_top);
@@ -201,6 +205,13 @@ void Gauge::find_sides() {
 double Gauge::lower_edge_range(double left, double right, bool& cut) const {
   const double max_gap = region_.standing() && !region_.low ? kMaxGapPixels : 1e9;
   return lower_edge_range_m(rgb_, camera_, regions_, id_, right, left, max_gap, cut);
+}
+
+bool Gauge::ends_in_zone(double range_m) const {
+  constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
+  constexpr double kNarrow = 0.88;
+  const double sine = std::sin(0.5 * (left_ - right_));
+  return size_.known() && range_m > kFar_m && range_m * sine / (1.0 - sine) < kNarrow * size_.radius_m;
 }
 
 double Gauge::range_by_size(const msg::Blob& blob) const {

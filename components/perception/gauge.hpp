@@ -55,6 +55,11 @@ class Gauge {
 
   [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const;
 
+  /// Whether the lower edge of an object at this range [m] is rather the edge of a zone of its colour before it, which
+  /// is so thin in the image that nothing else tells: at that range the object would be narrower than it is known to
+  /// be.
+  [[nodiscard]] bool ends_in_zone(double range_m) const;
+
   /// [m] horizontal distance of an object of known size: by its width, otherwise by its upper edge; NaN if too little
   /// of it is in view, or if it is not high enough above the camera.
   [[nodiscard]] double range_by_size(const msg::Blob& blob) const;

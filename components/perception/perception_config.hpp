@@ -60,10 +60,12 @@ struct PerceptionConfig : ParameterSet {
       HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
       add_hues(msg::kColourBlue, 195.0, 262.0), add_hues(msg::kColourYellow, 42.0, 72.0)};
   PerceptErrorConfig errors = add_section(errors, "error");
+  bool height_stated = false;  ///< the mission states the height of the objects
 
   /// Takes over what the mission states to be known beforehand.
   void know(const PriorKnowledge& known) {
     object_height_m = known.object_height_m.value_or(object_height_m);
+    height_stated = known.object_height_m.has_value();
     object_radius_m = known.object_radius_m.value_or(object_radius_m);
     object_max_radius_m = known.object_max_radius_m.value_or(object_max_radius_m);
     line_width_m = known.line_width_m.value_or(line_width_m);

@@ -189,6 +189,47 @@ TEST(ObjectSize, ALowObjectOfKnownSizeIsFoundOnAZoneOfItsColour) {
   }
 }
 
+// From afar the zone is a pixel or two high, and the region of both looks like an object that stands on its near edge.
+TEST(ObjectSize, AnObjectOfKnownSizeBehindAZoneOfItsColourIsNotTakenForNearer) {
+  const double radius_m = 0.08, height_m = 0.15, zone_radius_m = 0.25;
+  for (const Conditions& c : kAttitudes) {
+    for (const double distance_m : {2.2, 2.5, 2.8}) {
+      SCOPED_TRACE(describe(c, radius_m, height_m, distance_m));
+      Scene scene;
+      scene.rounds = {Round{msg::kColourGreen, {distance_m - 0.25, 0.05}, zone_radius_m},
+                      Round{msg::kColourGreen, {distance_m, 0.0}, radius_m, height_m}};
+      const Percepts percepts = look(scene, c, 1, known(radius_m, height_m));
+      const msg::Blob* object = find(percepts, msg::kBlobObject);
+      ASSERT_NE(object, nullptr);
+      EXPECT_NEAR(object->range_m, distance_m - radius_m, 0.12 * distance_m);  // its near edge is 0.4 m nearer
+      // A smaller object than the known one is measured where it stands as soon as it is near.
+      scene.rounds = {Round{msg::kColourGreen, {1.2, 0.0}, 0.5 * radius_m, height_m}};
+      const Percepts near = look(scene, c, 1, known(radius_m, height_m));
+      const msg::Blob* small = find(near, msg::kBlobObject);
+      ASSERT_NE(small, nullptr);
+      EXPECT_NEAR(small->range_m, 1.2 - 0.5 * radius_m, 0.08);
+    }
+  }
+}
+
+// A wall hides the foot of a distant object. Its upper edge gives the range only if its height is known.
+TEST(ObjectSize, AnObjectWhoseFootIsHiddenHasNoRangeUntilItsHeightIsKnown) {
+  for (const Conditions& c : kAttitudes) {
+    Scene scene;
+    scene.rounds = {Round{msg::kColourUnknown, {1.5, 0.0}, 0.3, 0.09},
+                    Round{msg::kColourGreen, {2.4, 0.0}, 0.085, 0.25}};
+    const Percepts unknown_height = look(scene, c);
+    const msg::Blob* object = find(unknown_height, msg::kBlobObject);
+    ASSERT_NE(object, nullptr);
+    EXPECT_NEAR(object->bearing_rad, 0.0, 2.0 * kDegree);
+    EXPECT_TRUE(std::isnan(object->range_m)) << object->range_m;
+    const Percepts known_size = look(scene, c, 1, known(0.085, 0.25));
+    const msg::Blob* same = find(known_size, msg::kBlobObject);
+    ASSERT_NE(same, nullptr);
+    EXPECT_NEAR(same->range_m, 2.4 - 0.085, 0.4);
+  }
+}
+
 TEST(ObjectSize, TheStatedSizeCountsUntilImagesHaveShownAnother) {
   perception::PerceptionConfig config;
   PriorKnowledge stated;
