@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "constrictor/text.hpp"
+#include "navigation/carrying_room.hpp"
+#include "navigation/mapped_line.hpp"
 #include "robot/trajectory_path.hpp"
 
 namespace constrictor {
@@ -140,6 +142,22 @@ double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double y
   const PlanarPose X_MP{p_M, yaw_rad};
   const double along_m = X_MP.to_local(X_MH.p).x();
   return X_MH.to_local(X_MP.to_parent({along_m + lookahead_m, 0.0})).y();
+}
+
+double carrying_shift_m(const TaskInput& input, const PlanarPose& X_HL) {
+  if (!input.map) return 0.0;
+  const FollowLineConfig& config = input.config.follow_line;
+  return shift_from_line_m(*input.map, input.X_MH, X_HL, input.body, input.robot.module_radius_m + config.carry_room_m,
+                           config.carry_ahead_m);
+}
+
+double back_to_line_1_m(const TaskInput& input, SteeringState& state) {
+  const BackToLineConfig& config = input.config.back_to_line;
+  std::optional<PlanarPose> X_HL;
+  if (input.map) X_HL = mapped_line_H(*input.map, input.X_MH, config.lookahead_m, config.aside_m, config.reach_m);
+  const double aside_m = X_HL ? X_HL->p.y() + carrying_shift_m(input, *X_HL) : std::nan("");
+  Steering::observe(input.tick.time_s(), aside_m, input.sway_period_s, state);
+  return Steering(config.steering).curvature(input.tick.dt_s(), state);
 }
 
 double body_course_rad(const TaskInput& input) {

@@ -1,6 +1,7 @@
 // The motions that tasks and direct motions ask control for. Each function replaces the whole desired trajectory.
 #pragma once
 
+#include "navigation/steering.hpp"
 #include "navigation/task.hpp"
 
 namespace constrictor {
@@ -54,6 +55,14 @@ void move_carefully(const TaskInput& input, double curvature_1_m, double directi
 /// [m] lateral error of the straight path in M through `p_M` with heading `yaw_rad`, seen from the head: the lateral
 /// position of the path's point `lookahead_m` beyond the point beside the head. Positive left.
 double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double yaw_rad, double lookahead_m);
+
+/// [m] to the left of a line, at which the head of a body in a U drives so that its arms pass between the obstacles of
+/// the map. `X_HL`: a point of the line ahead with the line's heading, in the head's frame.
+double carrying_shift_m(const TaskInput& input, const PlanarPose& X_HL);
+
+/// [1/m] curvature that leads the head of a robot with an object back to the line of the map, past its obstacles, so
+/// that the camera sees the line; 0 without a line ahead. To be called every tick.
+double back_to_line_1_m(const TaskInput& input, SteeringState& state);
 
 /// [rad] heading in M that the body will have once it is straight: the mean heading of its modules.
 double body_course_rad(const TaskInput& input);

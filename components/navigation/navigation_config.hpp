@@ -66,6 +66,10 @@ struct FollowLineConfig : NavigationSection {
   SlidingSteeringConfig sliding = add_section(sliding, "sliding_mode");
   double carry_limit_1_m = add(carry_limit_1_m, "carry_limit_1_m", 1.0, "1/m", bounds::kCurvature, kWhileRunning,
                                "Bound of the curvature while the robot carries an object");
+  double carry_room_m = add(carry_room_m, "carry_room_m", 0.25, "m", bounds::kLength, kWhileRunning,
+                            "Wanted distance between the arms of the U and obstacles of the map");
+  double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 0.6, "m", bounds::kLength, kWhileRunning,
+                             "Obstacles that are this far before the head count");
   double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, kWhileRunning,
                              "Distance of the head from the end of the line at which the end is reached");
   int end_images = add(end_images, "end_images", 3, "images", {1, 100}, kAtStart,
@@ -172,6 +176,17 @@ struct PregraspConfig : NavigationSection {
                                  "Wanted distance between the manoeuvre and other objects");
 };
 
+/// How a robot with an object steers back to the line of the map that its camera does not see.
+struct BackToLineConfig : NavigationSection {
+  PidGains steering = add(steering, "steering", {3.0, 0.0, 0.0, 1.0, 0.2}, kWhileRunning, "offset of the line [m]");
+  double lookahead_m = add(lookahead_m, "lookahead_m", 0.6, "m", bounds::kLength, kAtStart,
+                           "The head steers to the place of the line so far ahead");
+  double aside_m = add(aside_m, "aside_m", 1.0, "m", bounds::kLength, kAtStart,
+                       "A line that is farther aside is approached slantwise");
+  double reach_m = add(reach_m, "reach_m", 2.0, "m", bounds::kLength, kAtStart,
+                       "A line that begins farther ahead is not steered to");
+};
+
 struct GraspConfig : NavigationSection {
   double wrap_speed_m_s = add(wrap_speed_m_s, "wrap_speed_m_s", 0.34, "m/s", bounds::kSpeed, kAtStart,
                               "Speed of the arc along the body at the beginning; later it is the speed of the body");
@@ -261,6 +276,7 @@ struct NavigationConfig : NavigationSection {
   ObjectTrackerConfig object = add_section(object, "object_tracker");
   GripConfig grip = add_section(grip, "grip");
   FollowLineConfig follow_line = add_section(follow_line, "follow_line");
+  BackToLineConfig back_to_line = add_section(back_to_line, "back_to_line");
   FollowPathConfig follow_path = add_section(follow_path, "follow_path");
   SearchConfig search = add_section(search, "search_object");
   TrackConfig track = add_section(track, "track_object");

@@ -9,10 +9,14 @@ double passing_room_m(const TaskInput& input, const PlanarPose& X_MP, double sid
   double least_m = std::numeric_limits<double>::infinity();
   const auto beside = [&](const Eigen::Vector2d& p_M, double other_radius_m) {
     constexpr double kBegin_m = -0.9, kEnd_m = 0.3, kTurn_m = 0.25;  // of the way, along the course
+    // The head comes back on the other side, as far as this until the object lies in the base of the U. Beside the lane
+    // the turn matters for either side; only the part before the lane tells one side from the other.
+    constexpr double kBack_m = -1.8;
     const Eigen::Vector2d p = X_MP.to_local(p_M);
     const double lane_m = (p - Eigen::Vector2d(std::clamp(p.x(), kBegin_m, kEnd_m), -side * passing_m)).norm();
     const double turn_m = (p - Eigen::Vector2d(kTurn_m, 0.0)).norm();
-    least_m = std::min({least_m, lane_m - other_radius_m, turn_m - other_radius_m});
+    const double back_m = (p - Eigen::Vector2d(std::clamp(p.x(), kBack_m, kBegin_m), side * passing_m)).norm();
+    least_m = std::min({least_m, lane_m - other_radius_m, turn_m - other_radius_m, back_m - other_radius_m});
   };
   for (std::size_t colour = 0; colour < msg::kColourCount; ++colour) {
     const Sighting& other = input.sightings.objects[colour];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "robot/planar.hpp"
@@ -86,7 +87,8 @@ std::optional<double> LineTrail::direction_rad(const msg::RobotPose& pose, bool 
   return wrap_angle(point->outbound_rad + (outbound ? 0.0 : std::numbers::pi));
 }
 
-std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound) const {
+std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool outbound,
+                                             const Reachable& reachable) const {
   constexpr double kBeside_m = 0.5;
   constexpr double kJoinAhead_m = 0.6;
   constexpr double kArrived_m = 0.3;
@@ -96,11 +98,26 @@ std::optional<double> LineTrail::heading_rad(const msg::RobotPose& pose, bool ou
       std::hypot(beyond_.x_m - pose.x_m, beyond_.y_m - pose.y_m) > kArrived_m) {
     return std::atan2(beyond_.y_m - pose.y_m, beyond_.x_m - pose.x_m);
   }
-  if (std::hypot(point->x_m - pose.x_m, point->y_m - pose.y_m) < kBeside_m) return direction_rad(pose, outbound);
+  const auto is_reachable = [&](double x_m, double y_m) { return !reachable || reachable(x_m, y_m); };
+  if (std::hypot(point->x_m - pose.x_m, point->y_m - pose.y_m) < kBeside_m && is_reachable(point->x_m, point->y_m))
+    return direction_rad(pose, outbound);
   const double way = outbound ? kJoinAhead_m : -kJoinAhead_m;
-  const double x_m = point->x_m + way * std::cos(point->outbound_rad);
-  const double y_m = point->y_m + way * std::sin(point->outbound_rad);
-  return std::atan2(y_m - pose.y_m, x_m - pose.x_m);
+  const auto ahead_of = [&](const TrailPoint& joined) {
+    return LinePoint{joined.x_m + way * std::cos(joined.outbound_rad), joined.y_m + way * std::sin(joined.outbound_rad),
+                     true};
+  };
+  LinePoint aim = ahead_of(*point);
+  if (!is_reachable(aim.x_m, aim.y_m)) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const TrailPoint& other : points_) {
+      const LinePoint there = ahead_of(other);
+      const double distance_m = std::hypot(other.x_m - pose.x_m, other.y_m - pose.y_m);
+      if (distance_m >= least_m || !is_reachable(there.x_m, there.y_m)) continue;
+      least_m = distance_m;
+      aim = there;
+    }
+  }
+  return std::atan2(aim.y_m - pose.y_m, aim.x_m - pose.x_m);
 }
 
 void LineTrail::reverse() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cereal/types/vector.hpp>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -45,9 +46,13 @@ class LineTrail {
   /// [rad] in M, direction of the line beside the pose, towards the objects or back; empty: no point of the line is
   /// known.
   [[nodiscard]] std::optional<double> direction_rad(const msg::RobotPose& pose, bool outbound) const;
+  /// Whether the robot can go straight to a point of M.
+  using Reachable = std::function<bool(double x_m, double y_m)>;
   /// [rad] heading in M that leads along the line in that direction. Away from the line: towards a point of the line a
-  /// little further on. Outbound, where the line was lost behind a bend: towards its last visible point.
-  [[nodiscard]] std::optional<double> heading_rad(const msg::RobotPose& pose, bool outbound) const;
+  /// little further on; if obstacles are in the way, towards the nearest such point that is reachable. Outbound, where
+  /// the line was lost behind a bend: towards its last visible point.
+  [[nodiscard]] std::optional<double> heading_rad(const msg::RobotPose& pose, bool outbound,
+                                                  const Reachable& reachable = {}) const;
   /// Turns every direction round: the robot has followed the line the wrong way.
   void reverse();
   [[nodiscard]] bool empty() const { return points_.empty(); }

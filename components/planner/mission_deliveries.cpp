@@ -78,7 +78,10 @@ MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs&
   const DeliveryView view = dropped_object(inputs);
   // The search has found the object, but no image has shown it to the map yet.
   const bool in_time = memory_.active_s - memory_.entered_s < config_.inspect_s;
-  if (in_view && in_time && view.verdict == Delivery::kUnseen) return kInspect;
+  if (in_view && in_time && view.verdict == Delivery::kUnseen) {
+    ++memory_.vain_looks;
+    return kInspect;
+  }
   const bool seen = in_view || view.precise;
   const bool likely = seen && view.verdict == Delivery::kUncertain && view.probably_inside();
   return likely || view.verdict == Delivery::kOnZone ? delivered(inputs)
@@ -92,7 +95,7 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
   const std::uint16_t seen = dropped_object(inputs).handle;  // the map may have given the object a new handle
   const std::uint16_t handle = seen != 0 ? seen : memory_.dropped_handle;
-  memory_.placed.push_back({memory_.object_index, handle, newest, inputs.tick, 0.0});
+  memory_.placed.push_back({memory_.object_index, handle, newest, inputs.tick, 0.0, false});
   memory_.dropped = false;
   memory_.released_tick = -1;
   const std::uint16_t last = memory_.object_index;
@@ -110,6 +113,14 @@ bool MissionPlanner::at_last_object() const {
 
 void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double elapsed_s) {
   constexpr double kNoticed_s = 0.4;
+  const auto touched_since = [&](const PlacedObject& object) {
+    if (!inputs.map || object.handle == 0) return false;
+    const auto count = std::min<std::size_t>(inputs.map->touch_count, msg::kMaxTouches);
+    return std::any_of(inputs.map->touches, inputs.map->touches + count, [&](const msg::TouchPoint& touch) {
+      return touch.handle == object.handle && touch.tick > object.tick;
+    });
+  };
+  for (PlacedObject& object : memory_.placed) object.touched = object.touched || touched_since(object);
   const auto off_zone = [&](PlacedObject& object) {
     const bool outside = placed_object(object, inputs).verdict == Delivery::kOutside;
     object.outside_s = outside ? object.outside_s + elapsed_s : 0.0;
@@ -144,7 +155,7 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
     const auto alike = std::count(config_.sequence.begin(), config_.sequence.end(), config_.sequence[object.index]);
     if (alike > 1 && object.handle == 0) return false;
     const msg::MapObject* landmark = object_of_handle(*inputs.map, object.handle);
-    const bool touched = landmark && landmark->sd_m > config_.seen_sd_m;
+    const bool touched = object.touched || (landmark && landmark->sd_m > config_.seen_sd_m);
     const Delivery verdict = placed_object(object, inputs, true).verdict;
     return touched || verdict == Delivery::kOutside || verdict == Delivery::kUncertain;
   };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/free_way.hpp"
 #include "planner/mission_planner.hpp"
 #include "robot/landmarks.hpp"
 #include "robot/planar.hpp"
@@ -127,7 +128,10 @@ std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& input
     if (distance_m > 0.3 && distance_m < config_.remembered_range_m)
       return wrap_angle(std::atan2(y_m, x_m) - course_rad(pose));
   }
-  const auto heading_rad = memory_.trail.heading_rad(pose, outbound());
+  const auto heading_rad = memory_.trail.heading_rad(pose, outbound(), [&](double x_m, double y_m) {
+    const double room_m = holding() ? config_.carry_room_m : config_.room_m;
+    return !inputs.map || is_free_way(*inputs.map, {pose.x_m, pose.y_m}, {x_m, y_m}, room_m);
+  });
   if (!heading_rad) return std::nullopt;
   return wrap_angle(*heading_rad - course_rad(pose));
 }
@@ -159,24 +163,20 @@ bool MissionPlanner::may_follow(const PlannerInputs& inputs) const {
   return !curled;
 }
 
-// The head of a caught robot swings to and fro while it turns; the object in the U stays where it is.
-bool MissionPlanner::stands_still(const PlannerInputs& inputs) {
-  if (!inputs.pose) return false;
-  double x_m = inputs.pose->x_m, y_m = inputs.pose->y_m;
-  if (inputs.map) {
-    for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
-      if (!landmark.carried) continue;
-      x_m = landmark.x_m;
-      y_m = landmark.y_m;
-    }
-  }
-  return memory_.standstill.notice(x_m, y_m, memory_.active_s, config_.standstill_m, config_.standstill_s);
-}
-
 WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
+  constexpr std::uint8_t kVainLooks = 2;
   WantedTask wanted;
   wanted.goal_id = ++memory_.goals;
   wanted.task = row_of(memory_.state).task;
+  if (memory_.state == kInspect && memory_.vain_looks >= kVainLooks) {
+    // The object is in view and the map does not get its place: it is so near that the image cuts it. Step back.
+    memory_.vain_looks = 0;
+    memory_.steps_back = true;
+    wanted.task = msg::kTaskExplore;
+    wanted.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
+    wanted.parameters.direction = msg::kDirectionBackwards;
+    return wanted;
+  }
   auto& parameters = wanted.parameters;
   parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
   switch (wanted.task) {
@@ -221,72 +221,6 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       break;
   }
   return wanted;
-}
-
-std::uint8_t MissionPlanner::side_for(double turn_rad, const PlannerInputs& inputs) const {
-  constexpr double kEitherWay_rad = 2.0;
-  constexpr double kBeside_m = 1.5;
-  double aside_m = 0.0;  // lateral position of the nearest zone, positive left
-  double nearest_m = kBeside_m;
-  if (!holding() && inputs.map && inputs.pose && std::abs(turn_rad) > kEitherWay_rad) {
-    for (const msg::MapObject& landmark : landmarks_of(*inputs.map)) {
-      const double dx_m = landmark.x_m - inputs.pose->x_m;
-      const double dy_m = landmark.y_m - inputs.pose->y_m;
-      const double distance_m = std::hypot(dx_m, dy_m);
-      if (landmark.kind != msg::kBlobZone || distance_m >= nearest_m) continue;
-      nearest_m = distance_m;
-      aside_m = -std::sin(inputs.pose->body_yaw_rad) * dx_m + std::cos(inputs.pose->body_yaw_rad) * dy_m;
-    }
-  }
-  if (aside_m != 0.0) return aside_m > 0.0 ? msg::kDirectionRight : msg::kDirectionLeft;
-  return turn_rad >= 0.0 ? msg::kDirectionLeft : msg::kDirectionRight;
-}
-
-Move MissionPlanner::move_for(double turn_rad, const PlannerInputs& inputs) const {
-  constexpr double kAhead_rad = 0.25;
-  constexpr double kBend_rad = 0.7;  // for larger angles, turning on the spot is faster
-  const std::uint8_t side = side_for(turn_rad, inputs);
-  // With an object the robot turns in a circle: a zone inside of it would stay beside the robot for ever.
-  if (std::abs(turn_rad) > kBend_rad && holding() && remembered_m(inputs) < config_.turning_room_m)
-    return {msg::kTaskExplore, msg::kDirectionForwards};
-  if (std::abs(turn_rad) > kBend_rad) return {msg::kTaskRotate, side};
-  return {msg::kTaskExplore, std::abs(turn_rad) > kAhead_rad ? side : msg::kDirectionForwards};
-}
-
-// Most moves use the memory: the robot turns towards the remembered place and moves there. The other moves, and all
-// moves without a remembered place, alternate between turning left, turning right, forwards and backwards.
-void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
-  const unsigned attempt = memory_.searches++;
-  memory_.searched_s = memory_.active_s;
-  const auto turn_rad = wanted_turn_rad(inputs);
-  memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12 && !refusals().rejected();
-  Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
-  if (memory_.search_by_memory) {
-    move = move_for(*turn_rad, inputs);
-  } else if (attempt % 2 == 1) {
-    move = {msg::kTaskRotate, attempt % 4 == 1 ? msg::kDirectionLeft : msg::kDirectionRight};
-  }
-  if (holding()) {
-    static_cast<void>(stands_still(inputs));
-    if (const auto away = memory_.standstill.next()) {
-      move = *away;
-      memory_.search_by_memory = false;
-    }
-  }
-  // After a refusal, the same move would be refused again.
-  const bool again =
-      refusals().rejected() && move.task == memory_.refusals.task &&
-      (memory_.refusals.direction == msg::kDirectionNone || move.direction == memory_.refusals.direction);
-  if (again || refusals().barred(move.task, memory_.active_s)) {
-    move = move.task == msg::kTaskExplore ? Move{msg::kTaskRotate, side_for(1.0, inputs)}
-                                          : Move{msg::kTaskExplore, msg::kDirectionForwards};
-  }
-  memory_.search_task = move.task;
-  memory_.direction = move.direction;
-  wanted.task = move.task;
-  wanted.parameters.line_colour = config_.line_colour;
-  wanted.parameters.direction = move.direction;
-  if (move.task == msg::kTaskRotate) wanted.parameters.timeout_s = scaled_s(config_.rotate_s);
 }
 
 }  // namespace constrictor

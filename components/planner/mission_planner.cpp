@@ -88,10 +88,11 @@ void MissionPlanner::enter(MissionState state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
     memory_.standstill.begin();
+    memory_.vain_looks = 0;
     // A new search begins with what it remembers. The count goes on while a search alternates with the following of a
     // line that is lost again at once.
     constexpr double kAnew_s = 10.0;
-    if (memory_.active_s - memory_.searched_s > kAnew_s) memory_.searches = 0;
+    if (memory_.active_s - memory_.searched_s > kAnew_s) memory_.searches = memory_.backed_off = 0;
   }
   if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
   if (state != kFollowLine) memory_.wrong_way = false;
@@ -104,7 +105,7 @@ void MissionPlanner::enter(MissionState state) {
   }
   if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
-  memory_.requested = false;
+  memory_.requested = memory_.steps_back = false;
   memory_.contradiction_s = 0.0;
 }
 
@@ -277,7 +278,7 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
         return std::nullopt;
       return recover(kTurnBack);
     case kTransport:
-      return zone ? std::optional(kDrop) : std::nullopt;
+      return zone && zone_in_reach(inputs) ? std::optional(kDrop) : std::nullopt;
     case kTurnRound:
     case kTurnBack: {
       if (zone && holding()) return kDrop;
@@ -317,8 +318,11 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   const StateRow& row = row_of(memory_.state);
   const bool nears_zone = memory_.state == kDrop && inputs.status && inputs.status->carrying;
   if ((memory_.state == kTransport || nears_zone) && stands_still(inputs)) return recover(row.failed);
-  if (memory_.state == kInspect)
-    return in_state_s > config_.inspect_s ? std::optional(after_inspection(false, inputs)) : std::nullopt;
+  if (memory_.state == kInspect) {
+    if (in_state_s > config_.inspect_s) return after_inspection(false, inputs);
+    const bool away = memory_.steps_back && memory_.active_s - memory_.requested_s > config_.step_back_s;
+    return away ? std::optional(kInspect) : std::nullopt;
+  }
   if (memory_.state == kApproachAnew)
     return in_state_s > config_.approach_anew_s ? std::optional(row.failed) : std::nullopt;
   if (turns(memory_.state))

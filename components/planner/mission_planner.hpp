@@ -50,9 +50,10 @@ struct PlacedObject {
   std::uint16_t newest_handle = 0;  ///< highest handle of the map when it was delivered
   std::int64_t tick = 0;            ///< at which it was delivered
   double outside_s = 0.0;           ///< time for which the map has shown it outside its zone
+  bool touched = false;             ///< the body has touched it since then, and may have pushed it
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(index, handle, newest_handle, tick, outside_s);
+    archive(index, handle, newest_handle, tick, outside_s, touched);
   }
 };
 
@@ -95,6 +96,9 @@ struct MissionMemory {
   double searched_s = 0.0;                       ///< time of the newest one
   std::uint8_t search_task = msg::kTaskNone;     ///< task of the present search: explore or rotate
   Standstill standstill;                         ///< of a search or transport with an object
+  std::uint8_t vain_looks = 0;                   ///< looks at the dropped object after which the map did not have it
+  bool steps_back = false;                       ///< the robot moves away from the dropped object to see it
+  std::uint8_t backed_off = 0;                   ///< moves of this search that backed off from obstacles
   bool wrong_way = false;                        ///< the robot follows the line the wrong way, and will turn round
   bool search_by_memory = false;                 ///< its direction comes from the memory of line, object or zone
   std::uint8_t direction = msg::kDirectionNone;  ///< of the last requested rotate or explore
@@ -112,9 +116,9 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
-            trail, reason, standstill, aside, second_pass, attempts, dropped, dropped_handle, newest_handle,
-            released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind, refused_sequence, refusals,
-            wrong_way, rechecked, turned_back_s);
+            trail, reason, standstill, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
+            dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind,
+            refused_sequence, refusals, wrong_way, rechecked, turned_back_s);
   }
 };
 
@@ -256,6 +260,15 @@ class MissionPlanner {
   /// from the zone, so that the turning body does not hit an object there.
   [[nodiscard]] std::uint8_t side_for(double turn_rad, const PlannerInputs& inputs) const;
   void choose_search(const PlannerInputs& inputs, WantedTask& wanted);
+  /// Whether nothing stands in the way of a robot that drives straight on with an object: neither an obstacle of the
+  /// map nor an object that its U would take along.
+  [[nodiscard]] bool ahead_free(const PlannerInputs& inputs) const;
+  /// Whether an obstacle of the map is so near to the arms of the U that the robot must back off first, and no line is
+  /// in view that would lead it on.
+  [[nodiscard]] bool caught(const PlannerInputs& inputs) const;
+  /// Whether no obstacle of the map stands in the straight way of the held object to its zone. True if the map does not
+  /// have them.
+  [[nodiscard]] bool zone_in_reach(const PlannerInputs& inputs) const;
   /// Whether a robot that should move has stayed at one place for a while.
   [[nodiscard]] bool stands_still(const PlannerInputs& inputs);
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }

@@ -11,6 +11,7 @@ namespace constrictor {
 using enum MissionState;
 
 std::uint8_t MissionPlanner::requested_task() const {
+  if (memory_.steps_back) return msg::kTaskExplore;
   return searches() ? memory_.search_task : row_of(memory_.state).task;
 }
 

@@ -51,6 +51,8 @@ struct PlannerConfig : ParameterSet {
           "A dropped object was seen when the standard deviation of its place in the map is at most this");
   double inspect_s = add(inspect_s, "inspect_s", 20.0, "s", {1, 600}, kAtStart,
                          "Longest time of the look at a dropped object; then the likelier case counts");
+  double step_back_s = add(step_back_s, "step_back_s", 2.0, "s", {0.1, 60}, kAtStart,
+                           "The robot steps back for this time if it is too near to a dropped object to see its place");
   double last_look_s = add(last_look_s, "last_look_s", 1.0, "s", {0, 600}, kAtStart,
                            "Shortest look after the last drop: it shows whether the others are still on their zones");
   double approach_anew_s = add(approach_anew_s, "approach_anew_s", 6.0, "s", {1, 600}, kAtStart,
@@ -73,6 +75,12 @@ struct PlannerConfig : ParameterSet {
                            "The robot turns round after following the line the wrong way for this time");
   double turning_room_m = add(turning_room_m, "turning_room_m", 2.0, "m", {0, 20}, kAtStart,
                               "With an object, the robot turns to a zone that is at least this far away");
+  double room_m = add(room_m, "room_m", 0.2, "m", {0, 5}, kAtStart,
+                      "Distance between obstacles and a free way to the line; nearer ones catch the arms of the U");
+  double carry_room_m = add(carry_room_m, "carry_room_m", 0.3, "m", {0, 5}, kAtStart,
+                            "Distance between obstacles and a free way with an object");
+  double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 0.3, "m", {0, 5}, kAtStart,
+                             "A search with an object backs off from an obstacle so near before the head");
   double standstill_m = add(standstill_m, "standstill_m", 0.3, "m", {0.05, 100}, kAtStart,
                             "A robot with an object stands still while the object stays this near to one place");
   double standstill_s = add(standstill_s, "standstill_s", 30.0, "s", {1, 3600}, kAtStart,

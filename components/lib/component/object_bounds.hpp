@@ -11,8 +11,9 @@ namespace constrictor {
 
 /// An object that the mission demands, as the scene has it.
 struct DemandedObject {
-  std::string key;        ///< of its size in the scenario, for people
-  double radius_m = 0.0;  ///< of the largest circle in its footprint: a U that is too narrow for it holds no side of it
+  std::string key;  ///< of its size in the scenario, for people
+  double radius_m =
+      0.0;  ///< of the largest circle in its footprint; a narrower U cannot hold it, whichever way it turns
 };
 
 /// A component that knows the true scene.

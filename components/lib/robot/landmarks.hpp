@@ -24,6 +24,14 @@ namespace constrictor {
   return nullptr;
 }
 
+/// The object that the body holds; null: none.
+[[nodiscard]] inline const msg::MapObject* carried_object(const msg::FieldMap& map) {
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.carried) return &landmark;
+  }
+  return nullptr;
+}
+
 /// [m] radius of the object or zone; `usual_radius_m` if no image has shown its whole width.
 [[nodiscard]] inline double radius_or(const msg::MapObject& landmark, double usual_radius_m) {
   return std::isfinite(landmark.radius_m) ? landmark.radius_m : usual_radius_m;

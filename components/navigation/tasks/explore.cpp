@@ -9,9 +9,10 @@ struct ExploreState {
   int phase = 0;
   double phase_s = 0.0;
   PlanarPose from;  ///< the head when the phase began
+  SteeringState steering;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, from);
+    archive(phase, phase_s, from, steering);
   }
 };
 
@@ -43,12 +44,16 @@ class Explore : public StatefulTask<ExploreState> {
     state_.phase_s = 0.0;
     state_.from = input.X_MH;
   }
-  static void small_step(const TaskInput& input, const Grip& grip, TaskOutput& output) {
+  void small_step(const TaskInput& input, const Grip& grip, TaskOutput& output) {
     constexpr double kSideways_1_m = 0.8;
     const std::uint8_t direction = input.parameters.direction;
     const double sense = direction == msg::kDirectionBackwards ? -1.0 : 1.0;
     const double bend = direction == msg::kDirectionLeft ? 1.0 : direction == msg::kDirectionRight ? -1.0 : 0.0;
-    move_carefully(input, bend * kSideways_1_m, sense, grip, output);
+    // With an object the camera hardly sees the line beside the way.
+    const bool to_line = grip.carrying && direction == msg::kDirectionForwards && input.map != nullptr &&
+                         input.map->line_colour == input.parameters.line_colour;
+    const double curvature_1_m = to_line ? back_to_line_1_m(input, state_.steering) : bend * kSideways_1_m;
+    move_carefully(input, curvature_1_m, sense, grip, output);
   }
 };
 

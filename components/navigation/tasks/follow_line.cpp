@@ -35,7 +35,7 @@ class FollowLine : public StatefulTask<FollowLineState> {
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
     if (input.line) {
       update_line_tracker(config.line, *input.line, colour, state_.line);
-      if (state_.line.missed == 0) observe(input, input.sway_period_s);
+      if (state_.line.missed == 0) observe(input, shift_m(input, grip));
     }
     if (state_.line.visible && !state_.found) {
       state_.found = true;
@@ -61,13 +61,19 @@ class FollowLine : public StatefulTask<FollowLineState> {
 
  private:
   /// Both laws observe the line, so that either may take over at any time.
-  void observe(const TaskInput& input, double period_s) {
-    const double time_s = input.tick.time_s();
-    Steering::observe(time_s, state_.line.offset_m, period_s, state_.steering);
+  void observe(const TaskInput& input, double shift_m) {
+    const double time_s = input.tick.time_s(), period_s = input.sway_period_s;
     const LineTrackerState& line = state_.line;
-    SlidingSteering::observe(time_s,
-                             {input.config.line.lookahead_m, line.offset_m, line.heading_rad, line.curvature_1_m},
+    const double offset_m = line.offset_m + shift_m;
+    Steering::observe(time_s, offset_m, period_s, state_.steering);
+    SlidingSteering::observe(time_s, {input.config.line.lookahead_m, offset_m, line.heading_rad, line.curvature_1_m},
                              period_s, state_.sliding);
+  }
+  /// [m] to the left of the line, at which the head drives so that the U passes between obstacles.
+  [[nodiscard]] double shift_m(const TaskInput& input, const Grip& grip) const {
+    if (!grip.carrying) return 0.0;
+    const PlanarPose X_HL{{input.config.line.lookahead_m, state_.line.offset_m}, state_.line.heading_rad};
+    return carrying_shift_m(input, X_HL);
   }
   double curvature(const FollowLineConfig& config, const PidGains& gains, double dt_s) {
     if (config.law == kSteerBySlidingMode)

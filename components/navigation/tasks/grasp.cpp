@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "navigation/motions.hpp"
+#include "navigation/steering.hpp"
 
 namespace constrictor {
 namespace {
@@ -17,10 +18,11 @@ struct GraspState : PhaseState {
   PlanarPose before;                                 ///< the head at the previous step
   double slid_m = 0.0;                               ///< distance by which the arc has moved along the body
   int squeezes = 0;
+  SteeringState steering;
   double speed_m_s = 0.0;  ///< smoothed speed of the head along its own axis
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, seated_s, touching, touched_s, before, slid_m, squeezes, speed_m_s);
+    archive(phase, phase_s, seated_s, touching, touched_s, before, slid_m, squeezes, speed_m_s, steering);
   }
 };
 
@@ -82,7 +84,8 @@ class Grasp : public StatefulTask<GraspState> {
   void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const GraspConfig& config = input.config.grasp;
     output.phase = "seat";
-    move_in_shape({"seat", config.seat_m_s}, 0.0, 1.0, open_u(input, grip), input.grip_sense.yaw_joint_count(), output);
+    move_in_shape({"seat", config.seat_m_s}, back_to_line_1_m(input, state_.steering), 1.0, open_u(input, grip),
+                  input.grip_sense.yaw_joint_count(), output);
     keep_upright(input.config, grip, output);
     if (input.grip_sense.apex_force_n(touches_of(grip.handle, input.touches)) >= config.seat_force_n)
       state_.seated_s += input.tick.dt_s();
@@ -142,7 +145,8 @@ class Grasp : public StatefulTask<GraspState> {
     const GraspConfig& config = input.config.grasp;
     output.phase = "check";
     // The robot drives as it does with an object: the base pushes an object that is inside the U, and so touches it.
-    move_in_shape(carrying_pace(input.config), 0.0, 1.0, grip.shape_rad, input.grip_sense.yaw_joint_count(), output);
+    move_in_shape(carrying_pace(input.config), back_to_line_1_m(input, state_.steering), 1.0, grip.shape_rad,
+                  input.grip_sense.yaw_joint_count(), output);
     keep_upright(input.config, grip, output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input, grip);

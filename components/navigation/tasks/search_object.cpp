@@ -47,7 +47,8 @@ class SearchObject : public StatefulTask<SearchState> {
       confirm(input, grip, object, output);
       return;
     }
-    if (object.visible && object.decided && is_named(input)) {
+    // An object of which something hides the foot may be in view for a while before the map has its place.
+    if (object.visible && object.decided && object.known && is_named(input)) {
       output.emit(msg::kEventObjectFound, colour, seen_handle(input, colour));
       enter(input, kConfirm);
       confirm(input, grip, object, output);

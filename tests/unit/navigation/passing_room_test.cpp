@@ -44,11 +44,14 @@ class PassingRoom : public ::testing::Test {
     map_.obstacle_x_m[map_.obstacle_count] = p_M.x();
     map_.obstacle_y_m[map_.obstacle_count++] = p_M.y();
   }
-  /// The lane beside the object from 0.9 m before it to 0.3 m beyond it, and the turn 0.25 m beyond it.
+  /// The lane beside the object from 0.9 m before it to 0.3 m beyond it, the turn 0.25 m beyond it, and on its other
+  /// side the way from 0.9 to 1.8 m before it, on which the wrapping body comes back.
   static double sampled_m(double side, const Eigen::Vector2d& p_P) {
     double least_m = (p_P - Eigen::Vector2d(0.25, 0.0)).norm();
     for (double x_m = -0.9; x_m <= 0.3; x_m += 1e-4)
       least_m = std::min(least_m, (p_P - Eigen::Vector2d(x_m, -side * kPassing_m)).norm());
+    for (double x_m = -1.8; x_m <= -0.9; x_m += 1e-4)
+      least_m = std::min(least_m, (p_P - Eigen::Vector2d(x_m, side * kPassing_m)).norm());
     return least_m;
   }
 };
@@ -77,6 +80,11 @@ TEST_F(PassingRoom, WhatWasFeltAtTheObjectIsTheObject) {
   EXPECT_TRUE(std::isinf(room_m(1.0)));
   feel_at({-0.3, -0.2});
   EXPECT_LT(room_m(1.0), room_m(-1.0)) << "the obstacle stands in the lane on the right";
+}
+
+TEST_F(PassingRoom, AWallOnTheWayBackLeavesMoreRoomOnTheOtherSide) {
+  feel_at({-1.6, -0.3});
+  EXPECT_LT(room_m(-1.0), room_m(1.0)) << "with the object on its right, the body comes back on the right";
 }
 
 }  // namespace

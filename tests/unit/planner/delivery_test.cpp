@@ -192,6 +192,23 @@ TEST_F(DeliveryTest, TheLookGoesOnUntilTheMapHasTheObject) {
   EXPECT_EQ(memory_.state, kTurnRound);
 }
 
+// So near to the object the image cuts it, and no image gives its place to the map.
+TEST_F(DeliveryTest, TheRobotStepsBackFromAnObjectThatIsInViewAndNotInTheMap) {
+  release_green();
+  steps(20);
+  for (int look = 0; look < 2; ++look) {
+    ASSERT_EQ(last_.task, msg::kTaskSearchObject);
+    succeed(msg::kEventObjectFound);
+    step();
+  }
+  EXPECT_EQ(last_.task, msg::kTaskExplore);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionBackwards);
+  const double from_s = time_s_;
+  for (int i = 0; i < 200 && last_.task == msg::kTaskExplore; ++i) step();
+  EXPECT_NEAR(time_s_ - from_s, config_.step_back_s, 0.1);
+  EXPECT_EQ(last_.task, msg::kTaskSearchObject) << "it looks again";
+}
+
 TEST_F(DeliveryTest, AnUncertainObjectThatIsOnlyGlimpsedIsSearchedFor) {
   release_green();
   map_dropped(msg::kColourGreen, 0.1, 0.3);

@@ -127,6 +127,41 @@ TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThat
   }
 }
 
+// The robot touched the green object after it had seen it on its zone. A look from afar has made the map certain since,
+// but it may have been wrong about so small a move.
+TEST_F(PushedObjectTest, ATouchIsRememberedUntilTheRobotHasLookedFromNearBy) {
+  for (const bool touched : {true, false}) {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+    deliver_green_and_release_red();
+    memory_.placed.at(0).handle = 9;
+    map_red_and_green(0.1, 0.03);
+    map_.touch_count = 1;
+    map_.touches[0].handle = touched ? 9 : 1;
+    map_.touches[0].tick = memory_.placed.at(0).tick + 1;
+    step();
+    map_.touch_count = 0;  // touches stay in the map for a few seconds only
+    for (int i = 0; i < 70 && memory_.object_index == 1 && memory_.state == kInspect; ++i) {
+      map_red_and_green(0.1, 0.03);
+      step();
+    }
+    if (!touched) {
+      EXPECT_EQ(memory_.state, kDone);
+      continue;
+    }
+    ASSERT_EQ(memory_.state, kInspect);
+    EXPECT_EQ(memory_.object_index, 0) << "green once more";
+    for (int i = 0; i < 200 && memory_.state == kInspect; ++i) {
+      map_red_and_green(0.7, 0.03);
+      step();
+    }
+    EXPECT_EQ(memory_.state, kSearchObject) << "it lies outside its zone";
+    EXPECT_EQ(memory_.delivered, 2u);
+  }
+}
+
 // The body swept the green object 2.4 m away. The map may still have it on its zone, which no image has shown since.
 TEST_F(PushedObjectTest, AnObjectThatAppearsFarAwayMayBeTheDeliveredOne) {
   for (const bool still_mapped : {true, false}) {

@@ -52,6 +52,30 @@ TEST(LineTrail, KnowsDirectionAndBearingOfACurvedLineBothWays) {
   }
 }
 
+TEST(LineTrail, LeadsRoundAnObstacleToTheNearestPointOfTheLineThatIsReachable) {
+  LineTrail trail;  // the x axis
+  msg::LinePercept line{};
+  line.visible = true;
+  line.lookahead_m = 0.35;
+  msg::RobotPose pose{};
+  for (pose.x_m = 0.0; pose.x_m < 4.0; pose.x_m += 0.05) trail.record(line, pose, true);
+  pose.x_m = 2.0;
+  pose.y_m = -0.4;
+  // A wall that ends at x = 2.5 m stands between the robot and the line.
+  const LineTrail::Reachable beyond_the_wall = [](double x_m, double) { return x_m > 2.5; };
+  EXPECT_EQ(trail.heading_rad(pose, true), trail.direction_rad(pose, true)) << "beside the line without a wall";
+  for (const bool outbound : {true, false}) {
+    const double heading_rad = *trail.heading_rad(pose, outbound, beyond_the_wall);
+    const double x_m = pose.x_m - pose.y_m / std::tan(heading_rad);  // where this heading meets the line
+    EXPECT_GT(heading_rad, 0.0);
+    EXPECT_GT(x_m, 2.5);
+    EXPECT_LT(x_m, 2.85) << "the nearest of the points, which are 0.3 m apart";
+  }
+  const LineTrail::Reachable nowhere = [](double, double) { return false; };
+  pose.y_m = -1.0;
+  EXPECT_EQ(trail.heading_rad(pose, true, nowhere), trail.heading_rad(pose, true)) << "it has to try";
+}
+
 TEST(LineTrail, LeadsToTheLastVisiblePointOfABendAndOverNewGroundOnly) {
   // Along x for 2 m, then a corner of 110 degrees to the left.
   LineTrail trail;
