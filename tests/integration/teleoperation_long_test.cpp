@@ -55,7 +55,7 @@ TEST_F(MidMission, TheMissionSucceedsAlthoughAnOperatorDrivesOnTheLineAndWithThe
 // A person stops to look at something: the planner waits, says why, and goes on by itself.
 TEST_F(MidMission, TheMissionWaitsWhileAPersonHasAuthorityFor20SecondsAndThenSucceeds) {
   constexpr double kHeld_s = 20.0;  // simulated
-  Process launcher = start({"run", "short", "--pace", "2x", "--report", (dir_ / "r").string()});
+  Process launcher = start({"run", "short", "--pace", "1x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", std::chrono::seconds(60))) << launcher.output() << launcher.errors();
   wait_for_event("object pregrasped");
   ASSERT_EQ(command({"task", "start", "explore", "--direction", "backwards"}), exit_status::kOk) << output_;
