@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "robot/map_points.hpp"
+
 namespace constrictor {
 
 double shift_from_line_m(const msg::FieldMap& map, const PlanarPose& X_MH, const PlanarPose& X_HL,
@@ -15,14 +17,12 @@ double shift_from_line_m(const msg::FieldMap& map, const PlanarPose& X_MH, const
     most = most.cwiseMax(p);
   }
   double left_m = kFar_m, right_m = -kFar_m;  // of the line, of the nearest obstacles
-  const auto count = std::min<std::size_t>(map.obstacle_count, msg::kMaxMapObstacles);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector2d p_M(map.obstacle_x_m[i], map.obstacle_y_m[i]);
+  each_obstacle(map, [&](const Eigen::Vector2d& p_M) {
     const Eigen::Vector2d p = X_HL.to_local(X_MH.to_local(p_M));
-    if (p.x() < least.x() || p.x() > most.x() + ahead_m) continue;
+    if (p.x() < least.x() || p.x() > most.x() + ahead_m) return;
     if (p.y() > 0.0) left_m = std::min(left_m, p.y());
     else right_m = std::max(right_m, p.y());
-  }
+  });
   // The bounds of the head's place: the body reaches beyond it on both sides.
   const double most_m = left_m - room_m - (most.y() - head.y());
   const double least_m = right_m + room_m + (head.y() - least.y());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "robot/map_points.hpp"
+
 namespace constrictor {
 
 double passing_room_m(const TaskInput& input, const PlanarPose& X_MP, double side, double passing_m, double radius_m) {
@@ -23,11 +25,10 @@ double passing_room_m(const TaskInput& input, const PlanarPose& X_MP, double sid
     if (other.known && colour != input.parameters.object_colour) beside(other.p_M(), other.radius_m);
   }
   if (!input.map) return least_m;
-  for (std::size_t i = 0; i < std::min<std::size_t>(input.map->obstacle_count, msg::kMaxMapObstacles); ++i) {
+  each_obstacle(*input.map, [&](const Eigen::Vector2d& p_M) {
     constexpr double kOwn = 1.5;  // of the radius: the object itself, where it stood a moment ago
-    const Eigen::Vector2d p_M(input.map->obstacle_x_m[i], input.map->obstacle_y_m[i]);
     if ((p_M - X_MP.p).norm() > kOwn * radius_m) beside(p_M, 0.0);
-  }
+  });
   return least_m;
 }
 

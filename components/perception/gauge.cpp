@@ -54,11 +54,13 @@ std::optional<msg::Blob> Gauge::object(bool on_zone, ObjectSize& measured) const
   blob.cut_left |= left_hidden_;
   blob.cut_right |= right_hidden_;
   const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
-  // Something stands before the foot of the object. Whoever guesses its height then guesses where it is.
-  const bool foot_hidden = !std::isfinite(range_m) && !on_zone && !blob.cut_bottom;
-  const bool size_known = size_.known() || config_.height_stated;
-  if (!std::isfinite(range_m) && (size_known || !foot_hidden)) range_m = range_by_size(blob);
-  if (whole && ends_in_zone(range_m)) range_m = range_by_size(blob);
+  if (!std::isfinite(range_m)) {
+    // If something stands before the foot of the object, whoever guesses its height guesses where it is.
+    const bool foot_hidden = !on_zone && !blob.cut_bottom;
+    if (!foot_hidden || size_.known() || config_.height_stated) range_m = range_by_size(blob);
+  } else if (whole && ends_in_zone(range_m)) {
+    range_m = range_by_width();
+  }
   auto result = finish(blob, left_, right_, range_m);
   if (!result) return result;
   result->height_m = height_m(range_m, blob.cut_top);
@@ -210,15 +212,17 @@ double Gauge::lower_edge_range(double left, double right, bool& cut) const {
 bool Gauge::ends_in_zone(double range_m) const {
   constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
   constexpr double kNarrow = 0.88;
+  return range_m > kFar_m && range_m < kNarrow * range_by_width();  // false for NaN
+}
+
+double Gauge::range_by_width() const {
   const double sine = std::sin(0.5 * (left_ - right_));
-  return size_.known() && range_m > kFar_m && range_m * sine / (1.0 - sine) < kNarrow * size_.radius_m;
+  return size_.known() && sine > 1e-3 ? size_.radius_m * (1.0 / sine - 1.0) : kNan;
 }
 
 double Gauge::range_by_size(const msg::Blob& blob) const {
-  if (size_.known() && !blob.cut_left && !blob.cut_right) {
-    const double sine = std::sin(0.5 * (left_ - right_));
-    if (sine > 1e-3) return size_.radius_m * (1.0 / sine - 1.0);
-  }
+  const double by_width_m = range_by_width();
+  if (std::isfinite(by_width_m) && !blob.cut_left && !blob.cut_right) return by_width_m;
   const double above_m = (size_.known() ? size_.height_m : config_.object_height_m) - camera_.height_m();
   std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
   if (slopes.empty() || above_m < kLeastAbove_m) return kNan;

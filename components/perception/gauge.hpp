@@ -60,6 +60,8 @@ class Gauge {
   /// be.
   [[nodiscard]] bool ends_in_zone(double range_m) const;
 
+  /// [m] horizontal distance of an object of known size by its width; NaN if its size is not known.
+  [[nodiscard]] double range_by_width() const;
   /// [m] horizontal distance of an object of known size: by its width, otherwise by its upper edge; NaN if too little
   /// of it is in view, or if it is not high enough above the camera.
   [[nodiscard]] double range_by_size(const msg::Blob& blob) const;

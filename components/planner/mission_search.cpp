@@ -5,6 +5,7 @@
 #include "planner/free_way.hpp"
 #include "planner/mission_planner.hpp"
 #include "robot/landmarks.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 
@@ -56,8 +57,8 @@ bool MissionPlanner::ahead_free(const PlannerInputs& inputs) const {
   constexpr double kAhead_m = 1.0;
   if (!inputs.map || !inputs.pose) return true;
   const auto& pose = *inputs.pose;
-  const MapPoint head{pose.x_m, pose.y_m};
-  const MapPoint there{pose.x_m + kAhead_m * std::cos(pose.yaw_rad), pose.y_m + kAhead_m * std::sin(pose.yaw_rad)};
+  const Eigen::Vector2d head(pose.x_m, pose.y_m);
+  const Eigen::Vector2d there = head + kAhead_m * along(pose.yaw_rad);
   return is_free_way(*inputs.map, head, there, config_.carry_room_m) &&
          is_free_of_objects(*inputs.map, head, there, config_.carry_room_m);
 }

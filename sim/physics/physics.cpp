@@ -70,10 +70,9 @@ std::optional<DemandedObject> Physics::largest_object(const std::vector<std::uin
   const auto& objects = world_.scenario().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (std::find(colours.begin(), colours.end(), objects[i].colour) == colours.end()) continue;
-    const bool box = objects[i].shape == BodyShape::kBox;
-    const double radius_m = box ? 0.5 * objects[i].size_m.head<2>().minCoeff() : objects[i].size_m.x();
-    if (!largest || radius_m > largest->radius_m)
-      largest = DemandedObject{"objects[" + std::to_string(i) + (box ? "].size_m / 2" : "].radius_m"), radius_m};
+    if (largest && objects[i].inner_radius_m() <= largest->radius_m) continue;
+    const char* key = objects[i].shape == BodyShape::kBox ? "].size_m / 2" : "].radius_m";
+    largest = DemandedObject{"objects[" + std::to_string(i) + key, objects[i].inner_radius_m()};
   }
   return largest;
 }

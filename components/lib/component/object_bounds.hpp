@@ -12,8 +12,8 @@ namespace constrictor {
 /// An object that the mission demands, as the scene has it.
 struct DemandedObject {
   std::string key;  ///< of its size in the scenario, for people
-  double radius_m =
-      0.0;  ///< of the largest circle in its footprint; a narrower U cannot hold it, whichever way it turns
+  /// [m] of the largest circle in its footprint. A narrower U cannot hold it, whichever way it turns.
+  double radius_m = 0.0;
 };
 
 /// A component that knows the true scene.

@@ -69,12 +69,11 @@ Setup setup_of(const HostOptions& options, const ComponentFactory& factory) {
 /// What the components that were built say of the objects of the mission.
 class ObjectSizes {
  public:
-  explicit ObjectSizes(const std::string& mission) {
-    if (const auto read = parse_mission(mission)) colours_ = read->sequence;
-  }
-  void ask(const Component& component) {
-    if (const auto* source = dynamic_cast<const ObjectSource*>(&component)) largest_ = source->largest_object(colours_);
+  void ask(const Component& component, const std::string& mission) {
     if (const auto* holder = dynamic_cast<const ObjectHolder*>(&component)) bound_m_ = holder->largest_radius_m();
+    const auto* source = dynamic_cast<const ObjectSource*>(&component);
+    if (const auto read = source ? parse_mission(mission) : std::nullopt)
+      largest_ = source->largest_object(read->sequence);
   }
   /// Why the robot cannot hold all objects; nothing: it can, or these components do not know.
   [[nodiscard]] std::optional<std::string> violation(const HostOptions& options) const {
@@ -86,7 +85,6 @@ class ObjectSizes {
   }
 
  private:
-  std::vector<std::uint8_t> colours_;
   std::optional<DemandedObject> largest_;
   std::optional<double> bound_m_;
 };
@@ -126,18 +124,17 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
   std::vector<std::string> errors;
   std::set<std::string> reported;
   std::vector<Hello> hellos;
-  std::optional<ObjectSizes> sizes;
+  ObjectSizes sizes;
   for (const auto& factory : factories) {
     Setup setup = setup_of(options, factory);
     try {
-      if (!sizes) sizes.emplace(setup.mission);
       UnconnectedWiring wiring;
       const auto component = factory.create(wiring, setup);
       const auto latency = options.latency_ticks.find(factory.name);
       if (factory.name == options.plant) {
         if (auto why = pace_violation(options, *component); !why.empty()) errors.push_back(std::move(why));
       }
-      sizes->ask(*component);
+      sizes.ask(*component, setup.mission);
       wiring.hello.component = factory.name;
       wiring.hello.timing = component->timing();
       if (latency != options.latency_ticks.end())
@@ -147,9 +144,7 @@ std::vector<std::string> check_components(const HostOptions& options, const std:
       if (reported.insert(error.what()).second) errors.push_back(factory.name + ": " + error.what());
     }
   }
-  if (sizes) {
-    if (auto why = sizes->violation(options)) errors.push_back(std::move(*why));
-  }
+  if (auto why = sizes.violation(options)) errors.push_back(std::move(*why));
   if (auto why = depth_violation(hellos, options.plant)) errors.push_back(std::move(*why));
   return errors;
 }

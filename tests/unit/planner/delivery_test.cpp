@@ -11,13 +11,6 @@ using enum MissionState;
 
 class DeliveryTest : public PlannerTest {
  protected:
-  /// Begins another mission, in a world where nothing is known.
-  void forget() {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
-  }
   /// Green is released, and the task ends.
   void release_green() {
     find_line();

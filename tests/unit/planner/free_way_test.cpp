@@ -12,22 +12,22 @@
 namespace constrictor {
 namespace {
 
-msg::FieldMap with_obstacle(MapPoint p) {
+msg::FieldMap with_obstacle(const Eigen::Vector2d& p) {
   msg::FieldMap map{};
   map.obstacle_count = 1;
-  map.obstacle_x_m[0] = p.x_m;
-  map.obstacle_y_m[0] = p.y_m;
+  map.obstacle_x_m[0] = p.x();
+  map.obstacle_y_m[0] = p.y();
   return map;
 }
 
 /// [m] from a point to the nearest of the points of a straight way that lie at least `begin_m` from its beginning.
-double sampled_m(MapPoint p, MapPoint from, MapPoint to, double begin_m) {
+double sampled_m(const Eigen::Vector2d& p, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double begin_m) {
   double least_m = std::numeric_limits<double>::infinity();
-  const double length_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+  const double length_m = std::hypot(to.x() - from.x(), to.y() - from.y());
   for (double s_m = begin_m; s_m <= length_m; s_m += 1e-3) {
     const double share = s_m / length_m;
-    const double x_m = from.x_m + share * (to.x_m - from.x_m), y_m = from.y_m + share * (to.y_m - from.y_m);
-    least_m = std::min(least_m, std::hypot(p.x_m - x_m, p.y_m - y_m));
+    const double x_m = from.x() + share * (to.x() - from.x()), y_m = from.y() + share * (to.y() - from.y());
+    least_m = std::min(least_m, std::hypot(p.x() - x_m, p.y() - y_m));
   }
   return least_m;
 }
@@ -37,8 +37,8 @@ TEST(FreeWay, IsFreeIfEveryPointOfItIsFarFromTheObstacle) {
   const auto coordinate_m = [&] { return 4.0 * random.uniform() - 2.0; };
   int free = 0, blocked = 0;
   for (int i = 0; i < 2000; ++i) {
-    const MapPoint from{coordinate_m(), coordinate_m()}, to{coordinate_m(), coordinate_m()};
-    const MapPoint p{coordinate_m(), coordinate_m()};
+    const Eigen::Vector2d from{coordinate_m(), coordinate_m()}, to{coordinate_m(), coordinate_m()};
+    const Eigen::Vector2d p{coordinate_m(), coordinate_m()};
     constexpr double kRoom_m = 0.3;
     const double away_m = sampled_m(p, from, to, 0.0);
     const bool is_free = is_free_way(with_obstacle(p), from, to, kRoom_m);
@@ -46,8 +46,8 @@ TEST(FreeWay, IsFreeIfEveryPointOfItIsFarFromTheObstacle) {
       EXPECT_TRUE(is_free);
     }
     // An obstacle beside the beginning does not count: the way leads away from it.
-    const double along_m = ((p.x_m - from.x_m) * (to.x_m - from.x_m) + (p.y_m - from.y_m) * (to.y_m - from.y_m)) /
-                           std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+    const double along_m = ((p.x() - from.x()) * (to.x() - from.x()) + (p.y() - from.y()) * (to.y() - from.y())) /
+                           std::hypot(to.x() - from.x(), to.y() - from.y());
     if (away_m < kRoom_m - 0.01 && along_m > 0.11) {
       EXPECT_FALSE(is_free);
     }
@@ -83,8 +83,8 @@ TEST(FreeWay, TheArmsAreCaughtByWhatStandsBetweenTheObjectAndTheHeadOrJustAhead)
   msg::MapObject held{};
   held.x_m = 1.0;
   held.y_m = 2.0;
-  const MapPoint head{1.0, 2.8};  // the arms point along y
-  const auto caught = [&](MapPoint p) { return is_caught(with_obstacle(p), held, head, 0.25, 0.4); };
+  const Eigen::Vector2d head{1.0, 2.8};  // the arms point along y
+  const auto caught = [&](const Eigen::Vector2d& p) { return is_caught(with_obstacle(p), held, head, 0.25, 0.4); };
   EXPECT_TRUE(caught({1.2, 2.4}));
   EXPECT_TRUE(caught({0.8, 2.4}));
   EXPECT_TRUE(caught({1.0, 3.15})) << "0.35 m before the head";

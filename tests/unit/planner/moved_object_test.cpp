@@ -101,10 +101,7 @@ TEST_F(PushedObjectTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain
 // The robot touched the green object while it carried the red one, so that its place is uncertain at the end.
 TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThatItTouched) {
   for (const double offset_m : {0.1, 0.7}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     deliver_green_and_release_red();
     memory_.placed.at(0).handle = 9;  // as navigation reports it
     for (int i = 0; i < 70 && memory_.object_index == 1; ++i) {
@@ -131,10 +128,7 @@ TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThat
 // but it may have been wrong about so small a move.
 TEST_F(PushedObjectTest, ATouchIsRememberedUntilTheRobotHasLookedFromNearBy) {
   for (const bool touched : {true, false}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     deliver_green_and_release_red();
     memory_.placed.at(0).handle = 9;
     map_red_and_green(0.1, 0.03);
@@ -165,10 +159,7 @@ TEST_F(PushedObjectTest, ATouchIsRememberedUntilTheRobotHasLookedFromNearBy) {
 // The body swept the green object 2.4 m away. The map may still have it on its zone, which no image has shown since.
 TEST_F(PushedObjectTest, AnObjectThatAppearsFarAwayMayBeTheDeliveredOne) {
   for (const bool still_mapped : {true, false}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     deliver_green_and_release_red();
     memory_.placed.at(0).handle = 8;
     for (int i = 0; i < 70 && memory_.state == kInspect && memory_.object_index == 1; ++i) {
@@ -232,10 +223,7 @@ TEST_F(TwinsTest, TheSearchForTheSecondObjectIgnoresTheFirstOnItsZone) {
 // The robot pushed the first object off the zone while it carried the second one there.
 TEST_F(TwinsTest, TheFirstOneIsLookedAtOnceMoreIfItWasTouched) {
   for (const double offset_m : {0.2, 0.7}) {
-    memory_ = {};
-    taken_.clear();
-    pose_ = {};
-    map_ = {};
+    forget();
     deliver_first();
     face(0.0);
     find_line();

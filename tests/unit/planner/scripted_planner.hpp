@@ -33,6 +33,14 @@ class PlannerTest : public ::testing::Test {
     see_line(false);
   }
 
+  /// Begins another mission, in a world where nothing is known.
+  void forget() {
+    memory_ = {};
+    taken_.clear();
+    pose_ = {};
+    map_ = {};
+  }
+
   std::optional<WantedTask> step(const std::vector<msg::TaskEvent>& events = {}) {
     PlannerInputs inputs;
     inputs.time_s = time_s_ += 0.02;
