@@ -54,6 +54,7 @@ NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
   config.drop.steering.kp /= longer;
   config.drop.steering.ki /= longer;
   config.drop.lookahead_m *= longer;
+  config.drop.pivot_m *= longer;
   config.drop.back_m *= longer;
   // It needs more time to straighten and more room, or its turns reach the object.
   config.drop.straighten_rate_rad_s /= longer * longer;

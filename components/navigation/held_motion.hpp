@@ -1,4 +1,5 @@
-// How a held object moves over the ground: its place, and the angle at which the U drives askew.
+// How a held object moves over the ground: its place, the direction of the U, and the angle at which the U drives
+// askew.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,22 +10,25 @@
 
 namespace constrictor {
 
-/// [m] Lateral distance, positive left, from the course of a held object to the point `lookahead_m` ahead of the head
-/// that moves with it. `p_HO`: [m] the object in the frame of the head. The U drives straight, and its direction and
-/// that of its motion differ by `crab_rad`.
-[[nodiscard]] double steered_aside_m(const Eigen::Vector2d& p_HO, double lookahead_m, double crab_rad);
-
 /// The gait shakes the object and the U, so that both are averaged over whole periods of the gait.
 class HeldMotion {
  public:
+  struct Config {
+    double pivot_m = 0.0;   ///< distance from the object to the point of the U that turns do not move sideways
+    double filter_s = 0.0;  ///< time constant of the low-pass on the crab angle
+  };
   /// A new observation. `p_M`: [m] the object's centre in M. `mouth_rad`: direction in M in which the U points.
-  /// `period_s`: of the gait. `filter_s`: time constant of the low-pass on the crab angle.
-  void observe(double time_s, const Eigen::Vector2d& p_M, double mouth_rad, double period_s, double filter_s);
+  /// `period_s`: of the gait.
+  void observe(double time_s, const Eigen::Vector2d& p_M, double mouth_rad, double period_s, const Config& config);
   /// [m] The object's present place in M. The mean over the last period lies half a period back; the way from the mean
   /// over the period before leads from there to the present.
   [[nodiscard]] Eigen::Vector2d place() const;
-  /// [rad] Angle from the direction in which the U points to the direction in which the object moves, positive left. On
-  /// a slope the body slides downhill while it drives, so that the robot drives like a crab. 0 until it is known.
+  /// [rad] The present direction in M in which the U points, found in the same way.
+  [[nodiscard]] double heading_rad() const;
+  /// [rad] Angle from the direction in which the U points to the direction in which it moves, positive left. On a slope
+  /// the body slides downhill while it drives, so that the robot drives like a crab. The object in the base of the U
+  /// swings out when the U turns; that is no crab angle, and the point `pivot_m` before the object does not do so. 0
+  /// until it is known.
   [[nodiscard]] double crab_rad() const { return crab_rad_; }
 
   template <class Archive>
@@ -33,9 +37,11 @@ class HeldMotion {
   }
 
  private:
+  struct Mean {
+    Eigen::Vector2d place{0.0, 0.0}, mouth{0.0, 0.0};  ///< [m] in M; unit vector in M
+  };
   struct Means {
-    Eigen::Vector2d last, before;  ///< [m] over the last period, and over the period before it
-    Eigen::Vector2d mouth;         ///< of the direction of the U, over both
+    Mean last, before;  ///< over the last period, and over the period before it
     bool two_periods;
   };
   [[nodiscard]] Means means() const;

@@ -62,7 +62,7 @@ inline constexpr std::uint8_t kSteerBySlidingMode = 1;  ///< FollowLineConfig::l
 struct FollowLineConfig : NavigationSection {
   std::uint8_t law = add(law, "law", kSteerByPid, {"pid", "sliding_mode"}, kWhileRunning,
                          "Law from what the camera shows of the line to the curvature of the path");
-  PidGains steering = add(steering, "steering", {4.5, 0.4, 1.0, 1.2, 0.2}, kWhileRunning, "line's offset [m]");
+  PidGains steering = add(steering, "steering", {3.0, 0.4, 1.0, 1.2, 0.2}, kWhileRunning, "line's offset [m]");
   SlidingSteeringConfig sliding = add_section(sliding, "sliding_mode");
   double carry_limit_1_m = add(carry_limit_1_m, "carry_limit_1_m", 1.0, "1/m", bounds::kCurvature, kWhileRunning,
                                "Bound of the curvature while the robot carries an object");
@@ -229,16 +229,16 @@ struct GraspConfig : NavigationSection {
 };
 
 struct DropConfig : NavigationSection {
-  PidGains steering = add(steering, "steering", {8.0, 1.0, 0.0, 1.6, 0.2}, kWhileRunning, "distance to the course [m]");
-  double fix_course_m = add(fix_course_m, "fix_course_m", 0.4, "m", bounds::kLength, kWhileRunning,
-                            "The course over the zone stays fixed when the object is nearer to its centre");
-  double brake_m = add(brake_m, "brake_m", 0.04, "m", bounds::kLength, kAtStart,
+  PidGains steering = add(steering, "steering", {3.0, 0.4, 0.0, 1.6, 0.2}, kWhileRunning, "distance to the course [m]");
+  double brake_m = add(brake_m, "brake_m", 0.01, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
   double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
                       "Distance to another object on the zone before which the object is let go");
-  double lookahead_m = add(lookahead_m, "lookahead_m", 0.5, "m", bounds::kLength, kAtStart,
-                           "The robot steers towards the point of the course this far ahead");
-  double crab_filter_s = add(crab_filter_s, "crab_filter_s", 4.0, "s", {0.02, 600.0}, kWhileRunning,
+  double lookahead_m = add(lookahead_m, "lookahead_m", 1.3, "m", bounds::kLength, kWhileRunning,
+                           "Distance from the object to the point before it that is steered to the course");
+  double pivot_m = add(pivot_m, "pivot_m", 0.3, "m", bounds::kLength, kWhileRunning,
+                       "Distance from the object to the point that turns of the U do not move sideways");
+  double crab_filter_s = add(crab_filter_s, "crab_filter_s", 2.0, "s", {0.02, 600.0}, kWhileRunning,
                              "Time constant of the low-pass on the angle between the course and the U on a slope");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,
                               "Angle of each base joint when the U releases the object");

@@ -96,7 +96,10 @@ void MissionPlanner::enter(MissionState state) {
   }
   if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
   if (state != kFollowLine) memory_.wrong_way = false;
-  if (state == kGrasp) memory_.direction_known = true;
+  if (state == kGrasp) {
+    memory_.direction_known = true;
+    memory_.line_ended_s = -1e9;  // the head comes back round the object; that end of the line is behind it then
+  }
   if (row_of(state).holding) {
     memory_.dropped = false;
     memory_.released_tick = -1;

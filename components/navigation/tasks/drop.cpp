@@ -8,8 +8,10 @@
 
 #include "navigation/held_motion.hpp"
 #include "navigation/motions.hpp"
+#include "navigation/pid.hpp"
 #include "navigation/steering.hpp"
 #include "robot/landmarks.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
@@ -18,7 +20,7 @@ struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;  ///< heading in M of the straight course over the zone
   bool course_fixed = false;
-  SteeringState steering;
+  PidState steering;
   HeldMotion object;
   PlanarPose from;                 ///< the head when the phase began
   Eigen::Vector2d p_MO{0.0, 0.0};  ///< where the object was let go
@@ -71,28 +73,24 @@ class Drop : public StatefulTask<DropState> {
       enter(input, kOver);
     }
     output.phase = state_.phase == kApproach ? "approach" : "over the zone";
-    const double period_s = input.sway_period_s;
-    const double now_s = input.tick.time_s();
     const Eigen::Vector2d p_HO = input.grip_sense.held_object_H(input.body, grip.radius_m);
     const double mouth_rad = input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body);
-    state_.object.observe(now_s, input.X_MH.to_parent(p_HO), mouth_rad, period_s, config.crab_filter_s);
+    state_.object.observe(input.tick.time_s(), input.X_MH.to_parent(p_HO), mouth_rad, input.sway_period_s,
+                          {config.pivot_m, config.crab_filter_s});
     const Eigen::Vector2d p_MO = state_.object.place();
-    // The object follows the head and cuts corners. The course is therefore the straight line from the object through
-    // the zone's centre, and the head drives parallel to it. Its lateral distance is the one from the point by which
-    // the robot steers to the object while the U drives along the course, turned by the crab angle.
-    const Eigen::Vector2d d = state_.p_MZ - p_MO;
-    if (d.norm() > config.fix_course_m || !state_.course_fixed) {
+    // The course is a straight line, which stays: the object swings out when the U turns, so that a course that
+    // followed the object's bearing of the zone would turn with it, and the object would pass the zone on an arc.
+    if (!state_.course_fixed) {
+      const Eigen::Vector2d d = state_.p_MZ - p_MO;
       state_.course_rad = std::atan2(d.y(), d.x());
       state_.course_fixed = true;
     }
     const PlanarPose X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
-    const Eigen::Vector2d p_HO_held = input.grip_sense.held_place_H(grip, input.feels);
-    const double aside_m = steered_aside_m(p_HO_held, config.lookahead_m, state_.object.crab_rad());
-    const Eigen::Vector2d p_line = X_MC.to_parent({0.0, aside_m});
-    const Steering steering(config.steering);
-    const double error_m = path_error_m(input.X_MH, p_line, state_.course_rad, config.lookahead_m);
-    steering.observe(now_s, error_m, period_s, state_.steering);
-    move_carefully(input, steering.curvature(input.tick.dt_s(), state_.steering), 1.0, grip, output);
+    // The point that steers lies ahead of the object, in the direction in which the U drives, so that its distance from
+    // the course contains both the object's distance and the angle between drive and course.
+    const double driving_rad = state_.object.heading_rad() + state_.object.crab_rad();
+    const double error_m = -X_MC.to_local(p_MO + config.lookahead_m * along(driving_rad)).y();
+    move_carefully(input, pid_step(config.steering, error_m, input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
     if (input.run_s > time_limit_s(input.parameters))
       return output.abort("the zone was not reached in time");  // the robot still holds the object

@@ -143,6 +143,7 @@ TEST(BodyFit, ALongBodyTurnsByTheSameAngle) {
   EXPECT_NEAR(fitted.rotate.curvature_1_m, tuned.rotate.curvature_1_m / 1.5, 1e-9);
   EXPECT_NEAR(fitted.track.turn_radius_m, tuned.track.turn_radius_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.lookahead_m, tuned.drop.lookahead_m * 1.5, 1e-9);
+  EXPECT_NEAR(fitted.drop.pivot_m, tuned.drop.pivot_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.clear_m, tuned.drop.clear_m * 2.25, 1e-9);
   EXPECT_NEAR(fitted.grip.hold_torque_nm, 4.0, 1e-9) << "two thirds of the joint's torque";
   const double between_nm = fitted_to(robot_with(28), tuned).grip.hold_torque_nm;

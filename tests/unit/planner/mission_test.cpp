@@ -65,6 +65,26 @@ TEST_F(PlannerTest, AMissionWithoutObjectsNeedsNoEventAtTheEndOfTheLine) {
   EXPECT_EQ(memory_.state, kDone);
 }
 
+// The robot drove beside the line for ten seconds, because it had passed the end of the line before the object.
+TEST_F(PlannerTest, ARobotThatGraspsBehindTheEndOfTheLineFollowsTheLineBackAtOnce) {
+  find_line();
+  drive(4.0);
+  succeed(msg::kEventEndOfLine);
+  ASSERT_EQ(memory_.state, kSearchObject);
+  succeed(msg::kEventObjectFound);
+  ASSERT_EQ(memory_.state, kTrackObject);
+  succeed(msg::kEventObjectReached);
+  succeed(msg::kEventObjectPregrasped);
+  see_nothing();
+  status_.carrying = true;
+  face(std::numbers::pi);
+  succeed(msg::kEventObjectGrasped);
+  ASSERT_EQ(memory_.state, kSearchLine);
+  see_line(true);
+  steps(4);
+  EXPECT_EQ(memory_.state, kTransport);
+}
+
 TEST_F(PlannerTest, IgnoresZonesDistantObjectsAndObjectsOfAnotherColour) {
   find_line();
   see(msg::kColourRed, msg::kBlobObject, 0.6);
