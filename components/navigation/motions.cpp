@@ -151,12 +151,17 @@ double carrying_shift_m(const TaskInput& input, const PlanarPose& X_HL) {
                            config.carry_ahead_m);
 }
 
-double back_to_line_1_m(const TaskInput& input, SteeringState& state) {
+double mapped_offset_m(const TaskInput& input, double lookahead_m) {
   const BackToLineConfig& config = input.config.back_to_line;
   std::optional<PlanarPose> X_HL;
-  if (input.map) X_HL = mapped_line_H(*input.map, input.X_MH, config.lookahead_m, config.aside_m, config.reach_m);
-  const double aside_m = X_HL ? X_HL->p.y() + carrying_shift_m(input, *X_HL) : std::nan("");
-  Steering::observe(input.tick.time_s(), aside_m, input.sway_period_s, state);
+  if (input.map) X_HL = mapped_line_H(*input.map, input.X_MH, lookahead_m, config.aside_m, config.reach_m);
+  return X_HL ? X_HL->p.y() + carrying_shift_m(input, *X_HL) : std::nan("");
+}
+
+double back_to_line_1_m(const TaskInput& input, SteeringState& state) {
+  const BackToLineConfig& config = input.config.back_to_line;
+  const double offset_m = mapped_offset_m(input, config.lookahead_m);
+  Steering::observe(input.tick.time_s(), offset_m, input.sway_period_s, state);
   return Steering(config.steering).curvature(input.tick.dt_s(), state);
 }
 

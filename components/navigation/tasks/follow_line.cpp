@@ -18,9 +18,10 @@ struct FollowLineState {
   double travelled_m = 0.0;  ///< largest distance from the start, for the progress
   PlanarPose start;          ///< the head at the start
   double curvature_1_m = 0.0;
+  bool by_map = false;  ///< the last image did not show the line, and the map did
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(line, steering, sliding, found, travelled_m, start, curvature_1_m);
+    archive(line, steering, sliding, found, travelled_m, start, curvature_1_m, by_map);
   }
 };
 
@@ -35,14 +36,19 @@ class FollowLine : public StatefulTask<FollowLineState> {
     if (grip.carrying) gains.limit = config.follow_line.carry_limit_1_m;
     if (input.line) {
       update_line_tracker(config.line, *input.line, colour, state_.line);
-      if (state_.line.missed == 0) observe(input, shift_m(input, grip));
+      if (state_.line.missed == 0) {
+        observe(input, shift_m(input, grip));
+      } else {
+        state_.by_map = observe_map(input, grip);
+      }
     }
     if (state_.line.visible && !state_.found) {
       state_.found = true;
       output.emit(msg::kEventLineFound, colour);
     }
-    // While the line is out of view for a moment, the last curvature continues.
-    if (state_.line.missed == 0) state_.curvature_1_m = curvature(config.follow_line, gains, input.tick.dt_s());
+    // While the line is out of view for a moment and the map does not have it, the last curvature continues.
+    if (state_.line.missed == 0 || state_.by_map)
+      state_.curvature_1_m = curvature(config.follow_line, gains, input.tick.dt_s());
     move_on(input, state_.curvature_1_m, 1.0, grip, output);
     output.phase = state_.line.visible ? "follow" : state_.found ? "coast" : "look";
     const double away_m = (input.X_MH.p - state_.start.p).norm();
@@ -68,6 +74,15 @@ class FollowLine : public StatefulTask<FollowLineState> {
     Steering::observe(time_s, offset_m, period_s, state_.steering);
     SlidingSteering::observe(time_s, {input.config.line.lookahead_m, offset_m, line.heading_rad, line.curvature_1_m},
                              period_s, state_.sliding);
+  }
+  /// With an object, the line of the map stands for one that an image does not show: the head swings, and where it sees
+  /// the line only at the end of a swing, it measures offsets on one side only, which hardly turn the robot.
+  bool observe_map(const TaskInput& input, const Grip& grip) {
+    if (!grip.carrying || !input.map || input.map->line_colour != input.parameters.line_colour) return false;
+    const double offset_m = mapped_offset_m(input, input.config.line.lookahead_m);
+    if (!std::isfinite(offset_m)) return false;
+    Steering::observe(input.tick.time_s(), offset_m, input.sway_period_s, state_.steering);
+    return true;
   }
   /// [m] to the left of the line, at which the head drives so that the U passes between obstacles.
   [[nodiscard]] double shift_m(const TaskInput& input, const Grip& grip) const {

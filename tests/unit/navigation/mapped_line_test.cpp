@@ -70,6 +70,19 @@ TEST(MappedLine, TheWayToALineThatBeginsAheadCountsAsALine) {
   EXPECT_NEAR(crossed->p.y(), 0.0, 0.03);
 }
 
+// A robot with an object drove out of bends, because the map had no line for a head that points across it.
+TEST(MappedLine, LeadsAHeadThatPointsOutOfABendBackToTheLine) {
+  const msg::FieldMap map = straight_line();
+  for (const double side : {1.0, -1.0}) {
+    for (const double yaw_rad : {0.9, 1.2}) {  // the head is on the line and points away from it
+      const auto X_HL = mapped_line_H(map, {{2.0, 0.0}, side * yaw_rad}, kLookahead_m, kAside_m, kReach_m);
+      ASSERT_TRUE(X_HL) << yaw_rad;
+      EXPECT_NEAR(X_HL->p.norm(), kLookahead_m, 0.11) << yaw_rad;
+      EXPECT_NEAR(X_HL->yaw_rad, -side * yaw_rad, 1e-9) << yaw_rad;
+    }
+  }
+}
+
 TEST(MappedLine, FollowsABend) {
   msg::FieldMap map{};  // a circle of radius 2 m round (0, 2), from the origin to the left
   for (double angle = 0.0; angle < 1.5; angle += 0.025) add(map, 2.0 * std::sin(angle), 2.0 - 2.0 * std::cos(angle));
