@@ -166,13 +166,6 @@ Eigen::Vector2d GripSense::held_object_H(const std::vector<PlanarPose>& body, do
   return p_HA + (radius_m + robot_.module_radius_m) * mouth(body);
 }
 
-Eigen::Vector2d GripSense::held_place_H(const Grip& grip, bool feels) const {
-  msg::JointState posture{};
-  for (std::size_t k = 0; k < yaw_joints_.size(); ++k) posture.position_rad[yaw_joints_[k]] = grip.shape_rad[k];
-  for (const std::size_t j : base_joints_) posture.position_rad[j] -= grip.side * margin_rad(feels);
-  return held_object_H(planar_body(robot_, posture), grip.radius_m);
-}
-
 std::array<double, msg::kMaxJoints> GripSense::hold_shape(const msg::JointState& joints, const Grip& grip,
                                                           bool feels) const {
   const double side = grip.side;

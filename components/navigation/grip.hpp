@@ -82,9 +82,6 @@ class GripSense {
   [[nodiscard]] Eigen::Vector2d held_object_H(const std::vector<PlanarPose>& body, double radius_m) const;
   /// [rad] Direction in the head's frame to which the mouth of the U points, which is the mean direction of its arms.
   [[nodiscard]] double mouth_rad(const std::vector<PlanarPose>& body) const;
-  /// [m] Place of the held object in the head's frame while the U drives straight. The object keeps the base from
-  /// closing by the margin of hold_shape.
-  [[nodiscard]] Eigen::Vector2d held_place_H(const Grip& grip, bool feels) const;
   /// Posture that holds the object, by yaw joint: the measured angles, with each joint of the base closed by a margin
   /// more, which is larger for a robot that does not feel touches. Its U would close visibly without the object. If the
   /// object keeps the base open, the joints beside it close until the arms are parallel.
