@@ -17,23 +17,25 @@ class HeldMotion {
     double pivot_m = 0.0;   ///< distance from the object to the point of the U that turns do not move sideways
     double filter_s = 0.0;  ///< time constant of the low-pass on the crab angle
   };
-  /// A new observation. `p_M`: [m] the object's centre in M. `mouth_rad`: direction in M in which the U points.
-  /// `period_s`: of the gait.
-  void observe(double time_s, const Eigen::Vector2d& p_M, double mouth_rad, double period_s, const Config& config);
-  /// [m] The object's present place in M. The mean over the last period lies half a period back; the way from the mean
-  /// over the period before leads from there to the present.
-  [[nodiscard]] Eigen::Vector2d place() const;
-  /// [rad] The present direction in M in which the U points, found in the same way.
-  [[nodiscard]] double heading_rad() const;
-  /// [rad] Angle from the direction in which the U points to the direction in which it moves, positive left. On a slope
-  /// the body slides downhill while it drives, so that the robot drives like a crab. The object in the base of the U
-  /// swings out when the U turns; that is no crab angle, and the point `pivot_m` before the object does not do so. 0
-  /// until it is known.
-  [[nodiscard]] double crab_rad() const { return crab_rad_; }
+  /// The present motion.
+  struct Motion {
+    /// [m] The object's place in M. The mean over the last period lies half a period back; the way from the mean over
+    /// the period before leads from there to the present.
+    Eigen::Vector2d place;
+    double heading_rad;  ///< direction in M in which the U points, found in the same way
+    /// From the direction in which the U points to the direction in which it moves, positive left. On a slope the body
+    /// slides downhill while it drives, so that the robot drives like a crab. The object in the base of the U swings
+    /// out when the U turns; that is no crab angle, and the point `pivot_m` before the object does not do so. 0 until
+    /// it is known.
+    double crab_rad;
+  };
+  /// The motion after a new observation. `p_M`: [m] the object's centre in M. `mouth_rad`: direction in M in which the
+  /// U points. `period_s`: of the gait.
+  Motion observe(double time_s, const Eigen::Vector2d& p_M, double mouth_rad, double period_s, const Config& config);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples_, period_s_, crab_rad_, crab_s_);
+    archive(samples_, crab_rad_, crab_s_);
   }
 
  private:
@@ -44,9 +46,8 @@ class HeldMotion {
     Mean last, before;  ///< over the last period, and over the period before it
     bool two_periods;
   };
-  [[nodiscard]] Means means() const;
+  [[nodiscard]] Means means(double period_s) const;
   std::deque<std::array<double, 4>> samples_;  ///< (time [s], x, y [m] in M, mouth [rad]), oldest first
-  double period_s_ = 0.0;
   double crab_rad_ = 0.0;
   double crab_s_ = 0.0;  ///< time for which the crab angle has been measured
 };

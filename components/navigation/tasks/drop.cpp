@@ -19,7 +19,6 @@ namespace {
 struct DropState : PhaseState {
   Eigen::Vector2d p_MZ{0.0, 0.0};
   double course_rad = 0.0;  ///< heading in M of the straight course over the zone
-  bool course_fixed = false;
   PidState steering;
   HeldMotion object;
   PlanarPose from;                 ///< the head when the phase began
@@ -27,8 +26,7 @@ struct DropState : PhaseState {
   SteeringState back;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, course_fixed, steering, object, from, p_MO.x(), p_MO.y(),
-            back);
+    archive(phase, phase_s, p_MZ.x(), p_MZ.y(), course_rad, steering, object, from, p_MO.x(), p_MO.y(), back);
   }
 };
 
@@ -46,8 +44,12 @@ class Drop : public StatefulTask<DropState> {
       return "no drop zone of this colour was seen yet";
     return "";
   }
-  void start(const TaskInput& input, Grip&) override {
+  // The course is a straight line, which stays: the object swings out when the U turns, so that a course that followed
+  // the object's bearing of the zone would turn with it, and the object would pass the zone on an arc.
+  void start(const TaskInput& input, Grip& grip) override {
     state_.p_MZ = input.sightings.zones[input.parameters.drop_zone_colour].p_M();
+    const Eigen::Vector2d d = state_.p_MZ - object_M(input, grip);
+    state_.course_rad = std::atan2(d.y(), d.x());
   }
 
   void step(const TaskInput& input, Grip& grip, TaskOutput& output) override {
@@ -64,6 +66,11 @@ class Drop : public StatefulTask<DropState> {
     state_.from = input.X_MH;
   }
 
+  /// [m] The held object's centre in M.
+  [[nodiscard]] static Eigen::Vector2d object_M(const TaskInput& input, const Grip& grip) {
+    return input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m));
+  }
+
   void drive(const TaskInput& input, Grip& grip, TaskOutput& output) {
     const DropConfig& config = input.config.drop;
     const Sighting& zone = input.sightings.zones[input.parameters.drop_zone_colour];
@@ -73,22 +80,15 @@ class Drop : public StatefulTask<DropState> {
       enter(input, kOver);
     }
     output.phase = state_.phase == kApproach ? "approach" : "over the zone";
-    const Eigen::Vector2d p_HO = input.grip_sense.held_object_H(input.body, grip.radius_m);
     const double mouth_rad = input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body);
-    state_.object.observe(input.tick.time_s(), input.X_MH.to_parent(p_HO), mouth_rad, input.sway_period_s,
-                          {config.pivot_m, config.crab_filter_s});
-    const Eigen::Vector2d p_MO = state_.object.place();
-    // The course is a straight line, which stays: the object swings out when the U turns, so that a course that
-    // followed the object's bearing of the zone would turn with it, and the object would pass the zone on an arc.
-    if (!state_.course_fixed) {
-      const Eigen::Vector2d d = state_.p_MZ - p_MO;
-      state_.course_rad = std::atan2(d.y(), d.x());
-      state_.course_fixed = true;
-    }
+    const HeldMotion::Motion object =
+        state_.object.observe(input.tick.time_s(), object_M(input, grip), mouth_rad, input.sway_period_s,
+                              {config.pivot_m, config.crab_filter_s});
+    const Eigen::Vector2d& p_MO = object.place;
     const PlanarPose X_MC{state_.p_MZ, state_.course_rad};  // the course through the zone's centre
     // The point that steers lies ahead of the object, in the direction in which the U drives, so that its distance from
     // the course contains both the object's distance and the angle between drive and course.
-    const double driving_rad = state_.object.heading_rad() + state_.object.crab_rad();
+    const double driving_rad = object.heading_rad + object.crab_rad;
     const double error_m = -X_MC.to_local(p_MO + config.lookahead_m * along(driving_rad)).y();
     move_carefully(input, pid_step(config.steering, error_m, input.tick.dt_s(), state_.steering), 1.0, grip, output);
     const double past_m = X_MC.to_local(p_MO).x();
@@ -122,7 +122,7 @@ class Drop : public StatefulTask<DropState> {
     output.phase = "stop";
     stand(grip, output);
     if (state_.phase_s < kSlides_s) return;
-    state_.p_MO = input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m));
+    state_.p_MO = object_M(input, grip);
     grip.carrying = false;  // on purpose: no loss is reported
     enter(input, kOpen);
   }
@@ -150,8 +150,7 @@ class Drop : public StatefulTask<DropState> {
     const auto shape = input.grip_sense.open_shape(grip.side, config.open_angle_rad);
     // The object must stay in the middle between the arms, or an arm pushes it: on a slope the body slides downhill
     // while it backs off. The arms bend towards the object, like a path that leads there.
-    const PlanarPose X_MU{input.X_MH.to_parent(input.grip_sense.held_object_H(input.body, grip.radius_m)),
-                          input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
+    const PlanarPose X_MU{object_M(input, grip), input.X_MH.yaw_rad + input.grip_sense.mouth_rad(input.body)};
     const Steering steering(config.back_steering);
     steering.observe(input.tick.time_s(), X_MU.to_local(state_.p_MO).y(), input.sway_period_s, state_.back);
     move_in_shape({"leave", config.back_m_s}, steering.curvature(input.tick.dt_s(), state_.back), -1.0, shape,

@@ -17,7 +17,7 @@ constexpr HeldMotion::Config kConfig{kPivot_m, 4.0};
 constexpr double kSpeed_m_s = 0.13;
 
 struct Drive {
-  HeldMotion motion;
+  HeldMotion::Motion motion{};
   Eigen::Vector2d place{0.0, 0.0};  ///< without the sway
   double mouth_rad = 0.0;
 };
@@ -26,6 +26,7 @@ struct Drive {
 /// crab_rad`. The object lies behind the pivot, and all sway with the gait.
 Drive drive(double mouth_rad, double crab_rad, double turn_rad_s, double duration_s) {
   constexpr double kStep_s = 0.02;
+  HeldMotion held;
   Drive result;
   result.mouth_rad = mouth_rad;
   Eigen::Vector2d pivot(0.0, 0.0);
@@ -35,7 +36,7 @@ Drive drive(double mouth_rad, double crab_rad, double turn_rad_s, double duratio
     result.mouth_rad += kStep_s * turn_rad_s;
     result.place = pivot - kPivot_m * along(result.mouth_rad);
     const Eigen::Vector2d sway = turned({0.0, 0.06 * std::sin(phase)}, result.mouth_rad);
-    result.motion.observe(t, result.place + sway, result.mouth_rad + 0.2 * std::cos(phase), kPeriod_s, kConfig);
+    result.motion = held.observe(t, result.place + sway, result.mouth_rad + 0.2 * std::cos(phase), kPeriod_s, kConfig);
   }
   return result;
 }
@@ -44,9 +45,9 @@ TEST(HeldMotion, FindsPlaceHeadingAndCrabAngleUnderTheSwayOfTheGait) {
   for (const double mouth_rad : {0.3, 3.1, -2.0}) {
     for (const double crab_rad : {0.0, 0.25, -0.15}) {
       const Drive end = drive(mouth_rad, crab_rad, 0.0, 20.0);
-      EXPECT_NEAR(end.motion.crab_rad(), crab_rad, 0.02) << "mouth " << mouth_rad;
-      EXPECT_NEAR(wrap_angle(end.motion.heading_rad() - mouth_rad), 0.0, 0.01) << "mouth " << mouth_rad;
-      EXPECT_LT((end.motion.place() - end.place).norm(), 0.01) << "mouth " << mouth_rad << ", crab " << crab_rad;
+      EXPECT_NEAR(end.motion.crab_rad, crab_rad, 0.02) << "mouth " << mouth_rad;
+      EXPECT_NEAR(wrap_angle(end.motion.heading_rad - mouth_rad), 0.0, 0.01) << "mouth " << mouth_rad;
+      EXPECT_LT((end.motion.place - end.place).norm(), 0.01) << "mouth " << mouth_rad << ", crab " << crab_rad;
     }
   }
 }
@@ -54,17 +55,18 @@ TEST(HeldMotion, FindsPlaceHeadingAndCrabAngleUnderTheSwayOfTheGait) {
 TEST(HeldMotion, ATurnOfTheUIsNoCrabAngle) {
   for (const double turn_rad_s : {0.15, -0.15}) {
     const Drive end = drive(0.5, 0.0, turn_rad_s, 12.0);
-    EXPECT_NEAR(end.motion.crab_rad(), 0.0, 0.03) << turn_rad_s;
-    EXPECT_NEAR(wrap_angle(end.motion.heading_rad() - end.mouth_rad), 0.0, 0.03) << turn_rad_s;
-    EXPECT_LT((end.motion.place() - end.place).norm(), 0.02) << turn_rad_s;
+    EXPECT_NEAR(end.motion.crab_rad, 0.0, 0.03) << turn_rad_s;
+    EXPECT_NEAR(wrap_angle(end.motion.heading_rad - end.mouth_rad), 0.0, 0.03) << turn_rad_s;
+    EXPECT_LT((end.motion.place - end.place).norm(), 0.02) << turn_rad_s;
   }
 }
 
 TEST(HeldMotion, AUThatStandsHasNoCrabAngle) {
-  HeldMotion motion;
+  HeldMotion held;
+  HeldMotion::Motion motion{};
   for (double t = 0.0; t < 10.0; t += 0.02)
-    motion.observe(t, {0.002 * std::sin(5.0 * t), 0.002 * std::cos(7.0 * t)}, 0.4, kPeriod_s, kConfig);
-  EXPECT_EQ(motion.crab_rad(), 0.0);
+    motion = held.observe(t, {0.002 * std::sin(5.0 * t), 0.002 * std::cos(7.0 * t)}, 0.4, kPeriod_s, kConfig);
+  EXPECT_EQ(motion.crab_rad, 0.0);
 }
 
 }  // namespace
