@@ -151,6 +151,10 @@ double carrying_shift_m(const TaskInput& input, const PlanarPose& X_HL) {
                            config.carry_ahead_m);
 }
 
+bool maps_wanted_line(const TaskInput& input) {
+  return input.map != nullptr && input.map->line_colour == input.parameters.line_colour;
+}
+
 double mapped_offset_m(const TaskInput& input, double lookahead_m) {
   const BackToLineConfig& config = input.config.back_to_line;
   std::optional<PlanarPose> X_HL;

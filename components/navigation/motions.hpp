@@ -60,6 +60,9 @@ double path_error_m(const PlanarPose& X_MH, const Eigen::Vector2d& p_M, double y
 /// the map. `X_HL`: a point of the line ahead with the line's heading, in the head's frame.
 double carrying_shift_m(const TaskInput& input, const PlanarPose& X_HL);
 
+/// Whether the line of the map is the one that the goal names.
+bool maps_wanted_line(const TaskInput& input);
+
 /// [m] Lateral offset, positive left, at which the line of the map lies `lookahead_m` ahead of the head of a robot with
 /// an object, with the shift by which its arms pass between obstacles; NaN if the map has no line there.
 double mapped_offset_m(const TaskInput& input, double lookahead_m);

@@ -50,8 +50,7 @@ class Explore : public StatefulTask<ExploreState> {
     const double sense = direction == msg::kDirectionBackwards ? -1.0 : 1.0;
     const double bend = direction == msg::kDirectionLeft ? 1.0 : direction == msg::kDirectionRight ? -1.0 : 0.0;
     // With an object the camera hardly sees the line beside the way.
-    const bool to_line = grip.carrying && direction == msg::kDirectionForwards && input.map != nullptr &&
-                         input.map->line_colour == input.parameters.line_colour;
+    const bool to_line = grip.carrying && direction == msg::kDirectionForwards && maps_wanted_line(input);
     const double curvature_1_m = to_line ? back_to_line_1_m(input, state_.steering) : bend * kSideways_1_m;
     move_carefully(input, curvature_1_m, sense, grip, output);
   }

@@ -78,7 +78,7 @@ class FollowLine : public StatefulTask<FollowLineState> {
   /// With an object, the line of the map stands for one that an image does not show: the head swings, and where it sees
   /// the line only at the end of a swing, it measures offsets on one side only, which hardly turn the robot.
   bool observe_map(const TaskInput& input, const Grip& grip) {
-    if (!grip.carrying || !input.map || input.map->line_colour != input.parameters.line_colour) return false;
+    if (!grip.carrying || !maps_wanted_line(input)) return false;
     const double offset_m = mapped_offset_m(input, input.config.line.lookahead_m);
     if (!std::isfinite(offset_m)) return false;
     Steering::observe(input.tick.time_s(), offset_m, input.sway_period_s, state_.steering);

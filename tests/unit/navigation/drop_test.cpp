@@ -10,9 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "component/data_path.hpp"
-#include "navigation/task.hpp"
 #include "robot/planar.hpp"
+#include "task_setting.hpp"
 
 namespace constrictor {
 namespace {
@@ -30,10 +29,11 @@ class DropRun {
     grip_.carrying = true;
     grip_.side = side;
     grip_.radius_m = kDropped_m;
-    grip_.shape_rad = sense_.open_shape(side, config_.grip.base_angle_rad);
+    grip_.shape_rad = setting_.sense.open_shape(side, setting_.config.grip.base_angle_rad);
     take(grip_.shape_rad);
-    sightings_.zones[msg::kColourGreen].known = true;  // its centre is the object's place
-    tick_.period_ns = 20'000'000;
+    setting_.sightings.zones[msg::kColourGreen].known = true;  // its centre is the object's place
+    setting_.sway_period_s = 1.0 / kSway_hz;
+    setting_.parameters.drop_zone_colour = msg::kColourGreen;
     task_->start(input(), grip_);
   }
 
@@ -41,13 +41,13 @@ class DropRun {
   /// from its centre when it is let go, positive beyond it. `other_m`: place along x of another object, from the
   /// centre.
   double let_go_m(std::optional<double> other_m) {
-    Sighting& zone = sightings_.zones[msg::kColourGreen];
+    Sighting& zone = setting_.sightings.zones[msg::kColourGreen];
     zone.x_m = 1.0;
     zone.radius_m = 0.5;
     task_->start(input(), grip_);
     if (other_m) add_object({1.0 + *other_m, 0.0});
-    while (phase_ != "stop" && tick_.index < 2000) {
-      X_MU_.p.x() += kBacking_m_s * tick_.period_s();
+    while (phase_ != "stop" && setting_.tick.index < 2000) {
+      X_MU_.p.x() += kBacking_m_s * setting_.tick.period_s();
       step();
     }
     return X_MU_.p.x() - 1.0;
@@ -62,17 +62,17 @@ class DropRun {
   /// [m] Drives over the zone, 2.5 m ahead, and returns how far beside its centre the object is let go.
   double aside_m(const Drive& drive) {
     constexpr double kDrives_m_s = 0.165, kBefore_m = 0.3;  // turns of the U swing the object about the pivot
-    Sighting& zone = sightings_.zones[msg::kColourGreen];
+    Sighting& zone = setting_.sightings.zones[msg::kColourGreen];
     zone.x_m = 2.5;
     zone.radius_m = 0.4;
     task_->start(input(), grip_);
     double heading_rad = drive.heading_rad, curvature_1_m = 0.0;
     Eigen::Vector2d pivot = kBefore_m * along(heading_rad);
-    while (phase_ != "stop" && tick_.index < 2000) {
-      const double way_m = kDrives_m_s * tick_.period_s();
+    while (phase_ != "stop" && setting_.tick.index < 2000) {
+      const double way_m = kDrives_m_s * setting_.tick.period_s();
       heading_rad += drive.turns * (curvature_1_m - drive.bias_1_m) * way_m;
       pivot += way_m * along(heading_rad + drive.crab_rad);
-      const double phase_rad = 2.0 * std::numbers::pi * kSway_hz * tick_.time_s();
+      const double phase_rad = 2.0 * std::numbers::pi * kSway_hz * setting_.tick.time_s();
       X_MU_ = {pivot - kBefore_m * along(heading_rad) +
                    0.05 * std::sin(phase_rad) * along(heading_rad + 0.5 * std::numbers::pi),
                heading_rad + 0.2 * std::cos(phase_rad)};
@@ -82,7 +82,7 @@ class DropRun {
   }
   /// Adds another object to the map. `p_M`: [m] its place; the robot lets its own go at the origin and backs off to -x.
   void add_object(const Eigen::Vector2d& p_M) {
-    msg::MapObject& object = map_.objects[map_.object_count++];
+    msg::MapObject& object = setting_.map.objects[setting_.map.object_count++];
     object.handle = 9;
     object.x_m = p_M.x();
     object.y_m = p_M.y();
@@ -90,7 +90,7 @@ class DropRun {
   }
   /// Runs until the robot has backed off.
   void run() {
-    while (phase_ != "straighten" && tick_.index < 2000) step();
+    while (phase_ != "straighten" && setting_.tick.index < 2000) step();
   }
   [[nodiscard]] const std::string& phase() const { return phase_; }
   /// [m] by which the robot has backed off.
@@ -101,30 +101,25 @@ class DropRun {
 
  private:
   [[nodiscard]] PlanarPose head() const {
-    const PlanarPose X_HU{sense_.held_object_H(body_, kDropped_m), sense_.mouth_rad(body_)};
+    const PlanarPose X_HU{setting_.sense.held_object_H(setting_.body, kDropped_m),
+                          setting_.sense.mouth_rad(setting_.body)};
     const double yaw_rad = X_MU_.yaw_rad - X_HU.yaw_rad;
     return {X_MU_.p - turned(X_HU.p, yaw_rad), yaw_rad};
   }
-  [[nodiscard]] TaskInput input() const {
-    msg::TaskParameters parameters{};
-    parameters.drop_zone_colour = msg::kColourGreen;
-    return {tick_,      robot_, config_, sense_, parameters, head(), nullptr, false,
-            sightings_, &map_,  joints_, body_,  touches_,   true,   true,    1.0 / kSway_hz};
-  }
+  [[nodiscard]] TaskInput input() const { return setting_.input(head()); }
   void take(const std::array<double, msg::kMaxJoints>& shape_rad) {
-    const std::vector<std::size_t> yaw = robot_.yaw_joints();
-    joints_.joint_count = static_cast<std::uint16_t>(robot_.joints.size());
-    for (std::size_t k = 0; k < yaw.size(); ++k) joints_.position_rad[yaw[k]] = shape_rad[k];
-    body_ = planar_body(robot_, joints_);
+    const std::vector<std::size_t> yaw = setting_.robot.yaw_joints();
+    setting_.joints.joint_count = static_cast<std::uint16_t>(setting_.robot.joints.size());
+    for (std::size_t k = 0; k < yaw.size(); ++k) setting_.joints.position_rad[yaw[k]] = shape_rad[k];
+    setting_.body = planar_body(setting_.robot, setting_.joints);
   }
   /// [1/m] One step of the task; returns the curvature of the path.
   double step() {
-    ++tick_.index;
-    tick_.time_ns += tick_.period_ns;
+    setting_.next_tick();
     TaskOutput output;
     task_->step(input(), grip_, output);
     phase_ = output.phase;
-    if (phase_ == "open") take(sense_.open_shape(grip_.side, config_.drop.open_angle_rad));
+    if (phase_ == "open") take(setting_.sense.open_shape(grip_.side, setting_.config.drop.open_angle_rad));
     const double curvature_1_m = output.desired.points[0].curvature_1_m;
     if (phase_ != "back off") return curvature_1_m;
     EXPECT_LT(output.desired.speed_m_s, 0.0) << "it drives backwards";
@@ -133,24 +128,16 @@ class DropRun {
       most_1_m_ = std::max(most_1_m_, curvature_1_m);
       least_1_m_ = std::min(least_1_m_, curvature_1_m);
     }
-    backed_m_ += kBacking_m_s * tick_.dt_s();
+    backed_m_ += kBacking_m_s * setting_.tick.dt_s();
     const double phase_rad = 2.0 * std::numbers::pi * kSway_hz * back_s;
     X_MU_.p = {-backed_m_, aside_m_ + sway_m_ * std::sin(phase_rad)};
     return curvature_1_m;
   }
 
   const double aside_m_, sway_m_;
-  const RobotModel robot_ = load_robot(data_path("components/lib/robot/mamba.yaml"));
-  const NavigationConfig config_;
-  const GripSense sense_{robot_, config_.grip};
+  TaskSetting setting_;
   const std::unique_ptr<Task> task_ = make_task(msg::kTaskDrop);
-  Tick tick_;
   Grip grip_;
-  ObjectTrackerState sightings_;
-  msg::FieldMap map_{};
-  msg::JointState joints_{};
-  std::vector<PlanarPose> body_;
-  const std::vector<Touch> touches_;
   PlanarPose X_MU_;  ///< at the place of a held object; x points to the mouth
   double backed_m_ = 0.0, most_1_m_ = -1e9, least_1_m_ = 1e9;
   std::string phase_;

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <vector>
 
-#include "component/data_path.hpp"
-#include "navigation/task.hpp"
 #include "robot/planar.hpp"
+#include "task_setting.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,17 +17,15 @@ class LineFollower {
   explicit LineFollower(bool carries) {
     grip_.carrying = carries;
     grip_.side = 1.0;
-    tick_.period_ns = 20'000'000;
-    parameters_.line_colour = msg::kColourBlue;
-    map_.line_colour = msg::kColourBlue;
-    task_->start(input(nullptr), grip_);
+    setting_.parameters.line_colour = setting_.map.line_colour = msg::kColourBlue;
+    task_->start(setting_.input(), grip_);
   }
   /// The line of the map leaves the origin in the direction `heading_rad`.
   void map_line(double heading_rad) {
     for (int i = 0; i < 40; ++i) {
       const Eigen::Vector2d p = 0.05 * i * along(heading_rad);
-      map_.line_x_m[map_.line_point_count] = p.x();
-      map_.line_y_m[map_.line_point_count++] = p.y();
+      setting_.map.line_x_m[setting_.map.line_point_count] = p.x();
+      setting_.map.line_y_m[setting_.map.line_point_count++] = p.y();
     }
   }
   /// [1/m] The path's curvature after `images` images, which show the line at this offset; NaN: they do not show it.
@@ -37,37 +33,23 @@ class LineFollower {
     msg::LinePercept line{};
     line.colour = msg::kColourBlue;
     line.visible = std::isfinite(offset_m);
-    line.lookahead_m = config_.line.lookahead_m;
+    line.lookahead_m = setting_.config.line.lookahead_m;
     line.offset_m = offset_m;
     line.heading_rad = line.curvature_1_m = line.visible ? 0.0 : std::numeric_limits<double>::quiet_NaN();
     double curvature = 0.0;
     for (int i = 0; i < images; ++i) {
-      ++tick_.index;
-      tick_.time_ns += tick_.period_ns;
+      setting_.next_tick();
       TaskOutput output;
-      task_->step(input(&line), grip_, output);
+      task_->step(setting_.input({}, &line), grip_, output);
       curvature = output.desired.points[0].curvature_1_m;
     }
     return curvature;
   }
 
  private:
-  [[nodiscard]] TaskInput input(const msg::LinePercept* line) const {
-    return {tick_,      robot_, config_, sense_, parameters_, PlanarPose{}, line, false,
-            sightings_, &map_,  joints_, body_,  touches_,    true,         true, 0.9};
-  }
-  const RobotModel robot_ = load_robot(data_path("components/lib/robot/mamba.yaml"));
-  const NavigationConfig config_;
-  const GripSense sense_{robot_, config_.grip};
+  TaskSetting setting_;
   const std::unique_ptr<Task> task_ = make_task(msg::kTaskFollowLine);
-  msg::TaskParameters parameters_{};
-  Tick tick_;
   Grip grip_;
-  ObjectTrackerState sightings_;
-  msg::FieldMap map_{};
-  msg::JointState joints_{};
-  std::vector<PlanarPose> body_;
-  const std::vector<Touch> touches_;
 };
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "component/data_path.hpp"
+#include "task_setting.hpp"
 
 namespace constrictor {
 namespace {
@@ -13,26 +13,15 @@ namespace {
 class PassingRoom : public ::testing::Test {
  protected:
   static constexpr double kPassing_m = 0.17, kRadius_m = 0.085;
-  RobotModel robot_ = load_robot(data_path("components/lib/robot/mamba.yaml"));
-  NavigationConfig config_;
-  GripSense sense_{robot_, config_.grip};
-  Tick tick_{};
-  msg::FieldMap map_{};
-  msg::JointState joints_{};
-  ObjectTrackerState sightings_;
-  std::vector<PlanarPose> body_;
-  std::vector<Touch> touches_;
+  TaskSetting setting_;
   const PlanarPose X_MP_{{2.0, 1.0}, 0.5};  // the object, with the course of the passing line
 
   double room_m(double side) {
-    msg::TaskParameters parameters{};
-    parameters.object_colour = msg::kColourGreen;
-    const TaskInput input{tick_,      robot_, config_, sense_, parameters, {},   nullptr, false,
-                          sightings_, &map_,  joints_, body_,  touches_,   true, true,    1.0};
-    return passing_room_m(input, X_MP_, side, kPassing_m, kRadius_m);
+    setting_.parameters.object_colour = msg::kColourGreen;
+    return passing_room_m(setting_.input(), X_MP_, side, kPassing_m, kRadius_m);
   }
   void stand_at(std::uint8_t colour, const Eigen::Vector2d& p_P, double radius_m) {
-    Sighting& other = sightings_.objects[colour];
+    Sighting& other = setting_.sightings.objects[colour];
     const Eigen::Vector2d p_M = X_MP_.to_parent(p_P);
     other.known = true;
     other.x_m = p_M.x();
@@ -41,8 +30,8 @@ class PassingRoom : public ::testing::Test {
   }
   void feel_at(const Eigen::Vector2d& p_P) {
     const Eigen::Vector2d p_M = X_MP_.to_parent(p_P);
-    map_.obstacle_x_m[map_.obstacle_count] = p_M.x();
-    map_.obstacle_y_m[map_.obstacle_count++] = p_M.y();
+    setting_.map.obstacle_x_m[setting_.map.obstacle_count] = p_M.x();
+    setting_.map.obstacle_y_m[setting_.map.obstacle_count++] = p_M.y();
   }
   /// The lane beside the object from 0.9 m before it to 0.3 m beyond it, the turn 0.25 m beyond it, and on its other
   /// side the way from 0.9 to 1.8 m before it, on which the wrapping body comes back.
@@ -67,10 +56,10 @@ TEST_F(PassingRoom, IsTheLeastDistanceToOtherObjectsAndFeltObstacles) {
     for (const double side : {1.0, -1.0}) {
       stand_at(msg::kColourRed, p_P, 0.06);
       EXPECT_NEAR(room_m(side), sampled_m(side, p_P) - 0.06, 1e-3);
-      sightings_ = {};
+      setting_.sightings = {};
       feel_at(p_P);
       EXPECT_NEAR(room_m(side), sampled_m(side, p_P), 1e-3);
-      map_.obstacle_count = 0;
+      setting_.map.obstacle_count = 0;
     }
   }
 }
