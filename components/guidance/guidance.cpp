@@ -71,8 +71,14 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   const double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
   const double yaw_sd = imu ? config_.yaw_sd_rad_sqrt_s : config_.unmeasured_yaw_sd_rad_sqrt_s;
   const Eigen::Vector3d noise(variance, variance, yaw_sd * yaw_sd * input.dt_s);
-  guidance::PoseFilter(state_.filter).predict(step.step_m, step.turn_rad, noise.asDiagonal());
-  remember(tick.index, step.step_m, step.turn_rad);
+  const double scale_sd = input.ground.empty() ? config_.unmeasured_scale_sd : config_.scale_sd;
+  const guidance::ScaledDrift drift{step.drift_m, 1.0 - std::exp(-input.dt_s / config_.scale_s), scale_sd};
+  guidance::PoseFilter filter(state_.filter);
+  if (const int loaded = state_.field.carrying ? 1 : 0; loaded != state_.scale_loaded) {
+    state_.scale_loaded = loaded;
+    filter.forget_scale(scale_sd);
+  }
+  remember(tick.index, filter.predict(step.step_m, step.turn_rad, noise.asDiagonal(), drift), step.turn_rad);
 }
 
 void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {

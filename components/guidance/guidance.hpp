@@ -20,9 +20,10 @@ struct GuidanceState {
   bool imu_silent = false;     ///< the IMU has been silent for kSilent_s
   guidance::OdometryState odometry;
   GroundSlope slope;
+  int scale_loaded = -1;  ///< the scale of the filter is that of a robot with (1) or without (0) an object; -1: unknown
   guidance::PoseFilterState filter;
-  /// Poses from dead reckoning alone, one per tick, the oldest first. They give the motion between two ticks,
-  /// independently of later corrections by the filter.
+  /// Poses from dead reckoning, with the scale of the filter, one per tick, the oldest first. They give the motion
+  /// between two ticks, independently of later corrections by the filter.
   std::vector<std::int64_t> track_tick;
   std::vector<double> track_x_m, track_y_m, track_yaw_rad;
   guidance::FieldState field;
@@ -30,8 +31,8 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, filter, track_tick, track_x_m, track_y_m,
-            track_yaw_rad, field, body_turn_rad, parameters);
+    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, scale_loaded, filter, track_tick, track_x_m,
+            track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
   }
 };
 

@@ -215,7 +215,8 @@ HeadStep advance_odometry(OdometryState& state, const RobotModel& model, const O
     if (total_n > 0.0) result.slip_m_s += s.sideways_load_n / total_n * std::abs(s.direction.dot(velocity) + s.own_m_s);
   }
   // The shape gives the offset of the head from the centre of mass.
-  result.step_m = velocity * input.dt_s - (centre_after - centre_before);
+  result.drift_m = velocity * input.dt_s;
+  result.step_m = result.drift_m - (centre_after - centre_before);
   const Eigen::Vector2d in_head = turned(velocity, -half_turn);
   state.vx_m_s = in_head.x();
   state.vy_m_s = in_head.y();

@@ -58,6 +58,9 @@ struct OdometryInput {
 
 struct HeadStep {
   Eigen::Vector2d step_m{0.0, 0.0};  ///< motion of the head; x is its heading in the middle of the step
+  /// The motion of the centre of mass in the same frame: the part of step_m that friction decides. The rest of it
+  /// follows from the joints.
+  Eigen::Vector2d drift_m{0.0, 0.0};
   double turn_rad = 0.0;
   double slip_m_s = 0.0;  ///< mean sideways slip of the modules, weighted by load
 };

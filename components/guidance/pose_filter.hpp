@@ -16,14 +16,24 @@ inline Eigen::Vector2d to_parent(const PlanarPose& pose, const Eigen::Vector2d& 
   return pose.p + turned(p, pose.yaw_rad);
 }
 
-/// State of the filter: x, y, yaw of the head in M, then x, y of each landmark; and its covariance, row-major.
+/// State of the filter: x, y, yaw of the head in M, the scale of its drift, then x, y of each landmark; and its
+/// covariance, row-major.
 struct PoseFilterState {
-  std::vector<double> mean{0.0, 0.0, 0.0};
-  std::vector<double> covariance = std::vector<double>(9, 0.0);
+  std::vector<double> mean{0.0, 0.0, 0.0, 1.0};
+  std::vector<double> covariance = std::vector<double>(16, 0.0);
   template <class Archive>
   void serialize(Archive& archive) {
     archive(mean, covariance);
   }
+};
+
+/// The part of a motion whose size odometry only estimates, because friction and what the robot pushes decide it: the
+/// true part is the estimated one times a scale that hardly changes, and that the filter estimates. The scale is a
+/// first-order Gauss-Markov process with the mean 1.
+struct ScaledDrift {
+  Eigen::Vector2d step_m{0.0, 0.0};  ///< in the head's frame; a part of the whole step
+  double forget = 0.0;               ///< share of what is known about the scale that is forgotten in this step
+  double scale_sd = 0.0;             ///< standard deviation of the scale where nothing is known about it
 };
 
 /// Simultaneous localisation and mapping with full covariance. Landmarks are numbered from 0; removing one renumbers
@@ -34,12 +44,18 @@ class PoseFilter {
 
   [[nodiscard]] PlanarPose pose() const { return {{state_.mean[0], state_.mean[1]}, state_.mean[2]}; }
   [[nodiscard]] Eigen::Matrix3d pose_covariance() const;
-  [[nodiscard]] std::size_t landmark_count() const { return (state_.mean.size() - 3) / 2; }
+  [[nodiscard]] std::size_t landmark_count() const { return (state_.mean.size() - kFirst) / 2; }
+  [[nodiscard]] double scale() const { return state_.mean[kScale]; }
+  [[nodiscard]] double scale_sd() const;
   [[nodiscard]] Eigen::Vector2d landmark(std::size_t index) const;
   [[nodiscard]] Eigen::Matrix2d landmark_covariance(std::size_t index) const;
 
-  /// Motion `step_m` in the head's frame, turn `turn_rad`; `noise` is their covariance.
-  void predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise);
+  /// Motion `step_m` in the head's frame, of which `drift` is a part, and turn `turn_rad`; `noise` is the covariance of
+  /// their other errors. Returns the motion with the drift scaled.
+  Eigen::Vector2d predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise,
+                          const ScaledDrift& drift = {});
+  /// Forgets what is known about the scale, because the robot has taken or left a load.
+  void forget_scale(double sd);
 
   /// Whether a percept at `z_m` in the head's frame shows this landmark: the squared Mahalanobis distance, and the
   /// natural logarithm of the determinant of the innovation's covariance [m4]. The landmark with the least sum is the
@@ -60,11 +76,13 @@ class PoseFilter {
   void observe_line(double residual_m, const Eigen::Vector2d& normal, const Eigen::Vector2d& arm_m, double variance_m2);
 
  private:
+  static constexpr std::size_t kScale = 3, kFirst = 4;  ///< places in the state: of the scale, of the first landmark
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(state_.mean.size()); }
   [[nodiscard]] Eigen::Map<Vector> mean() const { return {state_.mean.data(), size()}; }
   [[nodiscard]] Eigen::Map<Matrix> covariance() const { return {state_.covariance.data(), size(), size()}; }
+  [[nodiscard]] static Eigen::Index at(std::size_t index) { return static_cast<Eigen::Index>(kFirst + 2 * index); }
   void correct(const Matrix& H, const Vector& innovation, const Matrix& noise);
   void observation(std::size_t index, Matrix& H, Eigen::Vector2d& expected) const;
 

@@ -68,7 +68,7 @@ struct FollowLineConfig : NavigationSection {
                                "Bound of the curvature while the robot carries an object");
   double carry_room_m = add(carry_room_m, "carry_room_m", 0.25, "m", bounds::kLength, kWhileRunning,
                             "Wanted distance between the arms of the U and obstacles of the map");
-  double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 0.6, "m", bounds::kLength, kWhileRunning,
+  double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 1.2, "m", bounds::kLength, kWhileRunning,
                              "Obstacles that are this far before the head count");
   double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, kWhileRunning,
                              "Distance of the head from the end of the line at which the end is reached");

@@ -256,38 +256,5 @@ TEST(Odometry, ARobotAtRestMeasuresNoFriction) {
   EXPECT_EQ(state.friction_across, 0.3);
 }
 
-TEST(PoseFilter, LandmarksSeenAgainCorrectTheDrift) {
-  // A square of 2 m. The odometry takes each step for 5 % too long and each turn for 2 % too far.
-  PoseFilterState state;
-  PoseFilter filter(state);
-  const Eigen::Vector2d landmarks[] = {{1.0, 0.8}, {1.5, -0.6}};
-  const Eigen::Matrix2d noise = 0.02 * 0.02 * Eigen::Matrix2d::Identity();
-  PlanarPose truth;
-  filter.add(landmarks[0], noise);
-  filter.add(landmarks[1], noise);
-  for (int side = 0; side < 4; ++side) {
-    for (int k = 0; k < 100; ++k) {
-      const Eigen::Vector2d step(0.02, 0.0);
-      const double turn = k < 50 ? std::numbers::pi / 100.0 : 0.0;
-      const Eigen::Vector2d p = to_parent(truth, turned(step, 0.5 * turn));
-      truth = {p, wrap_angle(truth.yaw_rad + turn)};
-      filter.predict(1.05 * step, 1.02 * turn, Eigen::Vector3d(1e-5, 1e-6, 1e-5).asDiagonal());
-    }
-  }
-  const double before = (filter.pose().p - truth.p).norm();
-  const double spread = filter.pose_covariance().trace();
-  for (int k = 0; k < 5; ++k) {
-    for (std::size_t i = 0; i < 2; ++i) filter.observe(i, truth.to_local(landmarks[i]), noise);
-  }
-  EXPECT_GT(before, 0.1);
-  EXPECT_LT((filter.pose().p - truth.p).norm(), 0.02);
-  EXPECT_LT(std::abs(wrap_angle(filter.pose().yaw_rad - truth.yaw_rad)), 0.02);
-  EXPECT_LT(filter.pose_covariance().trace(), spread);
-  const Eigen::Vector2d second = filter.landmark(1);
-  filter.remove(0);
-  EXPECT_EQ(filter.landmark_count(), 1u);
-  EXPECT_EQ(filter.landmark(0), second);
-}
-
 }  // namespace
 }  // namespace constrictor
