@@ -55,7 +55,7 @@ struct GuidanceConfig : ParameterSet {
                             "Standard deviation of the estimated velocity, added at any speed");
   double correlation_s = add(correlation_s, "odometry.correlation_s", 0.7, "s", {0.01, 10.0}, kAtStart,
                              "Time over which the error of the estimated velocity stays the same");
-  double scale_sd = add(scale_sd, "odometry.scale_sd", 0.08, "", {0.0, 1.0}, kWhileRunning,
+  double scale_sd = add(scale_sd, "odometry.scale_sd", 0.03, "", {0.0, 1.0}, kWhileRunning,
                         "Standard deviation of the factor between the true and the estimated drift");
   double unmeasured_scale_sd = add(unmeasured_scale_sd, "odometry.unmeasured_scale_sd", 0.25, "", {0.0, 1.0},
                                    kWhileRunning, "The same without measured forces of the ground");

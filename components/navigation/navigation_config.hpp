@@ -230,7 +230,7 @@ struct GraspConfig : NavigationSection {
 
 struct DropConfig : NavigationSection {
   PidGains steering = add(steering, "steering", {3.0, 0.4, 0.0, 1.6, 0.2}, kWhileRunning, "distance to the course [m]");
-  double brake_m = add(brake_m, "brake_m", 0.01, "m", bounds::kLength, kAtStart,
+  double brake_m = add(brake_m, "brake_m", 0.03, "m", bounds::kLength, kAtStart,
                        "Distance that the object slides after the wave stops");
   double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
                       "Distance to another object on the zone before which the object is let go");

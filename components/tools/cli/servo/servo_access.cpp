@@ -17,7 +17,7 @@
 namespace constrictor::cli {
 namespace {
 
-constexpr double kSlack_s = 0.02;                              // no control loop waits for these commands
+constexpr double kSlack_s = 0.1;                               // no control loop waits for these commands
 constexpr auto kBetweenOrders = std::chrono::milliseconds(5);  // noise may damage one, and not the next one
 
 std::map<std::uint16_t, dynamixel::ServoModel> load_models() {
