@@ -16,11 +16,11 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --help) sed -n '2,8s/^# //p' "$0"; exit 0 ;;
     --output)
-      if [ $# -lt 2 ]; then echo "bench: --output needs a folder" >&2; exit 2; fi
+      if [ $# -lt 2 ]; then echo "bench: --output needs a folder" >&2; exit 64; fi
       output=$2; shift ;;
     --no-peers) peers=0 ;;
     --no-mission) mission=0 ;;
-    *) echo "bench: there is no option \"$1\"; accepted: --output DIR, --no-peers, --no-mission" >&2; exit 2 ;;
+    *) echo "bench: there is no option \"$1\"; accepted: --output DIR, --no-peers, --no-mission" >&2; exit 64 ;;
   esac
   shift
 done

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 if [ "${1:-}" = --help ]; then sed -n '2,7s/^# //p' "$0"; exit 0; fi
 seconds=${1:-30}
 case "$seconds" in
-  ''|*[!0-9]*) echo "bench_dashboard: SECONDS: found \"$seconds\", accepted a whole number" >&2; exit 2 ;;
+  ''|*[!0-9]*) echo "bench_dashboard: SECONDS: found \"$seconds\", accepted a whole number" >&2; exit 64 ;;
 esac
 ./scripts/build.sh --tests bench_dashboard constrictor dashboard
 

@@ -29,7 +29,7 @@ for argument in "$@"; do
     --tests) choose tests; tests=true ;;
     -*)
       echo "build: there is no option \"$argument\"; accepted: ${groups[*]/#/--} --all --tests" >&2
-      exit 2
+      exit 64
       ;;
     *) targets+=("$argument") ;;
   esac

@@ -10,14 +10,14 @@ case "${1:-}" in
   "") ;;
   --check) options=(--dry-run --Werror) ;;
   --help) sed -n '2,4s/^# //p' "$0"; exit 0 ;;
-  *) echo "format: there is no option \"$1\"; accepted: --check" >&2; exit 2 ;;
+  *) echo "format: there is no option \"$1\"; accepted: --check" >&2; exit 64 ;;
 esac
 
 # Another version of clang-format would format some lines in another way.
 version=$(clang-format --version 2>/dev/null | sed -n 's/.*version \([0-9]*\).*/\1/p')
 if [ "$version" != 14 ]; then
   echo "format: clang-format 14 is needed, found \"${version:-none}\" (Debian 12: scripts/setup.sh tools)" >&2
-  exit 2
+  exit 69
 fi
 
 find idl components sim tests examples \( -name '*.cpp' -o -name '*.hpp' \) -print0 |

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ "${1:-}" = --help ]; then sed -n '2,5s/^# //p' "$0"; exit 0; fi
-if [ $# -gt 0 ]; then echo "package: there is no option \"$1\"; accepted: --help" >&2; exit 2; fi
+if [ $# -gt 0 ]; then echo "package: there is no option \"$1\"; accepted: --help" >&2; exit 64; fi
 
 scripts/setup.sh all package
 scripts/build.sh --all

@@ -97,7 +97,7 @@ for group in "${@:-core}"; do
     package) packages+=("${package[@]}") ;;
     boot) packages+=("${boot[@]}") ;;
     --help) sed -n '2,16s/^# //p' "$0"; exit 0 ;;
-    *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 2 ;;
+    *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 64 ;;
   esac
 done
 mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)

@@ -13,7 +13,7 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --help) sed -n '2,7s/^# //p' "$0"; exit 0 ;;
     --output)
-      if [ $# -lt 2 ]; then echo "validate_physics: --output needs a folder" >&2; exit 2; fi
+      if [ $# -lt 2 ]; then echo "validate_physics: --output needs a folder" >&2; exit 64; fi
       output=$(realpath -m "$2")
       shift 2
       ;;

@@ -33,9 +33,9 @@ TEST(CorePrograms, TheScriptsAcceptEachGroup) {
   for (const auto& [name, group] : cli::program_groups()) groups.insert(group);
   ASSERT_TRUE(groups.contains("hardware"));
   Process setup({source_path("scripts/setup.sh").string(), "no_such_group"});
-  EXPECT_EQ(setup.wait(30s), 2);
+  EXPECT_EQ(setup.wait(30s), exit_status::kUsage);
   Process build({source_path("scripts/build.sh").string(), "--no-such-group"});
-  EXPECT_EQ(build.wait(30s), 2);
+  EXPECT_EQ(build.wait(30s), exit_status::kUsage);
   for (const auto& group : groups) {
     EXPECT_NE(setup.errors().find(" " + group + ","), std::string::npos) << setup.errors();
     EXPECT_NE(build.errors().find(" --" + group + " "), std::string::npos) << build.errors();
