@@ -190,16 +190,30 @@ void GripSense::hold_starts(Grip& grip) const {
   double closed_rad = 0.0;  // beyond the U with parallel arms
   for (std::size_t k = first_; k < first_ + base_joints_.size(); ++k)
     closed_rad += grip.side * grip.shape_rad[k] - config_.base_angle_rad;
-  grip.hold_torque_nm = closed_rad < 0.0 ? config_.wide_hold_torque_nm : config_.hold_torque_nm;
+  grip.usual_torque_nm = closed_rad < 0.0 ? config_.wide_hold_torque_nm : config_.hold_torque_nm;
+  grip.hold_torque_nm = grip.usual_torque_nm;
+  grip.opened_rad = 0.0;
   grip.torque_nm = config_.hold_torque_nm;
   grip.contact_share = 1.0;
   grip.below_s = 0.0;
 }
 
-bool GripSense::lost(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
-                     Grip& grip) const {
+void GripSense::choose_torque(const msg::JointState& joints, bool feels, double share, Grip& grip) const {
+  double opened_rad = 0.0;
+  for (std::size_t k = first_; k < first_ + base_joints_.size(); ++k)
+    opened_rad += grip.side * (grip.shape_rad[k] - joints.position_rad[yaw_joints_[k]]) - margin_rad(feels);
+  grip.opened_rad += share * (opened_rad - grip.opened_rad);
+  const bool closing = grip.hold_torque_nm > grip.usual_torque_nm;
+  const bool open = grip.opened_rad > (closing ? 0.5 : 1.0) * config_.opened_rad;
+  const double most_nm = std::min(config_.closing_torque_nm, robot_.joints[base_joints_.front()].max_torque_nm);
+  grip.hold_torque_nm = open ? std::max(most_nm, grip.usual_torque_nm) : grip.usual_torque_nm;
+}
+
+bool GripSense::watch(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
+                      Grip& grip) const {
   const double share = -std::expm1(-dt_s / config_.lost_filter_s);
   grip.torque_nm += share * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
+  choose_torque(joints, feels, share, grip);
   const bool touched = base_force_n(touches_of(grip.handle, touches)) >= config_.touch_force_n;
   grip.contact_share += share * ((touched ? 1.0 : 0.0) - grip.contact_share);
   const bool few_touches = !feels || grip.contact_share < config_.lost_contact_share;

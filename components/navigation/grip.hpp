@@ -22,18 +22,20 @@ struct Grip {
   double wrap_scale = 1.0;                          ///< width of the open U relative to the usual one
   double height_m = 0.0;                            ///< of the object; 0: unknown
   double hold_torque_nm = 0.0;                      ///< cap of the base joints while carrying
+  double usual_torque_nm = 0.0;                     ///< the same while the base has not opened
   Eigen::Vector2d p_MO{0.0, 0.0};                   ///< [m] where the body touched the object
   std::array<double, msg::kMaxJoints> shape_rad{};  ///< posture that holds the object, by yaw joint
   // State of the loss monitor.
   double torque_nm = 0.0;      ///< filtered mean closing torque of the base joints
   double contact_share = 1.0;  ///< filtered share of time in which the base touches something
   double below_s = 0.0;        ///< time for which both have been below their thresholds
+  double opened_rad = 0.0;     ///< filtered angle by which the base has opened since the object was taken
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(pregrasped, carrying, side, colour, handle, radius_m, wrap_scale, height_m, hold_torque_nm, p_MO.x(),
-            p_MO.y());
+    archive(pregrasped, carrying, side, colour, handle, radius_m, wrap_scale, height_m, hold_torque_nm, usual_torque_nm,
+            p_MO.x(), p_MO.y());
     for (double& angle : shape_rad) archive(angle);
-    archive(torque_nm, contact_share, below_s);
+    archive(torque_nm, contact_share, below_s, opened_rad);
   }
 };
 
@@ -88,10 +90,11 @@ class GripSense {
   [[nodiscard]] std::array<double, msg::kMaxJoints> hold_shape(const msg::JointState& joints, const Grip& grip,
                                                                bool feels) const;
 
-  /// Advances the loss monitor by `dt_s`. True when the object is lost: torque and touch have been too low for a while,
-  /// or the torque alone if the robot feels no touches.
-  bool lost(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
-            Grip& grip) const;
+  /// Advances the monitor of the grip by `dt_s`: the torque that holds the posture is larger while the base has opened.
+  /// True when the object is lost: torque and touch have been too low for a while, or the torque alone if the robot
+  /// feels no touches.
+  bool watch(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
+             Grip& grip) const;
   /// Resets the loss monitor at the beginning of a grasp, and chooses the torque that holds the posture of the grip.
   void hold_starts(Grip& grip) const;
 
@@ -100,6 +103,8 @@ class GripSense {
   [[nodiscard]] std::size_t base_first_joint() const { return first_; }
 
  private:
+  /// Chooses a larger torque while the base has opened. `share`: weight of the new angles in the low-pass.
+  void choose_torque(const msg::JointState& joints, bool feels, double share, Grip& grip) const;
   /// Unit vector to which the mouth of the U points, in the head's frame.
   [[nodiscard]] Eigen::Vector2d mouth(const std::vector<PlanarPose>& body) const;
   /// [rad] by which each joint of the base is commanded to close further than the object lets it.

@@ -199,7 +199,7 @@ void Navigation::run_task(TaskInput input, TaskOutput& output) {
 
 void Navigation::monitor_grip(const TaskInput& input, TaskOutput& output) {
   Grip& grip = state_.grip;
-  if (!grip.carrying || !grip_sense_.lost(input.joints, input.touches, input.feels, input.tick.dt_s(), grip)) return;
+  if (!grip.carrying || !grip_sense_.watch(input.joints, input.touches, input.feels, input.tick.dt_s(), grip)) return;
   grip.carrying = false;
   write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle,
               input.feels ? "the base touches no object, by its touches and its torque"

@@ -42,6 +42,10 @@ struct GripConfig : ParameterSet {
   double wide_hold_torque_nm =
       add(wide_hold_torque_nm, "wide_hold_torque_nm", 3.0, "Nm", bounds::kTorque, kAtStart,
           "The same for a large object, which keeps the base open: the arms have a longer lever");
+  double opened_rad = add(opened_rad, "opened_rad", 0.45, "rad", bounds::kAngle, kWhileRunning,
+                          "If the arms have opened the base by this sum of angles, a larger torque closes it");
+  double closing_torque_nm = add(closing_torque_nm, "closing_torque_nm", 4.0, "Nm", bounds::kTorque, kWhileRunning,
+                                 "The torque that closes it");
   double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
                               "Mean closing torque of the base below which a held object may be lost");
   double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,

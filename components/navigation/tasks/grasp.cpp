@@ -150,7 +150,7 @@ class Grasp : public StatefulTask<GraspState> {
     keep_upright(input.config, grip, output);
     output.desired.torque_limit_nm = grip.hold_torque_nm;
     count_touching(input, grip);
-    const bool lost = input.grip_sense.lost(input.joints, input.touches, input.feels, input.tick.dt_s(), grip);
+    const bool lost = input.grip_sense.watch(input.joints, input.touches, input.feels, input.tick.dt_s(), grip);
     if (state_.phase_s < config.check_s && !lost) return;
     if (enough_touches(input) && !lost) {
       grip.carrying = true;

@@ -157,7 +157,7 @@ TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   touch[0].force_n = 2.0;
   const auto lost_after_s = [&] {
     double time_s = 0.0;
-    while (!grip_sense.lost(u, {}, true, 0.02, grip)) {
+    while (!grip_sense.watch(u, {}, true, 0.02, grip)) {
       time_s += 0.02;
       if (time_s > 10.0) break;
     }
@@ -165,9 +165,9 @@ TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   };
   load(1.2);  // torque, and a touch in every tenth tick
   for (int i = 0; i < 1000; ++i)
-    ASSERT_FALSE(grip_sense.lost(u, i % 10 == 0 ? touch : std::vector<Touch>{}, true, 0.02, grip));
+    ASSERT_FALSE(grip_sense.watch(u, i % 10 == 0 ? touch : std::vector<Touch>{}, true, 0.02, grip));
   load(0.1);  // touch without torque
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, true, 0.02, grip));
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.watch(u, touch, true, 0.02, grip));
   const double neither_s = lost_after_s();
   EXPECT_GT(neither_s, config.lost_after_s);
   EXPECT_LT(neither_s, 5.0);
@@ -180,6 +180,52 @@ TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   EXPECT_LT(untouched_s, 6.0);
 }
 
+// The friction of the ground on the arms can open the base until the arms point in directions 90 degrees apart. The
+// angle is filtered like a first-order lag, which the solution of its equation gives.
+TEST_F(HoldTest, ABaseThatTheArmsOpenIsClosedByALargerTorque) {
+  std::vector<Touch> touch(1);
+  touch[0].module = 12;
+  touch[0].force_n = 2.0;
+  const auto open_each_rad = [&](double angle_rad) {
+    for (int j : {10, 12, 14}) u.position_rad[j] = -std::numbers::pi / 3.0 + angle_rad;
+  };
+  const auto watch_for_s = [&](double time_s) {
+    for (int i = 0; i < std::lround(time_s / 0.02); ++i)
+      ASSERT_FALSE(grip_sense.watch(u, touch, true, 0.02, grip)) << "it holds the object all the time";
+  };
+  grip.shape_rad = grip_sense.hold_shape(u, grip, true);
+  grip_sense.hold_starts(grip);
+  load(1.5);
+  watch_for_s(10.0);
+  EXPECT_EQ(grip.hold_torque_nm, config.hold_torque_nm) << "the margin of the command is no opening";
+  open_each_rad(-0.3);
+  watch_for_s(10.0);
+  EXPECT_EQ(grip.hold_torque_nm, config.hold_torque_nm) << "it has closed";
+  open_each_rad(0.0);
+  watch_for_s(20.0);
+  open_each_rad(0.5 * config.opened_rad);  // three joints: one and a half times the bound
+  const double after_s = config.lost_filter_s * std::log(1.5 / 0.5);
+  watch_for_s(after_s - 0.1);
+  EXPECT_EQ(grip.hold_torque_nm, config.hold_torque_nm);
+  watch_for_s(0.2);
+  EXPECT_EQ(grip.hold_torque_nm, config.closing_torque_nm);
+  open_each_rad(0.2 * config.opened_rad);  // 0.6 times the bound
+  watch_for_s(20.0);
+  EXPECT_EQ(grip.hold_torque_nm, config.closing_torque_nm) << "it is not closed enough";
+  open_each_rad(0.1 * config.opened_rad);
+  watch_for_s(20.0);
+  EXPECT_EQ(grip.hold_torque_nm, config.hold_torque_nm);
+}
+
+TEST_F(HoldTest, TheBaseIsNotClosedByMoreThanItsJointsCan) {
+  for (JointModel& joint : robot.joints) joint.max_torque_nm = 2.5;
+  grip.shape_rad = grip_sense.hold_shape(u, grip, true);
+  grip_sense.hold_starts(grip);
+  u = u_joints(0.0);
+  for (int i = 0; i < 500; ++i) grip_sense.watch(u, {}, true, 0.02, grip);
+  EXPECT_EQ(grip.hold_torque_nm, 2.5);
+}
+
 TEST_F(HoldTest, ATouchOfAnotherObjectIsNoHold) {
   grip.handle = 3;
   std::vector<Touch> touch(1);
@@ -188,19 +234,19 @@ TEST_F(HoldTest, ATouchOfAnotherObjectIsNoHold) {
   touch[0].handle = 4;
   load(0.1);
   double time_s = 0.0;
-  while (!grip_sense.lost(u, touch, true, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  while (!grip_sense.watch(u, touch, true, 0.02, grip) && time_s < 10.0) time_s += 0.02;
   EXPECT_LT(time_s, 5.0);
   grip_sense.hold_starts(grip);
   touch[0].handle = 3;
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, touch, true, 0.02, grip));
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.watch(u, touch, true, 0.02, grip));
 }
 
 TEST_F(HoldTest, ARobotWithoutContactSensorsNoticesTheLossByTheTorque) {
   load(1.4);
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.lost(u, {}, false, 0.02, grip));
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.watch(u, {}, false, 0.02, grip));
   load(0.1);
   double time_s = 0.0;
-  while (!grip_sense.lost(u, {}, false, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  while (!grip_sense.watch(u, {}, false, 0.02, grip) && time_s < 10.0) time_s += 0.02;
   EXPECT_GT(time_s, config.lost_after_s);
   EXPECT_LT(time_s, 5.0);
 }
