@@ -14,6 +14,7 @@ constexpr std::int32_t kMaxHits = 1000;
 constexpr std::int64_t kTentativeTicks = 150;  // unconfirmed landmarks that are not seen for this long are discarded
 constexpr double kNear_m = 0.7;                // an object whose range cannot be seen is nearer than this
 constexpr double kCutShare = 0.25;  // of the radius: error of the centre of an object that the image's border cuts
+constexpr double kPart = 0.5;       // of its radius: a narrower view shows only a part of a landmark
 
 /// Distance [m] and bearing [rad] of the centre of a round object of which the border of the image cuts one side. The
 /// centre of the visible part is not the object's centre, and lies on the same side of it in each image. But the side
@@ -139,10 +140,14 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
     }
   }
 
+  // Something hides all but a part of a landmark that looks much narrower than it is: nobody knows where its centre is.
+  const auto is_part = [&](const Landmark& landmark) {
+    return whole && 0.5 * blob.width_m < kPart * landmark.radius_m;  // false for NaN
+  };
   if (best == state_.landmarks.size() && nearest < state_.landmarks.size()) {
     Landmark& moved = state_.landmarks[nearest];
     used[nearest] = true;
-    if (!whole || (++moved.strays < config_.confirm && !moved.may_have_moved)) return;
+    if (!whole || is_part(moved) || (++moved.strays < config_.confirm && !moved.may_have_moved)) return;
     replace(moved, z, noise, tick);  // the object has been pushed, and keeps its handle
     return;
   }
@@ -154,6 +159,10 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   }
   used[best] = true;
   Landmark& landmark = state_.landmarks[best];
+  if (is_part(landmark)) {
+    landmark.last_seen_tick = tick;
+    return;
+  }
   if (trusted(landmark)) {
     filter_.observe(static_cast<std::size_t>(landmark.slot), z, noise);
   } else {

@@ -163,6 +163,22 @@ TEST(Map, APartOfAZoneAtTheImagesBorderMovesNeitherTheZoneNorThePose) {
   EXPECT_LT(m.filter.pose().p.norm(), 1e-6);
 }
 
+// The head saw 0.04 m of the red zone between the green object and its zone, and the pose jumped by 0.4 m.
+TEST(Map, APartOfAZoneBesideWhatHidesItMovesNeitherTheZoneNorThePose) {
+  for (const double pose_variance_m2 : {0.05, 1e-6}) {  // the part is taken for the zone, or for a zone that has moved
+    Mapping m;
+    m.see({Mapping::blob(msg::kColourRed, msg::kBlobZone, 1.2, 0.0, 0.4)}, 20);
+    m.filter.predict({0.0, 0.0}, 0.0, Eigen::Vector3d(pose_variance_m2, pose_variance_m2, 1e-3).asDiagonal());
+    m.see({Mapping::blob(msg::kColourRed, msg::kBlobZone, 0.9, -0.2, 0.02)}, 20);
+    const msg::FieldMap map = m.map();
+    ASSERT_EQ(map.object_count, 1);
+    EXPECT_NEAR(map.objects[0].x_m, 1.2, 1e-6);
+    EXPECT_NEAR(map.objects[0].y_m, 0.0, 1e-6);
+    EXPECT_NEAR(map.objects[0].radius_m, 0.4, 1e-6);
+    EXPECT_LT(m.filter.pose().p.norm(), 1e-6);
+  }
+}
+
 /// What the camera shows of a disc at `p` of which it sees only the azimuths below `border_rad`: the range is the one
 /// of the near edge in the middle of the visible part, the width that of a disc between the visible sides.
 msg::Blob cut_disc(const Eigen::Vector2d& p, double radius_m, double border_rad) {
