@@ -98,12 +98,12 @@ TEST_F(Pictures, AFilmDoesNotDependOnHowManyFramesAreDrawnAtATime) {
   }
   ASSERT_EQ(films[0].size(), 8U);
   ASSERT_EQ(films[1].size(), 8U);
-  // On a busy computer the encoder may round pixels otherwise in each film (once by 0.77 of the difference to the next
-  // frame). Frames in another order, or with parts of others, would be as far from their counterparts as from others.
+  // The encoder may round a few pixels otherwise in each film. Frames in another order, or with parts of others, would
+  // be as far from their counterparts as from other frames.
   for (std::size_t i = 0; i < films[0].size(); ++i) {
     for (std::size_t j = 0; j < films[1].size(); ++j) {
       if (i == j) continue;
-      EXPECT_LT(difference(films[0][i], films[1][i]), 0.85 * difference(films[0][i], films[1][j]))
+      EXPECT_LT(difference(films[0][i], films[1][i]), 0.5 * difference(films[0][i], films[1][j]))
           << i << " and " << j << ": " << outputs;
     }
   }

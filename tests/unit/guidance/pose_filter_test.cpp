@@ -13,34 +13,39 @@ using namespace guidance;
 
 const Eigen::Matrix2d kSeen = 0.02 * 0.02 * Eigen::Matrix2d::Identity();  // noise of a percept
 
-/// Drives ahead for some steps of 0.01 m that odometry takes for `factor` times as long.
-void drive(PoseFilter& filter, Eigen::Vector2d& truth, int steps, double factor, const ScaledDrift& process) {
-  for (int k = 0; k < steps; ++k) {
-    const Eigen::Vector2d step(0.01, 0.0);
-    truth += step;
-    ScaledDrift drift = process;
-    drift.step_m = factor * step;
-    filter.predict(factor * step, 0.0, Eigen::Vector3d(1e-7, 1e-7, 1e-9).asDiagonal(), drift);
+/// A robot that drives along x towards a landmark, with a scale that it does not know.
+struct Approach {
+  PoseFilterState state;
+  PoseFilter filter{state};
+  Eigen::Vector2d landmark, truth{0.0, 0.0};
+
+  Approach(double scale_sd, const Eigen::Vector2d& landmark_M) : landmark(landmark_M) {
+    filter.forget_scale(scale_sd);
+    filter.add(landmark, kSeen);
   }
-}
+  /// Drives ahead for some steps of 0.01 m that odometry takes for `factor` times as long.
+  void drive(int steps, double factor) {
+    for (int k = 0; k < steps; ++k) {
+      const Eigen::Vector2d step(0.01, 0.0);
+      truth += step;
+      filter.predict(factor * step, 0.0, Eigen::Vector3d(1e-7, 1e-7, 1e-9).asDiagonal(), {factor * step, 0.0, 0.0});
+    }
+  }
+  void see() { filter.observe(0, landmark - truth, kSeen); }
+};
 
 TEST(PoseFilter, ALandmarkAheadTeachesTheScaleOfTheDrift) {
   // 2 m towards a landmark, then 1 m without a sight of it. Odometry takes each step for 25 % too long.
-  PoseFilterState state;
-  PoseFilter filter(state);
-  filter.forget_scale(0.25);
-  const Eigen::Vector2d landmark(4.0, 0.3);
-  filter.add(landmark, kSeen);
-  Eigen::Vector2d truth(0.0, 0.0);
+  Approach robot(0.25, {4.0, 0.3});
   for (int image = 0; image < 20; ++image) {
-    drive(filter, truth, 10, 1.25, {});
-    filter.observe(0, landmark - truth, kSeen);
+    robot.drive(10, 1.25);
+    robot.see();
   }
-  EXPECT_NEAR(filter.scale(), 1.0 / 1.25, 0.03);
-  EXPECT_LT(filter.scale_sd(), 0.03);
-  const double seen_m = filter.pose().p.x() - truth.x();
-  drive(filter, truth, 100, 1.25, {});
-  EXPECT_NEAR(filter.pose().p.x() - truth.x(), seen_m, 0.04);  // 0.25 m without the scale
+  EXPECT_NEAR(robot.filter.scale(), 1.0 / 1.25, 0.03);
+  EXPECT_LT(robot.filter.scale_sd(), 0.03);
+  const double seen_m = robot.filter.pose().p.x() - robot.truth.x();
+  robot.drive(100, 1.25);
+  EXPECT_NEAR(robot.filter.pose().p.x() - robot.truth.x(), seen_m, 0.04);  // 0.25 m without the scale
 }
 
 TEST(PoseFilter, OnlyTheDriftIsScaled) {
@@ -81,36 +86,28 @@ TEST(PoseFilter, TheScaleIsAGaussMarkovProcess) {
 }
 
 TEST(PoseFilter, ALoadMakesTheScaleUnknownAgain) {
-  PoseFilterState state;
-  PoseFilter filter(state);
-  filter.forget_scale(0.25);
-  filter.add({4.0, 0.0}, kSeen);
-  Eigen::Vector2d truth(0.0, 0.0);
-  drive(filter, truth, 100, 1.25, {});
-  filter.observe(0, Eigen::Vector2d(4.0, 0.0) - truth, kSeen);
-  ASSERT_LT(filter.scale(), 0.9);
-  const Eigen::Matrix3d before = filter.pose_covariance();
-  filter.forget_scale(0.1);
-  EXPECT_EQ(filter.scale(), 1.0);
-  EXPECT_DOUBLE_EQ(filter.scale_sd(), 0.1);
-  EXPECT_EQ(filter.pose_covariance(), before);
+  Approach robot(0.25, {4.0, 0.0});
+  robot.drive(100, 1.25);
+  robot.see();
+  ASSERT_LT(robot.filter.scale(), 0.9);
+  const Eigen::Matrix3d before = robot.filter.pose_covariance();
+  robot.filter.forget_scale(0.1);
+  EXPECT_EQ(robot.filter.scale(), 1.0);
+  EXPECT_DOUBLE_EQ(robot.filter.scale_sd(), 0.1);
+  EXPECT_EQ(robot.filter.pose_covariance(), before);
   // What was driven before tells nothing about the new scale.
-  filter.observe(0, Eigen::Vector2d(3.9, 0.0) - truth, kSeen);
-  EXPECT_DOUBLE_EQ(filter.scale(), 1.0);
+  robot.filter.observe(0, Eigen::Vector2d(3.9, 0.0) - robot.truth, kSeen);
+  EXPECT_DOUBLE_EQ(robot.filter.scale(), 1.0);
 }
 
 TEST(PoseFilter, AWrongPerceptDoesNotTurnTheMotionRound) {
-  PoseFilterState state;
-  PoseFilter filter(state);
-  filter.forget_scale(0.5);
-  filter.add({4.0, 0.0}, kSeen);
-  Eigen::Vector2d truth(0.0, 0.0);
-  drive(filter, truth, 100, 1.0, {});
-  filter.observe(0, {7.0, 0.0}, kSeen);  // as if the robot had driven backwards
-  EXPECT_GT(filter.scale(), 0.0);
-  const double x_m = filter.pose().p.x();
-  drive(filter, truth, 10, 1.0, {});
-  EXPECT_GT(filter.pose().p.x(), x_m);
+  Approach robot(0.5, {4.0, 0.0});
+  robot.drive(100, 1.0);
+  robot.filter.observe(0, {7.0, 0.0}, kSeen);  // as if the robot had driven backwards
+  EXPECT_GT(robot.filter.scale(), 0.0);
+  const double x_m = robot.filter.pose().p.x();
+  robot.drive(10, 1.0);
+  EXPECT_GT(robot.filter.pose().p.x(), x_m);
 }
 
 TEST(PoseFilter, LandmarksSeenAgainCorrectTheDrift) {
