@@ -92,7 +92,10 @@ void MissionPlanner::enter(MissionState state) {
     // A new search begins with what it remembers. The count goes on while a search alternates with the following of a
     // line that is lost again at once.
     constexpr double kAnew_s = 10.0;
-    if (memory_.active_s - memory_.searched_s > kAnew_s) memory_.searches = memory_.backed_off = 0;
+    if (memory_.active_s - memory_.searched_s > kAnew_s) {
+      memory_.searches = memory_.backed_off = 0;
+      memory_.sweep.end();
+    }
   }
   if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
   if (state != kFollowLine) memory_.wrong_way = false;
@@ -305,6 +308,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
       return recover(memory_.state);
     }
     if (holding() && stands_still(inputs)) return memory_.state;  // the next move leads away
+    lead_sweep(inputs);
     const bool exploring = memory_.search_task == msg::kTaskExplore;
     const double requested_for_s = memory_.active_s - memory_.requested_s;
     const double move_s = exploring ? config_.explore_s : config_.rotate_s;

@@ -18,6 +18,7 @@
 #include "planner/planner_config.hpp"
 #include "planner/refusals.hpp"
 #include "planner/standstill.hpp"
+#include "planner/sweep.hpp"
 
 namespace constrictor {
 
@@ -96,6 +97,7 @@ struct MissionMemory {
   double searched_s = 0.0;                       ///< time of the newest one
   std::uint8_t search_task = msg::kTaskNone;     ///< task of the present search: explore or rotate
   Standstill standstill;                         ///< of a search or transport with an object
+  Sweep sweep;                                   ///< of a search with an object that nothing remembered leads
   std::uint8_t vain_looks = 0;                   ///< looks at the dropped object after which the map did not have it
   bool steps_back = false;                       ///< the robot moves away from the dropped object to see it
   std::uint8_t backed_off = 0;                   ///< moves of this search that backed off from obstacles
@@ -116,7 +118,7 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
-            trail, reason, standstill, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
+            trail, reason, standstill, sweep, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
             dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind,
             refused_sequence, refusals, wrong_way, rechecked, turned_back_s);
   }
@@ -271,6 +273,9 @@ class MissionPlanner {
   [[nodiscard]] bool zone_in_reach(const PlannerInputs& inputs) const;
   /// Whether a robot that should move has stayed at one place for a while.
   [[nodiscard]] bool stands_still(const PlannerInputs& inputs);
+  /// Chooses the place to search at next, for a robot with an object that knows no line.
+  void lead_sweep(const PlannerInputs& inputs);
+  [[nodiscard]] bool sweeps() const { return holding() && searches() && memory_.trail.empty(); }
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
   /// Whether the state wants to follow the line outbound. Where zones may be anywhere, this is the direction that is

@@ -77,14 +77,21 @@ bool MissionPlanner::zone_in_reach(const PlannerInputs& inputs) const {
          is_free_way(*inputs.map, {held->x_m, held->y_m}, {zone->x_m, zone->y_m}, config_.carry_room_m);
 }
 
+void MissionPlanner::lead_sweep(const PlannerInputs& inputs) {
+  if (sweeps() && inputs.pose)
+    memory_.sweep.lead(*inputs.pose, memory_.active_s, config_.sweep_m, scaled_s(config_.explore_s));
+}
+
 // Most moves use the memory: the robot turns towards the remembered place and moves there. The other moves, and all
-// moves without a remembered place, alternate between turning left, turning right, forwards and backwards.
+// moves without a remembered place, alternate between turning left, turning right, forwards and backwards. The moves of
+// a sweep all lead to its next corner.
 void MissionPlanner::choose_search(const PlannerInputs& inputs, WantedTask& wanted) {
   constexpr std::uint8_t kMostBackward = 6;  // moves of a search; an object may slip out of a U that drives backwards
   const unsigned attempt = memory_.searches++;
   memory_.searched_s = memory_.active_s;
+  lead_sweep(inputs);
   const auto turn_rad = wanted_turn_rad(inputs);
-  memory_.search_by_memory = turn_rad.has_value() && attempt % 16 < 12 && !refusals().rejected();
+  memory_.search_by_memory = turn_rad.has_value() && (attempt % 16 < 12 || sweeps()) && !refusals().rejected();
   Move move{msg::kTaskExplore, attempt % 4 == 2 ? msg::kDirectionBackwards : msg::kDirectionForwards};
   if (memory_.search_by_memory) {
     move = move_for(*turn_rad, inputs);

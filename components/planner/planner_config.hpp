@@ -69,6 +69,8 @@ struct PlannerConfig : ParameterSet {
                          "A search tries something else after exploring for this time");
   double rotate_s = add(rotate_s, "rotate_s", 10.0, "s", {1, 600}, kAtStart,
                         "A search tries something else after turning for this time");
+  double sweep_m = add(sweep_m, "sweep_m", 2.0, "m", {0.2, 100}, kAtStart,
+                       "Step of the growing square on which a robot with an object searches without a line");
   double any_way_s = add(any_way_s, "any_way_s", 15.0, "s", {0, 3600}, kAtStart,
                          "After searching for this time, a line that leads the wrong way is followed, too");
   double wrong_way_s = add(wrong_way_s, "wrong_way_s", 5.0, "s", {1, 600}, kAtStart,
