@@ -91,7 +91,6 @@ MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs&
 MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   memory_.delivered |= std::uint32_t{1} << memory_.object_index;
   memory_.displaced &= ~memory_.delivered;
-  attempts() = {};
   const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
   const std::uint16_t seen = dropped_object(inputs).handle;  // the map may have given the object a new handle
   const std::uint16_t handle = seen != 0 ? seen : memory_.dropped_handle;
@@ -183,6 +182,9 @@ bool MissionPlanner::inspects_by_handle(const PlannerInputs& inputs) const {
 void MissionPlanner::take_back(PlacedObjects::iterator gone) {
   memory_.delivered &= ~(std::uint32_t{1} << gone->index);
   memory_.displaced |= std::uint32_t{1} << gone->index;
+  // What was tried with the object counts on: an object that is pushed off again and again is put aside in the end.
+  if (!may_try_again(attempts(gone->index), "delivered: it was pushed off its zone"))
+    memory_.aside |= std::uint32_t{1} << gone->index;
   memory_.placed.erase(gone);
   ++memory_.recoveries;
 }
@@ -216,16 +218,37 @@ MissionState MissionPlanner::end_of_sequence() {
   return left.empty() ? kDone : fail("not delivered: " + left);
 }
 
-MissionState MissionPlanner::try_differently(const std::string& why) {
-  Attempts& tried = attempts();
+bool MissionPlanner::may_try_again(Attempts& tried, const std::string& why) const {
   ++tried.failures;
-  tried.reason = fmt::format("{}: {}", name_of(memory_.state), why);
-  memory_.dropped = false;
-  const int allowed = config_.attempts + (memory_.second_pass ? 1 : 0);
-  if (tried.failures < allowed) return tried.failures > 1 ? kApproachAnew : kSearchObject;
+  tried.reason = why;
+  return tried.failures < config_.attempts + (memory_.second_pass ? 1 : 0);
+}
+
+MissionState MissionPlanner::put_aside() {
   memory_.aside |= std::uint32_t{1} << memory_.object_index;
   memory_.released_tick = -1;
   return choose_object() ? kSearchLineOrObject : end_of_sequence();
+}
+
+MissionState MissionPlanner::try_differently(const std::string& why) {
+  Attempts& tried = attempts();
+  const bool again = may_try_again(tried, fmt::format("{}: {}", name_of(memory_.state), why));
+  memory_.dropped = false;
+  if (again) return tried.failures > 1 ? kApproachAnew : kSearchObject;
+  return put_aside();
+}
+
+// Where zones may be anywhere, so may the other objects: the robot first looks at the other end of the line.
+MissionState MissionPlanner::search_elsewhere(const std::string& why) {
+  if (config_.sequence.empty()) return kSearchLineOrObject;
+  const bool again = may_try_again(attempts(), fmt::format("{}: {}", name_of(memory_.state), why));
+  bool others = false;
+  for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
+    const bool open = !done(i) && (!memory_.second_pass || (memory_.aside >> i & 1u) == 0);
+    others = others || (open && i != memory_.object_index);
+  }
+  const bool here = config_.zones_at != kZonesAnywhere;
+  return again && !(others && here) ? kSearchLineOrObject : put_aside();
 }
 
 }  // namespace constrictor

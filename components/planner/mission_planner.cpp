@@ -1,5 +1,7 @@
 #include "planner/mission_planner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -175,19 +177,19 @@ MissionState MissionPlanner::fail(const std::string& reason) {
   return kFailed;
 }
 
-Attempts& MissionPlanner::attempts() {
-  if (memory_.attempts.size() <= memory_.object_index) memory_.attempts.resize(memory_.object_index + std::size_t{1});
-  return memory_.attempts[memory_.object_index];
+Attempts& MissionPlanner::attempts(std::size_t object) {
+  if (memory_.attempts.size() <= object) memory_.attempts.resize(object + 1);
+  return memory_.attempts[object];
 }
 
 MissionState MissionPlanner::recover(MissionState to, const std::string& why) {
   if (memory_.recoveries >= config_.max_recoveries) {
     return fail("more than " + std::to_string(config_.max_recoveries) + " recoveries, the last in state " +
-                name_of(memory_.state));
+                name_of(memory_.state) + (why.empty() ? "" : ": " + why));
   }
   ++memory_.recoveries;
-  const bool lost_object = to == kSearchObject && memory_.state != kSearchObject;
-  return lost_object ? try_differently(why) : to;
+  if (memory_.state == kSearchObject) return to == kSearchLineOrObject ? search_elsewhere(why) : to;
+  return to == kSearchObject ? try_differently(why) : to;
 }
 
 std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
@@ -335,11 +337,14 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   if (turns(memory_.state))
     return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
-  const bool at_end = memory_.state == kSearchObject && config_.zones_at == kZonesAnywhere;
+  const bool finds = memory_.state == kSearchObject;
+  const bool at_end = finds && config_.zones_at == kZonesAnywhere;
   const double limit_s = follows  ? scaled_s(config_.follow_timeout_s)
-                         : at_end ? std::min(config_.end_search_s, config_.task_timeout_s)
+                         : at_end ? std::min(config_.end_search_s, config_.find_timeout_s)
+                         : finds  ? config_.find_timeout_s
                                   : config_.task_timeout_s;
-  return in_state_s > limit_s ? std::optional(recover(row.failed, "its time limit passed")) : std::nullopt;
+  if (in_state_s <= limit_s) return std::nullopt;
+  return recover(row.failed, finds ? fmt::format("not found within {:g} s", limit_s) : "its time limit passed");
 }
 
 }  // namespace constrictor

@@ -201,11 +201,17 @@ class MissionPlanner {
   /// Counts a failure with the present object. Returns the state of the next attempt, which differs from all earlier
   /// ones, or puts the object aside and returns the state in which the next one is looked for. `why`: for people.
   [[nodiscard]] MissionState try_differently(const std::string& why);
-  /// Counts a recovery and returns `to`; returns kFailed if there were too many. `why` the state has ended is kept if
-  /// the object is to be retrieved anew.
+  /// The same for an object that a search has not found. With others to retrieve it is put aside at once.
+  [[nodiscard]] MissionState search_elsewhere(const std::string& why);
+  /// Counts a failure. Whether the object is tried again before it is put aside.
+  [[nodiscard]] bool may_try_again(Attempts& tried, const std::string& why) const;
+  /// Puts the present object aside. Returns the state in which the next one is looked for.
+  [[nodiscard]] MissionState put_aside();
+  /// Counts a recovery and returns `to`, another attempt, or kFailed after too many. `why`: the reason, for people.
   [[nodiscard]] MissionState recover(MissionState to, const std::string& why = "the object was lost");
   /// The attempts with the present object.
-  [[nodiscard]] Attempts& attempts();
+  [[nodiscard]] Attempts& attempts() { return attempts(memory_.object_index); }
+  [[nodiscard]] Attempts& attempts(std::size_t object);
   [[nodiscard]] MissionState fail(const std::string& reason);
   void enter(MissionState state);
   // Refused requests.

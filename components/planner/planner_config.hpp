@@ -94,7 +94,9 @@ struct PlannerConfig : ParameterSet {
   double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, kAtStart,
                                 "A search for the line counts as a recovery after this time");
   double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, kAtStart,
-                              "Time limit of search object, track, pregrasp, grasp and drop, each");
+                              "Time limit of track, pregrasp, grasp and drop, each");
+  double find_timeout_s = add(find_timeout_s, "find_timeout_s", 90.0, "s", {1, 3600}, kAtStart,
+                              "An object that is not found within this time is put aside if there are others");
   double drop_timeout_s = add(drop_timeout_s, "drop_timeout_s", 120.0, "s", {1, 3600}, kAtStart,
                               "Time limit of nearing the zone; the robot then searches for it anew");
   double follow_timeout_s = add(follow_timeout_s, "follow_timeout_s", 120.0, "s", {1, 3600}, kAtStart,
@@ -131,6 +133,7 @@ struct PlannerConfig : ParameterSet {
     mission_timeout_s = limits.mission_s.value_or(mission_timeout_s);
     search_timeout_s = limits.search_s.value_or(search_timeout_s);
     follow_timeout_s = limits.follow_s.value_or(follow_timeout_s);
+    find_timeout_s = limits.find_s.value_or(find_timeout_s);
     task_timeout_s = limits.task_s.value_or(task_timeout_s);
     drop_timeout_s = limits.drop_s.value_or(drop_timeout_s);
   }

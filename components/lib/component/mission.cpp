@@ -32,6 +32,7 @@ TimeLimits read_limits(Configuration root) {
   read("mission_s", 86400.0, limits.mission_s);
   read("search_s", 3600.0, limits.search_s);
   read("follow_s", 3600.0, limits.follow_s);
+  read("find_s", 3600.0, limits.find_s);
   read("task_s", 3600.0, limits.task_s);
   read("drop_s", 3600.0, limits.drop_s);
   root.finish();

@@ -35,7 +35,8 @@ struct TimeLimits {
   std::optional<double> mission_s;  ///< whole mission
   std::optional<double> search_s;   ///< a search for the line
   std::optional<double> follow_s;   ///< following the line in one direction
-  std::optional<double> task_s;     ///< search object, track, pregrasp, grasp and drop, each
+  std::optional<double> find_s;     ///< a search for an object
+  std::optional<double> task_s;     ///< track, pregrasp, grasp and drop, each
   std::optional<double> drop_s;     ///< nearing the zone with the object
 };
 

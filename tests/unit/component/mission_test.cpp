@@ -15,7 +15,7 @@ TEST(Mission, IsReadFromTheTextOfTheLauncher) {
   const auto mission = parse_mission(
       "{sequence: [red, yellow], line_colour: green, known: {object_height_m: 0.06, object_radius_m: 0.05, "
       "object_max_radius_m: 0.1, zone_radius_m: 0.25, line_width_m: 0.04, zones_at: anywhere}, "
-      "time_limits: {mission_s: 600, search_s: 60, follow_s: 50, task_s: 90, drop_s: 40}}");
+      "time_limits: {mission_s: 600, search_s: 60, follow_s: 50, find_s: 70, task_s: 90, drop_s: 40}}");
   ASSERT_TRUE(mission);
   EXPECT_EQ(mission->sequence, (std::vector<std::uint8_t>{msg::kColourRed, msg::kColourYellow}));
   EXPECT_EQ(mission->line_colour, msg::kColourGreen);
@@ -28,6 +28,7 @@ TEST(Mission, IsReadFromTheTextOfTheLauncher) {
   EXPECT_EQ(mission->limits.mission_s, 600.0);
   EXPECT_EQ(mission->limits.search_s, 60.0);
   EXPECT_EQ(mission->limits.follow_s, 50.0);
+  EXPECT_EQ(mission->limits.find_s, 70.0);
   EXPECT_EQ(mission->limits.task_s, 90.0);
   EXPECT_EQ(mission->limits.drop_s, 40.0);
   EXPECT_FALSE(parse_mission(""));

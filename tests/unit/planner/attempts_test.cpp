@@ -67,6 +67,57 @@ TEST_F(AttemptPlanner, TheThirdAttemptPassesNearerAndWrapsWider) {
   EXPECT_EQ(grasped_.parameters.clearance_m, 0.0) << "a parameter of pregrasp";
 }
 
+// An object stood far away where no search came. The robot searched for it until the mission's time was over, and left
+// the other object beside the line untouched.
+TEST_F(AttemptPlanner, AnObjectThatIsNotFoundIsPutAsideForTheOthers) {
+  find_line();
+  drive(4.0);
+  succeed(msg::kEventEndOfLine);
+  const auto search_in_vain = [&](std::uint8_t sought) {
+    ASSERT_EQ(memory_.state, kSearchObject);
+    ASSERT_EQ(last_.parameters.object_colour, sought);
+    see_nothing();
+    const double from_s = time_s_;
+    while (memory_.state == kSearchObject && time_s_ < from_s + 1000.0) step();
+    EXPECT_NEAR(time_s_ - from_s, config_.find_timeout_s, 0.1);
+  };
+  const auto at_the_end_again = [&] {
+    ASSERT_EQ(memory_.state, kSearchLineOrObject);
+    memory_.state = kSearchObject;  // by the line and its end
+    memory_.entered_s = memory_.active_s;
+    memory_.requested = false;
+    step();
+  };
+  search_in_vain(msg::kColourGreen);
+  at_the_end_again();
+  search_in_vain(msg::kColourRed);
+  at_the_end_again();  // the second pass
+  search_in_vain(msg::kColourGreen);
+  while (memory_.state != kFailed && time_s_ < 1000.0) {  // there is no other object left
+    at_the_end_again();
+    search_in_vain(msg::kColourRed);
+  }
+  EXPECT_EQ(memory_.state, kFailed);
+  EXPECT_EQ(memory_.reason,
+            "not delivered: green (2 attempts failed, the last in search object: not found within 90 s); "
+            "red (6 attempts failed, the last in search object: not found within 90 s)");
+}
+
+TEST_F(AttemptPlanner, TheOnlyObjectIsSearchedForSeveralTimes) {
+  config_.sequence = {msg::kColourGreen};
+  find_line();
+  for (int i = 0; i < 10 && memory_.state != kFailed; ++i) {
+    memory_.state = kSearchObject;
+    memory_.entered_s = memory_.active_s;
+    memory_.requested = false;
+    see_nothing();
+    step();
+    for (int k = 0; k < 5000 && memory_.state == kSearchObject; ++k) step();
+  }
+  EXPECT_EQ(memory_.state, kFailed);
+  EXPECT_EQ(memory_.attempts.at(0).failures, config_.attempts + 1);
+}
+
 TEST_F(AttemptPlanner, ADoubtfulObjectIsNotApproached) {
   find_line();
   drive(4.0);

@@ -98,6 +98,23 @@ TEST_F(PushedObjectTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain
   EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
 }
 
+// With seed 315263 of the standard variation an object was pushed off its zone again and again, until the time of the
+// mission was over.
+TEST_F(PushedObjectTest, AnObjectThatIsPushedOffAgainAndAgainIsPutAside) {
+  deliver_green_and_release_red();
+  memory_.attempts.resize(1);
+  memory_.attempts[0].failures = config_.attempts - 1;
+  for (int i = 0; i < 70 && memory_.state == kInspect; ++i) {
+    map_red_and_green(0.8, 0.03);
+    step();
+  }
+  EXPECT_EQ(memory_.aside, 0U) << "in the second pass it is tried once more";
+  EXPECT_TRUE(memory_.second_pass);
+  EXPECT_EQ(memory_.object_index, 0);
+  EXPECT_EQ(memory_.attempts[0].failures, config_.attempts);
+  EXPECT_EQ(memory_.attempts[0].reason, "delivered: it was pushed off its zone");
+}
+
 // The robot touched the green object while it carried the red one, so that its place is uncertain at the end.
 TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThatItTouched) {
   for (const double offset_m : {0.1, 0.7}) {
