@@ -8,9 +8,12 @@
 #include <cstdio>
 #include <string>
 
+#include "cli/screen_size.hpp"
+
 namespace constrictor::cli {
 
-/// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds if it has changed.
+/// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds if it has changed. On a
+/// terminal it is cut to the width, because a terminal does not rewrite a line that it has wrapped.
 class ProgressDisplay {
  public:
   void show_status(const std::string& line) {
@@ -18,7 +21,8 @@ class ProgressDisplay {
     if (!terminal_ && (now - shown_ < kEvery || line == last_)) return;
     shown_ = now;
     last_ = line;
-    if (terminal_) std::printf("\r\033[K%s", line.c_str());
+    // The last column stays free: some terminals wrap a line that fills it.
+    if (terminal_) std::printf("\r\033[K%s", screen_line(line, screen_size().columns - 1).c_str());
     else std::printf("%s\n", line.c_str());
     std::fflush(stdout);
   }

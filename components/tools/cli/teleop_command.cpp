@@ -74,7 +74,7 @@ class Teleop {
         else if (!act(action_of(key))) return leave();
       }
       show_answer();
-      const ScreenSize size = terminal_.size();
+      const ScreenSize size = screen_size();
       if (Clock::now() - drawn < kRedraw && typed.empty() && size == drawn_size_) continue;
       drawn = Clock::now();
       drawn_size_ = size;

@@ -32,17 +32,6 @@ struct Block {
   std::vector<std::string> lines;
 };
 
-/// `text` cut to the screen, with "?" for each character that is not printable. A cut line ends with ">".
-std::string line(std::string text, std::size_t columns) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  text.erase(text.find_last_not_of(' ') + 1);
-  if (text.size() <= columns) return text;
-  text.resize(columns);
-  text.back() = '>';
-  return text;
-}
-
 /// The help in lines of at most `columns` characters. Two blanks separate its entries; lines break only there.
 std::vector<std::string> help_lines(std::size_t columns) {
   std::vector<std::string> lines(1);
@@ -64,7 +53,7 @@ std::vector<std::string> too_small(ScreenSize size) {
   std::vector<std::string> lines = {
       "SPACE emergency stop", "q quit", fmt::format("terminal too small: {}x{}", size.columns, size.rows),
       fmt::format("make it {}x{} or larger", kSmallestScreen.columns, kSmallestScreen.rows)};
-  for (auto& text : lines) text = line(text, size.columns);
+  for (auto& text : lines) text = screen_line(text, size.columns);
   lines.resize(std::min(lines.size(), size.rows));
   return lines;
 }
@@ -208,7 +197,7 @@ std::vector<std::string> render(const TeleopScreen& s, ScreenSize size) {
   // In the prompt the space bar is a blank between words.
   lines.push_back(s.prompt ? "Esc SPACE emergency stop  Enter start" : kTeleopHelp[2]);
   lines.push_back(s.prompt ? "task> " + *s.prompt + "_" : "");
-  for (auto& text : lines) text = line(text, size.columns);
+  for (auto& text : lines) text = screen_line(text, size.columns);
   return lines;
 }
 

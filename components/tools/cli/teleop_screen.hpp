@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/screen_size.hpp"
 #include "cli/teleop_keys.hpp"
 #include "cli/teleop_view.hpp"
 
 namespace constrictor::cli {
-
-/// Size of a terminal in characters.
-struct ScreenSize {
-  std::size_t columns = 80;
-  std::size_t rows = 24;
-  bool operator==(const ScreenSize&) const = default;
-};
 
 /// The smallest screen that shows the authority, the commanded motion, the notice and the emergency-stop key.
 inline constexpr ScreenSize kSmallestScreen{40, 10};

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -82,12 +81,6 @@ Terminal::~Terminal() {
   static_cast<void>(!::write(guardian_pipe_, "x", 1));
   ::close(guardian_pipe_);
   if (guardian_ > 0) ::waitpid(guardian_, nullptr, 0);
-}
-
-ScreenSize Terminal::size() const {
-  winsize window{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0 || window.ws_row == 0) return {};
-  return {window.ws_col, window.ws_row};
 }
 
 bool Terminal::read(std::string& typed, std::chrono::milliseconds bound) {

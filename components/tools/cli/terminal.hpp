@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/teleop_screen.hpp"
+#include "cli/screen_size.hpp"
 
 namespace constrictor::cli {
 
@@ -25,8 +25,6 @@ class Terminal {
   /// Waits for keys or for another size of the terminal, at most `bound`; `typed` is empty if there were no keys.
   /// Returns false if the terminal is gone.
   bool read(std::string& typed, std::chrono::milliseconds bound);
-  /// Present size; 80x24 if the terminal does not report one.
-  [[nodiscard]] ScreenSize size() const;
   /// Draws the lines that differ from those drawn before; all of them if `size` has changed.
   void draw(const std::vector<std::string>& lines, ScreenSize size);
 
