@@ -11,6 +11,7 @@
 #include "cli/evaluate/variation.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
+#include "constrictor/messages.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
@@ -111,17 +112,12 @@ TEST(Variants, ChangeOneValueOfACopyOfTheFile) {
     EXPECT_THROW(static_cast<void>(options(wrong)), ConfigurationError) << wrong;
 }
 
-json event(const std::string& task, const std::string& name, const std::string& detail) {
-  return {{"task", task}, {"event", name}, {"parameters", {{"detail", detail}}}};
-}
-
-TEST(Troubles, AreCountedWithoutTheirNumbers) {
-  EXPECT_EQ(trouble_of(event("grasp", "goal_aborted", "object 3 is -0.25 m away")), "grasp: object # is # m away");
-  EXPECT_EQ(trouble_of(event("follow_line", "line_lost", "")), "follow_line: line_lost");
-  EXPECT_EQ(trouble_of(event("drop", "goal_aborted", "")), "drop: goal_aborted");
-  EXPECT_EQ(trouble_of(event("drop", "goal_succeeded", "")), "");
-  EXPECT_EQ(trouble_of(event("drop", "goal_preempted", "another task")), "");
-  EXPECT_EQ(trouble_of(json(3)), "");
+/// The planner's goal was aborted.
+json aborted(double at_s, const std::string& detail) {
+  return {{"sim_time_s", at_s},
+          {"task", "grasp"},
+          {"event", "goal_aborted"},
+          {"parameters", {{"goal_id", std::uint64_t{msg::kAuthorityPlanner} << 48}, {"detail", detail}}}};
 }
 
 json example_report() {
@@ -140,10 +136,10 @@ json example_report() {
            {{{"colour", "green"}, {"grasped", true}, {"dropped", true}, {"in_zone", false}, {"zone_distance_m", 0.51}},
             {{"colour", "red"}, {"grasped", true}, {"dropped", false}, {"in_zone", false}, {"zone_distance_m", 4.0}}}},
           {"states",
-           {{{"sim_time_s", 0.0}, {"state", "search"}},
+           {{{"sim_time_s", 0.0}, {"state", "search object"}},
             {{"sim_time_s", 30.0}, {"state", "grasp"}},
-            {{"sim_time_s", 70.0}, {"state", "search"}}}},
-          {"events", {event("grasp", "goal_aborted", "no"), event("grasp", "goal_aborted", "no")}}};
+            {{"sim_time_s", 70.0}, {"state", "search object"}}}},
+          {"events", {aborted(70.0, "no object between the arms")}}};
 }
 
 TEST(MissionResult, IsReadFromTheReport) {
@@ -155,9 +151,11 @@ TEST(MissionResult, IsReadFromTheReport) {
   EXPECT_FALSE(result.error());
   EXPECT_EQ(result.recoveries, 2);
   EXPECT_DOUBLE_EQ(result.mission_time_s, 100.0);
-  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search"), 60.0);
+  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search object"), 60.0);
   EXPECT_DOUBLE_EQ(result.time_in_state_s.at("grasp"), 40.0);
-  EXPECT_EQ(result.troubles.at("grasp: no"), 2);
+  EXPECT_EQ(result.recoveries_by_cause,
+            (std::map<std::string, int>{{"grasp: no object between the arms", 1}, {"other", 1}}));
+  EXPECT_DOUBLE_EQ(result.longest_recovery.duration_s, 30.0) << "until the end of the mission";
   EXPECT_TRUE(std::isnan(result.rms_pose_error_m));
   EXPECT_TRUE(reached(result, 0));
   EXPECT_FALSE(reached(result, 1));
@@ -171,7 +169,7 @@ TEST(MissionResult, AMissionThatDidNotEndLastsAsLongAsItsRun) {
   std::ofstream(folder.path() / "report.json") << report;
   const MissionResult result = read_result(folder.path(), 1);
   EXPECT_DOUBLE_EQ(result.mission_time_s, 102.0);
-  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search"), 62.0);
+  EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search object"), 62.0);
 }
 
 TEST(MissionResult, WhateverIsInTheReportDoesNoHarm) {
@@ -223,8 +221,25 @@ TEST_F(SummaryTest, CountsErrorsAsNotSuccessfulAndWhatWasOnlyBelieved) {
   EXPECT_EQ(summary.placement_m.values.size(), 3u) << "only of objects that were dropped";
   EXPECT_DOUBLE_EQ(summary.mission_time_s.at(0.5), 80.0) << "of successful missions";
   EXPECT_DOUBLE_EQ(summary.mean_time_in_state_s.at("grasp"), 40.0);
+  EXPECT_EQ(summary.recoveries_by_cause.at("grasp: no object between the arms"), 3);
+  EXPECT_DOUBLE_EQ(summary.worst_recovery.duration_s, 30.0);
+  EXPECT_EQ(summary.worst_seed, 1u) << "the first of equal ones";
   const auto written = to_json({summary}).at(0);
+  EXPECT_EQ(written.at("longest_recovery").at("duration_s"), 30.0);
+  EXPECT_EQ(written.at("longest_recovery").at("seed"), 1);
   EXPECT_EQ(written.at("phases").at("objects grasped").at("runs"), 3);
+}
+
+TEST_F(SummaryTest, TheTerminalNamesTheRunWithTheLongestRecovery) {
+  results_[1].longest_recovery = {12.0, 45.25, "drop: \"quoted\", and more"};
+  EXPECT_NE(to_table(summarise(variants_, results_)).find("longest recovery: 45.2 s, seed 2, 12.0 s after the start"),
+            std::string::npos)
+      << to_table(summarise(variants_, results_));
+  EXPECT_NE(to_csv(variants_, results_).find(",45.25,\"drop: \"\"quoted\"\", and more\",1 grasp: no object"),
+            std::string::npos);
+  for (auto& result : results_) result.recoveries = 0, result.longest_recovery = {};
+  EXPECT_EQ(to_table(summarise(variants_, results_)).find("longest recovery:"), std::string::npos);
+  EXPECT_EQ(summarise(variants_, results_).front().longest_recovery_s.at(1.0), 0.0) << "no recovery lasts 0 s";
 }
 
 TEST_F(SummaryTest, EveryRowOfTheCsvHasAsManyFieldsAsItsHeading) {
@@ -249,6 +264,7 @@ TEST_F(SummaryTest, ThePageShowsTextsAsTheyAre) {
   PageContent page{"<script>alert(1)</script>", "a & b", 5, variants_, results_};
   page.results[1].reason = "\x1b[31m<b>";
   page.variants[0].name = "x<y";
+  page.results[2].recoveries_by_cause = {{"drop: <i>lost", 7}};
   const std::string html = make_page(page);
   EXPECT_EQ(html.find("<script>"), std::string::npos);
   EXPECT_EQ(html.find("<b>"), std::string::npos);
@@ -256,6 +272,7 @@ TEST_F(SummaryTest, ThePageShowsTextsAsTheyAre) {
   EXPECT_NE(html.find("4 of 5 runs are done"), std::string::npos);
   EXPECT_NE(html.find("x&lt;y"), std::string::npos);
   EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_NE(html.find("<td>drop: &lt;i&gt;lost</td><td class=\"n\">7</td>"), std::string::npos);
 }
 
 }  // namespace

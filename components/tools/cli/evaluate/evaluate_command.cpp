@@ -188,8 +188,8 @@ void add_evaluate(CLI::App& app, Action& action) {
   sub->footer(help_footer(
       "Each run is a `constrictor run --in-process` of its own; if one fails, the others go on. The folder then "
       "contains\n"
-      "index.html (success by phase with 95 % intervals, placement, errors, times, what went wrong, and the command\n"
-      "that repeats each run), runs.csv, summary.json, and report.json of each run.\n"
+      "index.html (success by phase with 95 % intervals, placement, errors, times, recoveries, and the command that\n"
+      "repeats each run), runs.csv, summary.json, and report.json of each run.\n"
       "Ctrl-C stops the runs and shows those that are done. The same command with --output continues: also after a\n"
       "crash, and with other seeds. It refuses to mix results of different files, options or programs.",
       {"constrictor evaluate --seeds 1..40", "constrictor evaluate short --seeds 1..20 --jobs 2 --output /tmp/short",

@@ -16,6 +16,7 @@
 
 #include "cli/child_process.hpp"
 #include "cli/evaluate/evaluation_record.hpp"
+#include "cli/evaluate/search_limits.hpp"
 #include "cli/run_record.hpp"
 #include "cli/signal_queue.hpp"
 #include "cli/usage.hpp"
@@ -82,6 +83,7 @@ Evaluation::Evaluation(EvaluationRequest request) : request_(std::move(request))
     for (const auto& variant : variants_) {
       options_.push_back(options_of(variant, request_.run, request_.folder / "variants" / variant.folder));
       check_components(options_.back(), make_launch_plan(options_.back()));
+      limits_.push_back(search_limits_of(options_.back()));
     }
   } catch (const ConfigurationError&) {
     // A refused evaluation leaves its folder empty, so that the corrected command may use it.
@@ -170,7 +172,8 @@ std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const 
   const auto outcome = nlohmann::json::parse(stream, nullptr, false);
   if (!outcome.is_object() || !outcome.contains("exit_status") || !outcome["exit_status"].is_number_integer())
     return {};
-  MissionResult result = read_result(request_.folder / run.folder, outcome["exit_status"].get<int>());
+  MissionResult result =
+      read_result(request_.folder / run.folder, outcome["exit_status"].get<int>(), limits_[run.variant]);
   result.variant = run.variant;
   result.seed = run.seed;
   result.folder = run.folder;

@@ -69,7 +69,8 @@ class Evaluation {
 
   EvaluationRequest request_;
   std::vector<Variant> variants_;
-  std::vector<RunOptions> options_;  ///< of each variant
+  std::vector<RunOptions> options_;   ///< of each variant
+  std::vector<SearchLimits> limits_;  ///< of each variant
   std::vector<PlannedRun> runs_;
   std::string scenario_;
   int lock_ = -1;

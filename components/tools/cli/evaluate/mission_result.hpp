@@ -3,16 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace constrictor::cli {
+#include "cli/evaluate/recoveries.hpp"
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+namespace constrictor::cli {
 
 struct ObjectResult {
   std::string colour;
@@ -39,8 +36,9 @@ struct MissionResult {
   int recoveries = 0;
   std::string state_hash;
   std::vector<ObjectResult> objects;
-  std::map<std::string, double> time_in_state_s;  ///< by state of the planner
-  std::map<std::string, int> troubles;            ///< "grasp: object not between the arms" and how often
+  std::map<std::string, double> time_in_state_s;   ///< by state of the planner
+  std::map<std::string, int> recoveries_by_cause;  ///< their sum is `recoveries`
+  RecoveryTime longest_recovery;
 
   /// The run itself failed, so that nothing is known about the mission.
   [[nodiscard]] bool error() const { return exit_status != 0 && exit_status != 1; }
@@ -54,10 +52,7 @@ inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", 
 /// The result of a `constrictor run` that wrote into `folder` and ended with `exit_status`. Of a run that wrote no
 /// report, only the status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type
 /// stays unknown.
-[[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status);
-
-/// The failure that an event of a task reports: its goal was aborted or refused, it timed out, or something was lost.
-/// The text contains no numbers of the event, so that equal causes are counted together. Empty for all other events.
-[[nodiscard]] std::string trouble_of(const nlohmann::json& event);
+[[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status,
+                                        const SearchLimits& limits = {});
 
 }  // namespace constrictor::cli

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "cli/evaluate/svg_chart.hpp"
 #include "configuration/xml_escaped.hpp"
@@ -45,21 +47,27 @@ std::string interval_text(std::size_t reached, std::size_t runs) {
   return fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high);
 }
 
+std::string worst_recovery(const VariantSummary& summary) {
+  if (!std::isfinite(summary.worst_recovery.duration_s)) return "–";
+  return fmt::format("{:.1f} s (<a href=\"{}/\">seed {}</a>)", summary.worst_recovery.duration_s,
+                     xml_escaped(summary.worst_folder.string()), summary.worst_seed);
+}
+
 std::string overview(const std::vector<VariantSummary>& summaries) {
   std::string html =
       "<div class=\"table\"><table><tr><th>variant</th><th class=\"n\">runs</th><th class=\"n\">succeeded</th>"
       "<th>95 % interval</th><th class=\"n\">believed, but not true</th><th class=\"n\">errors</th>"
       "<th class=\"n\">median time</th><th class=\"n\">median placement</th><th class=\"n\">95 % of placements</th>"
-      "<th class=\"n\">cost of transport</th></tr>\n";
+      "<th class=\"n\">cost of transport</th><th class=\"n\">longest recovery</th></tr>\n";
   for (const auto& summary : summaries) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td class=\"n\">{} m</td>"
-        "<td class=\"n\">{}</td></tr>\n",
+        "<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
         xml_escaped(summary.name), summary.runs, summary.successes(), interval_text(summary.successes(), summary.runs),
         summary.false_successes, summary.errors, known(summary.mission_time_s.at(0.5), 1),
         known(summary.placement_m.at(0.5), 3), known(summary.placement_m.at(0.95), 3),
-        known(summary.cost_of_transport.at(0.5), 2));
+        known(summary.cost_of_transport.at(0.5), 2), worst_recovery(summary));
   }
   return html + "</table></div>\n";
 }
@@ -158,25 +166,19 @@ std::string times(const std::vector<VariantSummary>& summaries) {
   return bar_chart("Mean time in each state of the planner" + which, bars, longest, "simulated time of a run [s]");
 }
 
-std::string troubles(const std::vector<VariantSummary>& summaries) {
+std::string causes(const std::vector<VariantSummary>& summaries) {
   std::map<std::string, int> sums;
   for (const auto& summary : summaries) {
-    for (const auto& [trouble, count] : summary.troubles) sums[trouble] += count;
+    for (const auto& [cause, count] : summary.recoveries_by_cause) sums[cause] += count;
   }
-  std::vector<Bar> bars;
-  double most = 0;
-  for (const auto& [trouble, count] : sums) {
-    bars.push_back({trouble.size() > 34 ? trouble.substr(0, 32) + "…" : trouble,
-                    static_cast<double>(count),
-                    std::to_string(count),
-                    false,
-                    {},
-                    1});
-    most = std::max(most, static_cast<double>(count));
-  }
-  std::stable_sort(bars.begin(), bars.end(), [](const Bar& a, const Bar& b) { return a.value > b.value; });
-  if (bars.size() > kMostBars) bars.resize(kMostBars);
-  return bars.empty() ? "" : bar_chart("What went wrong on the way, all runs", bars, most, "number of times");
+  if (sums.empty()) return "<p>No run had a recovery.</p>\n";
+  std::vector<std::pair<std::string, int>> rows(sums.begin(), sums.end());
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string html =
+      "<div class=\"table\"><table><tr><th>state that a recovery ended, and why</th><th class=\"n\">number</th></tr>\n";
+  for (const auto& [cause, count] : rows)
+    html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", xml_escaped(cause), count);
+  return html + "</table></div>\n";
 }
 
 std::string run_rows(const PageContent& content, bool successes) {
@@ -187,18 +189,22 @@ std::string run_rows(const PageContent& content, bool successes) {
     for (const auto& object : result.objects) worst_m = std::fmax(worst_m, object.zone_distance_m);
     rows += fmt::format(
         "<tr><td><a href=\"{}/\">{}</a></td><td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{}</td>"
-        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td><code>{}</code></td></tr>\n",
+        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td "
+        "class=\"n\">{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
         xml_escaped(result.folder.string()), result.seed, xml_escaped(content.variants.at(result.variant).name),
         successes ? "" : "bad",
         successes ? "succeeded" : xml_escaped((result.error() ? "error: " : "") + result.reason),
-        known(result.mission_time_s, 1), known(worst_m, 2), result.recoveries, xml_escaped(result.command));
+        known(result.mission_time_s, 1), known(worst_m, 2), result.recoveries,
+        known(result.longest_recovery.duration_s, 1), xml_escaped(result.longest_recovery.cause),
+        xml_escaped(result.command));
   }
   return rows;
 }
 
 std::string run_table(const std::string& rows) {
   return "<div class=\"table\"><table><tr><th>seed</th><th>variant</th><th>outcome</th><th class=\"n\">time [s]</th>"
-         "<th class=\"n\">worst placement [m]</th><th class=\"n\">recoveries</th><th>command that repeats "
+         "<th class=\"n\">worst placement [m]</th><th class=\"n\">recoveries</th>"
+         "<th class=\"n\">longest recovery [s]</th><th>its cause</th><th>command that repeats "
          "it</th></tr>\n" +
          rows + "</table></div>\n";
 }
@@ -227,7 +233,7 @@ std::string make_page(const PageContent& content) {
                      &VariantSummary::pose_error_m) +
           cumulative("Cost of transport", "work for each newton of weight and metre", summaries,
                      &VariantSummary::cost_of_transport) +
-          times(summaries) + troubles(summaries) + "</div>\n";
+          times(summaries) + "</div>\n<h2>Recoveries by cause</h2>\n" + causes(summaries);
   const std::string failed = run_rows(content, false);
   html += "<h2>Runs that did not succeed</h2>\n" + (failed.empty() ? "<p>None.</p>\n" : run_table(failed));
   const std::string succeeded = run_rows(content, true);

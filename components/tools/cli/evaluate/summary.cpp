@@ -30,6 +30,28 @@ std::string csv(const std::string& text) {
 
 std::string csv(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
 
+/// 0: the run had no recovery; NaN: the report does not tell it.
+double longest_recovery_s(const MissionResult& result) {
+  return !result.error() && result.recoveries == 0 ? 0.0 : result.longest_recovery.duration_s;
+}
+
+/// "2 follow line: line lost; 1 other"
+std::string causes_text(const std::map<std::string, int>& causes) {
+  std::string text;
+  for (const auto& [cause, count] : causes) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, cause);
+  return text;
+}
+
+ordered_json worst_recovery_json(const VariantSummary& summary) {
+  const RecoveryTime& worst = summary.worst_recovery;
+  if (!std::isfinite(worst.duration_s)) return nullptr;
+  return {{"duration_s", worst.duration_s},
+          {"cause", worst.cause},
+          {"begin_s", worst.begin_s},
+          {"seed", summary.worst_seed},
+          {"folder", summary.worst_folder.string()}};
+}
+
 void add(VariantSummary& summary, const MissionResult& result) {
   ++summary.runs;
   summary.errors += result.error() ? 1 : 0;
@@ -46,7 +68,14 @@ void add(VariantSummary& summary, const MissionResult& result) {
   add_known(summary.cost_of_transport, result.cost_of_transport);
   add_known(summary.recoveries, result.recoveries);
   for (const auto& [state, time_s] : result.time_in_state_s) summary.mean_time_in_state_s[state] += time_s;
-  for (const auto& [trouble, count] : result.troubles) summary.troubles[trouble] += count;
+  for (const auto& [cause, count] : result.recoveries_by_cause) summary.recoveries_by_cause[cause] += count;
+  add_known(summary.longest_recovery_s, longest_recovery_s(result));
+  if (!(result.longest_recovery.duration_s <= summary.worst_recovery.duration_s) &&
+      std::isfinite(result.longest_recovery.duration_s)) {
+    summary.worst_recovery = result.longest_recovery;
+    summary.worst_seed = result.seed;
+    summary.worst_folder = result.folder;
+  }
 }
 
 }  // namespace
@@ -85,7 +114,9 @@ ordered_json to_json(const std::vector<VariantSummary>& summaries) {
                     {"cost_of_transport", to_json(summary.cost_of_transport)},
                     {"recoveries", to_json(summary.recoveries)},
                     {"mean_time_in_state_s", summary.mean_time_in_state_s},
-                    {"troubles", summary.troubles}});
+                    {"longest_recovery_s", to_json(summary.longest_recovery_s)},
+                    {"longest_recovery", worst_recovery_json(summary)},
+                    {"recoveries_by_cause", summary.recoveries_by_cause}});
   }
   return list;
 }
@@ -99,16 +130,18 @@ std::string to_csv(const std::vector<Variant>& variants, const std::vector<Missi
   }
   std::string text =
       "variant,seed,exit_status,success,believed,reason,mission_time_s,wall_time_s,recoveries,rms_cross_track_m,"
-      "rms_pose_error_m,cost_of_transport";
+      "rms_pose_error_m,cost_of_transport,longest_recovery_s,longest_recovery,recoveries_by_cause";
   for (std::size_t i = 1; i <= objects; ++i)
     text += fmt::format(",object_{0},grasped_{0},dropped_{0},in_zone_{0},zone_distance_{0}_m", i);
   for (const auto& state : states) text += "," + csv("time in '" + state + "' [s]");
   text += ",state_hash,folder\r\n";
   for (const auto& result : results) {
-    text += fmt::format("{},{},{},{:d},{:d},{},{},{},{},{},{},{}", csv(variants.at(result.variant).name), result.seed,
-                        result.exit_status, result.success, result.believed, csv(result.reason),
+    text += fmt::format("{},{},{},{:d},{:d},{},{},{},{},{},{},{},{},{},{}", csv(variants.at(result.variant).name),
+                        result.seed, result.exit_status, result.success, result.believed, csv(result.reason),
                         csv(result.mission_time_s), csv(result.wall_time_s), result.recoveries,
-                        csv(result.rms_cross_track_m), csv(result.rms_pose_error_m), csv(result.cost_of_transport));
+                        csv(result.rms_cross_track_m), csv(result.rms_pose_error_m), csv(result.cost_of_transport),
+                        csv(longest_recovery_s(result)), csv(result.longest_recovery.cause),
+                        csv(causes_text(result.recoveries_by_cause)));
     for (std::size_t i = 0; i < objects; ++i) {
       if (i >= result.objects.size()) {
         text += ",,,,,";
@@ -133,18 +166,27 @@ std::string to_table(const std::vector<VariantSummary>& summaries) {
   };
   std::size_t width = 8;
   for (const auto& summary : summaries) width = std::max(width, summary.name.size());
-  std::string text = fmt::format("{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>11}\n", "variant", width,
-                                 "runs", "succeeded", "95 % interval", "errors", "time [s]", "place [m]", "recoveries");
+  constexpr const char* kRow = "{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>10}  {:>11}\n";
+  std::string text = fmt::format(kRow, "variant", width, "runs", "succeeded", "95 % interval", "errors", "time [s]",
+                                 "place [m]", "recoveries", "longest [s]");
+  const VariantSummary* worst = nullptr;
   for (const auto& summary : summaries) {
     const Interval interval = wilson_interval(summary.successes(), summary.runs);
-    text +=
-        fmt::format("{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>11}\n", summary.name, width, summary.runs,
-                    summary.successes(), fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high),
-                    summary.errors, known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
-                    known(summary.recoveries.at(0.5), 1));
+    text += fmt::format(kRow, summary.name, width, summary.runs, summary.successes(),
+                        fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high), summary.errors,
+                        known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
+                        known(summary.recoveries.at(0.5), 1), known(summary.worst_recovery.duration_s, 1));
+    if (!std::isfinite(summary.worst_recovery.duration_s)) continue;
+    if (!worst || summary.worst_recovery.duration_s > worst->worst_recovery.duration_s) worst = &summary;
   }
-  return text +
-         "(medians; time: of successful missions; place: distance of dropped objects from the centre of their zone)\n";
+  text +=
+      "(medians; time: of successful missions; place: distance of dropped objects from the centre of their zone;\n"
+      "longest: the longest recovery of all runs)\n";
+  if (!worst) return text;
+  return text + fmt::format("longest recovery: {:.1f} s, seed {}{}, {:.1f} s after the start, {}\n",
+                            worst->worst_recovery.duration_s, worst->worst_seed,
+                            summaries.size() > 1 ? " with " + worst->name : "", worst->worst_recovery.begin_s,
+                            worst->worst_recovery.cause);
 }
 
 }  // namespace constrictor::cli

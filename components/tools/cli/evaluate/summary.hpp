@@ -1,6 +1,8 @@
 // The results of all runs of an evaluation together.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -31,8 +33,12 @@ struct VariantSummary {
   Distribution pose_error_m;
   Distribution cost_of_transport;
   Distribution recoveries;
+  Distribution longest_recovery_s;     ///< of each run; 0: it had none
+  RecoveryTime worst_recovery;         ///< the longest of all runs
+  std::uint64_t worst_seed = 0;        ///< of the run with it
+  std::filesystem::path worst_folder;  ///< of the run with it
   std::map<std::string, double> mean_time_in_state_s;
-  std::map<std::string, int> troubles;
+  std::map<std::string, int> recoveries_by_cause;
 
   [[nodiscard]] std::size_t successes() const { return reached.back(); }
 };
@@ -44,7 +50,7 @@ struct VariantSummary {
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<VariantSummary>& summaries);
 /// A row for each run, in the order of `results`; RFC 4180.
 [[nodiscard]] std::string to_csv(const std::vector<Variant>& variants, const std::vector<MissionResult>& results);
-/// A table for the terminal.
+/// A table for the terminal, and the longest recovery of all runs.
 [[nodiscard]] std::string to_table(const std::vector<VariantSummary>& summaries);
 
 }  // namespace constrictor::cli
