@@ -1,5 +1,7 @@
 // `constrictor evaluate` with toy components: real runs, several at a time, that are interrupted, continued, divided
 // and gathered.
+#include <sysexits.h>
+
 #include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
@@ -23,6 +25,17 @@ class Evaluate : public RunCommand {
   }
   [[nodiscard]] nlohmann::json summary(const std::string& output) const {
     return nlohmann::json::parse(text(fs::path(output) / "summary.json"), nullptr, false);
+  }
+  /// The first run of seed 1 carries out these commands of the shell before it begins.
+  void in_first_run(const std::string& commands) const {
+    write("script", "#!/bin/sh\nif [ \"$(echo \"$@\" | grep -c -e '--seed 1 ')\" = 1 ] && mkdir " +
+                        (dir_ / "first").string() + "; then " + commands + "; fi\nexec " + program("toy_host") +
+                        " \"$@\"\n");
+    fs::permissions(dir_ / "script", fs::perms::owner_all);
+    std::string manifest = kManifest;
+    for (auto at = manifest.find("toy_host"); at != std::string::npos; at = manifest.find("toy_host", at))
+      manifest.replace(at, 8, (dir_ / "script").string());
+    write("toys.yaml", manifest);
   }
   /// The state hash of each run that is over, by the run's folder.
   [[nodiscard]] std::map<std::string, std::string> hashes(const std::string& output) const {
@@ -112,14 +125,7 @@ TEST_F(Evaluate, ARefusedEvaluationLeavesItsFolderForTheCorrectedCommand) {
 }
 
 TEST_F(Evaluate, ARunThatFailsStopsNothingAndIsDoneAgain) {
-  // The first run of seed 1 finds a planner that ends with an error.
-  write("script", "#!/bin/sh\nif [ \"$(echo \"$@\" | grep -c -e '--seed 1 ')\" = 1 ] && mkdir " +
-                      (dir_ / "first").string() + "; then exit 78; fi\nexec " + program("toy_host") + " \"$@\"\n");
-  fs::permissions(dir_ / "script", fs::perms::owner_all);
-  std::string manifest = kManifest;
-  for (auto at = manifest.find("toy_host"); at != std::string::npos; at = manifest.find("toy_host", at))
-    manifest.replace(at, 8, (dir_ / "script").string());
-  write("toys.yaml", manifest);
+  in_first_run("exit 78");
   Process first = evaluate(40, "e", {"--seeds", "1..2", "--jobs", "1"});
   EXPECT_EQ(first.wait(60s), exit_status::kSoftware) << first.output();
   EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 1);
@@ -127,6 +133,63 @@ TEST_F(Evaluate, ARunThatFailsStopsNothingAndIsDoneAgain) {
   Process again = evaluate(40, "e", {"--seeds", "1..2"});
   EXPECT_EQ(again.wait(60s), exit_status::kOk) << again.output() << again.errors();
   EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 0);
+}
+
+// A folder that has the name of a file's temporary copy makes it impossible to write the file.
+TEST_F(Evaluate, AResultThatCannotBeWrittenStopsNothingAndIsDoneAgain) {
+  in_first_run("mkdir " + (dir_ / "e/runs/as_given/seed_0001/outcome.json.part").string());
+  Process first = evaluate(40, "e", {"--seeds", "1..3", "--jobs", "1"});
+  EXPECT_EQ(first.wait(60s), EX_IOERR) << first.output() << first.errors();
+  EXPECT_NE(first.output().find("seed 1: error: cannot write"), std::string::npos) << first.output();
+  EXPECT_NE(first.errors().find("the results of 1 run are lost"), std::string::npos) << first.errors();
+  EXPECT_NE(first.errors().find("then the same command with --output"), std::string::npos) << first.errors();
+  EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 1);
+  EXPECT_EQ(summary("e").at("variants").at(0).at("runs"), 3);
+  EXPECT_NE(text("e/runs.csv").find("cannot write"), std::string::npos);
+  const auto done = hashes("e");
+  EXPECT_EQ(done.size(), 2u);
+  Process again = evaluate(40, "e", {"--seeds", "1..3"});
+  EXPECT_EQ(again.wait(60s), exit_status::kOk) << again.output() << again.errors();
+  EXPECT_NE(again.output().find("2 runs done before, 1 left"), std::string::npos) << again.output();
+  EXPECT_EQ(summary("e").at("variants").at(0).at("errors"), 0);
+  EXPECT_EQ(hashes("e").size(), 3u);
+}
+
+TEST_F(Evaluate, ASummaryThatCannotBeWrittenIsShown) {
+  fs::create_directories(dir_ / "e");
+  Process begun = evaluate(40, "e", {"--seeds", "1"});
+  ASSERT_EQ(begun.wait(60s), exit_status::kOk) << begun.errors();
+  const std::vector<std::string> files{"index.html", "runs.csv", "summary.json"};
+  for (const auto& file : files) {
+    fs::remove(dir_ / "e" / file);
+    fs::create_directories(dir_ / "e" / (file + ".part") / "content");
+  }
+  fs::create_directory(dir_ / "e/evaluation.json.part");  // the seeds are the same: it need not be written
+  Process full = evaluate(40, "e", {"--seeds", "1"});
+  EXPECT_EQ(full.wait(60s), EX_IOERR) << full.output();
+  EXPECT_NE(full.output().find("as given"), std::string::npos) << "the table is on the terminal: " << full.output();
+  for (const auto& file : files) EXPECT_NE(full.errors().find("e/" + file), std::string::npos) << full.errors();
+  Process more = evaluate(40, "e", {"--seeds", "2"});
+  EXPECT_EQ(more.wait(60s), EX_IOERR) << more.output();
+  EXPECT_NE(more.errors().find("the evaluation cannot begin: cannot write"), std::string::npos) << more.errors();
+
+  for (const auto& file : files) fs::remove_all(dir_ / "e" / (file + ".part"));
+  Process again = evaluate(40, "e", {"--seeds", "1"});
+  EXPECT_EQ(again.wait(60s), exit_status::kOk) << again.errors();
+  EXPECT_EQ(summary("e").at("variants").at(0).at("runs"), 1);
+}
+
+TEST_F(Evaluate, RunsThatCannotBeMergedAreNamed) {
+  Process part = evaluate(40, "part", {"--seeds", "1..2"});
+  ASSERT_EQ(part.wait(60s), exit_status::kOk) << part.errors();
+  fs::create_directories(dir_ / "all/runs/as_given");
+  fs::copy(dir_ / "part/evaluation.json", dir_ / "all/evaluation.json");
+  fs::create_symlink("nowhere", dir_ / "part/runs/as_given/seed_0001/broken");
+  Process merge = evaluate(40, "all", {"--merge", (dir_ / "part").string()});
+  EXPECT_EQ(merge.wait(60s), EX_IOERR) << merge.output();
+  EXPECT_NE(merge.errors().find("seed_0001 was not copied"), std::string::npos) << merge.errors();
+  EXPECT_EQ(summary("all").at("variants").at(0).at("runs"), 1) << "the other run was copied";
+  EXPECT_FALSE(fs::exists(dir_ / "all/runs/as_given/seed_0001.part"));
 }
 
 TEST_F(Evaluate, RefusesWhatItCannotDo) {

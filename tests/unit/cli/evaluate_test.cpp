@@ -172,6 +172,22 @@ TEST(MissionResult, AMissionThatDidNotEndLastsAsLongAsItsRun) {
   EXPECT_DOUBLE_EQ(result.time_in_state_s.at("search object"), 62.0);
 }
 
+TEST(MissionResult, WithoutAVerdictIsAnError) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(read_result(folder.path(), 1).error()) << "there is no report, for example because the disk was full";
+  std::ofstream(folder.path() / "run.log") << "run 2: begins\nthere is no report: the disk is full\n";
+  EXPECT_TRUE(read_result(folder.path(), 1).reason.ends_with("there is no report: the disk is full"));
+  json report{{"success", false}, {"reason", "time limit"}, {"state_hash", nullptr}, {"states", nullptr}};
+  report["members"] = {{{"name", "physics"}}, {{"name", "report"}}};
+  std::ofstream(folder.path() / "report.json") << report;
+  const MissionResult result = read_result(folder.path(), 1);
+  EXPECT_TRUE(result.error());
+  EXPECT_NE(result.reason.find("missing in report.json"), std::string::npos) << result.reason;
+  report["judged_by"] = "ground truth";
+  std::ofstream(folder.path() / "report.json") << report;
+  EXPECT_FALSE(read_result(folder.path(), 1).error());
+}
+
 TEST(MissionResult, WhateverIsInTheReportDoesNoHarm) {
   const TemporaryFolder folder;
   EXPECT_TRUE(read_result(folder.path(), 70).error());

@@ -2,6 +2,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sysexits.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,7 +10,9 @@
 #include <ctime>
 #include <memory>
 #include <set>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include "cli/evaluate/evaluation.hpp"
 #include "cli/evaluate/evaluation_record.hpp"
@@ -56,7 +59,8 @@ fs::path new_folder(const RunOptions& options) {
                             fmt::format("{:%Y%m%d-%H%M%S}_{}", fmt::localtime(now), scenario));
 }
 
-void write_summary(const Evaluation& evaluation, const EvaluationRequest& request) {
+/// Writes the files that can be written, and prints the table. Returns why the other files could not be written.
+std::vector<std::string> write_summary(const Evaluation& evaluation, const EvaluationRequest& request) {
   PageContent page;
   page.scenario = evaluation.scenario();
   page.about = fmt::format("Constrictor {}, {}, robot {}, manifest {}", kVersion, counted(request.seeds.size(), "seed"),
@@ -69,10 +73,37 @@ void write_summary(const Evaluation& evaluation, const EvaluationRequest& reques
                               {"version", kVersion},
                               {"planned_runs", page.planned},
                               {"variants", to_json(summaries)}};
-  write_whole(evaluation.folder() / "runs.csv", to_csv(page.variants, page.results));
-  write_whole(evaluation.folder() / "summary.json", json.dump(2) + "\n");
-  write_whole(evaluation.folder() / "index.html", make_page(page));
+  std::vector<std::string> unwritten;
+  // The smallest file first: the disk may be nearly full.
+  const std::vector<std::pair<const char*, std::string>> files{{"summary.json", json.dump(2) + "\n"},
+                                                               {"runs.csv", to_csv(page.variants, page.results)},
+                                                               {"index.html", make_page(page)}};
+  for (const auto& [name, content] : files) {
+    try {
+      write_whole(evaluation.folder() / name, content);
+    } catch (const std::system_error& error) {
+      unwritten.push_back(error.what());
+    }
+  }
   fmt::print("\n{}", to_table(summaries));
+  return unwritten;
+}
+
+/// Says which results are missing, and what to do. Returns false if there are any.
+bool report_unwritten(const std::string& folder, const std::vector<std::string>& unwritten,
+                      const std::vector<MissionResult>& results) {
+  constexpr std::size_t kNamed = 5;
+  for (std::size_t i = 0; i < std::min(kNamed, unwritten.size()); ++i) fmt::print(stderr, "{}\n", unwritten[i]);
+  if (unwritten.size() > kNamed) fmt::print(stderr, "{} more\n", unwritten.size() - kNamed);
+  const auto lost = static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const MissionResult& result) { return result.unwritten(); }));
+  if (lost > 0) fmt::print(stderr, "the results of {} are lost\n", counted(lost, "run"));
+  if (unwritten.empty() && lost == 0) return true;
+  fmt::print(stderr,
+             "results are missing: check the free space and the rights of {}, then the same command with --output {} "
+             "does what is missing\n",
+             folder, folder);
+  return false;
 }
 
 /// Begins the evaluation. A folder that was made for it does not stay if it is refused.
@@ -112,9 +143,16 @@ int evaluate(const EvaluateOptions& given) {
   else request.seeds = given.merge.empty() ? parse_seeds("1..10") : seeds_of(given.merge);
   parse_shard(given.shard, request);
   if (request.jobs == 0) request.jobs = std::max(1u, std::thread::hardware_concurrency());
-  const std::unique_ptr<Evaluation> begun = begin(request);
+  std::unique_ptr<Evaluation> begun;
+  try {
+    begun = begin(request);
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "constrictor: the evaluation cannot begin: {}\n", error.what());
+    return EX_IOERR;
+  }
   Evaluation& evaluation = *begun;
-  if (!given.merge.empty()) merge_evaluations(given.merge, request);
+  std::vector<std::string> unwritten;
+  if (!given.merge.empty()) unwritten = merge_evaluations(given.merge, request);
   const std::string folder = evaluation.folder().string();
   int signal = 0;
   if (given.merge.empty()) {
@@ -125,13 +163,16 @@ int evaluate(const EvaluateOptions& given) {
     signal = evaluation.carry_out([&](const std::string& line) { display.print(line); },
                                   [&](const std::string& line) { display.show_status(line); });
   }
-  write_summary(evaluation, request);
-  fmt::print("{}/index.html, runs.csv, summary.json\n", folder);
+  const auto files = write_summary(evaluation, request);
+  if (files.empty()) fmt::print("{}/index.html, runs.csv, summary.json\n", folder);
+  unwritten.insert(unwritten.end(), files.begin(), files.end());
+  const auto results = evaluation.results();
+  const bool complete = report_unwritten(folder, unwritten, results);
   if (signal != 0) {
     fmt::print("interrupted; the same command with --output {} goes on\n", folder);
     return 128 + signal;
   }
-  const auto results = evaluation.results();
+  if (!complete) return EX_IOERR;
   if (!given.merge.empty() && !report_missing(evaluation, results)) return exit_status::kFailed;
   const auto errors = static_cast<std::size_t>(
       std::count_if(results.begin(), results.end(), [](const MissionResult& result) { return result.error(); }));
@@ -197,7 +238,8 @@ void add_evaluate(CLI::App& app, Action& action) {
        "constrictor evaluate short --seeds 1..100 --shard 1/2 --output part1",
        "constrictor evaluate short --seeds 1..100 --merge part1 part2 --output all"},
       "0 all runs are done, whether or not their missions succeeded; 1 the folders of --merge lack runs;\n"
-      "  64 wrong usage; 70 a run ended with an error; 78 wrong configuration; 130 Ctrl-C, 143 SIGTERM",
+      "  64 wrong usage; 70 a run ended with an error; 74 results could not be written; 78 wrong configuration;\n"
+      "  130 Ctrl-C, 143 SIGTERM",
       kDataEnvironment));
 }
 

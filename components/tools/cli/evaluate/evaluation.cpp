@@ -39,13 +39,14 @@ fs::path folder_of(const Variant& variant, std::uint64_t seed) {
   return fs::path("runs") / variant.folder / fmt::format("seed_{:04}", seed);
 }
 
-/// Removes what is in the folder but the files of these names.
+/// Removes what is in the folder but the files of these names. What cannot be removed stays.
 void remove_content(const fs::path& folder, const std::set<std::string>& kept = {}) {
+  std::error_code ignored;
   std::vector<fs::path> content;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!kept.contains(entry.path().filename().string())) content.push_back(entry.path());
+  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+    if (!kept.contains(entry->path().filename().string())) content.push_back(entry->path());
   }
-  for (const auto& path : content) fs::remove_all(path);
+  for (const auto& path : content) fs::remove_all(path, ignored);
 }
 
 std::string quoted(const std::string& word) {
@@ -121,7 +122,8 @@ bool Evaluation::claim_folder() {
     }
     std::sort(wanted.seeds.begin(), wanted.seeds.end());
   }
-  write_record(request_.folder, wanted);
+  // A folder whose disk is full can be continued with the same seeds.
+  if (!found || found->seeds != wanted.seeds) write_record(request_.folder, wanted);
   const fs::path lock = request_.folder / fmt::format(".shard-{}-of-{}", request_.shard, request_.shards);
   lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) throw std::system_error(errno, std::generic_category(), lock.string());
@@ -154,16 +156,30 @@ void Evaluation::start(const PlannedRun& run, std::vector<Job>& jobs) {
   jobs.push_back({run, std::make_unique<ChildProcess>(words, run_environment(), folder / "run.log"), Clock::now()});
 }
 
+MissionResult Evaluation::lose(const PlannedRun& run, const std::string& why) {
+  // The run will be done again. Until then its files must not take the space that the other runs need.
+  remove_content(request_.folder / run.folder, {"run.log"});
+  MissionResult result;
+  result.incomplete = true;
+  result.reason = why;
+  return lost_[run.folder] = completed(std::move(result), run);
+}
+
 MissionResult Evaluation::finish(const Job& job, int status) {
   const fs::path folder = request_.folder / job.run.folder;
   const nlohmann::json outcome = {{"exit_status", status},
                                   {"wall_time_s", std::chrono::duration<double>(Clock::now() - job.start).count()}};
-  write_whole(folder / kOutcome, outcome.dump(1) + "\n");
-  MissionResult result = *result_of(job.run);
-  const bool bulky = request_.keep == "all" || (request_.keep == "failed" && !result.success);
-  // Files that only people read go; the results stay.
-  if (!bulky) remove_content(folder, {"report.json", kOutcome, "run.log"});
-  return result;
+  try {
+    write_whole(folder / kOutcome, outcome.dump(1) + "\n");
+  } catch (const std::system_error& error) {
+    return lose(job.run, error.what());
+  }
+  const auto result = result_of(job.run);
+  if (!result) return lose(job.run, fmt::format("cannot read {}", (folder / kOutcome).string()));
+  const bool kept = request_.keep == "all" || (request_.keep == "failed" && !result->success);
+  // Files that only people read go, and those of an incomplete run, for which there was no space; the results stay.
+  if (!kept || result->incomplete) remove_content(folder, {"report.json", kOutcome, "run.log"});
+  return *result;
 }
 
 std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const {
@@ -172,8 +188,11 @@ std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const 
   const auto outcome = nlohmann::json::parse(stream, nullptr, false);
   if (!outcome.is_object() || !outcome.contains("exit_status") || !outcome["exit_status"].is_number_integer())
     return {};
-  MissionResult result =
-      read_result(request_.folder / run.folder, outcome["exit_status"].get<int>(), limits_[run.variant]);
+  return completed(read_result(request_.folder / run.folder, outcome["exit_status"].get<int>(), limits_[run.variant]),
+                   run);
+}
+
+MissionResult Evaluation::completed(MissionResult result, const PlannedRun& run) const {
   result.variant = run.variant;
   result.seed = run.seed;
   result.folder = run.folder;
@@ -185,7 +204,8 @@ std::optional<MissionResult> Evaluation::result_of(const PlannedRun& run) const 
 std::vector<MissionResult> Evaluation::results() const {
   std::vector<MissionResult> results;
   for (const auto& run : runs_) {
-    if (auto result = result_of(run)) results.push_back(std::move(*result));
+    if (const auto lost = lost_.find(run.folder); lost != lost_.end()) results.push_back(lost->second);
+    else if (auto result = result_of(run)) results.push_back(std::move(*result));
   }
   return results;
 }
@@ -208,8 +228,23 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
   const auto begin = Clock::now();
   std::vector<Job> jobs;
   std::size_t next = 0;
+  const auto over = [&](const PlannedRun& run, const MissionResult& result) {
+    ++done;
+    succeeded += result.success ? 1 : 0;
+    const std::string& variant = variants_[run.variant].name;
+    show(fmt::format("seed {}{}: {}", run.seed, variants_.size() > 1 ? " with " + variant : "",
+                     result.success ? fmt::format("succeeded in {:.1f} s", result.mission_time_s)
+                                    : (result.error() ? "error: " : "failed: ") + result.reason));
+  };
   while (next < due.size() || !jobs.empty()) {
-    while (jobs.size() < request_.jobs && next < due.size()) start(due[next++], jobs);
+    while (jobs.size() < request_.jobs && next < due.size()) {
+      const PlannedRun& run = due[next++];
+      try {
+        start(run, jobs);
+      } catch (const std::system_error& error) {
+        over(run, lose(run, fmt::format("the run was not started: {}", error.what())));
+      }
+    }
     const int signal = signals.wait(500ms);
     if (signal != 0) {
       for (auto& job : jobs) job.child->signal(SIGTERM);
@@ -224,13 +259,7 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
       if (!exit) continue;
       job.over = true;
       const int status = exit->code().value_or(128 + WTERMSIG(exit->wait_status));
-      const MissionResult result = finish(job, status);
-      ++done;
-      succeeded += result.success ? 1 : 0;
-      const std::string& variant = variants_[job.run.variant].name;
-      show(fmt::format("seed {}{}: {}", job.run.seed, variants_.size() > 1 ? " with " + variant : "",
-                       result.success ? fmt::format("succeeded in {:.1f} s", result.mission_time_s)
-                                      : (result.error() ? "error: " : "failed: ") + result.reason));
+      over(job.run, finish(job, status));
     }
     std::erase_if(jobs, [](const Job& job) { return job.over; });
     const double passed_s = std::chrono::duration<double>(Clock::now() - begin).count();

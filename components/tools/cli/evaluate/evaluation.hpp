@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,11 +51,13 @@ class Evaluation {
   [[nodiscard]] const std::string& scenario() const { return scenario_; }
 
   /// Does the runs of this shard that have no result yet, and repeats runs whose result is an error. After a failed run
-  /// the others go on. Calls `show` with a line for each run that ended, and `progress` with the state of the whole.
-  /// Returns 0, or the number of the signal that interrupted it: the runs that had not ended are then stopped, and the
-  /// next call does them again.
+  /// the others go on, also after one whose files cannot be written: it is an error, and it leaves only its run.log.
+  /// Calls `show` with a line for each run that ended, and `progress` with the state of the whole. Returns 0, or the
+  /// number of the signal that interrupted it: the runs that had not ended are then stopped, and the next call does
+  /// them again.
   int carry_out(const Print& show, const Print& progress);
-  /// The results that the folder has of runs(), in their order.
+  /// The results of runs(), in their order: those that the folder has, and an error for each run whose
+  /// files could not be written.
   [[nodiscard]] std::vector<MissionResult> results() const;
 
  private:
@@ -62,16 +65,21 @@ class Evaluation {
   /// Returns true if the folder holds a part of this evaluation already.
   bool claim_folder();
   void start(const PlannedRun& run, std::vector<Job>& jobs);
+  /// Notes that the files of a run cannot be written, and removes those that it has.
+  MissionResult lose(const PlannedRun& run, const std::string& why);
   /// Notes the end of a run and removes what is not to be kept of it.
   MissionResult finish(const Job& job, int status);
   [[nodiscard]] std::vector<std::string> arguments(const PlannedRun& run) const;
   [[nodiscard]] std::optional<MissionResult> result_of(const PlannedRun& run) const;
+  /// Adds what is known of a run before it begins.
+  [[nodiscard]] MissionResult completed(MissionResult result, const PlannedRun& run) const;
 
   EvaluationRequest request_;
   std::vector<Variant> variants_;
   std::vector<RunOptions> options_;   ///< of each variant
   std::vector<SearchLimits> limits_;  ///< of each variant
   std::vector<PlannedRun> runs_;
+  std::map<std::filesystem::path, MissionResult> lost_;  ///< runs whose files could not be written, by their folder
   std::string scenario_;
   int lock_ = -1;
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "cli/evaluate/evaluation.hpp"
@@ -13,7 +14,9 @@ namespace constrictor::cli {
 [[nodiscard]] std::vector<std::uint64_t> seeds_of(const std::vector<std::filesystem::path>& folders);
 
 /// Copies the runs that are over from folders that hold parts of the requested evaluation into request.folder. A run
-/// that is there already, and not an error, stays. Throws UsageError if a folder holds another evaluation.
-void merge_evaluations(const std::vector<std::filesystem::path>& folders, const EvaluationRequest& request);
+/// that is there already, and not an error, stays. Returns the reasons why runs could not be copied; the others are
+/// copied all the same. Throws UsageError if a folder holds another evaluation.
+[[nodiscard]] std::vector<std::string> merge_evaluations(const std::vector<std::filesystem::path>& folders,
+                                                         const EvaluationRequest& request);
 
 }  // namespace constrictor::cli

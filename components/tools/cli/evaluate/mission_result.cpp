@@ -5,9 +5,27 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "cli/child_process.hpp"
+
 namespace constrictor::cli {
+
+namespace {
+
+/// The launcher has written its part of the report, but the member `report` could not write its own (mission.json).
+bool lacks_verdict(const nlohmann::json& report) {
+  const nlohmann::json& members = field(report, "members");
+  const bool member = std::any_of(members.begin(), members.end(),
+                                  [](const nlohmann::json& entry) { return text_field(entry, "name") == "report"; });
+  constexpr const char* kItsKeys[] = {"judged_by", "state_hash", "objects", "states", "recoveries"};
+  return member && !flag_field(report, "success") &&
+         std::all_of(std::begin(kItsKeys), std::end(kItsKeys),
+                     [&](const char* key) { return field(report, key).is_null(); });
+}
+
+}  // namespace
 
 bool reached(const MissionResult& result, std::size_t phase) {
   const auto all = [&](auto&& holds) {
@@ -31,7 +49,15 @@ MissionResult read_result(const std::filesystem::path& folder, int exit_status, 
   std::ifstream stream(folder / "report.json");
   const nlohmann::json report = stream ? nlohmann::json::parse(stream, nullptr, false) : nlohmann::json();
   if (!report.is_object()) {
+    result.incomplete = true;
     result.reason = fmt::format("no report; `constrictor run` ended with status {}", exit_status);
+    // The launcher's last line says why there is none.
+    for (const auto& line : last_lines(folder / "run.log", 0, 1)) result.reason += ": " + line;
+    return result;
+  }
+  if (lacks_verdict(report)) {
+    result.incomplete = true;
+    result.reason = "the results of the member report are missing in report.json";
     return result;
   }
   result.success = flag_field(report, "success");

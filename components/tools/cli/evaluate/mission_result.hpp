@@ -25,6 +25,7 @@ struct MissionResult {
   std::filesystem::path folder;      ///< relative to that of the evaluation
   std::string command;               ///< repeats the run
   int exit_status = -1;              ///< of `constrictor run`: 0 and 1 are outcomes of the mission, others are errors
+  bool incomplete = false;           ///< the files of its result could not be written; `reason` tells why
   bool success = false;              ///< by ground truth
   bool believed = false;             ///< the planner ended the mission as succeeded
   std::string reason;                ///< why it did not succeed
@@ -41,7 +42,9 @@ struct MissionResult {
   RecoveryTime longest_recovery;
 
   /// The run itself failed, so that nothing is known about the mission.
-  [[nodiscard]] bool error() const { return exit_status != 0 && exit_status != 1; }
+  [[nodiscard]] bool error() const { return incomplete || (exit_status != 0 && exit_status != 1); }
+  /// The run did not fail, but its files could not be written.
+  [[nodiscard]] bool unwritten() const { return incomplete && exit_status <= 1; }
 };
 
 /// The phases of a mission that are counted, in their order. A phase counts as reached if all objects have reached it.
@@ -49,8 +52,8 @@ inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", 
                                           "mission succeeded"};
 [[nodiscard]] bool reached(const MissionResult& result, std::size_t phase);
 
-/// The result of a `constrictor run` that wrote into `folder` and ended with `exit_status`. Of a run that wrote no
-/// report, only the status is known. Text and numbers of the report are not trusted: what is missing or of a wrong type
+/// The result of a `constrictor run` that wrote into `folder` and ended with `exit_status`. A run without a
+/// whole report is incomplete. Text and numbers of the report are not trusted: what is missing or of a wrong type
 /// stays unknown.
 [[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status,
                                         const SearchLimits& limits = {});

@@ -8,11 +8,13 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "cli/usage.hpp"
 #include "component/data_path.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/whole_file.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -187,9 +189,12 @@ RunOptions options_of(const Variant& variant, const RunOptions& base, const fs::
     // The name of a run is that of its scenario's file.
     const fs::path file =
         folder / (name == "scenario" ? plan.manifest.scenario_file.filename() : fs::path(name + ".yaml"));
-    std::ofstream stream(file);
-    stream << "# " << variant.name << "\n" << node << "\n";
-    if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write {}", file.string()));
+    std::ostringstream content;
+    content << "# " << variant.name << "\n" << node << "\n";
+    std::ostringstream present;
+    present << std::ifstream(file).rdbuf();
+    // An evaluation that goes on needs no space for the file that it has.
+    if (present.str() != content.str()) write_whole(file, content.str());
     if (name == "scenario") options.scenario = file.string();
     else if (name == "robot") options.robot = file.string();
     else options.config_files.push_back(name + "=" + file.string());
