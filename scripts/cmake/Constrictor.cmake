@@ -111,7 +111,7 @@ set(CONSTRICTOR_LAYERS
   "components/tools/host => .*"
   "components/tools/pictures => .*"
   "components/tools/views => idl|components/lib/(recording|robot)"
-  "components/tools/cli => idl|components/lib/.*|components/tools/views"
+  "components/tools/cli => idl|components/lib/.*|components/tools/views|sim/scenario_loader"
   "components/tools/.* => idl|components/lib/.*"
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
   "components/plant_relay => idl|components/lib/(component|configuration|plant|robot)"

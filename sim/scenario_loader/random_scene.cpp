@@ -89,7 +89,9 @@ bool line_meets_itself(const std::vector<Vector2d>& line_m) {
 
 /// The line, the objects of the mission, the zones and the start. They may stand in each other's way.
 Scenario draw_scene(const RandomScene& ranges, const Mission& mission, Scenario scene, Random& random) {
-  const LinePath path = make_line_path({{kStart_m, 0.0}, 0.0}, draw_line(ranges, random), kMostLinePoints);
+  scene.line_begin = {{kStart_m, 0.0}, 0.0};
+  scene.line_segments = draw_line(ranges, random);
+  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, kMostLinePoints);
   scene.line_m = path.points_m;
   scene.line_colour = mission.line_colour;
   scene.start_m = {0.0, 0.0};

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/scenario_loader/line_path.hpp"
+
 namespace constrictor {
 
 enum class BodyShape : std::uint8_t { kCylinder = 0, kBox = 1 };  // numbers of simulation.idl
@@ -81,7 +83,9 @@ struct ScenarioLight {
 struct Scenario {
   std::string name;
   std::uint64_t seed = 0;
-  std::vector<Eigen::Vector2d> line_m;  ///< points from the zones to the objects; empty: no line
+  PlanarFrame line_begin;                  ///< where the line begins
+  std::vector<LineSegment> line_segments;  ///< of which the line is made, from the zones to the objects; empty: no line
+  std::vector<Eigen::Vector2d> line_m;     ///< its points
   double line_width_m = 0.05;
   std::uint8_t line_colour = 3;  ///< msg::kColourBlue
   std::vector<ScenarioObject> objects;

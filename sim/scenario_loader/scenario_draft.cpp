@@ -54,16 +54,16 @@ void read_line(Configuration line, ScenarioDraft& draft) {
   draft.fixed.line_colour = read_colour(line);
   draft.fixed.line_width_m = line.number("width_m", {0.005, 0.5});
   const std::vector<double> begin = line.numbers("begin_m", {-kFar_m, kFar_m}, 2, 2);
-  draft.line_begin.origin_m = {begin[0], begin[1]};
-  draft.line_begin.yaw_rad = line.number("begin_yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
+  draft.fixed.line_begin.origin_m = {begin[0], begin[1]};
+  draft.fixed.line_begin.yaw_rad = line.number("begin_yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
   for (Configuration& segment : line.list("segments")) {
-    draft.segments.push_back(
+    draft.fixed.line_segments.push_back(
         {segment.number("length_m", {0.02, 50.0}), segment.number("curvature_1_m", {-5.0, 5.0}, 0.0)});
     segment.finish();
   }
-  if (draft.segments.empty() || draft.segments.size() > kMostSegments) {
+  if (draft.fixed.line_segments.empty() || draft.fixed.line_segments.size() > kMostSegments) {
     throw line.error("segments", fmt::format("found a list of {}, accepted a list of 1 to {} maps",
-                                             draft.segments.size(), kMostSegments));
+                                             draft.fixed.line_segments.size(), kMostSegments));
   }
   line.finish();
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "configuration/configuration.hpp"
-#include "sim/scenario_loader/line_path.hpp"
 #include "sim/scenario_loader/random_scene.hpp"
 #include "sim/scenario_loader/scenario.hpp"
 
@@ -35,8 +34,6 @@ struct Variation {
 /// of the line.
 struct ScenarioDraft {
   Scenario fixed;
-  PlanarFrame line_begin;
-  std::vector<LineSegment> segments;
   std::vector<Placement> objects;
   std::vector<Placement> zones;
   std::vector<Placement> obstacles;

@@ -33,12 +33,11 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
 
   Random line = stream("line");
   const double line_side = vary.mirror_line && line.coin() ? -1.0 : 1.0;
-  std::vector<LineSegment> segments = draft.segments;
-  for (LineSegment& segment : segments) {
+  for (LineSegment& segment : scene.line_segments) {
     segment.curvature_1_m *= line_side * line.factor(vary.line_curvature);
     segment.length_m *= line.factor(vary.line_length);
   }
-  const LinePath path = make_line_path(draft.line_begin, segments, kMostLinePoints);
+  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, kMostLinePoints);
   scene.line_m = path.points_m;
   const auto resolve = [&](const Placement& placement, const Eigen::Vector2d& position_m) {
     const PlanarFrame frame = placement.frame == "line_begin" ? path.begin

@@ -74,6 +74,10 @@ TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
                                    {{"list", ""}, "robots", "fish"},
                                    {{"run", ""}, "case_study", "fish"},
                                    {{"check", "--robot", ""}, "serpens", "--seed"},
+                                   {{"evaluate", ""}, "case_study", "fish"},
+                                   {{"scenario", ""}, "random", "case_study"},
+                                   {{"scenario", "show", "w"}, "wide", "random"},
+                                   {{"scenario", "random", "--difficulty", ""}, "middle", "--seed"},
                                    {{"robot", ""}, "export", "list"},
                                    {{"robot", "export", "--robot", ""}, "serpens", "--mjcf"},
                                    {{"node", "info", "n"}, "navigation", "list"}};

@@ -1,33 +1,13 @@
 // `constrictor robot export`: the examples of its help, what it writes, and what it refuses.
-#include <sstream>
-
 #include "integration/run_command_fixture.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-class RobotExport : public RunCommand {
- protected:
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream file(dir_ / name);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-};
+class RobotExport : public RunCommand {};
 
 TEST_F(RobotExport, TheExamplesOfItsHelpWork) {
-  Process help = command({"robot", "export", "--help"});
-  ASSERT_EQ(help.wait(20s), exit_status::kOk) << help.errors();
-  std::istringstream text(help.output());
-  std::string line;
-  while (std::getline(text, line) && line != "EXAMPLES") {}
-  int examples = 0;
-  for (; std::getline(text, line) && line.starts_with("  constrictor "); ++examples) {
-    auto environment = environment_;
-    environment["PATH"] = fs::path(program("constrictor")).parent_path().string() + ":/usr/bin:/bin";
-    Process example({"/bin/sh", "-c", "cd " + dir_.string() + " && " + line}, environment);
-    EXPECT_EQ(example.wait(20s), exit_status::kOk) << line << example.errors();
-  }
-  EXPECT_EQ(examples, 5);
+  EXPECT_EQ(run_examples({"robot", "export"}), 5);
   EXPECT_NE(
       read("mamba.urdf").find("<mesh filename=\"file://" + fs::canonical(dir_).string() + "/meshes/module.stl\"/>"),
       std::string::npos);

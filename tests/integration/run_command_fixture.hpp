@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "integration/case_study_manifest.hpp"
@@ -37,6 +38,28 @@ class RunCommand : public ::testing::Test {
   RunCommand() { write("toys.yaml", kManifest); }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ / name) << text; }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream file(dir_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Runs the examples in the help of a subcommand, in the test's folder, and expects each to succeed. Returns how many
+  /// there are.
+  [[nodiscard]] int run_examples(std::vector<std::string> subcommand) const {
+    subcommand.emplace_back("--help");
+    Process help = command(subcommand);
+    EXPECT_EQ(help.wait(20s), exit_status::kOk) << help.errors();
+    std::istringstream text(help.output());
+    std::string line;
+    while (std::getline(text, line) && line != "EXAMPLES") {}
+    auto environment = environment_;
+    environment["PATH"] = fs::path(program("constrictor")).parent_path().string() + ":/usr/bin:/bin";
+    int examples = 0;
+    for (; std::getline(text, line) && line.starts_with("  constrictor "); ++examples) {
+      Process example({"/bin/sh", "-c", "cd " + dir_.string() + " && " + line}, environment);
+      EXPECT_EQ(example.wait(60s), exit_status::kOk) << line << example.errors();
+    }
+    return examples;
+  }
   [[nodiscard]] Process command(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), program("constrictor"));
     return Process(std::move(arguments), environment_);

@@ -19,6 +19,7 @@ void add_serve(CLI::App& app, Action& action);        ///< serve
 void add_keys(CLI::App& app, Action& action);         ///< keys
 void add_list(CLI::App& app, Action& action);         ///< list
 void add_robot(CLI::App& app, Action& action);        ///< robot
+void add_scenario(CLI::App& app, Action& action);     ///< scenario
 void add_servo(CLI::App& app, Action& action);        ///< servo
 void add_swap(CLI::App& app, Action& action);         ///< swap
 void add_commands(CLI::App& app, Action& action);     ///< end, diff; host has only its help here
@@ -45,7 +46,7 @@ inline constexpr std::array kSubcommands{
     add_run,  add_evaluate, add_serve,           add_list,  add_robot,  add_commands, add_run_control, add_teleop,
     add_task, add_param,    add_topic,           add_node,  add_status, add_doctor,   add_agent,       add_completion,
     add_keys, add_record,   add_recording_files, add_servo, add_swap,   add_replay,   add_pictures,    add_foxglove,
-    add_log};
+    add_log,  add_scenario};
 
 /// Adds the subcommand `name` to `parent`. When it is chosen, `action` becomes `run(*options)`.
 template <class Options, class Run>

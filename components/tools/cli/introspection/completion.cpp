@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/scenario_command.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/task_names.hpp"
@@ -72,7 +73,8 @@ Values values_of_path(const std::string& path) {
   if (path == "pace") return {"lockstep 1x 2x", ""};
   if (path == "node info" || path == "host") return {words_of(&TopicInfo::writer), ""};
   if (path == "list") return {"scenarios robots manifests components", ""};
-  if (path == "run" || path == "check") return {"", names_command("scenarios")};
+  if (path == "run" || path == "check" || path == "evaluate" || path == "scenario show")
+    return {"", names_command("scenarios")};
   if (path == "topic find") return {words_of(&TopicInfo::type), ""};
   if (path.rfind("topic ", 0) == 0 && path != "topic list") return {words_of(&TopicInfo::name), ""};
   return {};
@@ -85,6 +87,7 @@ Values values_of_option(const std::string& name) {
   if (name == "direction") return {typed(direction_words()), ""};
   if (name.size() > 7 && name.compare(name.size() - 7, 7, "-colour") == 0) return {typed(colour_words()), ""};
   if (name == "pace") return {"lockstep realtime 2x", ""};
+  if (name == "difficulty") return {fmt::format("{}", fmt::join(kDifficulties, " ")), ""};
   if (name == "goal") return {"any", ""};
   if (name == "manifest") return {"", names_command("manifests")};
   if (name == "robot") return {"", names_command("robots")};
