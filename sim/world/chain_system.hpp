@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/world/chain_factor.hpp"
 #include "sim/world/contact_law.hpp"
 #include "sim/world/servo.hpp"
 #include "sim/world/spatial.hpp"
@@ -28,10 +29,13 @@ struct SystemBody {
 /// in which contact forces f and torques of the servos are those at the end of the step (implicit Euler), so that every
 /// step is stable. Each is the gradient of a convex function as long as the bounds of friction are fixed, so Newton's
 /// method with a line search converges; the bounds follow the normal forces from one iteration to the next. Each
-/// iteration needs the matrix M + h J^T D J + h D_servo. The contacts of a module add up to six by six numbers, which
-/// have the form of an inertia; so the composite-rigid-body algorithm makes this matrix in one pass over the chain.
-/// Sources: R. Featherstone, Rigid Body Dynamics Algorithms, chapter 6; E. Todorov, Convex and analytically-invertible
-/// dynamics with contacts and constraints (ICRA 2014), for the primal Newton method.
+/// iteration solves with the matrix M + h J^T D J + h D_servo. The contacts of a module add up to six by six numbers,
+/// which have the form of an inertia; so ChainFactor solves for the chain in a time that grows linearly with the
+/// modules, once for the gradient and once for each unknown of an object that the chain touches. Contacts between
+/// modules couple distant joints. Then the composite-rigid-body algorithm makes the matrix, and Cholesky's
+/// factorisation solves with it. Sources: R. Featherstone, Rigid Body Dynamics Algorithms, chapters 6 and 7; E.
+/// Todorov, Convex and analytically-invertible dynamics with contacts and constraints (ICRA 2014), for the primal
+/// Newton method.
 class ChainSystem {
  public:
   struct Joint {
@@ -77,10 +81,13 @@ class ChainSystem {
   void begin(bool with_chain, std::span<const std::size_t> objects);
   /// Sets the bounds of friction, the forces and the gradient at the present velocities. Returns its largest entry.
   double evaluate();
+  /// The matrix of an iteration (chain_matrix.cpp).
   void assemble();
   void assemble_chain();
   void assemble_objects();
   void add_self_contact(const Contact& contact);
+  /// `step_` from the matrix and the gradient.
+  void find_step();
   /// The changes of the last step as `step_`: the bodies probably accelerate as before.
   void begin_as_before();
   void remember_changes();
@@ -92,6 +99,9 @@ class ChainSystem {
   [[nodiscard]] double search() const;
   void move(double share);
   [[nodiscard]] bool is_module(std::size_t body) const { return body < modules_; }
+  [[nodiscard]] bool is_self(const Contact& contact) const {
+    return is_module(contact.first) && is_module(contact.second);  // kFixed is not a module
+  }
 
   std::size_t modules_;
   std::vector<SystemBody> bodies_;
@@ -101,6 +111,7 @@ class ChainSystem {
   // The part of the scene that is solved at present.
   double step_s_ = 0.0;
   bool with_chain_ = false;
+  bool folded_ = false;  // modules touch modules, so that the matrix is not that of a chain alone
   std::span<const std::size_t> objects_;
   std::span<const std::size_t> active_;  // contacts
   std::vector<std::size_t> members_;     // bodies that move
@@ -114,8 +125,11 @@ class ChainSystem {
   std::vector<double> rates_before_rad_s_;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd step_;
-  Eigen::MatrixXd hessian_;
+  Eigen::MatrixXd hessian_;  // its rows of the chain are used only if the chain is folded
   Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+  std::vector<ChainFactor::Joint> hinges_;
+  ChainFactor chain_factor_;
+  Eigen::MatrixXd response_;     // of the chain to each unknown of the objects
   double inertia_before_ = 0.0;  // derivative() without contacts and joints is inertia_before_ + share inertia_slope_
   double inertia_slope_ = 0.0;
 };
