@@ -1,5 +1,5 @@
 // Combines the results of the benchmarks in a folder: bench.json and the table bench.md, with CPU time and memory of
-// each process against its budget and exponents of growth.
+// each process against its budget, exponents of growth, and the comparison with MuJoCo.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -125,6 +125,32 @@ bool add_case_study(const json& report, double reference_ms, json& all, std::str
   return within;
 }
 
+/// This project's physics and MuJoCo: errors from the converged motion of the same engine, and ticks in a second.
+void add_engines(const json& engines, json& all, std::string& text) {
+  all["engines"] = engines;
+  text += fmt::format(
+      "\n## The physics and MuJoCo {}\n\n`constrictor` is `sim/world` with its default engine. Errors are those of "
+      "speed "
+      "and torque, from the converged motion of the same engine.\n\n| motion | engine | error of the speed | error of "
+      "the torque | ticks per second | `constrictor` is faster by |\n|---|---|---|---|---|---|\n",
+      engines.value("mujoco_version", ""));
+  for (const char* motion : {"empty", "loaded"}) {
+    if (!engines.contains(motion)) continue;
+    for (const auto& [name, engine] : engines[motion].items()) {
+      const json& error = engine["production_from_converged"];
+      std::string speed = "| |";
+      if (engine.contains("race")) {
+        const json& race = engine["race"];
+        speed = fmt::format(
+            "{:.0f} (`constrictor` in turn: {:.0f}) | {:.2f} times |", race["ticks_per_s"]["mujoco"].get<double>(),
+            race["ticks_per_s"]["constrictor"].get<double>(), race["constrictor_per_mujoco"]["median"].get<double>());
+      }
+      text += fmt::format("| {} | {} | {:+.1f} % | {:+.1f} % | {}\n", motion, name,
+                          error["speed_percent"].get<double>(), error["torque_percent"].get<double>(), speed);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -145,7 +171,7 @@ int main(int argc, char** argv) {
   const json report = parsed(folder / "case_study" / "report.json");
   const auto reference = times.find(kReference);
   if (report.is_object() && reference != times.end()) within &= add_case_study(report, reference->second, all, text);
-  if (const json engines = parsed(folder / "engines.json"); engines.is_object()) all["engines"] = engines;
+  if (const json engines = parsed(folder / "engines.json"); engines.is_object()) add_engines(engines, all, text);
   all["within_budgets"] = within;
   std::ofstream(folder / "bench.json") << all.dump(2) << "\n";
   std::ofstream(folder / "bench.md") << text;
