@@ -2,7 +2,7 @@
 # Measures the parts and the whole: writes DIR/bench.json and the table DIR/bench.md, and prints the table.
 # Usage: scripts/bench.sh [--output DIR] [--no-peers] [--no-mission]
 #   --output DIR   folder of the results (default: build/bench)
-#   --no-peers     without the comparison with MuJoCo, which takes some minutes
+#   --no-peers     without the comparisons with MuJoCo, which takes some minutes, and with ddsperf
 #   --no-mission   without a run of the case study
 # Example: scripts/bench.sh --no-peers
 # Run it on a quiet machine. The exit status is 1 if something is above its budget.
@@ -41,6 +41,12 @@ done
 if [ $peers = 1 ]; then
   echo "bench: MuJoCo"
   build/release/bin/bench_engines >"$output/engines.json"
+  if command -v ddsperf >/dev/null; then
+    echo "bench: ddsperf"
+    /usr/bin/python3 tests/bench/peers/ddsperf_ping.py >"$output/ddsperf.json"
+  else
+    echo "bench: without ddsperf, because it is not installed (scripts/setup.sh bench)"
+  fi
 fi
 if [ $mission = 1 ]; then
   echo "bench: the case study"

@@ -7,7 +7,7 @@
 #   all       all of these: what all programs need
 #   tests     what the tests and benchmarks need in addition to core, which is all, and Fast DDS with its Java runtime
 #   tools     what formatting, static analysis and the documentation need in addition
-#   bench     MuJoCo, with which a benchmark compares the physics; no other group and no script needs it
+#   bench     MuJoCo, with which a benchmark compares the physics, and ddsperf, with which it compares the messages
 #   browser   Chromium, for the long test of the dashboard's page
 #   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
 #   package   what scripts/package.sh needs in addition to make Debian packages
@@ -70,7 +70,7 @@ tests=(
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)
 tools=(clang-format clang-tidy doxygen graphviz shellcheck)
-bench=(libmujoco-dev)
+bench=(libmujoco-dev cyclonedds-tools)
 # for the long tests: the page of the dashboard
 browser=(chromium)
 # evaluations on several machines

@@ -1,5 +1,5 @@
 // Combines the results of the benchmarks in a folder: bench.json and the table bench.md, with CPU time and memory of
-// each process against its budget, exponents of growth, and the comparison with MuJoCo.
+// each process against its budget, exponents of growth, and the comparisons with ddsperf and MuJoCo.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -125,6 +125,21 @@ bool add_case_study(const json& report, double reference_ms, json& all, std::str
   return within;
 }
 
+/// A round of pings of ddsperf beside a tick of the case study, which exchanges more messages and also computes.
+void add_ddsperf(const json& ddsperf, json& all, std::string& text) {
+  all["ddsperf"] = ddsperf;
+  text += fmt::format(
+      "\n## Messages beside ddsperf\n\nA round of ddsperf: one process pings all others, and all answer.\n\n| what | "
+      "processes | CPU ms | median of the round trip, ms | PSS of a process, MiB |\n|---|---|---|---|---|\n| a round "
+      "of "
+      "ddsperf | {} | {:.3f} | {:.3f} | {:.1f} |\n",
+      ddsperf.value("members", 0), ddsperf.value("cpu_ms_per_round", 0.0),
+      1e-3 * ddsperf.value("round_trip_median_us", 0.0), ddsperf.value("pss_mib", 0.0));
+  if (all.contains("case_study"))
+    text += fmt::format("| a tick of the case study, with all computations | {} | {:.3f} | | |\n",
+                        all["processes"].size(), all["case_study"]["cpu_ms_per_tick"].get<double>());
+}
+
 /// This project's physics and MuJoCo: errors from the converged motion of the same engine, and ticks in a second.
 void add_engines(const json& engines, json& all, std::string& text) {
   all["engines"] = engines;
@@ -171,6 +186,7 @@ int main(int argc, char** argv) {
   const json report = parsed(folder / "case_study" / "report.json");
   const auto reference = times.find(kReference);
   if (report.is_object() && reference != times.end()) within &= add_case_study(report, reference->second, all, text);
+  if (const json ddsperf = parsed(folder / "ddsperf.json"); ddsperf.is_object()) add_ddsperf(ddsperf, all, text);
   if (const json engines = parsed(folder / "engines.json"); engines.is_object()) add_engines(engines, all, text);
   all["within_budgets"] = within;
   std::ofstream(folder / "bench.json") << all.dump(2) << "\n";
