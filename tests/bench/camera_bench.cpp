@@ -89,7 +89,7 @@ void frame(benchmark::State& state) {
 void component_period(benchmark::State& state) {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  LocalRun run({test::scene_plant_factory(), make_camera_factory()}, setup);
+  LocalRun run({testing::scene_plant_factory(), make_camera_factory()}, setup);
   run.advance(5);
   for (auto _ : state) run.advance(5);
 }

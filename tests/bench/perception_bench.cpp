@@ -16,21 +16,21 @@ using namespace perception;
 
 /// A line that bends, two objects, one of them on a zone of its own colour, and another zone.
 struct Bench {
-  msg::CameraInfo info = test::camera_info();
-  test::Head head{0.01, 0.02, 0.0, 0.035};
-  GroundCamera camera{info, test::orientation(head), head.height_m, {0.0445, 0.035}};
+  msg::CameraInfo info = testing::camera_info();
+  testing::Head head{0.01, 0.02, 0.0, 0.035};
+  GroundCamera camera{info, testing::orientation(head), head.height_m, {0.0445, 0.035}};
   PerceptionConfig config;
   cv::Mat rgb;
 
   Bench() {
-    test::Scene scene;
-    scene.line = test::Arc{{-0.2, 0.05}, -0.15, 0.7};
+    testing::Scene scene;
+    scene.line = testing::Arc{{-0.2, 0.05}, -0.15, 0.7};
     scene.rounds = {{msg::kColourGreen, {1.0, 0.5}, 0.09, 0.15},
                     {msg::kColourGreen, {1.0, 0.5}, 0.3},
                     {msg::kColourRed, {1.1, -0.35}, 0.08, 0.15},
                     {msg::kColourYellow, {0.6, -0.4}, 0.12}};
     scene.noise_sd = 0.02;
-    rgb = test::RenderedScene(scene).draw(info, head);
+    rgb = testing::RenderedScene(scene).draw(info, head);
   }
 };
 

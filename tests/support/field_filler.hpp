@@ -7,7 +7,7 @@
 
 #include "constrictor/reflect.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// A visitor for Description<T>::visit that fills every field. `Derived` decides on the values: it has
 ///   T number<T>(const FieldInfo&)   a value for an integer or floating-point field
@@ -58,4 +58,4 @@ class FieldFiller {
   std::vector<std::uint8_t> octets_;
 };
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -116,7 +116,7 @@ class TurningPlant : public testing::PlantBase {
       : scene_(wiring.output(topics::kSceneDescription)), world_(wiring.output(topics::kWorldState)) {}
   void sample(const Tick& tick) override {
     if (tick.index == 0) {
-      const auto scene = std::make_unique<msg::SceneDescription>(test::ScenePlant::description(1));
+      const auto scene = std::make_unique<msg::SceneDescription>(testing::ScenePlant::description(1));
       scene->module_count = scene->object_count = 1;
       scene->line_point_count = 0;
       scene->camera_noise_sd = 0.0;

@@ -39,7 +39,7 @@ void collect(LocalRun& run, const Topic<T>& topic, std::vector<Frame>& frames) {
 }
 
 TEST(Camera, WritesAnImageEveryPeriodAndItsModelOnce) {
-  LocalRun run({test::scene_plant_factory(), make_camera_factory()}, setup_with_seed(1));
+  LocalRun run({testing::scene_plant_factory(), make_camera_factory()}, setup_with_seed(1));
   std::vector<Frame> frames;
   int infos = 0;
   collect(run, topics::kCameraImage, frames);
@@ -57,7 +57,7 @@ TEST(Camera, WritesAnImageEveryPeriodAndItsModelOnce) {
 }
 
 TEST(Camera, PublishedModelPredictsWhereAnObjectAppears) {
-  LocalRun run({test::scene_plant_factory(), make_camera_factory()}, setup_with_seed(3));
+  LocalRun run({testing::scene_plant_factory(), make_camera_factory()}, setup_with_seed(3));
   run.advance(51);
   const msg::CameraInfo* info = run.latest(topics::kCameraInfo);
   const msg::CameraImage* image = run.latest(topics::kCameraImage);
@@ -71,10 +71,10 @@ TEST(Camera, PublishedModelPredictsWhereAnObjectAppears) {
         1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
     return std::pair{R, Eigen::Vector3d(pose.position_m.x, pose.position_m.y, pose.position_m.z)};
   };
-  const auto [R_WH, p_WH] = isometry(test::ScenePlant::head_pose(1.0));
+  const auto [R_WH, p_WH] = isometry(testing::ScenePlant::head_pose(1.0));
   const auto [R_HC, p_HC] = isometry(info->X_HC);
   for (int i = 0; i < 2; ++i) {
-    const auto position = test::ScenePlant::object_pose(i).position_m;
+    const auto position = testing::ScenePlant::object_pose(i).position_m;
     const Eigen::Vector3d p_H = R_WH.transpose() * (Eigen::Vector3d(position.x, position.y, position.z) - p_WH);
     const Eigen::Vector3d p_C = R_HC.transpose() * (p_H - p_HC);
     const double u = info->fx * p_C.x() / p_C.z() + info->cx;
@@ -99,7 +99,7 @@ TEST(Camera, PublishedModelPredictsWhereAnObjectAppears) {
 
 TEST(Camera, NoiseDependsOnTheSeed) {
   const auto image_of = [](std::uint64_t seed) {
-    LocalRun run({test::scene_plant_factory(), make_camera_factory()}, setup_with_seed(seed));
+    LocalRun run({testing::scene_plant_factory(), make_camera_factory()}, setup_with_seed(seed));
     std::vector<Frame> frames;
     collect(run, topics::kCameraImage, frames);
     run.advance(1);
@@ -111,7 +111,7 @@ TEST(Camera, NoiseDependsOnTheSeed) {
 
 TEST(Camera, RestartedProcessesWriteTheSameImages) {
   const auto run_with_restarts = [](const std::vector<std::pair<std::int64_t, std::string>>& restarts) {
-    LocalRun run({test::scene_plant_factory(), make_camera_factory(), make_overview_factory()}, setup_with_seed(7));
+    LocalRun run({testing::scene_plant_factory(), make_camera_factory(), make_overview_factory()}, setup_with_seed(7));
     std::vector<Frame> frames;
     collect(run, topics::kCameraImage, frames);
     collect(run, topics::kOverviewImage, frames);
@@ -130,7 +130,7 @@ TEST(Camera, RestartedProcessesWriteTheSameImages) {
 }
 
 TEST(Overview, ShowsZonesObjectsAndLineFromAFixedViewpoint) {
-  LocalRun run({test::scene_plant_factory(), make_overview_factory()}, setup_with_seed(1));
+  LocalRun run({testing::scene_plant_factory(), make_overview_factory()}, setup_with_seed(1));
   std::vector<Frame> frames;
   collect(run, topics::kOverviewImage, frames);
   run.advance(101);

@@ -17,7 +17,7 @@
 namespace constrictor {
 namespace {
 
-using test::ScenePlant;
+using testing::ScenePlant;
 
 /// A straight robot that turns to and fro, with the objects of ScenePlant behind it.
 Eigen::Isometry3d module_pose(double time_s, std::size_t module) {

@@ -8,11 +8,11 @@
 #include "component/component.hpp"
 #include "support/scripted_members.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// Two objects 2 m ahead of the origin and a straight line along x. The robot moves along the line at 0.2 m/s and
 /// swings its body.
-class ScenePlant : public testing::PlantBase {
+class ScenePlant : public PlantBase {
  public:
   static constexpr std::uint16_t kModules = 12;
   static constexpr double kNoise = 0.02;
@@ -71,6 +71,6 @@ class ScenePlant : public testing::PlantBase {
   Output<msg::WorldState> world_out_;
 };
 
-inline ComponentFactory scene_plant_factory() { return testing::member_of_class<ScenePlant>("physics"); }
+inline ComponentFactory scene_plant_factory() { return member_of_class<ScenePlant>("physics"); }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -6,7 +6,7 @@
 
 #include "support/field_filler.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 inline constexpr std::uint64_t kMessages = CONSTRICTOR_HOSTILE_MESSAGES;  ///< for each part that is tested
 inline constexpr std::uint64_t kSeed = 20261121;
@@ -45,4 +45,4 @@ class HostileFiller : public FieldFiller<HostileFiller> {
   bool wild_ = false;
 };
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -17,7 +17,7 @@
 #include "resident_memory.hpp"
 #include "robot/robot_model.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 /// Number of messages for each input and tick. One step of the simulated world or one image takes milliseconds; these
@@ -239,4 +239,4 @@ INSTANTIATE_TEST_SUITE_P(EveryComponent, Hostile,
 TEST(HostileTest, CoversEveryComponent) { EXPECT_EQ(known_components().size(), 10u + 2u); }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// [MiB] resident memory of this process.
 inline double resident_mib() {
@@ -16,4 +16,4 @@ inline double resident_mib() {
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

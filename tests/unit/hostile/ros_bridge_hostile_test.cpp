@@ -18,7 +18,7 @@
 #include "ros_bridge/ros_drawing.hpp"
 #include "ros_bridge/ros_translator.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 bool finite(std::span<const double> values) {
@@ -226,4 +226,4 @@ TEST(HostileRosBridge, MessagesToRosAreFiniteAndConsistent) {
 }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

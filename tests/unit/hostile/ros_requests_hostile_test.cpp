@@ -17,7 +17,7 @@
 #include "ros_bridge/task_desk.hpp"
 #include "ros_bridge/velocity_pilot.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 /// A line of random words, signs and bytes, of which many are a task.
@@ -143,4 +143,4 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
 }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -11,8 +11,8 @@
 namespace constrictor {
 namespace {
 
-using test::for_each_type;
-using test::RandomFiller;
+using testing::for_each_type;
+using testing::RandomFiller;
 
 /// Flips one bit of each field of `b` in turn and checks that the difference from `a` is found there.
 template <class Message>

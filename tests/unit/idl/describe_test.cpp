@@ -125,7 +125,7 @@ TEST(Descriptions, HoldEveryAnnotationOfTheFiles) {
     ranged_constants += count(whole, "@range[^\n;]* octet [a-z_]+; *// k[A-Z][a-z]+\\.\\.\\.");
   }
   Counter counter;
-  test::for_each_type(AllMessages{}, [&]<class T>() {
+  testing::for_each_type(AllMessages{}, [&]<class T>() {
     T message{};
     Description<T>::visit(message, counter);
   });

@@ -3,7 +3,7 @@
 
 #include "support/field_filler.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// Fills every field with any value that the IDL allows.
 class RandomFiller : public FieldFiller<RandomFiller> {
@@ -28,4 +28,4 @@ void for_each_type(TypeList<Ts...>, Use&& use) {
   (use.template operator()<Ts>(), ...);
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

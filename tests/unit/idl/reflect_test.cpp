@@ -15,8 +15,8 @@
 namespace constrictor {
 namespace {
 
-using test::for_each_type;
-using test::RandomFiller;
+using testing::for_each_type;
+using testing::RandomFiller;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

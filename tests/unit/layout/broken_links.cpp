@@ -6,7 +6,7 @@
 
 #include "layout_check.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ std::vector<std::string> broken_links(const fs::path& root) {
   return found;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

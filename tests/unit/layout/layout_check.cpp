@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ std::vector<std::string> symbol_violations(const Library& library) {
   return found;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

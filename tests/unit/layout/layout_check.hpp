@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// Every violation in the source tree `root`, as "components/x/y.cpp:12: why": Cyclone's headers outside the libraries
 /// that call it, includes by relative path, names of ground truth in code that runs on a robot.
@@ -36,4 +36,4 @@ std::vector<Library> declared_libraries(const std::filesystem::path& root);
 /// Every function of DDS, of clocks and of unseeded random numbers that the library calls although it must not.
 std::vector<std::string> symbol_violations(const Library& library);
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

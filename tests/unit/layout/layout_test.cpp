@@ -14,7 +14,7 @@
 #include "layout_check.hpp"
 #include "support/project.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,19 +43,19 @@ class Tree {
   fs::path root_;
 };
 
-TEST(Layout, FoldersDependOnlyOnWhatTheyMay) { EXPECT_EQ(text_of(source_violations(testing::source_path())), ""); }
+TEST(Layout, FoldersDependOnlyOnWhatTheyMay) { EXPECT_EQ(text_of(source_violations(source_path())), ""); }
 
-TEST(Layout, FilesAreShort) { EXPECT_EQ(text_of(long_files(testing::source_path())), ""); }
+TEST(Layout, FilesAreShort) { EXPECT_EQ(text_of(long_files(source_path())), ""); }
 
-TEST(Layout, LinesAreShort) { EXPECT_EQ(text_of(long_lines(testing::source_path())), ""); }
+TEST(Layout, LinesAreShort) { EXPECT_EQ(text_of(long_lines(source_path())), ""); }
 
-TEST(Layout, LinksLeadSomewhere) { EXPECT_EQ(text_of(broken_links(testing::source_path())), ""); }
+TEST(Layout, LinksLeadSomewhere) { EXPECT_EQ(text_of(broken_links(source_path())), ""); }
 
 /// Every library of the build, with its symbols.
 std::vector<Library> libraries_with_symbols() {
-  std::vector<Library> list = declared_libraries(testing::source_path());
+  std::vector<Library> list = declared_libraries(source_path());
   for (auto& library : list) {
-    const std::string file = (testing::build_path() / library.folder / library.name).string();
+    const std::string file = (build_path() / library.folder / library.name).string();
     const std::unique_ptr<FILE, int (*)(FILE*)> nm(::popen(("nm '" + file + "'").c_str(), "r"), ::pclose);
     char buffer[4096];
     while (const std::size_t count = nm ? std::fread(buffer, 1, sizeof(buffer), nm.get()) : 0)
@@ -67,7 +67,7 @@ std::vector<Library> libraries_with_symbols() {
 
 TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
   std::set<std::string> folders;
-  for (const auto& one : declared_libraries(testing::source_path())) folders.insert(one.folder);
+  for (const auto& one : declared_libraries(source_path())) folders.insert(one.folder);
   for (const char* folder : {"idl",
                              "components/lib/configuration",
                              "components/lib/dynamixel",
@@ -121,12 +121,11 @@ class Wall : public ::testing::Test {
  protected:
   /// Whether `file` of the project still compiles when it includes `header` as well.
   static bool compiles(const std::string& file, const std::string& header) {
-    std::ifstream stream(testing::build_path() / "compile_commands.json");
+    std::ifstream stream(build_path() / "compile_commands.json");
     const auto commands = nlohmann::json::parse(stream);
     // The command of the file itself counts, and otherwise that of a group of files: a folder may have several targets.
-    const auto by_itself = std::find_if(commands.begin(), commands.end(), [&](const auto& entry) {
-      return entry["file"] == testing::source_path(file).string();
-    });
+    const auto by_itself = std::find_if(commands.begin(), commands.end(),
+                                        [&](const auto& entry) { return entry["file"] == source_path(file).string(); });
     const auto command = by_itself != commands.end()
                              ? by_itself
                              : std::find_if(commands.begin(), commands.end(),
@@ -144,7 +143,7 @@ class Wall : public ::testing::Test {
  private:
   /// Whether this is a group of files of the folder of `file`.
   static bool is_group(const std::string& compiled, const std::string& file) {
-    const std::string groups = (testing::build_path(fs::path(file).parent_path()) / "CMakeFiles/").string();
+    const std::string groups = (build_path(fs::path(file).parent_path()) / "CMakeFiles/").string();
     return compiled.starts_with(groups) && compiled.find("/Unity/") != std::string::npos;
   }
 };
@@ -261,4 +260,4 @@ TEST(LayoutChecker, FindsBrokenLinks) {
 }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -24,8 +24,8 @@
 namespace constrictor {
 namespace {
 
-using test::Arc;
-using test::Head;
+using testing::Arc;
+using testing::Head;
 
 /// The head nods quickly: an image can be understood only with the attitude at its exposure.
 Head head_at(std::int64_t tick) {
@@ -40,7 +40,7 @@ ComponentFactory imu() {
   return testing::scripted_plant([](Wiring& wiring) -> testing::StepFunction {
     return [out = wiring.output(topics::kImuState)](const Tick& tick) {
       msg::ImuState state{};
-      state.orientation = test::orientation(head_at(tick.index));
+      state.orientation = testing::orientation(head_at(tick.index));
       out.write(state);
     };
   });
@@ -53,12 +53,12 @@ class Eye : public StatefulComponent<std::int64_t> {
       : info_(wiring.output(topics::kCameraInfo)), image_(wiring.output(topics::kCameraImage)) {}
   [[nodiscard]] Timing timing() const override { return {5, 2}; }
   void step(const Tick& tick) override {
-    const msg::CameraInfo info = test::camera_info(160, 120);
+    const msg::CameraInfo info = testing::camera_info(160, 120);
     if (tick.index == 0) info_.write(info);
-    test::Scene scene;
+    testing::Scene scene;
     scene.line = Arc{{-0.2, 0.08}, 0.0, 0.0};
     scene.rounds = {{msg::kColourYellow, {0.8, -0.3}, 0.08, 0.15}};
-    cv::Mat picture = test::draw(scene, info, head_at(tick.index));
+    cv::Mat picture = testing::draw(scene, info, head_at(tick.index));
     msg::CameraImage image{};
     image.width = info.width;
     image.height = info.height;
@@ -239,7 +239,7 @@ TEST(PerceptionComponent, AppliesAHueFromItsTickOnAlsoAfterARestart) {
 }
 
 TEST(PerceptionComponent, RefusesImagesThatDoNotFitTheCamera) {
-  const msg::CameraInfo info = test::camera_info();
+  const msg::CameraInfo info = testing::camera_info();
   std::vector<std::uint8_t> data(320 * 240 * 3);
   msg::CameraImage image{};
   image.width = 320;

@@ -10,13 +10,13 @@ namespace constrictor {
 namespace {
 
 using perception::Percepts;
-using test::Arc;
-using test::Conditions;
-using test::find;
-using test::Head;
-using test::kDegree;
-using test::Round;
-using test::Scene;
+using testing::Arc;
+using testing::Conditions;
+using testing::find;
+using testing::Head;
+using testing::kDegree;
+using testing::Round;
+using testing::Scene;
 
 const Conditions kConditions[] = {
     {1.0, 0.35, 0.0, false, {}},

@@ -37,7 +37,7 @@ CameraModel camera_on(std::size_t module, double yaw_rad) {
 }
 
 msg::CameraInfo info_of(const CameraModel& camera, std::uint8_t number) {
-  msg::CameraInfo info = test::camera_info();
+  msg::CameraInfo info = testing::camera_info();
   info.camera = number;
   info.module_index = static_cast<std::uint8_t>(camera.module);
   info.X_HC = pose_message(camera_mount(camera));
@@ -46,10 +46,10 @@ msg::CameraInfo info_of(const CameraModel& camera, std::uint8_t number) {
 
 /// What the camera sees of a scene that is given in the frame V of its view: as a camera of that height and tilt on a
 /// level head.
-cv::Mat picture_in_view(const test::Scene& scene) {
-  msg::CameraInfo info = test::camera_info();
+cv::Mat picture_in_view(const testing::Scene& scene) {
+  msg::CameraInfo info = testing::camera_info();
   info.X_HC.position_m = {0.0, 0.0, 0.08};
-  return test::draw(scene, info, {}, kTilt_rad);
+  return testing::draw(scene, info, {}, kTilt_rad);
 }
 
 RobotModel mamba() { return load_robot(data_path("components/lib/robot/mamba.yaml")); }
@@ -85,11 +85,11 @@ TEST(FurtherView, FollowsFromTheJointsAndTheMount) {
 TEST(FurtherView, UsesRollAndPitchAndNoYaw) {
   const RobotModel robot = mamba();
   const std::vector<double> angles(robot.joints.size(), 0.05);
-  test::Head head{0.03, -0.04, 0.7};
+  testing::Head head{0.03, -0.04, 0.7};
   const auto info = info_of(camera_on(4, -2.0), 1);
-  const auto view = perception::further_view(info, robot, test::orientation(head), angles);
+  const auto view = perception::further_view(info, robot, testing::orientation(head), angles);
   head.yaw_rad = -1.9;
-  const auto turned = perception::further_view(info, robot, test::orientation(head), angles);
+  const auto turned = perception::further_view(info, robot, testing::orientation(head), angles);
   EXPECT_NEAR((turned.X_GV.p - view.X_GV.p).norm(), 0.0, 1e-12);
   EXPECT_NEAR(turned.X_GV.yaw_rad, view.X_GV.yaw_rad, 1e-12);
   for (const Eigen::Vector2d& p : {Eigen::Vector2d(0.5, 0.1), Eigen::Vector2d(1.2, -0.6)}) {
@@ -135,7 +135,7 @@ TEST(FurtherView, ASideThatTheBodyHidesCountsAsCut) {
   const RobotModel robot = mamba();
   const std::vector<double> straight(robot.joints.size(), 0.0);
   const auto view = perception::further_view(info_of(camera_on(0, std::numbers::pi), 1), robot, {1, 0, 0, 0}, straight);
-  test::Scene scene;
+  testing::Scene scene;
   scene.rounds = {{msg::kColourRed, {1.0, 0.07}, 0.15}};  // a zone beside the body, which covers one side of it
   cv::Mat picture = picture_in_view(scene);
   for (int v = 0; v < picture.rows; ++v) {
@@ -180,7 +180,7 @@ class PerceptionOfFurtherCameras : public ::testing::Test {
         state.position_rad[0] = angle(tick.index);
         joints.write(state);
         msg::ImuState attitude{};
-        attitude.orientation = test::orientation({});
+        attitude.orientation = testing::orientation({});
         imu.write(attitude);
       };
     });
@@ -193,8 +193,8 @@ class PerceptionOfFurtherCameras : public ::testing::Test {
                                       return [infos = wiring.output(topics::kFurtherCameraInfo),
                                               images = wiring.output(topics::kFurtherCameraImage)](const Tick& tick) {
                                         if (tick.index == 0) infos.write(info_of(camera_on(3, kYaw_rad), 1));
-                                        test::Scene scene;
-                                        scene.line = test::Arc{{0.2, -0.1}, 0.0, 0.0};
+                                        testing::Scene scene;
+                                        scene.line = testing::Arc{{0.2, -0.1}, 0.0, 0.0};
                                         scene.rounds = {{msg::kColourYellow, {0.9, 0.3}, 0.08, 0.2}};
                                         scene.seed = static_cast<std::uint64_t>(tick.index) + 1;
                                         scene.noise_sd = 0.01;

@@ -8,7 +8,7 @@
 #include "perception/line_and_blob_detector.hpp"
 #include "ray_caster.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -48,4 +48,4 @@ inline std::string describe(const Conditions& c) {
          std::to_string(c.head.pitch_rad);
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -12,10 +12,10 @@ namespace {
 
 using perception::ObjectSizes;
 using perception::Percepts;
-using test::Conditions;
-using test::kDegree;
-using test::Round;
-using test::Scene;
+using testing::Conditions;
+using testing::kDegree;
+using testing::Round;
+using testing::Scene;
 
 /// The camera is 0.085 m above the ground.
 const Conditions kAttitudes[] = {
@@ -237,11 +237,11 @@ TEST(ObjectSize, TheStatedSizeCountsUntilImagesHaveShownAnother) {
   stated.object_height_m = 0.06;
   config.know(stated);
   perception::LineAndBlobDetector detector(config);
-  const msg::CameraInfo info = test::camera_info();
-  const test::Head head;
-  const perception::GroundCamera camera(info, test::orientation(head), head.height_m);
+  const msg::CameraInfo info = testing::camera_info();
+  const testing::Head head;
+  const perception::GroundCamera camera(info, testing::orientation(head), head.height_m);
   const auto object_in = [&](const Scene& scene, const ObjectSizes& seen) {
-    const Percepts percepts = detector.detect(test::draw(scene, info, head), camera, msg::kColourBlue, seen);
+    const Percepts percepts = detector.detect(testing::draw(scene, info, head), camera, msg::kColourBlue, seen);
     const msg::Blob* object = find(percepts, msg::kBlobObject);
     return object ? std::optional(*object) : std::nullopt;
   };

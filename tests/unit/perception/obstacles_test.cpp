@@ -10,10 +10,10 @@
 namespace constrictor {
 namespace {
 
-using test::Arc;
-using test::Conditions;
-using test::Round;
-using test::Scene;
+using testing::Arc;
+using testing::Conditions;
+using testing::Round;
+using testing::Scene;
 
 const Conditions kLights[] = {
     {1.0, 0.35, 0.0, false, {}},
@@ -144,10 +144,10 @@ TEST(Obstacles, TheRangeIsAParameter) {
                   Round{msg::kColourUnknown, {0.8, -0.2}, 0.04, 0.2}};
   const auto seen = [&] {
     perception::LineAndBlobDetector detector(config);
-    const msg::CameraInfo info = test::camera_info();
-    const test::Head head;
-    const perception::GroundCamera camera(info, test::orientation(head), head.height_m);
-    const auto percepts = detector.detect(test::draw(scene, info, head), camera, msg::kColourBlue);
+    const msg::CameraInfo info = testing::camera_info();
+    const testing::Head head;
+    const perception::GroundCamera camera(info, testing::orientation(head), head.height_m);
+    const auto percepts = detector.detect(testing::draw(scene, info, head), camera, msg::kColourBlue);
     bool near = false, far = false;
     for (int i = 0; i < percepts.objects.obstacle_count; ++i)
       (percepts.objects.obstacle_y_m[i] > 0.0 ? near : far) = true;

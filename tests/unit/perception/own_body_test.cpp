@@ -18,7 +18,7 @@ RobotModel mamba() { return load_robot(data_path("components/lib/robot/mamba.yam
 // A body that curls to the left comes into the view of the head's camera.
 TEST(HeadCamera, KnowsWhichPixelsShowTheBodyThatCurlsAhead) {
   const RobotModel robot = mamba();
-  const msg::CameraInfo info = test::camera_info();
+  const msg::CameraInfo info = testing::camera_info();
   const std::vector<double> straight(robot.joints.size(), 0.0);
   EXPECT_TRUE(perception::body_before_head(info, robot, straight).empty());
   EXPECT_TRUE(perception::body_before_head(info, robot, {}).empty()) << "the angles are unknown";
@@ -46,7 +46,7 @@ TEST(HeadCamera, KnowsWhichPixelsShowTheBodyThatCurlsAhead) {
 // The body lies across the left part of a zone. What remains looks as narrow as an object, and is none.
 TEST(HeadCamera, TheRestOfAZoneBesideTheBodyIsNoObject) {
   const RobotModel robot = mamba();
-  const msg::CameraInfo info = test::camera_info();
+  const msg::CameraInfo info = testing::camera_info();
   perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
   for (const double bend_rad : {0.55, 0.6, 0.65, 0.7, 0.75}) {
     std::vector<double> curled(robot.joints.size(), 0.0);
@@ -54,9 +54,9 @@ TEST(HeadCamera, TheRestOfAZoneBesideTheBodyIsNoObject) {
     const perception::GroundCamera camera(info, {1, 0, 0, 0}, kRadius_m, {0.5 * kLength_m, kRadius_m},
                                           perception::body_before_head(info, robot, curled));
     for (const double y_m : {-0.4, -0.3, -0.2, -0.1, 0.0, 0.1}) {
-      test::Scene scene;
+      testing::Scene scene;
       scene.rounds = {{msg::kColourRed, {0.7, y_m}, 0.4}};
-      cv::Mat picture = test::draw(scene, info, {});
+      cv::Mat picture = testing::draw(scene, info, {});
       for (int v = 0; v < picture.rows; ++v) {
         for (int u = 0; u < picture.cols; ++u) {
           if (camera.sees_body() && camera.own_body(u + 0.5, v + 0.5)) picture.at<cv::Vec3b>(v, u) = {70, 70, 70};

@@ -17,7 +17,7 @@ constexpr int kImages = 20000;
 constexpr double kPeriod_s = 0.1;
 
 const GroundCamera& camera() {
-  static const GroundCamera the_camera(test::camera_info(), test::orientation({}), 0.035);
+  static const GroundCamera the_camera(testing::camera_info(), testing::orientation({}), 0.035);
   return the_camera;
 }
 
@@ -162,9 +162,9 @@ TEST(PerceptErrors, AnInventedObjectKeepsItsDirectionWhileTheHeadTurns) {
 TEST(PerceptErrors, ARangeFactorIsThatOfACameraAtAWrongHeight) {
   // If the assumed height of the camera is 10 % too large, each ground point seems 10 % farther away.
   constexpr double kFactor = 1.1;
-  msg::CameraInfo higher = test::camera_info();
+  msg::CameraInfo higher = testing::camera_info();
   for (double* value : {&higher.X_HC.position_m.x, &higher.X_HC.position_m.z}) *value *= kFactor;
-  const GroundCamera believed(higher, test::orientation({}), 0.035 * kFactor);
+  const GroundCamera believed(higher, testing::orientation({}), 0.035 * kFactor);
   PerceptErrorConfig config;
   config.range_factor = kFactor;
   const Percepts before = percepts(), after = with_errors(config, 0);

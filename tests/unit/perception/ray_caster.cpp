@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 using Eigen::Vector2d;
@@ -171,4 +171,4 @@ cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, 
   return image;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -10,7 +10,7 @@
 
 #include "constrictor/messages.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 struct Arc {  // in G; it begins at `start` in the direction `heading_rad`; a positive curvature bends to the left
   Eigen::Vector2d start{0.0, 0.0};
@@ -59,4 +59,4 @@ msg::CameraInfo camera_info(int width = 320, int height = 240, double horizontal
 msg::Quaternion orientation(const Head& head);
 cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, double tilt_rad = 0.3);
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

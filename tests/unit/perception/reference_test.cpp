@@ -14,8 +14,8 @@
 namespace constrictor::perception {
 namespace {
 
-using test::Arc;
-using test::Head;
+using testing::Arc;
+using testing::Head;
 
 cv::Mat random_image(int width, int height, int least, int most, std::uint32_t seed) {
   std::mt19937 generator(seed);
@@ -29,7 +29,7 @@ cv::Mat random_image(int width, int height, int least, int most, std::uint32_t s
 std::vector<cv::Mat> pictures(const Head& head) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < 8; ++i) {
-    test::Scene scene;
+    testing::Scene scene;
     if (i != 3) scene.line = Arc{{-0.2, 0.02 * i}, 0.1 * i - 0.4, 1.0 - 0.3 * i};
     scene.rounds = {{msg::kColourGreen, {0.6 + 0.1 * i, 0.5}, 0.09, 0.15},
                     {msg::kColourGreen, {0.6 + 0.1 * i, 0.5}, 0.3},
@@ -38,13 +38,13 @@ std::vector<cv::Mat> pictures(const Head& head) {
                     {msg::kColourYellow, {0.5, -0.4}, 0.12}};
     scene.noise_sd = 0.02 * (i % 4);
     scene.seed = static_cast<std::uint64_t>(i + 1);
-    images.push_back(test::draw(scene, test::camera_info(), head));
+    images.push_back(testing::draw(scene, testing::camera_info(), head));
   }
   return images;
 }
 
 GroundCamera camera_of(const Head& head) {
-  return GroundCamera(test::camera_info(), test::orientation(head), head.height_m, {0.0445, 0.035});
+  return GroundCamera(testing::camera_info(), testing::orientation(head), head.height_m, {0.0445, 0.035});
 }
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
@@ -172,7 +172,7 @@ TEST(Reference, OwnHeadIsWhereARayPassesTheCapsule) {
   int hits = 0, misses = 0;
   for (int i = 0; i < 300; ++i) {
     const double tilt = random(-0.5, 1.5);
-    msg::CameraInfo info = test::camera_info(320, 240, 1.5708, tilt);
+    msg::CameraInfo info = testing::camera_info(320, 240, 1.5708, tilt);
     // Over the nose, over the middle, beside the head and inside of it.
     info.X_HC.position_m = {random(-0.1, 0.1), random(-0.05, 0.05), random(0.0, 0.08)};
     const HeadShape head{0.0445, 0.035};
@@ -200,7 +200,7 @@ TEST(Reference, OwnHeadIsWhereARayPassesTheCapsule) {
 }
 
 TEST(Reference, LabelsOfBlobsAreInsideThePictureAndApartFromEachOther) {
-  msg::CameraInfo info = test::camera_info(320, 240, 1.0, 1.3);  // looks down: the horizon is not in the image
+  msg::CameraInfo info = testing::camera_info(320, 240, 1.0, 1.3);  // looks down: the horizon is not in the image
   const GroundCamera camera(info, {1.0, 0.0, 0.0, 0.0}, 0.035);
   const cv::Mat rgb(240, 320, CV_8UC3, cv::Scalar(0)), labels(240, 320, CV_8UC1, cv::Scalar(0));
   // The number of white pixels: on black ground only the labels are white.
@@ -235,7 +235,7 @@ TEST(Reference, LabelsOfBlobsAreInsideThePictureAndApartFromEachOther) {
 TEST(Reference, PictureIsDimmedAndPaintedPixelByPixel) {
   constexpr std::array<std::array<int, 3>, msg::kColourCount> kPaint{
       {{}, {60, 200, 60}, {220, 60, 60}, {60, 110, 230}, {220, 200, 60}}};
-  msg::CameraInfo info = test::camera_info(75, 40, 1.0, 1.3);  // looks down: the horizon is not in the image
+  msg::CameraInfo info = testing::camera_info(75, 40, 1.0, 1.3);  // looks down: the horizon is not in the image
   const GroundCamera camera(info, {1.0, 0.0, 0.0, 0.0}, 0.035);
   const cv::Mat rgb = random_image(75, 40, 0, 255, 5);
   cv::Mat labels(40, 75, CV_8UC1, cv::Scalar(0)), picture;

@@ -4,7 +4,7 @@
 
 #include "sim/render/pixel_noise.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 constrictor::Scene convert(const Scene& from) {
@@ -64,4 +64,4 @@ cv::Mat RenderedScene::draw(const msg::CameraInfo& info, const Head& head, doubl
   return image;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

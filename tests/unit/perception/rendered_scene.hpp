@@ -7,7 +7,7 @@
 #include "ray_caster.hpp"
 #include "sim/render/renderer.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// Renders test scenes with their line, zones, objects and a straight snake behind the camera.
 class RenderedScene {
@@ -23,4 +23,4 @@ class RenderedScene {
   ScenePoses poses_;
 };
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -10,12 +10,12 @@
 namespace constrictor {
 namespace {
 
-using test::Arc;
-using test::find;
-using test::Head;
-using test::kDegree;
-using test::RenderedScene;
-using test::Round;
+using testing::Arc;
+using testing::find;
+using testing::Head;
+using testing::kDegree;
+using testing::RenderedScene;
+using testing::Round;
 
 struct Light {
   Eigen::Vector3d direction;
@@ -30,17 +30,17 @@ const Light kLights[] = {
     {{0.8, 0.2, 0.4}, 0.7, 0.25, 0.05, {0.0, 0.04, 2.0, 0.035}},
 };
 
-perception::Percepts look(test::Scene scene, const Light& light) {
+perception::Percepts look(testing::Scene scene, const Light& light) {
   static perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
   scene.light = light.direction;
   scene.light_intensity = light.intensity;
   scene.ambient = light.ambient;
   scene.noise_sd = light.noise_sd;
-  const msg::CameraInfo info = test::camera_info();
+  const msg::CameraInfo info = testing::camera_info();
   RenderedScene rendered(scene);
   const cv::Mat image = rendered.draw(info, light.head);
   return detector.detect(
-      image, perception::GroundCamera(info, test::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
+      image, perception::GroundCamera(info, testing::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
       msg::kColourBlue);
 }
 
@@ -52,7 +52,7 @@ TEST(Rendered, LineMatchesItsArc) {
   for (const Light& light : kLights) {
     for (const Arc& arc : {Arc{{-0.2, 0.1}, -0.15, 0.7}, Arc{{-0.1, -0.1}, 0.35, -1.0}}) {
       SCOPED_TRACE(describe(light) + ", curvature " + std::to_string(arc.curvature_1_m));
-      test::Scene scene;
+      testing::Scene scene;
       scene.line = arc;
       const perception::Percepts percepts = look(scene, light);
       ASSERT_TRUE(percepts.line.visible);
@@ -71,7 +71,7 @@ TEST(Rendered, LineMatchesItsArc) {
 TEST(Rendered, EndOfTheLineIsReportedAtItsPlace) {
   for (const Light& light : kLights) {
     SCOPED_TRACE(describe(light));
-    test::Scene scene;
+    testing::Scene scene;
     scene.line = Arc{{-0.1, 0.0}, 0.05, -0.2, 0.85};
     const msg::LinePercept line = look(scene, light).line;
     ASSERT_TRUE(line.visible);
@@ -83,7 +83,7 @@ TEST(Rendered, EndOfTheLineIsReportedAtItsPlace) {
 TEST(Rendered, ObjectsAndZonesAreFoundAndDistinguished) {
   for (const Light& light : kLights) {
     SCOPED_TRACE(describe(light));
-    test::Scene scene;
+    testing::Scene scene;
     scene.line = Arc{{-0.1, 0.0}, 0.0, 0.3};
     scene.rounds = {Round{msg::kColourGreen, {1.0, 0.5}, 0.09, 0.15}, Round{msg::kColourRed, {1.1, -0.35}, 0.08, 0.15},
                     Round{msg::kColourGreen, {0.7, -0.5}, 0.15}, Round{msg::kColourYellow, {0.55, 0.3}, 0.1}};
@@ -107,7 +107,7 @@ TEST(Rendered, RangeHoldsFromNearToFar) {
   for (const Light& light : kLights) {
     for (const double range : {0.3, 1.5}) {
       SCOPED_TRACE(describe(light) + ", range " + std::to_string(range));
-      test::Scene scene;
+      testing::Scene scene;
       scene.rounds = {Round{msg::kColourRed, {range + 0.085, 0.0}, 0.085, 0.15}};
       const perception::Percepts percepts = look(scene, light);
       EXPECT_FALSE(percepts.line.visible);

@@ -51,7 +51,7 @@ TEST_F(McapFile, IsReadByTheOfficialReader) {
       const auto schema = tree->ros2_schema();
       ASSERT_EQ(schema.why_not, "");
       const auto channel = writer.add_channel(writer.add_schema(schema.name, "ros2msg", schema.text), topic, "cdr");
-      test::RandomFiller filler(topic.size());
+      testing::RandomFiller filler(topic.size());
       for (std::uint32_t i = 1; i <= 20; ++i) {
         T message{};
         Description<T>::visit(message, filler);

@@ -13,7 +13,7 @@
 #include "recording/message_cdr.hpp"
 #include "unit/idl/random_message.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 class MessageCdr : public ::testing::Test {
@@ -130,4 +130,4 @@ TEST_F(MessageCdr, RefusesBytesThatAreNotOneMessage) {
 }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

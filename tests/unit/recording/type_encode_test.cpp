@@ -14,7 +14,7 @@
 #include "recording/message_cdr.hpp"
 #include "unit/idl/random_message.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -138,4 +138,4 @@ TEST(TypeEncodeForeign, ArraysOfOtherTypesNeedAllTheirElementsAndUnionsAreNotWri
 }
 
 }  // namespace
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -16,9 +16,9 @@ namespace constrictor {
 namespace {
 
 using nlohmann::json;
-using test::Story;
-using test::travel_m;
+using testing::Story;
 using testing::TemporaryFolder;
+using testing::travel_m;
 
 struct Outcome {
   json mission;
@@ -47,7 +47,7 @@ Outcome report_of(const Story& story, const std::vector<std::int64_t>& restarts 
     report::replace_file(configurations.path() / "report.yaml", configuration);
     config_files["report"] = configurations.path() / "report.yaml";
   }
-  auto members = test::story_members(story);
+  auto members = testing::story_members(story);
   members.push_back(make_report_factory());
   LocalRun run(members, setup, config_files);
   for (const std::int64_t tick : restarts) {
@@ -90,7 +90,7 @@ TEST(Report, FiguresAreThoseOfTheScript) {
   EXPECT_NEAR(mission["objects"][1]["zone_distance_m"], story.red_drop_distance_m, 1e-12);
   EXPECT_EQ(mission["recoveries"], 1);
 
-  ASSERT_EQ(mission["events"].size(), test::scripted_events().size());
+  ASSERT_EQ(mission["events"].size(), testing::scripted_events().size());
   EXPECT_EQ(mission["events"][3]["event"], "object_grasped");
   EXPECT_EQ(mission["events"][3]["task"], "grasp");
   EXPECT_EQ(mission["events"][3]["parameters"]["colour"], "green");
@@ -238,7 +238,7 @@ TEST(Report, PicturesShowTheirMoment) {
 
 // An image of 64 x 48 pixels with ten bytes, as a faulty camera may send it, is not drawn.
 TEST(Report, LeavesOutImagesWithMissingPixels) {
-  test::Story story;
+  testing::Story story;
   story.torn_from_tick = 100;
   const Outcome outcome = report_of(story);
   EXPECT_TRUE(outcome.files.contains("run/snapshots/0000090_camera.png"));
@@ -250,7 +250,7 @@ TEST(Report, LeavesOutImagesWithMissingPixels) {
 TEST(Report, EndsTheRunWithoutAnOutputFolder) {
   constrictor::Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  auto members = test::story_members({});
+  auto members = testing::story_members({});
   members.push_back(make_report_factory());
   LocalRun run(members, setup);
   run.advance(2000);
@@ -278,7 +278,7 @@ TEST(Report, WithoutGroundTruthTellsWhatTheRobotBelieves) {
         mission["effort"]["distance_m"], mission["effort"]["cost_of_transport"]})
     EXPECT_TRUE(unknown.is_null()) << unknown;
   EXPECT_NEAR(mission["line"]["visible_fraction"], 0.75, 0.02);
-  EXPECT_EQ(mission["events"].size(), test::scripted_events().size());
+  EXPECT_EQ(mission["events"].size(), testing::scripted_events().size());
   EXPECT_EQ(outcome.files.count("run/figure.png"), 1U);
   EXPECT_GT(
       outcome.files.count("run/snapshots/0000121_camera.png") + outcome.files.count("run/snapshots/0000120_camera.png"),

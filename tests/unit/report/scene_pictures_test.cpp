@@ -42,7 +42,7 @@ struct StoryRun {
     return setup;
   }
   static std::vector<ComponentFactory> members() {
-    auto members = test::story_members({});
+    auto members = testing::story_members({});
     members.push_back(make_report_factory());
     return members;
   }

@@ -13,7 +13,7 @@
 #include "component/component.hpp"
 #include "support/scripted_members.hpp"
 
-namespace constrictor::test {
+namespace constrictor::testing {
 
 /// The values of the mission that a test may change.
 struct Story {
@@ -60,7 +60,7 @@ inline const std::vector<ScriptedEvent>& scripted_events() {
 /// Distance of the head along the line.
 inline double travel_m(std::int64_t tick) { return 0.5 + 0.005 * static_cast<double>(tick); }
 
-class StoryPlant : public testing::PlantBase {
+class StoryPlant : public PlantBase {
  public:
   StoryPlant(Wiring& wiring, Story story)
       : story_(story),
@@ -137,8 +137,8 @@ class StoryPlant : public testing::PlantBase {
   Output<msg::JointState> joints_;
 };
 
-inline ComponentFactory scripted(std::string name, Timing timing, testing::WireFunction wire) {
-  return testing::scripted_member(std::move(name), std::move(wire), timing);
+inline ComponentFactory scripted(std::string name, Timing timing, WireFunction wire) {
+  return scripted_member(std::move(name), std::move(wire), timing);
 }
 
 /// Writes a picture whose brightness is its tick (modulo 256).
@@ -235,4 +235,4 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
   return members;
 }
 
-}  // namespace constrictor::test
+}  // namespace constrictor::testing

@@ -23,7 +23,7 @@ TEST(UnwrittenFiles, LeaveTheVerdictAndAreNamedInIt) {
   constrictor::Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   setup.output_dir = run_folder;
-  auto members = test::story_members({});
+  auto members = testing::story_members({});
   members.push_back(make_report_factory());
   LocalRun run(members, setup, {});
   run.advance(100);

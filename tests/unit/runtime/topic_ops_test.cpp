@@ -21,7 +21,7 @@ std::string bytes_of(std::size_t topic, const Sample& sample) {
 /// Calls `check(topic, message)` with a random message of each topic.
 template <class Check>
 void for_each_topic(Check check) {
-  test::RandomFiller fill(11);
+  testing::RandomFiller fill(11);
   const auto one = [&](const auto& topic) {
     using Message = typename std::decay_t<decltype(topic)>::message_type;
     const auto message = std::make_unique<Message>();
