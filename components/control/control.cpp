@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "constrictor/text.hpp"
-#include "control/body_fit.hpp"
+#include "control/control_fit.hpp"
 #include "robot/gate_messages.hpp"
 
 namespace constrictor {
@@ -18,7 +18,8 @@ constexpr double kLongestPeriod_s = 10.0;  // of MotionStatus.period_s: a body t
 }  // namespace
 
 Control::Control(Wiring& wiring, const Setup& setup, MethodRegistry methods)
-    : TunableComponent(wiring, fitted_to(load_robot(setup.robot_file), load_configuration<ControlConfig>(setup)),
+    : TunableComponent(wiring,
+                       control_fitted_to(load_robot(setup.robot_file), load_configuration<ControlConfig>(setup)),
                        topics::kControlParameters),
       robot_(load_robot(setup.robot_file)),
       chain_(robot_),

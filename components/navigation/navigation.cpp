@@ -10,8 +10,8 @@
 #include "component/task_parameters.hpp"
 #include "component/task_refusal.hpp"
 #include "constrictor/text.hpp"
-#include "navigation/body_fit.hpp"
 #include "navigation/motions.hpp"
+#include "navigation/navigation_fit.hpp"
 
 namespace constrictor {
 namespace {
@@ -37,7 +37,8 @@ void check_mission(const std::optional<Mission>& mission, const RobotModel& robo
 }  // namespace
 
 Navigation::Navigation(Wiring& wiring, const Setup& setup)
-    : TunableComponent(wiring, fitted_to(load_robot(setup.robot_file), load_configuration<NavigationConfig>(setup)),
+    : TunableComponent(wiring,
+                       navigation_fitted_to(load_robot(setup.robot_file), load_configuration<NavigationConfig>(setup)),
                        topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
       grip_sense_(robot_, config_.grip) {

@@ -268,7 +268,7 @@ struct NavigationConfig : NavigationSection {
                                "Speed along a line or path with an object in the U");
   double deliver_m_s = add_speed(deliver_m_s, "deliver.speed_m_s", 0.187, kWhileRunning,
                                  "Speed with an object in the U while the robot searches, turns, and nears a zone");
-  bool carries_on_ground = false;  ///< the robot cannot raise the base of its U; set by fitted_to()
+  bool carries_on_ground = false;  ///< the robot cannot raise the base of its U; set by navigation_fitted_to()
   double creep_m_s =
       add_speed(creep_m_s, "creep.speed_m_s", 0.28, kWhileRunning, "Speed of small steps beside an object");
   std::int64_t stale_after_ticks = add(stale_after_ticks, "stale_after_ticks", 25, "ticks", {2, 10000}, kAtStart,

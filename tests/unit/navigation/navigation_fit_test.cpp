@@ -1,5 +1,5 @@
 // Robots with more and fewer modules: the place of the base of the U, and the parameters that follow from the length.
-#include "navigation/body_fit.hpp"
+#include "navigation/navigation_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ RobotModel robot_with(std::size_t modules) {
   return robot;
 }
 
-TEST(BodyFit, TheBaseLiesInTheMiddleOfTheBody) {
+TEST(NavigationFit, TheBaseLiesInTheMiddleOfTheBody) {
   for (std::size_t modules = 16; modules <= 64; ++modules) {
     const RobotModel robot = robot_with(modules);
     const std::vector<std::size_t> yaw_joints = robot.yaw_joints();
@@ -47,13 +47,13 @@ TEST(BodyFit, TheBaseLiesInTheMiddleOfTheBody) {
   }
 }
 
-TEST(BodyFit, TheBaseOfKnownRobots) {
+TEST(NavigationFit, TheBaseOfKnownRobots) {
   EXPECT_EQ(middle_base_joint(robot_with(16), 3), 4);
   EXPECT_EQ(middle_base_joint(robot_with(24), 3), 5);
   EXPECT_EQ(middle_base_joint(robot_with(32), 3), 7);
 }
 
-TEST(BodyFit, ABaseBeyondTheTailIsRefused) {
+TEST(NavigationFit, ABaseBeyondTheTailIsRefused) {
   const RobotModel robot = robot_with(24);
   GripConfig config;
   config.base_first_joint = 9;
@@ -71,13 +71,13 @@ TEST(BodyFit, ABaseBeyondTheTailIsRefused) {
 
 /// Why navigation does not grasp with this body.
 std::string refusal_of(const RobotModel& robot) {
-  const NavigationConfig config = fitted_to(robot, {});
+  const NavigationConfig config = navigation_fitted_to(robot, {});
   return GripSense(robot, config.grip).refusal();
 }
 
 /// The bound follows from lengths: the arm in front of the base, which drives and steers, has at least 0.75 m, and one
 /// yaw joint lies behind the three of the base.
-TEST(BodyFit, ABodyWithoutRoomForTheArmsOfAUCannotGrasp) {
+TEST(NavigationFit, ABodyWithoutRoomForTheArmsOfAUCannotGrasp) {
   for (const std::size_t modules : {10U, 12U, 14U, 15U})
     EXPECT_NE(refusal_of(robot_with(modules)).find("cannot grasp"), std::string::npos) << modules << " modules";
   for (std::size_t modules = 16; modules <= 64; ++modules)
@@ -105,7 +105,7 @@ std::string error_of(const std::string& robot_file, const std::string& mission) 
   return "";
 }
 
-TEST(BodyFit, AMissionThatNeedsAGraspIsRefusedBeforeItStarts) {
+TEST(NavigationFit, AMissionThatNeedsAGraspIsRefusedBeforeItStarts) {
   const std::string mamba = data_path("components/lib/robot/mamba.yaml");
   std::ifstream from(mamba);
   std::string text{std::istreambuf_iterator<char>(from), {}};
@@ -131,29 +131,29 @@ std::vector<std::pair<std::string, std::string>> values(const NavigationConfig& 
   return all;
 }
 
-TEST(BodyFit, NothingChangesForTheBodyOfTheDefaultRobot) {
-  EXPECT_EQ(values(fitted_to(robot_with(24), {})), values({}));
-  EXPECT_NE(values(fitted_to(robot_with(16), {})), values({}));
-  EXPECT_NE(values(fitted_to(robot_with(32), {})), values({}));
+TEST(NavigationFit, NothingChangesForTheBodyOfTheDefaultRobot) {
+  EXPECT_EQ(values(navigation_fitted_to(robot_with(24), {})), values({}));
+  EXPECT_NE(values(navigation_fitted_to(robot_with(16), {})), values({}));
+  EXPECT_NE(values(navigation_fitted_to(robot_with(32), {})), values({}));
 }
 
-TEST(BodyFit, ALongBodyTurnsByTheSameAngle) {
+TEST(NavigationFit, ALongBodyTurnsByTheSameAngle) {
   const NavigationConfig tuned;
-  const NavigationConfig fitted = fitted_to(robot_with(36), tuned);  // one and a half times as long
+  const NavigationConfig fitted = navigation_fitted_to(robot_with(36), tuned);  // one and a half times as long
   EXPECT_NEAR(fitted.rotate.curvature_1_m, tuned.rotate.curvature_1_m / 1.5, 1e-9);
   EXPECT_NEAR(fitted.track.turn_radius_m, tuned.track.turn_radius_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.lookahead_m, tuned.drop.lookahead_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.pivot_m, tuned.drop.pivot_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.clear_m, tuned.drop.clear_m * 2.25, 1e-9);
   EXPECT_NEAR(fitted.grip.hold_torque_nm, 4.0, 1e-9) << "two thirds of the joint's torque";
-  const double between_nm = fitted_to(robot_with(28), tuned).grip.hold_torque_nm;
+  const double between_nm = navigation_fitted_to(robot_with(28), tuned).grip.hold_torque_nm;
   EXPECT_NEAR(between_nm, 0.5 * (tuned.grip.hold_torque_nm + 4.0), 1e-9);
   EXPECT_EQ(fitted.rotate.carry_curvature_1_m, tuned.rotate.carry_curvature_1_m);
 }
 
-TEST(BodyFit, AShortBodyWithAnObjectBendsByTheSameAngle) {
+TEST(NavigationFit, AShortBodyWithAnObjectBendsByTheSameAngle) {
   const NavigationConfig tuned;
-  const NavigationConfig fitted = fitted_to(robot_with(16), tuned);
+  const NavigationConfig fitted = navigation_fitted_to(robot_with(16), tuned);
   EXPECT_NEAR(fitted.rotate.carry_curvature_1_m, tuned.rotate.carry_curvature_1_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.follow_line.carry_limit_1_m, tuned.follow_line.carry_limit_1_m * 1.5, 1e-9);
   EXPECT_NEAR(fitted.drop.steering.limit, tuned.drop.steering.limit * 1.5, 1e-9);
@@ -161,23 +161,23 @@ TEST(BodyFit, AShortBodyWithAnObjectBendsByTheSameAngle) {
   EXPECT_EQ(fitted.grip.hold_torque_nm, tuned.grip.hold_torque_nm);
 }
 
-TEST(BodyFit, AnObjectIsCarriedOnARaisedBaseIfBothArmsCarryIt) {
+TEST(NavigationFit, AnObjectIsCarriedOnARaisedBaseIfBothArmsCarryIt) {
   for (const std::size_t modules : {16U, 18U}) {
-    const NavigationConfig fitted = fitted_to(robot_with(modules), {});
+    const NavigationConfig fitted = navigation_fitted_to(robot_with(modules), {});
     EXPECT_STREQ(carrying_pace(fitted).motion, "deliver") << modules << " modules: the rear arm has three or five";
     EXPECT_EQ(carrying_pace(fitted).speed_m_s, fitted.deliver_m_s);
   }
   for (const std::size_t modules : {20U, 24U, 32U})
-    EXPECT_STREQ(carrying_pace(fitted_to(robot_with(modules), {})).motion, "carry") << modules << " modules";
+    EXPECT_STREQ(carrying_pace(navigation_fitted_to(robot_with(modules), {})).motion, "carry") << modules << " modules";
   NavigationConfig near_tail;
   near_tail.grip.base_first_joint = 8;
-  EXPECT_STREQ(carrying_pace(fitted_to(robot_with(24), near_tail)).motion, "deliver");
+  EXPECT_STREQ(carrying_pace(navigation_fitted_to(robot_with(24), near_tail)).motion, "deliver");
 }
 
-TEST(BodyFit, WithShorterLinksTheBaseOfTheSameUHasMoreJoints) {
+TEST(NavigationFit, WithShorterLinksTheBaseOfTheSameUHasMoreJoints) {
   RobotModel robot = robot_with(24);
   for (JointModel& joint : robot.joints) joint.axis = JointAxis::kYaw;
-  const NavigationConfig tuned, fitted = fitted_to(robot, tuned);
+  const NavigationConfig tuned, fitted = navigation_fitted_to(robot, tuned);
   EXPECT_EQ(fitted.grip.base_joints, 6);
   EXPECT_NEAR(6.0 * fitted.grip.base_angle_rad, 3.0 * tuned.grip.base_angle_rad, 1e-9);
   EXPECT_NEAR(6.0 * fitted.grip.closing_rad, 3.0 * tuned.grip.closing_rad, 1e-9);
@@ -187,14 +187,14 @@ TEST(BodyFit, WithShorterLinksTheBaseOfTheSameUHasMoreJoints) {
   EXPECT_NEAR(GripSense(robot, fitted.grip).largest_radius_m(), tuned_m, 0.02);
 }
 
-TEST(BodyFit, TheHoldStaysBelowTheTorqueOfTheJoints) {
+TEST(NavigationFit, TheHoldStaysBelowTheTorqueOfTheJoints) {
   RobotModel robot = robot_with(64);
-  const NavigationConfig fitted = fitted_to(robot, {});
+  const NavigationConfig fitted = navigation_fitted_to(robot, {});
   EXPECT_LT(fitted.grip.hold_torque_nm, robot.joints.front().max_torque_nm);
   // A hold that the configuration demands is not weakened.
   NavigationConfig firm;
   firm.grip.hold_torque_nm = 5.0;
-  EXPECT_EQ(fitted_to(robot, firm).grip.hold_torque_nm, 5.0);
+  EXPECT_EQ(navigation_fitted_to(robot, firm).grip.hold_torque_nm, 5.0);
 }
 
 }  // namespace

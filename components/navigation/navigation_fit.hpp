@@ -9,6 +9,6 @@ namespace constrictor {
 /// `config` for this robot. The values of a configuration file are those of a body of 2.136 m (24 modules of `mamba`),
 /// for which this function changes nothing. A body of another length gets other curvatures, and a longer one slower
 /// controllers and a firmer hold. The README explains each.
-[[nodiscard]] NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config);
+[[nodiscard]] NavigationConfig navigation_fitted_to(const RobotModel& robot, NavigationConfig config);
 
 }  // namespace constrictor

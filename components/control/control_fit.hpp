@@ -10,6 +10,6 @@ namespace constrictor {
 /// without pitch joints, the base of the same U has more joints, and each of them bends less; the first links, which
 /// the wave moves less, are more of them. A longer body undulates less when it nears a zone with an object. A robot
 /// without contact sensors keeps the base of the U on the ground.
-[[nodiscard]] ControlConfig fitted_to(const RobotModel& robot, ControlConfig config);
+[[nodiscard]] ControlConfig control_fitted_to(const RobotModel& robot, ControlConfig config);
 
 }  // namespace constrictor

@@ -1,4 +1,4 @@
-#include "control/body_fit.hpp"
+#include "control/control_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double kAmplitudePower = 1.3;
 
 }  // namespace
 
-ControlConfig fitted_to(const RobotModel& robot, ControlConfig config) {
+ControlConfig control_fitted_to(const RobotModel& robot, ControlConfig config) {
   // The thrust of longer arms would drive the base, whose friction is the same, at twice the speed: faster than the
   // curvature of the body can follow, so that the robot swings about its course over a zone.
   config.deliver.amplitude_rad /= std::pow(std::max(1.0, length_share(robot)), kAmplitudePower);

@@ -1,4 +1,4 @@
-#include "navigation/body_fit.hpp"
+#include "navigation/navigation_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ bool carries_on_ground(const RobotModel& robot, const GripConfig& config) {
 
 }  // namespace
 
-NavigationConfig fitted_to(const RobotModel& robot, NavigationConfig config) {
+NavigationConfig navigation_fitted_to(const RobotModel& robot, NavigationConfig config) {
   const double length = length_share(robot);
   const double longer = std::max(1.0, length);
   const double shorter = std::min(1.0, length);

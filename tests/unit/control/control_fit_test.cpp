@@ -1,4 +1,4 @@
-#include "control/body_fit.hpp"
+#include "control/control_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ RobotModel robot_named(const char* name) {
 }
 
 TEST(ControlFit, NothingChangesForTheDefaultRobot) {
-  const ControlConfig tuned, fitted = fitted_to(robot_named("mamba"), tuned);
+  const ControlConfig tuned, fitted = control_fitted_to(robot_named("mamba"), tuned);
   EXPECT_EQ(fitted.weights.head, tuned.weights.head);
   EXPECT_EQ(fitted.weights.rigid_bend_rad, tuned.weights.rigid_bend_rad);
   EXPECT_EQ(fitted.base_bend_rad, tuned.base_bend_rad);
@@ -23,8 +23,8 @@ TEST(ControlFit, NothingChangesForTheDefaultRobot) {
 TEST(ControlFit, ARobotWithoutContactSensorsKeepsTheBaseOnTheGround) {
   const ControlConfig tuned;
   EXPECT_GT(tuned.lift_rad, 0.0);
-  EXPECT_EQ(fitted_to(robot_named("mamba"), tuned).lift_rad, tuned.lift_rad);
-  EXPECT_EQ(fitted_to(robot_named("mamba_no_skin"), tuned).lift_rad, 0.0);
+  EXPECT_EQ(control_fitted_to(robot_named("mamba"), tuned).lift_rad, tuned.lift_rad);
+  EXPECT_EQ(control_fitted_to(robot_named("mamba_no_skin"), tuned).lift_rad, 0.0);
 }
 
 TEST(ControlFit, ALongerBodyUndulatesLessWhenItNearsAZone) {
@@ -33,19 +33,19 @@ TEST(ControlFit, ALongerBodyUndulatesLessWhenItNearsAZone) {
   double before_rad = tuned.deliver.amplitude_rad;
   for (const std::size_t modules : {28U, 32U, 40U}) {
     robot.module_count = modules;
-    const ControlConfig fitted = fitted_to(robot, tuned);
+    const ControlConfig fitted = control_fitted_to(robot, tuned);
     EXPECT_LT(fitted.deliver.amplitude_rad, before_rad - 0.05) << modules;
     EXPECT_EQ(fitted.carry.amplitude_rad, tuned.carry.amplitude_rad) << modules;
     before_rad = fitted.deliver.amplitude_rad;
   }
   robot.module_count = 16;
-  EXPECT_EQ(fitted_to(robot, tuned).deliver.amplitude_rad, tuned.deliver.amplitude_rad);
+  EXPECT_EQ(control_fitted_to(robot, tuned).deliver.amplitude_rad, tuned.deliver.amplitude_rad);
 }
 
 // The same U, with the bend of each joint shared by two, moves alike: rigid in the base, and little at the head.
 TEST(ControlFit, TheWaveMovesTheSamePlacesOfABodyWithShorterLinks) {
   const RobotModel coarse = robot_named("mamba"), fine = robot_named("mamba_yaw_only");
-  const ControlConfig tuned, fitted = fitted_to(fine, tuned);
+  const ControlConfig tuned, fitted = control_fitted_to(fine, tuned);
   LinkArray coarse_shape{}, fine_shape{};
   for (int k = 5; k <= 7; ++k) coarse_shape[k] = 1.047;
   for (int k = 10; k <= 15; ++k) fine_shape[k] = 0.5235;
