@@ -1,11 +1,10 @@
-// SHA-256 and hexadecimal text: the only place that calls OpenSSL for them.
+// SHA-256: the only place that calls OpenSSL for it.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace constrictor {
@@ -32,8 +31,5 @@ class Sha256 {
 
 /// HMAC-SHA-256 (RFC 2104) of a text.
 [[nodiscard]] Sha256::Digest hmac_sha256(std::string_view key, std::string_view text);
-
-/// Lower-case hexadecimal text, two digits a byte.
-[[nodiscard]] std::string hex(std::span<const std::uint8_t> bytes);
 
 }  // namespace constrictor

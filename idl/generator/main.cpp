@@ -7,6 +7,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "constrictor/hex.hpp"
 #include "constrictor/sha256.hpp"
 #include "idl/generator/constant_groups.hpp"
 #include "idl/generator/idl_parser.hpp"

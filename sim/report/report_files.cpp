@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "constrictor/constants.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/image.hpp"
 #include "constrictor/json.hpp"
-#include "constrictor/sha256.hpp"
 #include "sim/figure/captions.hpp"
 #include "sim/figure/lazy_figure.hpp"
 #include "sim/report/report.hpp"

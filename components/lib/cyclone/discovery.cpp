@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <span>
 
+#include "constrictor/hex.hpp"
 #include "constrictor/text.hpp"
 
 namespace constrictor::dds {
@@ -200,10 +202,6 @@ std::string mismatch(const Endpoint& writer, const Endpoint& reader) {
   return {};
 }
 
-std::string short_name(const Guid& guid) {
-  std::string text;
-  for (std::size_t i = 0; i < 12; ++i) text += fmt::format("{:02x}", guid[i]);
-  return text;
-}
+std::string short_name(const Guid& guid) { return hex(std::span(guid).first<12>()); }
 
 }  // namespace constrictor::dds

@@ -12,6 +12,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "constrictor/hex.hpp"
 #include "constrictor/sha256.hpp"
 
 namespace constrictor {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "barrier/protocol.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
 

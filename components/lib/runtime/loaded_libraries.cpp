@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "constrictor/hex.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -38,12 +40,8 @@ std::string build_id(const dl_phdr_info& library) {
       std::memcpy(&note, at, sizeof(note));
       const auto padded = [](std::size_t size) { return (size + 3) & ~std::size_t{3}; };
       const unsigned char* id = at + sizeof(note) + padded(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID && id + note.n_descsz <= end) {
-        std::string text;
-        for (std::size_t k = 0; k < std::min<std::size_t>(note.n_descsz, kShownBytes); ++k)
-          text += fmt::format("{:02x}", id[k]);
-        return text;
-      }
+      if (note.n_type == NT_GNU_BUILD_ID && id + note.n_descsz <= end)
+        return hex({id, std::min<std::size_t>(note.n_descsz, kShownBytes)});
       at = id + padded(note.n_descsz);
     }
   }

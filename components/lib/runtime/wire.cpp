@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "constrictor/sha256.hpp"
+#include "constrictor/hex.hpp"
 #include "cyclone/run_token.hpp"
 
 namespace constrictor::dds {

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "constrictor/hex.hpp"
 #include "constrictor/messages.hpp"
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "constrictor/compare.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/sha256.hpp"
 #include "random_message.hpp"

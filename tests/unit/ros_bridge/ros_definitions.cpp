@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "constrictor/hex.hpp"
 #include "constrictor/sha256.hpp"
 
 namespace constrictor::ros {

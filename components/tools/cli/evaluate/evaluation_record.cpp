@@ -9,6 +9,7 @@
 
 #include "configuration/configuration.hpp"
 #include "configuration/whole_file.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/sha256.hpp"
 #include "runtime/version.hpp"
 

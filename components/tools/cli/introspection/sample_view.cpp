@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "configuration/counted.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/json.hpp"
 #include "constrictor/sha256.hpp"
 

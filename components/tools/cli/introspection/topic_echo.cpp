@@ -11,8 +11,8 @@
 #include "cli/introspection/topic_watch.hpp"
 #include "cli/usage.hpp"
 #include "constrictor/field_table.hpp"
+#include "constrictor/hex.hpp"
 #include "constrictor/json.hpp"
-#include "constrictor/sha256.hpp"
 #include "cyclone/type_tree.hpp"
 #include "runtime/host.hpp"
 

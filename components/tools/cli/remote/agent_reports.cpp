@@ -5,6 +5,7 @@
 
 #include "cli/log/log_files.hpp"
 #include "cli/remote/agent.hpp"
+#include "constrictor/hex.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -30,11 +31,7 @@ std::uintmax_t size_of(const fs::path& path) {
 }
 
 std::string hexadecimal(const std::string& bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  text.reserve(2 * bytes.size());
-  for (const unsigned char byte : bytes) text += {kDigits[byte >> 4], kDigits[byte & 15]};
-  return text;
+  return hex({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "cli/remote/host_description.hpp"
 #include "cli/remote/host_link.hpp"
+#include "constrictor/hex.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -42,19 +43,16 @@ void HostLink::collect(const std::filesystem::path& folder) {
 
 void HostLink::take_file(const nlohmann::json& message) {
   const auto name = field<std::string>(message, "name");
-  const auto hex = field<std::string>(message, "hex");
+  const auto bytes = bytes_of_hex(field<std::string>(message, "hex"));
   if (!is_plain_path(name) || collect_into_.empty()) throw ProtocolError("file: found the name \"" + name + "\"");
+  if (!bytes) throw ProtocolError("file \"" + name + "\": found bytes that are not pairs of hexadecimal digits");
   std::error_code ignored;  // then the file cannot be written either
   std::filesystem::create_directories((collect_into_ / name).parent_path(), ignored);
   const bool first = field<std::uintmax_t>(message, "offset") == 0;
-  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes.push_back(static_cast<char>(digit(hex[i]) * 16 + digit(hex[i + 1])));
-  collected_bytes_ += bytes.size();
+  collected_bytes_ += bytes->size();
   if (first) not_stored_.erase(name);
   else if (not_stored_.contains(name)) return;
-  const std::string error = write(collect_into_ / name, bytes, first ? std::ios::trunc : std::ios::app);
+  const std::string error = write(collect_into_ / name, *bytes, first ? std::ios::trunc : std::ios::app);
   if (error.empty()) return;
   not_stored_[name] = error;
   std::filesystem::remove(collect_into_ / name, ignored);  // rather no file than a part of one
