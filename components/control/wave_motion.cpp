@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "robot/planar.hpp"
 #include "robot/u_arms.hpp"
 
 namespace constrictor {
@@ -60,8 +61,7 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   wave.wavelength_m = approach(wave.wavelength_m, input.gait.wavelength_m, c.wavelength_rate_m_s * dt_s);
   wave.curvature_1_m = approach(wave.curvature_1_m, input.gait.curvature_1_m, c.curvature_rate_1_ms * dt_s);
   body.frequency_hz = approach(body.frequency_hz, input.gait.frequency_hz, c.frequency_rate_hz_s * dt_s);
-  wave.phase_rad =
-      std::remainder(wave.phase_rad + 2.0 * std::numbers::pi * body.frequency_hz * dt_s, 2.0 * std::numbers::pi);
+  wave.phase_rad = wrap_angle(wave.phase_rad + 2.0 * std::numbers::pi * body.frequency_hz * dt_s);
 }
 
 double advance_shape(const MethodInput& input, const LinkArray& target_rad, double rate_rad_s, BodyState& body) {

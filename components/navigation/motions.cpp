@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "constrictor/text.hpp"
 #include "navigation/carrying_room.hpp"
@@ -180,10 +179,6 @@ double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M) {
   double nearest_m = p_H.norm();
   for (const PlanarPose& module : input.body) nearest_m = std::min(nearest_m, (module.p - p_H).norm());
   return nearest_m;
-}
-
-double angle_between(double to_rad, double from_rad) {
-  return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
 }
 
 }  // namespace constrictor

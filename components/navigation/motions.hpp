@@ -76,7 +76,4 @@ double body_course_rad(const TaskInput& input);
 /// [m] from a point in M to the middle line of the nearest module.
 double nearest_module_m(const TaskInput& input, const Eigen::Vector2d& p_M);
 
-/// Difference of two angles, from -pi to pi.
-double angle_between(double to_rad, double from_rad);
-
 }  // namespace constrictor

@@ -12,6 +12,7 @@
 
 #include "control/obstacle_contacts.hpp"
 #include "control/wave_motion.hpp"
+#include "robot/planar.hpp"
 #include "robot/planar_message.hpp"
 
 namespace constrictor {
@@ -107,7 +108,7 @@ class ObstacleAided : public ControlMethod {
     feel(input, now, body);
     const double search = state[kSearch];
     const double swings_hz = (1.0 - search) * (forward_m_s / c.obstacles.path_m) + body.frequency_hz;
-    body.wave.phase_rad = std::remainder(body.wave.phase_rad + kTurn * swings_hz * input.dt_s, kTurn);
+    body.wave.phase_rad = wrap_angle(body.wave.phase_rad + kTurn * swings_hz * input.dt_s);
     fade_residual(input, body, setpoints);
     lead_with_head(input, now, body, setpoints);
     for (std::size_t k = 1; k < input.chain.joint_count(); ++k) push(input, now, k, state[kSwing], setpoints);
@@ -147,7 +148,7 @@ class ObstacleAided : public ControlMethod {
     const double path_rad =
         law.swing_rad * state[kSwing] * std::cos(body.wave.phase_rad) + law.avoid_rad * state[kWayOut];
     const double heading_rad = state[kCourse] + std::clamp(path_rad, -kSteepest_rad, kSteepest_rad);
-    setpoints.position_rad[input.chain.joint_index(0)] += std::remainder(heading_rad - now.heading_rad[1], kTurn);
+    setpoints.position_rad[input.chain.joint_index(0)] += wrap_angle(heading_rad - now.heading_rad[1]);
   }
 
   /// The torque of joint `k`: what bends the body as it would be bent if it had slid forwards along itself.

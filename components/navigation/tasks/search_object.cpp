@@ -7,6 +7,7 @@
 
 #include "navigation/motions.hpp"
 #include "navigation/object_handles.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
@@ -39,7 +40,7 @@ class SearchObject : public StatefulTask<SearchState> {
     const Sighting& object = input.sightings.objects[colour];
     state_.phase_s += input.tick.dt_s();
     const double course_rad = body_course_rad(input);  // of the body: the head may be looking aside
-    state_.turned_rad += angle_between(course_rad, state_.last_course_rad);
+    state_.turned_rad += wrap_angle(course_rad - state_.last_course_rad);
     state_.last_course_rad = course_rad;
     output.progress = 1.0 - 1.0 / (1.0 + 0.25 * state_.looks);
 
@@ -103,7 +104,7 @@ class SearchObject : public StatefulTask<SearchState> {
       return;
     }
     const Eigen::Vector2d d = *p_MO - input.X_MH.p;
-    const double bearing_rad = angle_between(std::atan2(d.y(), d.x()), body_course_rad(input));
+    const double bearing_rad = wrap_angle(std::atan2(d.y(), d.x()) - body_course_rad(input));
     switch (state_.phase) {
       case kLeave:
         output.phase = "leave";

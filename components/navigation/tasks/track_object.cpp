@@ -8,6 +8,7 @@
 #include "navigation/object_handles.hpp"
 #include "navigation/steering.hpp"
 #include "navigation/turn_geometry.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor {
 namespace {
@@ -71,7 +72,7 @@ class TrackObject : public StatefulTask<TrackState> {
     output.progress = state_.progress;
 
     const Eigen::Vector2d d = object.p_M() - input.X_MH.p;
-    const double turn_rad = angle_between(std::atan2(d.y(), d.x()), body_course_rad(input));
+    const double turn_rad = wrap_angle(std::atan2(d.y(), d.x()) - body_course_rad(input));
     if (state_.leaving) {
       leave(input, grip, object, turn_rad, output);
       return;

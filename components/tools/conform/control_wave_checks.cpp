@@ -8,6 +8,7 @@
 
 #include "conform/control_conformance.hpp"
 #include "conform/median.hpp"
+#include "robot/planar.hpp"
 #include "robot/trajectory_path.hpp"
 
 namespace constrictor::conform {
@@ -95,7 +96,7 @@ void ControlConformance::judge_wave(const Steps& steps) {
     std::vector<double> lags;
     for (std::size_t k = yaw_.size() / 3; k + 1 < yaw_.size(); ++k) {
       const double lag = fitted(some, yaw_[k + 1], rate_hz_).phase_rad - fitted(some, yaw_[k], rate_hz_).phase_rad;
-      lags.push_back(std::remainder(lag, 2.0 * kPi));
+      lags.push_back(wrap_angle(lag));
     }
     return median(std::move(lags));
   };

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "constrictor/text.hpp"
+#include "robot/planar.hpp"
 
 namespace constrictor::conform {
 namespace {
@@ -95,7 +96,7 @@ void PlannerHand::move() {
   const std::uint8_t direction = status_.parameters.direction;
   const double side = direction == msg::kDirectionLeft ? 1.0 : direction == msg::kDirectionRight ? -1.0 : 0.0;
   const bool turns = status_.task == msg::kTaskRotate || status_.task == msg::kTaskExplore;
-  if (turns) pose_.yaw_rad = std::remainder(pose_.yaw_rad + side * kTurn_rad_s * kTick_s, 2.0 * std::numbers::pi);
+  if (turns) pose_.yaw_rad = wrap_angle(pose_.yaw_rad + side * kTurn_rad_s * kTick_s);
   if (status_.task == msg::kTaskFollowLine) {
     // Along the line, in the direction in which the head looks.
     pose_.yaw_rad = std::abs(pose_.yaw_rad) < 0.5 * std::numbers::pi ? 0.0 : std::numbers::pi;
