@@ -55,7 +55,8 @@ std::optional<msg::Blob> Gauge::object(bool on_zone, ObjectSize& measured) const
   blob.cut_right |= right_hidden_;
   const bool whole = std::isfinite(range_m) && !on_zone && !blob.cut_left && !blob.cut_right;
   if (!std::isfinite(range_m)) {
-    // If something stands before the foot of the object, whoever guesses its height guesses where it is.
+    // If something hides the foot of the object, the range follows from its height: a guessed height would give a
+    // guessed range.
     const bool foot_hidden = !on_zone && !blob.cut_bottom;
     if (!foot_hidden || size_.known() || config_.height_stated) range_m = range_by_size(blob);
   } else if (whole && ends_in_zone(range_m)) {

@@ -41,7 +41,8 @@ struct PhysicsConfig : PlantParameters {
           "Greatest velocity at which bodies that overlap leave each other"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "At a joint only the front module touches the ground: ode is a third faster, and the gait 1.4 % faster")};
+          "At a joint only the front module touches the ground: a tick takes 30 % less CPU time (ode: 22 %), and the "
+          "gait is 0.9 % faster (ode: 0.2 %)")};
   GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},

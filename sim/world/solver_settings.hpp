@@ -23,7 +23,8 @@ struct SolverSettings {
   double surface_layer_m = 0.001;       ///< [m] depth at which contacts may rest without correction
   double max_correcting_velocity_m_s = 1.0;
   /// The caps of two neighbouring modules coincide at their joint. If true, only the cap of the front module touches
-  /// the ground there; that is a fifth faster, but a module then turns without friction and odometry is less exact.
+  /// the ground there; a module then turns without friction, and odometry is less exact. The README of sim/physics says
+  /// how much CPU time that saves.
   bool one_ground_contact_a_joint = false;
   std::uint32_t reorder_seed = 1;  ///< ode: seed of QuickStep's random order of constraints
 };
