@@ -47,6 +47,29 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// The text without its line breaks, at which sentences of a README are wrapped.
+std::string in_one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// One column for each character: bytes that continue a character of UTF-8 begin with the bits 10.
+std::ptrdiff_t columns_of(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });
+}
+
+/// A row of a table, or a single word, for example a link without blanks. A link with blanks in its text can be wrapped
+/// there.
+bool cannot_be_wrapped(const std::string& line) {
+  if (line.starts_with("|")) return true;
+  static const std::regex mark("[-*+>]|[0-9]+\\.|#+");  // of a list, a quotation or a heading: stays with what follows
+  std::istringstream words(line);
+  int count = 0;
+  for (std::string word; words >> word;)
+    if (!std::regex_match(word, mark)) ++count;
+  return count == 1;
+}
+
 /// Type and name of each symbol in the output of `nm`, versions ("@GLIBC_2.17") left out.
 std::vector<std::pair<char, std::string>> symbols_of(const std::string& nm) {
   static const std::regex line_of("^[0-9a-f ]{16} ([A-Za-z]) ([^@]+).*");
@@ -96,8 +119,10 @@ std::vector<std::string> long_files(const fs::path& root) {
     const std::string text = text_of(file);
     const auto lines = std::count(text.begin(), text.end(), '\n');
     if (lines <= kMostLines) continue;
-    const bool explained =
-        text_of(file.parent_path() / "README.md").find(file.filename().string()) != std::string::npos;
+    const std::string readme = in_one_line(text_of(file.parent_path() / "README.md"));
+    const std::string statement = "`" + file.filename().string() + "` is longer than 300 lines because ";
+    const auto at = readme.find(statement);
+    const bool explained = at != std::string::npos && at + statement.size() < readme.size();
     if (!explained) found.push_back(fs::relative(file, root).string() + ": " + std::to_string(lines) + " lines");
   }
   return found;
@@ -119,10 +144,8 @@ std::vector<std::string> long_lines(const fs::path& root) {
     std::ifstream stream(path);
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
-      if (is_text && (line.rfind("|", 0) == 0 || line.find("](") != std::string::npos)) continue;
-      // One column for each character: bytes that continue a character of UTF-8 begin with the bits 10.
-      const auto columns = std::count_if(line.begin(), line.end(), [](char byte) { return (byte & 0xC0) != 0x80; });
-      if (columns > kMostColumns)
+      const auto columns = columns_of(line);
+      if (columns > kMostColumns && !(is_text && cannot_be_wrapped(line)))
         found.push_back(fs::relative(path, root).string() + ":" + std::to_string(number) + ": " +
                         std::to_string(columns) + " columns");
     }

@@ -12,11 +12,13 @@ namespace constrictor::testing {
 /// that call it, includes by relative path, names of ground truth in code that runs on a robot.
 std::vector<std::string> source_violations(const std::filesystem::path& root);
 
-/// Source files of more than 300 lines that the README of their folder does not name with the reason.
+/// Source files of more than 300 lines, unless the README of their folder says "`NAME` is longer than 300 lines
+/// because" and the reason.
 std::vector<std::string> long_files(const std::filesystem::path& root);
 
 /// Lines of more than 120 columns in C++, IDL, CMake, YAML and shell files, and in README files, as "file:12: 130
-/// columns". In README files, table rows and lines with a link may be longer because they cannot be wrapped.
+/// columns". In README files, rows of tables and single words, for example links, may be longer because they cannot be
+/// wrapped.
 std::vector<std::string> long_lines(const std::filesystem::path& root);
 
 /// Links of Markdown files to files of the project that do not exist, and to headings that the file does not have, as

@@ -225,10 +225,14 @@ TEST(LayoutChecker, FindsLongFilesWithoutAReason) {
   tree.add("components/control/a.cpp", lines(300));
   tree.add("components/control/b.hpp", lines(301));
   tree.add("components/control/c.hpp", lines(301));
-  tree.add("components/control/README.md", "`c.hpp` is longer than 300 lines because it is one table.\n");
+  tree.add("components/control/README.md",
+           "| `b.hpp` | the rest |\n\nBeside `b.hpp`, `c.hpp` is longer than 300\nlines because it is one table.\n");
   tree.add("tests/unit/d.cpp", lines(301));
+  tree.add("tests/unit/f.cpp", lines(301));
+  tree.add("tests/unit/README.md", "`d.cpp` is longer than 300 lines.\n`f.cpp` is longer than 300 lines because\n");
   tree.add("sim/world/e.yaml", lines(900));
-  EXPECT_EQ(text_of(long_files(tree.root())), "components/control/b.hpp: 301 lines\ntests/unit/d.cpp: 301 lines\n");
+  EXPECT_EQ(text_of(long_files(tree.root())),
+            "components/control/b.hpp: 301 lines\ntests/unit/d.cpp: 301 lines\ntests/unit/f.cpp: 301 lines\n");
 }
 
 TEST(LayoutChecker, FindsLongLines) {
@@ -240,13 +244,14 @@ TEST(LayoutChecker, FindsLongLines) {
   std::string umlauts;
   for (int i = 0; i < 120; ++i) umlauts += "ö";
   tree.add("sim/world/umlauts.cpp", umlauts + "\n");
-  tree.add("tests/README.md", "| " + longest + " |\n[a link](" + longest + ")\n" + longest + "x\n");
+  tree.add("tests/README.md", "| " + longest + " |\n- [link](" + longest + ").\n[a link](" + longest + ")\n" + longest +
+                                  "x\na " + longest + "\n");
   tree.add("CONTRIBUTING.md", longest + " and more\n");
   tree.add("scripts/run.sh", longest + "x\n");
   EXPECT_EQ(text_of(long_lines(tree.root())),
             "CONTRIBUTING.md:1: 129 columns\ncomponents/control/b.hpp:2: 121 columns\n"
             "components/control/c.yaml:1: 122 columns\nscripts/run.sh:1: 121 columns\n"
-            "tests/README.md:3: 121 columns\n");
+            "tests/README.md:3: 130 columns\ntests/README.md:5: 122 columns\n");
 }
 
 TEST(LayoutChecker, FindsBrokenLinks) {
