@@ -88,7 +88,7 @@ function(constrictor_include_root result)
   set(${result} ${root} PARENT_SCOPE)
 endfunction()
 
-# The folders whose libraries the libraries of a folder may link, besides those of the folder itself. A row is a regular
+# The folders whose libraries the targets of a folder may link, besides those of the folder itself. A row is a regular
 # expression for the folder and one for the folders that it may use; the first row that fits counts.
 set(CONSTRICTOR_LAYERS
   "idl.* => idl.*"
@@ -112,35 +112,53 @@ set(CONSTRICTOR_LAYERS
   "components/tools/pictures => .*"
   "components/tools/views => idl|components/lib/(recording|robot)"
   "components/tools/cli => idl|components/lib/.*|components/tools/views|sim/scenario_loader"
+  "components/tools/dashboard => idl|components/lib/.*|components/tools/(cli|views)"
   "components/tools/.* => idl|components/lib/.*"
   "components/servo_bus => idl|components/lib/(component|configuration|dynamixel|plant|robot|serial)"
   "components/plant_relay => idl|components/lib/(component|configuration|plant|robot)"
   "components/video_capture => idl|components/lib/(component|configuration|robot|video)"
   "components/.* => idl|components/lib/(component|configuration|robot)"
   "sim/emulation => idl|components/lib/(configuration|log)|sim/.*"
-  "sim/.* => idl|components/lib/(component|configuration|device_faults|dynamixel|plant|robot)|sim/.*"
-  "tests/.* => .*")
+  "sim/.* => idl|components/lib/(component|configuration|device_faults|dynamixel|plant|robot)|sim/.*")
 
-# Stops the configuration if a library links one that its folder must not know.
-function(constrictor_check_layer name)
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  set_target_properties(${name} PROPERTIES CONSTRICTOR_FOLDER ${folder})
-  foreach(row IN LISTS CONSTRICTOR_LAYERS)
-    string(REGEX MATCH "^(.*) => (.*)$" row "${row}")
-    set(allowed "${CMAKE_MATCH_2}")
-    if(folder MATCHES "^(${CMAKE_MATCH_1})$")
-      break()
-    endif()
-    set(allowed none)
-  endforeach()
-  foreach(library IN LISTS ARGN)
-    if(NOT TARGET ${library})
-      continue()
-    endif()
-    get_target_property(other ${library} CONSTRICTOR_FOLDER)
-    if(other AND NOT other STREQUAL folder AND NOT other MATCHES "^(${allowed})$")
-      message(FATAL_ERROR "${folder}: ${name} links ${library} of ${other}; accepted: libraries of ${allowed}")
-    endif()
+# What a program may link besides: the libraries by which it takes part in a run, and by which it logs.
+set(CONSTRICTOR_PROGRAM_LAYER "components/lib/(cyclone|log|runtime|scheduling)")
+
+# constrictor_check_layers(FOLDER...): the configuration fails if a target of these folders, or of folders below them,
+# links a library that its folder must not know. Called when all targets are known.
+function(constrictor_check_layers)
+  foreach(folder IN LISTS ARGN)
+    foreach(row IN LISTS CONSTRICTOR_LAYERS)
+      string(REGEX MATCH "^(.*) => (.*)$" row "${row}")
+      set(libraries_may "${CMAKE_MATCH_2}")
+      if(folder MATCHES "^(${CMAKE_MATCH_1})$")
+        break()
+      endif()
+      set(libraries_may none)
+    endforeach()
+    get_property(targets DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} PROPERTY BUILDSYSTEM_TARGETS)
+    foreach(target IN LISTS targets)
+      get_target_property(type ${target} TYPE)
+      set(allowed "${libraries_may}")
+      if(type STREQUAL EXECUTABLE)
+        string(APPEND allowed "|${CONSTRICTOR_PROGRAM_LAYER}")
+      endif()
+      get_target_property(linked ${target} LINK_LIBRARIES)
+      foreach(library IN LISTS linked)
+        if(NOT TARGET ${library})
+          continue()
+        endif()
+        get_target_property(other ${library} CONSTRICTOR_FOLDER)
+        if(other AND NOT other STREQUAL folder AND NOT other MATCHES "^(${allowed})$")
+          message(SEND_ERROR "${folder}: ${target} links ${library} of ${other}; accepted: libraries of ${allowed}")
+        endif()
+      endforeach()
+    endforeach()
+    get_property(children DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} PROPERTY SUBDIRECTORIES)
+    foreach(child IN LISTS children)
+      file(RELATIVE_PATH child ${PROJECT_SOURCE_DIR} ${child})
+      constrictor_check_layers(${child})
+    endforeach()
   endforeach()
 endfunction()
 
@@ -165,7 +183,8 @@ function(constrictor_library name)
   if(ARG_PIC)
     constrictor_position_independent(${name})
   endif()
-  constrictor_check_layer(${name} ${ARG_LINK})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set_target_properties(${name} PROPERTIES CONSTRICTOR_FOLDER ${folder})
   target_link_libraries(${name} PUBLIC constrictor_options ${ARG_LINK})
   constrictor_include_root(root)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${root}>)
