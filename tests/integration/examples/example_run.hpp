@@ -79,8 +79,8 @@ class ExampleRun : public ::testing::Test {
     return path.string();
   }
   [[nodiscard]] Process run(const std::string& scenario, std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {CONSTRICTOR_PREFIX "/bin/constrictor", "run", scenario, "--report",
-                                          (dir_ / "r").string()};
+    std::vector<std::string> arguments = {std::string(CONSTRICTOR_PREFIX) + "/bin/constrictor", "run", scenario,
+                                          "--report", (dir_ / "r").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process(std::move(arguments));
   }

@@ -13,7 +13,7 @@ class FastDdsTopics : public ExampleRun {
  protected:
   /// Runs `constrictor topic` in the domain of the plant, and returns its standard output as JSON.
   json topic(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {CONSTRICTOR_PREFIX "/bin/constrictor", "topic"});
+    arguments.insert(arguments.begin(), {std::string(CONSTRICTOR_PREFIX) + "/bin/constrictor", "topic"});
     arguments.insert(arguments.end(), {"--json", "--run", std::to_string(claim_.domain())});
     Process process(std::move(arguments));
     const auto status = process.wait(30s);

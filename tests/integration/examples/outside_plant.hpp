@@ -52,7 +52,7 @@ class OutsidePlant : public ExampleRun {
 
   void moves(Eyes& eyes, unsigned domain) {
     eyes.largest_rad = 0.0;
-    Process drive({CONSTRICTOR_PREFIX "/bin/constrictor", "teleop", "--drive", "0.3,0", "--for", "1.5s"},
+    Process drive({std::string(CONSTRICTOR_PREFIX) + "/bin/constrictor", "teleop", "--drive", "0.3,0", "--for", "1.5s"},
                   {{"CONSTRICTOR_DOMAIN", std::to_string(domain)}});
     EXPECT_TRUE(eyes.until([&] { return eyes.largest_rad > 0.15; })) << eyes.refusal;
     EXPECT_EQ(drive.wait(20s), 0) << drive.output() << drive.errors();
@@ -97,8 +97,8 @@ class OutsidePlant : public ExampleRun {
     arguments.insert(arguments.end(), more.begin(), more.end());
     Process hardware(arguments);
     write("quick.yaml", "joints: [0, 3]\nmotion: {settle_s: 0.12, rate_rad_s: 0.8}\n");
-    Process conform({CONSTRICTOR_PREFIX "/bin/constrictor", "conform", "plant", "--domain", domain, "--yes",
-                     "--profile", (dir_ / "quick.yaml").string(), "--json", (dir_ / "result.json").string()});
+    Process conform({std::string(CONSTRICTOR_PREFIX) + "/bin/constrictor", "conform", "plant", "--domain", domain,
+                     "--yes", "--profile", (dir_ / "quick.yaml").string(), "--json", (dir_ / "result.json").string()});
     status_ = conform.wait(60s).value_or(-1);
     output_ = conform.output() + conform.errors();
     return nlohmann::json::parse(std::ifstream(dir_ / "result.json"), nullptr, false);
