@@ -24,7 +24,7 @@ Physics::Physics(Wiring& wiring, const Setup& setup)
               load_robot(or_default(setup.robot_file, "components/lib/robot/mamba.yaml")),
               load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed)) {}
 
-Physics::Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot,
+Physics::Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot,
                  const Scenario& scenario)
     : wiring_(wiring),
       config_(config),

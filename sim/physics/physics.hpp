@@ -33,7 +33,8 @@ class Physics final : public Plant, public ObjectSource {
   [[nodiscard]] const PlantStopState& stop() const { return gate_.stop_state(); }
 
  private:
-  Physics(Wiring& wiring, const Setup& setup, PhysicsConfig config, const RobotModel& robot, const Scenario& scenario);
+  Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot,
+          const Scenario& scenario);
   void obey(const Tick& tick);
 
   Wiring& wiring_;

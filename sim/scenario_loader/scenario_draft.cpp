@@ -226,7 +226,7 @@ Variation read_variation(Configuration from) {
 
 /// The mission of a random scene, for which the scene is made.
 Mission read_random_mission(const Configuration& section) {
-  const Mission mission = read_mission(section);
+  Mission mission = read_mission(section);
   std::vector<std::uint8_t> distinct = mission.sequence;
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
