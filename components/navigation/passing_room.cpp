@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "robot/landmarks.hpp"
 #include "robot/map_points.hpp"
 
 namespace constrictor {
@@ -25,6 +26,13 @@ double passing_room_m(const TaskInput& input, const PlanarPose& X_MP, double sid
     if (other.known && colour != input.parameters.object_colour) beside(other.p_M(), other.radius_m);
   }
   if (!input.map) return least_m;
+  // The place of the object itself may differ a little between the map and the way.
+  constexpr double kOther_m = 0.25;
+  for (const msg::MapObject& twin : landmarks_of(*input.map)) {
+    const Eigen::Vector2d p_M(twin.x_m, twin.y_m);
+    const bool alike = twin.kind == msg::kBlobObject && twin.colour == input.parameters.object_colour;
+    if (alike && (p_M - X_MP.p).norm() > kOther_m) beside(p_M, radius_or(twin, radius_m));
+  }
   each_obstacle(*input.map, [&](const Eigen::Vector2d& p_M) {
     constexpr double kOwn = 1.5;  // of the radius: the object itself, where it stood a moment ago
     if ((p_M - X_MP.p).norm() > kOwn * radius_m) beside(p_M, 0.0);

@@ -64,6 +64,28 @@ TEST_F(PassingRoom, IsTheLeastDistanceToOtherObjectsAndFeltObstacles) {
   }
 }
 
+TEST_F(PassingRoom, AnotherObjectOfTheSameColourIsInTheWayToo) {
+  const auto map_at = [&](std::size_t i, const Eigen::Vector2d& p_P, std::uint8_t kind) {
+    const Eigen::Vector2d p_M = X_MP_.to_parent(p_P);
+    msg::MapObject& landmark = setting_.map.objects[i];
+    landmark = {};
+    landmark.handle = static_cast<std::uint16_t>(i + 1);
+    landmark.colour = msg::kColourGreen;
+    landmark.kind = kind;
+    landmark.x_m = p_M.x();
+    landmark.y_m = p_M.y();
+    landmark.radius_m = 0.06;
+    setting_.map.object_count = static_cast<std::uint16_t>(i + 1);
+  };
+  map_at(0, {0.1, -0.1}, msg::kBlobObject);  // the object itself, where the map has it
+  map_at(1, {0.5, 0.0}, msg::kBlobZone);
+  EXPECT_TRUE(std::isinf(room_m(1.0)));
+  for (const Eigen::Vector2d& p_P : {Eigen::Vector2d(-0.5, -0.4), {0.6, 0.1}}) {
+    map_at(2, p_P, msg::kBlobObject);
+    for (const double side : {1.0, -1.0}) EXPECT_NEAR(room_m(side), sampled_m(side, p_P) - 0.06, 1e-3);
+  }
+}
+
 TEST_F(PassingRoom, WhatWasFeltAtTheObjectIsTheObject) {
   feel_at({0.05, 0.06});
   EXPECT_TRUE(std::isinf(room_m(1.0)));
