@@ -63,6 +63,18 @@ DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& droppe
   return best;
 }
 
+bool all_on_zone(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m, double zone_radius_m) {
+  std::size_t inside = 0;
+  bool seen = false;
+  for (const msg::MapObject& landmark : landmarks_of(map)) {
+    if (landmark.kind != msg::kBlobObject || landmark.colour != dropped.colour || landmark.carried) continue;
+    if (view_of(map, landmark, {}, seen_sd_m, zone_radius_m).verdict != Delivery::kOnZone) continue;
+    ++inside;
+    seen = seen || landmark.last_seen_tick > dropped.released_tick + kLatencyTicks;
+  }
+  return seen && inside > dropped.others.size();
+}
+
 std::uint16_t newest_handle(const msg::FieldMap& map) {
   std::uint16_t newest = 0;
   for (const msg::MapObject& landmark : landmarks_of(map)) newest = std::max(newest, landmark.handle);

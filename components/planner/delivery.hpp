@@ -54,6 +54,12 @@ struct DroppedObject {
 [[nodiscard]] DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                                          double zone_radius_m);
 
+/// Whether as many objects of the dropped one's colour stand on their zone as were delivered with it, of which an image
+/// after `released_tick` shows at least one. Objects of one colour that stand side by side hide each other, and the map
+/// may take one for the other, so that it has no new image of the one that was dropped.
+[[nodiscard]] bool all_on_zone(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
+                               double zone_radius_m);
+
 /// The highest handle in the map; 0 if it is empty.
 [[nodiscard]] std::uint16_t newest_handle(const msg::FieldMap& map);
 

@@ -16,7 +16,11 @@ DeliveryView MissionPlanner::dropped_object(const PlannerInputs& inputs) const {
   if (!inputs.map) return {};
   const DroppedObject dropped{colour(), memory_.dropped_handle,     memory_.newest_handle, memory_.released_tick,
                               false,    twins(memory_.object_index)};
-  return view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
+  DeliveryView view = view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m);
+  const bool unseen = view.verdict == Delivery::kUnseen && !dropped.others.empty();
+  if (unseen && all_on_zone(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m))
+    view.verdict = Delivery::kOnZone;
+  return view;
 }
 
 std::vector<std::uint16_t> MissionPlanner::twins(std::uint16_t index) const {

@@ -51,6 +51,25 @@ TEST_F(MovedObjectTest, AGlimpseCountsOnlyIfItIsClearlyOutsideOfTheZone) {
   EXPECT_EQ(with_another(1.2, 0.2), Delivery::kOutside) << "4.5 standard deviations outside";
 }
 
+// The second green object was put down in front of the first one. In the map they changed their handles, the one that
+// counted as dropped was hidden, and the robot carried the other one away again.
+TEST_F(MovedObjectTest, TwoObjectsOfOneColourOnTheirZoneAreBothThere) {
+  const auto both = [&](double dropped_m, double sd_m, double twin_m, std::int64_t twin_seen) {
+    map_.objects[1] = landmark(msg::kBlobObject, 2, dropped_m, sd_m, -150);  // hidden since the drop
+    map_.objects[2] = landmark(msg::kBlobObject, 1, twin_m, 0.05, twin_seen);
+    dropped_.others = {1};
+    EXPECT_EQ(view_delivery(map_, dropped_, kSeenSd_m, kZoneRadius_m).verdict, Delivery::kUnseen);
+    return all_on_zone(map_, dropped_, kSeenSd_m, kZoneRadius_m);
+  };
+  EXPECT_TRUE(both(-0.15, 0.08, 0.15, 100));
+  EXPECT_FALSE(both(-0.15, 0.08, 0.15, -150)) << "nothing was seen after the drop";
+  EXPECT_FALSE(both(-0.15, 0.2, 0.15, 100)) << "the place of the hidden one is uncertain";
+  EXPECT_FALSE(both(-0.5, 0.08, 0.15, 100)) << "it was last seen outside";
+  EXPECT_FALSE(both(-0.15, 0.08, 0.6, 100)) << "the other one is outside";
+  map_.objects[1].kind = msg::kBlobZone;
+  EXPECT_FALSE(all_on_zone(map_, dropped_, kSeenSd_m, kZoneRadius_m)) << "there is only one object";
+}
+
 class PushedObjectTest : public PlannerTest {
  protected:
   /// Green is delivered; red is released, and the robot looks at it.
