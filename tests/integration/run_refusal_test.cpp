@@ -143,5 +143,22 @@ TEST_F(RunCommand, AScriptReadsAsJsonWhyItsTaskWasNotSent) {
   }
 }
 
+// It aborted when standard error was a full disk, and reported success when standard output was one.
+TEST_F(RunCommand, OutputThatCannotBeWrittenChangesTheExitStatusOnlyOfASuccess) {
+  const auto status_of = [this](const std::string& command, std::string& errors) {
+    Process process({"/bin/sh", "-c", program("constrictor") + " " + command}, environment_);
+    const int status = process.wait(30s).value_or(-1);
+    errors = process.errors();
+    return status;
+  };
+  std::string errors;
+  EXPECT_EQ(status_of("check nowhere 2> /dev/full", errors), exit_status::kConfiguration);
+  EXPECT_EQ(status_of("lst 2> /dev/full", errors), exit_status::kUsage);
+  EXPECT_EQ(status_of("list robots > /dev/full", errors), exit_status::kSoftware);
+  EXPECT_NE(errors.find("cannot write the standard output: No space left on device"), std::string::npos) << errors;
+  EXPECT_EQ(status_of("lst > /dev/full", errors), exit_status::kUsage);
+  EXPECT_EQ(status_of("list robots", errors), exit_status::kOk);
+}
+
 }  // namespace
 }  // namespace constrictor::testing

@@ -10,14 +10,20 @@
 
 namespace constrictor {
 
+void say_error(const std::string& line) noexcept {
+  // If nobody can read it, the exit status still says that something failed.
+  static_cast<void>(std::fputs(line.c_str(), stderr));
+  static_cast<void>(std::fputc('\n', stderr));
+}
+
 int report_exception(const std::string& program) {
   try {
     throw;
   } catch (const ConfigurationError& error) {
-    fmt::print(stderr, "{}: configuration: {}\n", program, error.what());
+    say_error(fmt::format("{}: configuration: {}", program, error.what()));
     return exit_status::kConfiguration;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", program, error.what());
+    say_error(fmt::format("{}: {}", program, error.what()));
     return exit_status::kSoftware;
   }
 }

@@ -2,7 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <iostream>
 #include <string>
 
 #include "cli/commands.hpp"
@@ -17,6 +21,16 @@
 namespace {
 
 using namespace constrictor;
+
+/// The exit status of a command whose output must have arrived, for example on a full disk.
+int written(int status) {
+  errno = 0;
+  const bool whole = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (whole) return status;
+  say_error(fmt::format("constrictor: cannot write the standard output: {}",
+                        errno != 0 ? std::strerror(errno) : "some of it is missing"));
+  return status == exit_status::kOk ? exit_status::kSoftware : status;
+}
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
@@ -52,9 +66,9 @@ int main(int argc, char** argv) {
     if (first == "dashboard") return cli::dashboard_command(argc - 2, argv + 2);
     if (first == "conform") return cli::conform_command(argc - 2, argv + 2);
     if (first == "camera") return cli::camera_command(argc - 2, argv + 2);
-    return dispatch(argc, argv);
+    return written(dispatch(argc, argv));
   } catch (const cli::UsageError& error) {
-    fmt::print(stderr, "constrictor: {}\n", error.what());
+    say_error(fmt::format("constrictor: {}", error.what()));
     return exit_status::kUsage;
   } catch (...) {
     return report_exception("constrictor");

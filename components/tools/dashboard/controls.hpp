@@ -29,7 +29,7 @@ class Controls {
   /// Why parameters cannot be changed; empty: they can be, by change().
   [[nodiscard]] virtual std::string frozen() const { return "a recording cannot be changed"; }
   /// Changes parameters to these numbers, in another thread.
-  virtual void change(WebServer::Change) {}
+  virtual void change(WebServer::Change) {}  // NOLINT(performance-unnecessary-value-param): overriders keep it
   /// Delivers the answers that have arrived, and looks at the state. Never waits.
   virtual void poll() = 0;
   /// Why there is nothing to show any more; empty while there is.
