@@ -18,11 +18,13 @@ OverviewView::OverviewView(const msg::SceneDescription& description, const Overv
     : OverviewView(scene_of(description), options, render_options(options, head_camera_m)) {}
 
 OverviewView::OverviewView(const Scene& scene, const OverviewConfig& options, const RenderOptions& render)
-    : inset_(options.inset), heading_rad_(side_heading(scene) + options.heading_rad), renderer_(scene, render) {
-  const auto extent = scene_extent(scene, options.surroundings);
-  camera_ = fit_view(extent, heading_rad_, options.elevation_rad, options.horizontal_fov_rad, options.width,
-                     options.height, options.margin);
-  shadow_ = shadow_region_of(extent);
+    : options_(options),
+      extent_(scene_extent(scene, options.surroundings)),
+      follows_(scene.line_m.empty()),
+      inset_(options.inset),
+      heading_rad_(side_heading(scene) + options.heading_rad),
+      renderer_(scene, render) {
+  look_at_bodies({});
   if (inset_ > 0.0) {
     RenderOptions smaller = render;
     smaller.shadow_map_size /= 2;
@@ -30,8 +32,18 @@ OverviewView::OverviewView(const Scene& scene, const OverviewConfig& options, co
   }
 }
 
+void OverviewView::look_at_bodies(const ScenePoses& poses) {
+  std::vector<Eigen::Vector3d> points = extent_;
+  const std::vector<Eigen::Vector3d> bodies = bodies_extent(poses);
+  points.insert(points.end(), bodies.begin(), bodies.end());
+  camera_ = fit_view(points, heading_rad_, options_.elevation_rad, options_.horizontal_fov_rad, options_.width,
+                     options_.height, options_.margin);
+  shadow_ = shadow_region_of(points);
+}
+
 std::vector<std::uint8_t>& OverviewView::draw(const msg::WorldState& world) {
   const ScenePoses poses = poses_of(world);
+  if (follows_) look_at_bodies(poses);
   rgb_ = renderer_.draw(poses, camera_, shadow_);
   draw_inset(poses);
   return rgb_;

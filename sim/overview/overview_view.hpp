@@ -14,7 +14,8 @@
 
 namespace constrictor {
 
-/// Draws pictures of one scene from one viewpoint, which follows from the scene and the options. With the option
+/// Draws pictures of one scene from one viewpoint, which follows from the scene and the options, and in a scene without
+/// a line also from the places of robot and objects. With the option
 /// `inset`, a close-up of the robot covers the lower left corner. A picture is a pure function of the arguments of
 /// constructor and draw(). Throws std::runtime_error if OpenGL fails.
 class OverviewView {
@@ -26,14 +27,18 @@ class OverviewView {
 
   /// Returns RGB8 rows from the top, width * height * 3 bytes, valid until the next call.
   [[nodiscard]] std::vector<std::uint8_t>& draw(const msg::WorldState& world);
-  /// The camera that takes the pictures, with their size.
+  /// The camera of the newest picture, with the size of all pictures.
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
 
  private:
   OverviewView(const Scene& scene, const OverviewConfig& options, const RenderOptions& render);
+  void look_at_bodies(const ScenePoses& poses);
   void draw_inset(const ScenePoses& poses);
 
-  double inset_;  // edge of the close-up relative to the picture
+  OverviewConfig options_;
+  std::vector<Eigen::Vector3d> extent_;  // what every picture contains
+  bool follows_;                         // the bodies: no line tells where they will be
+  double inset_;                         // edge of the close-up relative to the picture
   double heading_rad_;
   PinholeCamera camera_;
   ShadowRegion shadow_;

@@ -77,6 +77,18 @@ std::vector<Vector3d> scene_extent(const Scene& scene, const Surroundings& surro
   return points;
 }
 
+std::vector<Vector3d> bodies_extent(const ScenePoses& poses) {
+  constexpr double kStep_m = 0.5;
+  Eigen::AlignedBox2d box;
+  for (const auto* bodies : {&poses.X_WModule, &poses.X_WObject}) {
+    for (const Eigen::Isometry3d& X_WBody : *bodies) box.extend(Vector2d(X_WBody.translation().head<2>()));
+  }
+  if (box.isEmpty()) return {};
+  const Vector2d low = kStep_m * (box.min() / kStep_m).array().floor();
+  const Vector2d high = kStep_m * (box.max() / kStep_m).array().ceil();
+  return {{low.x(), low.y(), 0.0}, {high.x(), low.y(), 0.0}, {high.x(), high.y(), 0.0}, {low.x(), high.y(), 0.0}};
+}
+
 double side_heading(const Scene& scene) {
   if (scene.line_m.size() < 2) return std::numbers::pi / 2.0;
   const Vector2d along = scene.line_m.back() - scene.line_m.front();

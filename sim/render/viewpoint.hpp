@@ -25,6 +25,10 @@ struct Surroundings {
 /// Points that a picture of the whole scene must contain: line, zones, and the surroundings of both ends of the line.
 [[nodiscard]] std::vector<Eigen::Vector3d> scene_extent(const Scene& scene, const Surroundings& surroundings);
 
+/// The corners of a rectangle on the ground that contains robot and objects. It is enlarged to multiples of half a
+/// metre, so that a view of it stands still while the bodies move a little.
+[[nodiscard]] std::vector<Eigen::Vector3d> bodies_extent(const ScenePoses& poses);
+
 /// [rad] heading of a view across the line, from the right of the direction in which the line runs.
 [[nodiscard]] double side_heading(const Scene& scene);
 

@@ -154,7 +154,7 @@ std::string scenario_text(const Scenario& scene, const std::string& mission, con
   out << YAML::Newline << YAML::Newline;
   put_surroundings(out, scene);
   out << YAML::EndMap << YAML::Newline;
-  const std::string text = out.c_str();
+  std::string text = out.c_str();
   static_cast<void>(read_scenario(Configuration::parse(text, "the drawn scene"), scene.seed));
   return text;
 }

@@ -36,6 +36,23 @@ TEST(Viewpoint, ContainsAllPointsAndTouchesTheMargin) {
   }
 }
 
+TEST(Viewpoint, TheExtentOfBodiesContainsThemAndStandsStillWhileTheyMoveALittle) {
+  ScenePoses poses;
+  EXPECT_TRUE(bodies_extent(poses).empty());
+  const auto at = [](double x, double y) { return Eigen::Isometry3d(Eigen::Translation3d(x, y, 0.05)); };
+  poses.X_WModule = {at(-0.2, 0.1), at(-0.4, 0.1)};
+  poses.X_WObject = {at(1.2, -0.7)};
+  const auto expect_corners = [&] {
+    const std::vector<Eigen::Vector3d> corners = bodies_extent(poses);
+    ASSERT_EQ(corners.size(), 4U);
+    EXPECT_EQ(corners[0], Eigen::Vector3d(-0.5, -1.0, 0.0));
+    EXPECT_EQ(corners[2], Eigen::Vector3d(1.5, 0.5, 0.0));
+  };
+  expect_corners();
+  poses.X_WModule[1] = at(-0.45, 0.3);
+  expect_corners();
+}
+
 TEST(Viewpoint, LookAtPutsTheTargetInTheMiddleAndTheSkyUp) {
   const Eigen::Isometry3d X_WC = look_at({1, 2, 3}, {4, 1, 0});
   const Eigen::Vector3d target = X_WC.inverse() * Eigen::Vector3d(4, 1, 0);
