@@ -96,7 +96,7 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
 
 }  // namespace
 
-Scenario read_scenario(Configuration root, std::uint64_t seed) {
+Scenario read_scenario(const Configuration& root, std::uint64_t seed) {
   const ScenarioDraft draft = read_scenario_draft(root);
   if (draft.random) {
     if (const auto scene = make_random_scene(*draft.random, draft.mission, draft.fixed, seed)) return *scene;

@@ -15,6 +15,6 @@ namespace constrictor {
 [[nodiscard]] Scenario load_scenario(const std::filesystem::path& file, std::uint64_t seed);
 
 /// The same for a parsed file.
-[[nodiscard]] Scenario read_scenario(Configuration root, std::uint64_t seed);
+[[nodiscard]] Scenario read_scenario(const Configuration& root, std::uint64_t seed);
 
 }  // namespace constrictor

@@ -33,6 +33,7 @@ std::string build_id(const dl_phdr_info& library) {
   for (int i = 0; i < library.dlpi_phnum; ++i) {
     const auto& segment = library.dlpi_phdr[i];
     if (segment.p_type != PT_NOTE) continue;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
     const auto* at = reinterpret_cast<const unsigned char*>(library.dlpi_addr + segment.p_vaddr);
     const auto* end = at + segment.p_memsz;
     while (at + sizeof(ElfW(Nhdr)) <= end) {

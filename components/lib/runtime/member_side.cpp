@@ -18,8 +18,6 @@
 namespace constrictor {
 namespace {
 
-namespace wire = dds::barrier_topics;
-
 constexpr auto kMatchCheckInterval = std::chrono::milliseconds(10);
 constexpr auto kHelloInterval = std::chrono::seconds(1);
 
