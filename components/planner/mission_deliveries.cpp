@@ -187,7 +187,7 @@ void MissionPlanner::take_back(PlacedObjects::iterator gone) {
   memory_.delivered &= ~(std::uint32_t{1} << gone->index);
   memory_.displaced |= std::uint32_t{1} << gone->index;
   // What was tried with the object counts on: an object that is pushed off again and again is put aside in the end.
-  if (!may_try_again(attempts(gone->index), "delivered: it was pushed off its zone"))
+  if (!may_try_again(attempts(gone->index), "delivered", "it was pushed off its zone"))
     memory_.aside |= std::uint32_t{1} << gone->index;
   memory_.placed.erase(gone);
   ++memory_.recoveries;
@@ -222,9 +222,9 @@ MissionState MissionPlanner::end_of_sequence() {
   return left.empty() ? kDone : fail("not delivered: " + left);
 }
 
-bool MissionPlanner::may_try_again(Attempts& tried, const std::string& why) const {
+bool MissionPlanner::may_try_again(Attempts& tried, const char* state, const std::string& why) const {
   ++tried.failures;
-  tried.reason = why;
+  tried.reason = fmt::format("{}: {}", state, why);
   return tried.failures < config_.attempts + (memory_.second_pass ? 1 : 0);
 }
 
@@ -236,7 +236,7 @@ MissionState MissionPlanner::put_aside() {
 
 MissionState MissionPlanner::try_differently(const std::string& why) {
   Attempts& tried = attempts();
-  const bool again = may_try_again(tried, fmt::format("{}: {}", name_of(memory_.state), why));
+  const bool again = may_try_again(tried, name_of(memory_.state), why);
   memory_.dropped = false;
   if (again) return tried.failures > 1 ? kApproachAnew : kSearchObject;
   return put_aside();
@@ -245,7 +245,7 @@ MissionState MissionPlanner::try_differently(const std::string& why) {
 // Where zones may be anywhere, so may the other objects: the robot first looks at the other end of the line.
 MissionState MissionPlanner::search_elsewhere(const std::string& why) {
   if (config_.sequence.empty()) return kSearchLineOrObject;
-  const bool again = may_try_again(attempts(), fmt::format("{}: {}", name_of(memory_.state), why));
+  const bool again = may_try_again(attempts(), name_of(memory_.state), why);
   bool others = false;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
     const bool open = !done(i) && (!memory_.second_pass || (memory_.aside >> i & 1u) == 0);

@@ -203,8 +203,8 @@ class MissionPlanner {
   [[nodiscard]] MissionState try_differently(const std::string& why);
   /// The same for an object that a search has not found. With others to retrieve it is put aside at once.
   [[nodiscard]] MissionState search_elsewhere(const std::string& why);
-  /// Counts a failure. Whether the object is tried again before it is put aside.
-  [[nodiscard]] bool may_try_again(Attempts& tried, const std::string& why) const;
+  /// Counts a failure in `state`. Whether the object is tried again before it is put aside.
+  [[nodiscard]] bool may_try_again(Attempts& tried, const char* state, const std::string& why) const;
   /// Puts the present object aside. Returns the state in which the next one is looked for.
   [[nodiscard]] MissionState put_aside();
   /// Counts a recovery and returns `to`, another attempt, or kFailed after too many. `why`: the reason, for people.
