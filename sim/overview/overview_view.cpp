@@ -21,11 +21,10 @@ OverviewView::OverviewView(const Scene& scene, const OverviewConfig& options, co
     : options_(options),
       extent_(scene_extent(scene, options.surroundings)),
       follows_(scene.line_m.empty()),
-      inset_(options.inset),
       heading_rad_(side_heading(scene) + options.heading_rad),
       renderer_(scene, render) {
   look_at_bodies({});
-  if (inset_ > 0.0) {
+  if (options.inset > 0.0) {
     RenderOptions smaller = render;
     smaller.shadow_map_size /= 2;
     inset_renderer_ = std::make_unique<Renderer>(scene, smaller);
@@ -56,8 +55,8 @@ void OverviewView::draw_inset(const ScenePoses& poses) {
   constexpr int kBorder = 2;
   std::vector<Eigen::Vector3d> body;
   for (const Eigen::Isometry3d& X_WModule : poses.X_WModule) body.push_back(X_WModule.translation());
-  const int width = static_cast<int>(camera_.width * inset_);
-  const int height = static_cast<int>(camera_.height * inset_);
+  const int width = static_cast<int>(camera_.width * options_.inset);
+  const int height = static_cast<int>(camera_.height * options_.inset);
   if (width < 8 || height < 8) return;
   const PinholeCamera camera = fit_view(body, heading_rad_, kInsetElevation_rad, 0.5, width, height, kInsetMargin);
   const std::vector<std::uint8_t>& inset = inset_renderer_->draw(poses, camera, shadow_region_of(body));

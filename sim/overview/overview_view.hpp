@@ -38,7 +38,6 @@ class OverviewView {
   OverviewConfig options_;
   std::vector<Eigen::Vector3d> extent_;  // what every picture contains
   bool follows_;                         // the bodies: no line tells where they will be
-  double inset_;                         // edge of the close-up relative to the picture
   double heading_rad_;
   PinholeCamera camera_;
   ShadowRegion shadow_;

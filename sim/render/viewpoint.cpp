@@ -98,14 +98,10 @@ double side_heading(const Scene& scene) {
 ShadowRegion shadow_region_of(const std::vector<Vector3d>& points_m) {
   ShadowRegion region;
   if (points_m.empty()) return region;
-  Vector2d low = points_m.front().head<2>();
-  Vector2d high = low;
-  for (const Vector3d& p : points_m) {
-    low = low.cwiseMin(p.head<2>());
-    high = high.cwiseMax(p.head<2>());
-  }
-  region.centre_m = (low + high) / 2.0;
-  region.radius_m = (high - low).norm() / 2.0 + 0.3;
+  Eigen::AlignedBox2d box;
+  for (const Vector3d& p : points_m) box.extend(Vector2d(p.head<2>()));
+  region.centre_m = (box.min() + box.max()) / 2.0;
+  region.radius_m = box.diagonal().norm() / 2.0 + 0.3;
   return region;
 }
 
