@@ -50,6 +50,9 @@ class FieldMapper {
   /// Keeps contacts that belong neither to the ground nor to the robot itself, and marks the objects that they confirm.
   /// A contact where no object stands is with an obstacle, whose place the map keeps until the body passes through it.
   void touch(const msg::ContactState& contacts, const BodyChain& chain, std::int64_t tick, double period_s);
+  /// For a robot that feels no contacts: an object beside which the body lies may have been pushed, as one that a touch
+  /// reports. Whether there is such an object: what the robot pushes, its odometry does not know either.
+  bool brush(const BodyChain& chain);
   /// Moves the carried object with the base of the U.
   void carry(const msg::TaskStatus& task, const BodyChain& chain, std::int64_t tick);
 
@@ -90,6 +93,9 @@ class FieldMapper {
   /// The view of these percepts with the modules that may hide something in it. None if the robot has no such camera.
   [[nodiscard]] std::optional<View> view_with_body(const msg::ObjectPercepts& percepts, const PlanarPose& X_HV,
                                                    const BodyChain& chain) const;
+  /// Something has touched the object, and may have pushed it: its place becomes less certain, and the next percept
+  /// must correct the landmark, not the robot's pose.
+  void expect_push(Landmark& landmark);
   /// Whether enough images showed the obstacle, or a touch did.
   [[nodiscard]] bool believed(const Obstacle& obstacle) const;
   /// The obstacle that a point at `p_M` shows, which was seen along the unit vector `sight` with this standard

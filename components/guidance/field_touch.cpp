@@ -9,6 +9,8 @@ namespace constrictor::guidance {
 namespace {
 
 constexpr double kPushed_m = 0.04;  // standard deviation of the distance that a touched object may slide in a tick
+constexpr double kBrush_m = 0.01;   // a body without a skin may touch what is nearer than this and its uncertainty
+constexpr double kBrushSd_m = 0.1;  // at most: the place of an object that nobody has seen for long is anywhere
 
 }  // namespace
 
@@ -64,10 +66,27 @@ void FieldMapper::touch(const msg::ContactState& contacts, const BodyChain& chai
     }
     state_.felt.back().handle = nearest->handle;
     nearest->felt = true;
-    // The touched object may have been pushed. The next percept must correct the landmark, not the robot's pose.
-    nearest->may_have_moved = true;
-    if (nearest->slot >= 0) filter_.loosen(static_cast<std::size_t>(nearest->slot), kPushed_m * kPushed_m);
+    expect_push(*nearest);
   }
+}
+
+void FieldMapper::expect_push(Landmark& landmark) {
+  landmark.may_have_moved = true;
+  if (landmark.slot >= 0) filter_.loosen(static_cast<std::size_t>(landmark.slot), kPushed_m * kPushed_m);
+}
+
+bool FieldMapper::brush(const BodyChain& chain) {
+  bool any = false;
+  for (Landmark& landmark : state_.landmarks) {
+    if (landmark.kind != msg::kBlobObject || landmark.carried || landmark.hits < config_.confirm) continue;
+    const Eigen::Vector2d p = filter_.pose().to_local(position(landmark));
+    const double near_m = radius_of(landmark) + model_.module_radius_m + kBrush_m + std::min(sd(landmark), kBrushSd_m);
+    const bool passes = std::any_of(chain.begin(), chain.end(),
+                                    [&](const PlanarPose& module) { return off_axis_m(module, p) < near_m; });
+    if (passes) expect_push(landmark);
+    any = any || passes;
+  }
+  return any;
 }
 
 Eigen::Vector2d FieldMapper::base_of_u(const BodyChain& chain, double radius_m) const {

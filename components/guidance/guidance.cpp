@@ -67,7 +67,8 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   state_.last_tick = tick.index;
 
   const double speed_m_s = input.dt_s > 0.0 ? step.step_m.norm() / input.dt_s : 0.0;
-  const double speed_sd = config_.speed_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
+  const double share_sd = state_.brushes ? std::max(config_.pushing_speed_sd, config_.speed_sd) : config_.speed_sd;
+  const double speed_sd = share_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
   const double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
   const double yaw_sd = imu ? config_.yaw_sd_rad_sqrt_s : config_.unmeasured_yaw_sd_rad_sqrt_s;
   const Eigen::Vector3d noise(variance, variance, yaw_sd * yaw_sd * input.dt_s);
@@ -191,6 +192,7 @@ void Guidance::step(const Tick& tick) {
     if (objects) map_objects(tick, mapper, *percepts_.objects, chain, level);
     if (further_) map_further(tick, mapper, chain, level);
     if (contacts) mapper.touch(*body_.contacts, chain, tick.index, tick.period_s());
+    state_.brushes = (!body_.contacts || body_.contacts->module_count == 0) && mapper.brush(chain);
   }
 
   const PlanarPose estimate = filter.pose();

@@ -21,6 +21,7 @@ struct GuidanceState {
   guidance::OdometryState odometry;
   GroundSlope slope;
   int scale_loaded = -1;  ///< the scale of the filter is that of a robot with (1) or without (0) an object; -1: unknown
+  bool brushes = false;   ///< the body may push an object without feeling it
   guidance::PoseFilterState filter;
   /// Poses from dead reckoning, with the scale of the filter, one per tick, the oldest first. They give the motion
   /// between two ticks, independently of later corrections by the filter.
@@ -31,8 +32,8 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, scale_loaded, filter, track_tick, track_x_m,
-            track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
+    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, scale_loaded, brushes, filter, track_tick,
+            track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
   }
 };
 

@@ -53,6 +53,8 @@ struct GuidanceConfig : ParameterSet {
                         "Standard deviation of the estimated velocity, as a share of the speed");
   double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, kAtStart,
                             "Standard deviation of the estimated velocity, added at any speed");
+  double pushing_speed_sd = add(pushing_speed_sd, "odometry.pushing_speed_sd", 0.4, "", {0.0, 10.0}, kWhileRunning,
+                                "The first of the two, of a robot without a skin beside an object that it may push");
   double correlation_s = add(correlation_s, "odometry.correlation_s", 0.7, "s", {0.01, 10.0}, kAtStart,
                              "Time over which the error of the estimated velocity stays the same");
   double scale_sd = add(scale_sd, "odometry.scale_sd", 0.03, "", {0.0, 1.0}, kWhileRunning,

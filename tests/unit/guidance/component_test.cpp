@@ -42,7 +42,8 @@ class Snake : public testing::PlantBase {
   Output<msg::ImuState> imu_;
 };
 
-/// A red object at the beginning, and a line straight ahead, every 5 ticks.
+/// A red object at the beginning, 1 m ahead or beside the head (`kBeside`), and a line straight ahead, every 5 ticks.
+template <bool kBeside>
 class Eye : public StatefulComponent<std::int64_t> {
  public:
   Eye(Wiring& wiring, const Setup&)
@@ -53,7 +54,8 @@ class Eye : public StatefulComponent<std::int64_t> {
     objects.exposure_tick = tick.index - 2;
     objects.blob_count = tick.index < 15 ? 1 : 0;
     objects.blobs[0].colour = msg::kColourRed;
-    objects.blobs[0].range_m = 0.9;
+    objects.blobs[0].bearing_rad = kBeside ? 1.5 : 0.0;
+    objects.blobs[0].range_m = kBeside ? 0.04 : 0.9;
     objects.blobs[0].width_m = 0.16;
     objects_.write(objects);
     msg::LinePercept line{};
@@ -70,13 +72,13 @@ class Eye : public StatefulComponent<std::int64_t> {
   Output<msg::ObjectPercepts> objects_;
 };
 
-template <bool kImu = true>
+template <bool kImu = true, bool kBeside = false>
 std::unique_ptr<LocalRun> make_run() {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
   return std::make_unique<LocalRun>(
       std::vector<ComponentFactory>{testing::member_of_class<Snake<kImu>>("physics"),
-                                    testing::member_of_class<Eye>("perception"), make_guidance_factory()},
+                                    testing::member_of_class<Eye<kBeside>>("perception"), make_guidance_factory()},
       setup);
 }
 
@@ -120,6 +122,15 @@ TEST(GuidanceComponent, MovesWithoutAnInertialUnit) {
   auto measured = make_run();
   measured->advance(150);
   EXPECT_LT(measured->latest(topics::kRobotPose)->covariance[8], 1e-4);
+}
+
+// The plant of these tests publishes no contacts. Nothing tells such a robot whether it pushes the object.
+TEST(GuidanceComponent, KnowsItsPoseLessWellBesideAnObjectThatItWouldNotFeel) {
+  auto alone = make_run();
+  auto beside = make_run<true, true>();
+  for (auto* run : {alone.get(), beside.get()}) run->advance(150);
+  ASSERT_EQ(beside->latest(topics::kFieldMap)->object_count, 1);
+  EXPECT_GT(beside->latest(topics::kRobotPose)->covariance[0], 4.0 * alone->latest(topics::kRobotPose)->covariance[0]);
 }
 
 TEST(GuidanceComponent, RestartChangesNothing) {

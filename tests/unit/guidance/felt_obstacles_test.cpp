@@ -47,5 +47,34 @@ TEST(Map, KeepsFeltObstaclesUntilTheBodyPassesThroughThem) {
   EXPECT_EQ(m.map().obstacle_count, 1);
 }
 
+// A robot without a skin does not feel that it pushes an object. Only a new image can then show where the object is.
+TEST(Map, DoubtsThePlaceOfAnObjectThatABodyWithoutASkinPasses) {
+  Mapping m;
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, 0.6, 0.4, 0.08),
+         Mapping::blob(msg::kColourRed, msg::kBlobObject, 0.9, -0.6, 0.08)},
+        20);
+  const msg::FieldMap before = m.map();
+  ASSERT_EQ(before.object_count, 2);
+  for (int i = 0; i < 25; ++i) EXPECT_FALSE(m.mapper.brush(m.chain()));
+  EXPECT_EQ(m.map().objects[0].sd_m, before.objects[0].sd_m) << "the body lies behind the head, far from both objects";
+
+  // The robot drives on, until the middle of its body lies beside the green object: 0.08 m + 0.03 m are the two radii.
+  const BodyChain chain = m.chain();
+  const double back_m = chain.back().p.norm() / 2.0;
+  m.filter.predict({0.6 + back_m, 0.4 - 0.11}, 0.0, Eigen::Matrix3d::Zero(), {});
+  for (int i = 0; i < 25; ++i) EXPECT_TRUE(m.mapper.brush(chain));
+  const msg::FieldMap passed = m.map();
+  EXPECT_GT(passed.objects[0].sd_m, 0.15) << "25 ticks of 0.04 m each are 0.2 m";
+  EXPECT_EQ(passed.objects[1].sd_m, before.objects[1].sd_m);
+  EXPECT_EQ(passed.touch_count, 0) << "nothing was felt";
+
+  // The next image shows it 0.3 m further on: the map follows at once, and the pose stays.
+  const Eigen::Vector2d head = m.filter.pose().p, seen = Eigen::Vector2d(0.6, 0.7) - head;
+  m.see({Mapping::blob(msg::kColourGreen, msg::kBlobObject, seen.x(), seen.y(), 0.08)});
+  const msg::FieldMap after = m.map();
+  EXPECT_NEAR(after.objects[0].y_m, 0.7, 0.02);
+  EXPECT_EQ((m.filter.pose().p - head).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace constrictor
