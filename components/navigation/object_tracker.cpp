@@ -66,12 +66,11 @@ void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPerce
 
 void take_places(const ObjectTrackerConfig& config, const msg::FieldMap& map, const Eigen::Vector2d& p_MH,
                  std::uint16_t named, ObjectTrackerState& state) {
-  constexpr Range kZoneRadius_m{0.1, 0.6};
   for (std::uint8_t colour = 0; colour < msg::kColourCount; ++colour) {
     Sighting& object = state.objects[colour];
     take_place(object_of(map, colour, p_MH, named, object), config.object_radius_m,
                {config.min_radius_m, config.max_radius_m}, object);
-    take_place(zone_of(map, colour), config.zone_radius_m, kZoneRadius_m, state.zones[colour]);
+    take_place(zone_of(map, colour), config.zone_radius_m, kZoneRadiusBounds_m, state.zones[colour]);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cereal/types/array.hpp>
 #include <cstdint>
 
+#include "component/mission.hpp"
 #include "constrictor/messages.hpp"
 #include "navigation/debounce.hpp"
 #include "robot/planar.hpp"
@@ -38,7 +39,7 @@ struct ObjectTrackerConfig : DebounceConfig {
       add(min_radius_m, "min_radius_m", 0.03, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");
   double max_radius_m =
       add(max_radius_m, "max_radius_m", 0.2, "m", {0.0, 10.0}, kAtStart, "Largest radius of an object");
-  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", {0.0, 10.0}, kAtStart,
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", kZoneRadiusBounds_m, kAtStart,
                              "Radius of a zone until an image shows its whole width");
 };
 

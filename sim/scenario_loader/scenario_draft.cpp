@@ -8,6 +8,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "component/mission.hpp"
 #include "constrictor/constants.hpp"
 
 namespace constrictor {
@@ -87,7 +88,7 @@ void read_object(Configuration& from, ScenarioObject& object) {
 
 void read_zone(Configuration& from, ScenarioZone& zone) {
   zone.colour = read_colour(from);
-  zone.radius_m = from.number("radius_m", {0.02, 5.0});
+  zone.radius_m = from.number("radius_m", kZoneRadiusBounds_m);
 }
 
 void read_obstacle(Configuration& from, ScenarioObstacle& obstacle) {

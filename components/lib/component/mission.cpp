@@ -11,9 +11,9 @@ PriorKnowledge read_knowledge(Configuration root) {
     if (root.has(key)) value = root.number(key, accepted);
   };
   read("object_height_m", {0.02, 2.0}, known.object_height_m);
-  read("object_radius_m", {0.01, 2.0}, known.object_radius_m);
+  read("object_radius_m", kObjectRadiusBounds_m, known.object_radius_m);
   read("object_max_radius_m", {0.02, 2.0}, known.object_max_radius_m);
-  read("zone_radius_m", {0.05, 5.0}, known.zone_radius_m);
+  read("zone_radius_m", kZoneRadiusBounds_m, known.zone_radius_m);
   read("line_width_m", {0.01, 0.3}, known.line_width_m);
   if (root.has("zones_at")) {
     const std::vector<std::string> names = zones_at_names();

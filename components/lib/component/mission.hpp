@@ -12,6 +12,11 @@
 
 namespace constrictor {
 
+/// Accepted radii of a zone: of scenes, of prior knowledge, and of what components take for one.
+inline constexpr Range kZoneRadiusBounds_m{0.02, 5.0};
+/// Accepted usual radii of an object: of prior knowledge, and of the parameters that take it over.
+inline constexpr Range kObjectRadiusBounds_m{0.01, 2.0};
+
 /// The facts about the scene that are known before the mission begins. A quantity that is not given keeps the value
 /// that each component's configuration has for it.
 struct PriorKnowledge {

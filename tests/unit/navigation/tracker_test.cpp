@@ -120,10 +120,23 @@ TEST(ObjectTracker, APlaceIsThatOfTheLandmark) {
   take_places({}, map_of({unmeasured, landmark(6, msg::kBlobZone, 3.0, 4.0, 9.0)}), {0.0, 0.0}, 0, state);
   EXPECT_EQ(object.radius_m, ObjectTrackerConfig().object_radius_m) << "no image has shown its width";
   EXPECT_EQ(object.height_m, 0.0) << "nor its height";
-  EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, 0.6) << "no zone is larger";
+  EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, kZoneRadiusBounds_m.max) << "no zone is larger";
   take_places({}, map_of({}), {0.0, 0.0}, 0, state);
   EXPECT_FALSE(object.known) << "the map has given it up";
   EXPECT_EQ(object.handle, 0);
+}
+
+// A zone of 0.8 m was taken for one of 0.6 m, although a scenario may have it.
+TEST(ObjectTracker, AZoneHasTheRadiusThatTheMapShowsIfAScenarioMayHaveIt) {
+  ObjectTrackerState state;
+  for (const double radius_m : {kZoneRadiusBounds_m.min, 0.05, 0.8, kZoneRadiusBounds_m.max}) {
+    ObjectTrackerConfig config;
+    take_places(config, map_of({landmark(6, msg::kBlobZone, 3.0, 4.0, radius_m)}), {0.0, 0.0}, 0, state);
+    EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, radius_m);
+    config.zone_radius_m = radius_m;  // the mission states it, and no image has shown it
+    take_places(config, map_of({landmark(6, msg::kBlobZone, 3.0, 4.0, kNan)}), {0.0, 0.0}, 0, state);
+    EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, radius_m);
+  }
 }
 
 TEST(ObjectTracker, OfSeveralObjectsTheNamedOneOrTheNearestInViewCounts) {
