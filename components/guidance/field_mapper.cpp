@@ -86,7 +86,7 @@ void FieldMapper::create(const msg::Blob& blob, const Eigen::Vector2d& z, const 
 
 double FieldMapper::known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const {
   const Eigen::Vector2d p_M = to_parent(filter_.pose(), z);
-  double radius_m = kDefaultRadius_m, nearest_m = config_.merge_m;
+  double radius_m = usual_radius_m(blob.kind), nearest_m = config_.merge_m;
   for (const Landmark& landmark : state_.landmarks) {
     if (landmark.colour != blob.colour || landmark.kind != blob.kind || !(landmark.radius_m > 0.0)) continue;
     const double apart_m = (position(landmark) - p_M).norm();
@@ -100,7 +100,7 @@ double FieldMapper::known_radius_m(const msg::Blob& blob, const Eigen::Vector2d&
 void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double turn_rad, std::int64_t tick,
                         std::vector<bool>& used) {
   const bool whole = !blob.cut_left && !blob.cut_right;
-  double radius_m = std::isfinite(blob.width_m) && whole ? 0.5 * blob.width_m : kDefaultRadius_m;
+  double radius_m = std::isfinite(blob.width_m) && whole ? 0.5 * blob.width_m : usual_radius_m(blob.kind);
   double distance_m = blob.range_m + radius_m, bearing_rad = blob.bearing_rad;
   if (!whole) {
     radius_m = known_radius_m(blob, to_parent(view, distance_m * along(bearing_rad)));

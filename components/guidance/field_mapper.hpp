@@ -15,9 +15,6 @@ namespace constrictor::guidance {
 /// Poses of the modules in the head's frame, head to tail.
 using BodyChain = std::vector<PlanarPose>;
 
-/// [m] radius of an object whose width has not been measured.
-inline constexpr double kDefaultRadius_m = 0.085;
-
 /// Frame V of percepts in the head's present frame. `exposure`: the head at the exposure, in its present frame.
 template <class Percepts>
 [[nodiscard]] PlanarPose view_of(const Percepts& percepts, const PlanarPose& exposure) {
@@ -82,9 +79,13 @@ class FieldMapper {
   void replace(Landmark& landmark, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
   /// Takes the landmark out of the pose filter and keeps its place and standard deviation in the landmark itself.
   void release_slot(Landmark& landmark);
-  /// [m] of the landmark, or of a usual object if no image has shown its width.
-  [[nodiscard]] static double radius_of(const Landmark& landmark) {
-    return landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
+  /// [m] radius of an object, or of a zone, whose width no image has shown.
+  [[nodiscard]] double usual_radius_m(std::uint8_t kind) const {
+    return kind == msg::kBlobZone ? config_.zone_radius_m : config_.object_radius_m;
+  }
+  /// [m] of the landmark, or the usual one if no image has shown its width.
+  [[nodiscard]] double radius_of(const Landmark& landmark) const {
+    return landmark.radius_m > 0.0 ? landmark.radius_m : usual_radius_m(landmark.kind);
   }
   /// [m] distance of a point from the axis of a module; both in the head's frame.
   [[nodiscard]] double off_axis_m(const PlanarPose& module, const Eigen::Vector2d& p) const;

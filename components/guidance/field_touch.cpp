@@ -112,7 +112,7 @@ void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std
   if (task.carrying && !state_.carrying && held == state_.landmarks.end()) {
     // The held object is the object that the task names. If the task names none, it is the nearest object of the task's
     // colour, or of any colour if the task has none.
-    const Eigen::Vector2d base = to_parent(filter_.pose(), base_of_u(chain, kDefaultRadius_m));
+    const Eigen::Vector2d base = to_parent(filter_.pose(), base_of_u(chain, config_.object_radius_m));
     Landmark* best = nullptr;
     double best_m = 1e9;
     for (Landmark& landmark : state_.landmarks) {
@@ -134,8 +134,7 @@ void FieldMapper::carry(const msg::TaskStatus& task, const BodyChain& chain, std
   state_.carrying = task.carrying;
   for (Landmark& landmark : state_.landmarks) {
     if (!landmark.carried) continue;
-    const double radius_m = landmark.radius_m > 0.0 ? landmark.radius_m : kDefaultRadius_m;
-    const Eigen::Vector2d base = base_of_u(chain, radius_m);
+    const Eigen::Vector2d base = base_of_u(chain, radius_of(landmark));
     if (task.carrying) {
       const Eigen::Vector2d p_M = to_parent(filter_.pose(), base);
       landmark.x_m = p_M.x();

@@ -1,6 +1,7 @@
 // The parameters of guidance: one row each. guidance.yaml and the table in README.md follow from the rows.
 #pragma once
 
+#include "component/mission.hpp"
 #include "configuration/parameter_set.hpp"
 #include "guidance/odometry.hpp"
 
@@ -90,6 +91,10 @@ struct GuidanceConfig : ParameterSet {
                     "Squared Mahalanobis distance up to which a percept belongs to a landmark");
   double merge_m = add(merge_m, "landmarks.merge_m", 0.5, "m", {0.0, 5.0}, kWhileRunning,
                        "A percept outside of the gate but nearer than this shows a landmark that has moved");
+  double object_radius_m = add(object_radius_m, "landmarks.object_radius_m", 0.085, "m", kObjectRadiusBounds_m,
+                               kAtStart, "Radius of an object until an image shows its whole width");
+  double zone_radius_m = add(zone_radius_m, "landmarks.zone_radius_m", 0.3, "m", kZoneRadiusBounds_m, kAtStart,
+                             "Radius of a zone until an image shows its whole width");
   int confirm = add(confirm, "landmarks.confirm", 3, "", {1, 100}, kWhileRunning,
                     "Number of percepts until a new landmark, or its new place, is believed");
 
@@ -120,6 +125,12 @@ struct GuidanceConfig : ParameterSet {
                                    "Contacts this near to the skin of another module are the robot's own");
   double touch_keep_s = add(touch_keep_s, "touch.keep_s", 4.0, "s", {0.1, 100.0}, kWhileRunning,
                             "Time for which a touch stays in the map");
+
+  /// Takes over what the mission states to be known beforehand.
+  void know(const PriorKnowledge& known) {
+    object_radius_m = known.object_radius_m.value_or(object_radius_m);
+    zone_radius_m = known.zone_radius_m.value_or(zone_radius_m);
+  }
 };
 
 }  // namespace constrictor::guidance

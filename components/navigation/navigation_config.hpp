@@ -291,7 +291,10 @@ struct NavigationConfig : NavigationSection {
   DropConfig drop = add_section(drop, "drop");
 
   /// Takes over what the mission states to be known beforehand.
-  void know(const PriorKnowledge& known) { object.zone_radius_m = known.zone_radius_m.value_or(object.zone_radius_m); }
+  void know(const PriorKnowledge& known) {
+    object.object_radius_m = known.object_radius_m.value_or(object.object_radius_m);
+    object.zone_radius_m = known.zone_radius_m.value_or(object.zone_radius_m);
+  }
 };
 
 }  // namespace constrictor

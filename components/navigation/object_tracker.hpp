@@ -33,7 +33,7 @@ struct Sighting : Visibility {
 
 struct ObjectTrackerConfig : DebounceConfig {
   ObjectTrackerConfig() : DebounceConfig("An object", 15) {}
-  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", {0.0, 10.0}, kAtStart,
+  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", kObjectRadiusBounds_m, kAtStart,
                                "Radius of an object until an image shows its whole width");
   double min_radius_m =
       add(min_radius_m, "min_radius_m", 0.03, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "navigation/line_tracker.hpp"
+#include "navigation/navigation_config.hpp"
 #include "navigation/object_tracker.hpp"
 
 namespace constrictor {
@@ -137,6 +138,19 @@ TEST(ObjectTracker, AZoneHasTheRadiusThatTheMapShowsIfAScenarioMayHaveIt) {
     take_places(config, map_of({landmark(6, msg::kBlobZone, 3.0, 4.0, kNan)}), {0.0, 0.0}, 0, state);
     EXPECT_EQ(state.zones[msg::kColourGreen].radius_m, radius_m);
   }
+}
+
+TEST(ObjectTracker, TheUsualRadiiAreThoseThatTheMissionStates) {
+  NavigationConfig config;
+  config.know({});
+  EXPECT_EQ(config.object.object_radius_m, 0.085);
+  EXPECT_EQ(config.object.zone_radius_m, 0.3);
+  PriorKnowledge known;
+  known.object_radius_m = 0.12;
+  known.zone_radius_m = 0.5;
+  config.know(known);
+  EXPECT_EQ(config.object.object_radius_m, 0.12) << "as guidance: both match touches with objects";
+  EXPECT_EQ(config.object.zone_radius_m, 0.5);
 }
 
 TEST(ObjectTracker, OfSeveralObjectsTheNamedOneOrTheNearestInViewCounts) {
