@@ -69,19 +69,44 @@ void FieldMapper::forget(std::size_t index) {
   state_.landmarks.erase(state_.landmarks.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
+bool FieldMapper::full() const { return state_.landmarks.size() >= static_cast<std::size_t>(msg::kMaxMapObjects); }
+
+bool FieldMapper::make_room(std::int64_t tick, std::vector<bool>& used) {
+  if (!full()) return true;
+  const Landmark* weakest = nullptr;
+  for (const Landmark& landmark : state_.landmarks) {
+    if (landmark.hits >= config_.confirm || landmark.carried || landmark.last_seen_tick >= tick) continue;
+    const auto rank = [](const Landmark& one) { return std::pair(one.last_seen_tick, one.hits); };
+    if (weakest == nullptr || rank(landmark) < rank(*weakest)) weakest = &landmark;
+  }
+  if (weakest == nullptr) return false;
+  const auto index = weakest - state_.landmarks.data();
+  forget(static_cast<std::size_t>(index));
+  used.erase(used.begin() + index);
+  return true;
+}
+
 void FieldMapper::create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise,
-                         std::int64_t tick) {
-  if (state_.landmarks.size() >= static_cast<std::size_t>(msg::kMaxMapObjects)) return;
+                         std::int64_t tick, std::vector<bool>& used) {
   Landmark landmark;
-  landmark.handle = state_.next_handle++;
   landmark.colour = blob.colour;
   landmark.kind = blob.kind;
+  if (!make_room(tick, used)) {
+    const Eigen::Vector2d p_M = to_parent(filter_.pose(), z);
+    landmark.x_m = p_M.x();
+    landmark.y_m = p_M.y();
+    const auto may_go = [this](const Landmark& other) { return other.hits < config_.confirm && !other.carried; };
+    if (!left_out_ && std::none_of(state_.landmarks.begin(), state_.landmarks.end(), may_go)) left_out_ = landmark;
+    return;
+  }
+  landmark.handle = state_.next_handle++;
   landmark.slot = static_cast<std::int32_t>(filter_.landmark_count());
   landmark.hits = 1;
   landmark.last_seen_tick = tick;
   landmark.object_log_odds = log_odds_of(blob.object_probability);
   filter_.add(z, noise);
   state_.landmarks.push_back(landmark);
+  used.push_back(true);
 }
 
 double FieldMapper::known_radius_m(const msg::Blob& blob, const Eigen::Vector2d& z) const {
@@ -153,8 +178,7 @@ void FieldMapper::place(const msg::Blob& blob, const PlanarPose& view, double tu
   }
   if (best == state_.landmarks.size()) {
     if (!whole) return;
-    create(blob, z, noise, tick);
-    used.resize(state_.landmarks.size(), true);
+    create(blob, z, noise, tick, used);
     return;
   }
   used[best] = true;

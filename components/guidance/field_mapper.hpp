@@ -31,8 +31,13 @@ class FieldMapper {
   FieldMapper(FieldState& state, PoseFilter& filter, const RobotModel& model, const GuidanceConfig& config);
 
   /// A percept with a range updates its landmark, or creates one. A percept with the range NaN only refreshes the time
-  /// at which its landmark was seen.
+  /// at which its landmark was seen. In a full map a landmark that is not confirmed gives way to a new one.
   void objects(const msg::ObjectPercepts& percepts, const PlanarPose& exposure, std::int64_t tick);
+  /// Whether there are as many landmarks as a map may have.
+  [[nodiscard]] bool full() const;
+  /// The first object or zone that was left out because the map is full of confirmed ones, since this mapper was made:
+  /// with its place in M, and without a handle.
+  [[nodiscard]] const std::optional<Landmark>& left_out() const { return left_out_; }
   /// To be called after objects(), with the same arguments: landmarks that the image shows become likelier; those that
   /// it should show and does not become less likely, and are forgotten in the end. `level`: the head is not tilted, so
   /// that the camera sees what it should. Returns the landmarks that were forgotten, with their last places.
@@ -71,7 +76,11 @@ class FieldMapper {
   void learn_kind(const msg::Blob& blob, std::int64_t tick, Landmark& landmark);
   /// Refreshes the time at which the landmark was seen whose blob does not show where its centre is.
   void glimpse(const msg::Blob& blob, const PlanarPose& view, std::int64_t tick);
-  void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick);
+  void create(const msg::Blob& blob, const Eigen::Vector2d& z, const Eigen::Matrix2d& noise, std::int64_t tick,
+              std::vector<bool>& used);
+  /// Whether the map has room for one more landmark. If it is full, the unconfirmed landmark that was not seen for the
+  /// longest time is forgotten; of several, the one with the fewest percepts. One that this image shows stays.
+  [[nodiscard]] bool make_room(std::int64_t tick, std::vector<bool>& used);
   void forget(std::size_t index);
   /// Whether the landmark so likely exists, and stands where it was seen, that it may correct the pose.
   [[nodiscard]] bool trusted(const Landmark& landmark) const;
@@ -119,6 +128,7 @@ class FieldMapper {
   PoseFilter& filter_;
   const RobotModel& model_;
   const GuidanceConfig& config_;
+  std::optional<Landmark> left_out_;
 };
 
 }  // namespace constrictor::guidance

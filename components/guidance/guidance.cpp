@@ -1,5 +1,7 @@
 #include "guidance/guidance.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -145,6 +147,23 @@ std::vector<const Message*> Guidance::believed(const Events<Message>& input, con
   return samples;
 }
 
+void Guidance::report_full_map(const guidance::FieldMapper& mapper) {
+  const std::optional<guidance::Landmark>& left_out = mapper.left_out();
+  if (left_out && !state_.left_out) {
+    log_.warning(
+        "the map is full: it has {} objects and zones, all confirmed. The {} {} at ({:.2f}, {:.2f}) m is left out, and "
+        "so "
+        "is what else is new, until one of these leaves the map: no task finds it, and a touch of it counts as one of "
+        "an "
+        "obstacle",
+        msg::kMaxMapObjects, name_of(constants::kColour, left_out->colour), name_of(constants::kBlob, left_out->kind),
+        left_out->x_m, left_out->y_m);
+    wiring_.count_refusal(fmt::format("perception/objects: found a new object or zone, accepted at most {} in the map",
+                                      msg::kMaxMapObjects));
+  }
+  state_.left_out = left_out || (state_.left_out && mapper.full());
+}
+
 void Guidance::map_objects(const Tick& tick, guidance::FieldMapper& mapper, const msg::ObjectPercepts& objects,
                            const guidance::BodyChain& chain, bool level) {
   const PlanarPose exposure = past(objects.exposure_tick);
@@ -191,6 +210,7 @@ void Guidance::step(const Tick& tick) {
     const bool level = !imu || is_level(imu_->orientation);
     if (objects) map_objects(tick, mapper, *percepts_.objects, chain, level);
     if (further_) map_further(tick, mapper, chain, level);
+    report_full_map(mapper);
     if (contacts) mapper.touch(*body_.contacts, chain, tick.index, tick.period_s());
     state_.brushes = (!body_.contacts || body_.contacts->module_count == 0) && mapper.brush(chain);
   }

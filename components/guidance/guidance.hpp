@@ -18,6 +18,7 @@ struct GuidanceState {
   std::int64_t imu_tick = 0;   ///< tick of the newest plausible IMU sample
   std::int64_t map_tick = -5;  ///< in which the map was published last
   bool imu_silent = false;     ///< the IMU has been silent for kSilent_s
+  bool left_out = false;       ///< the map is full, and images have shown more
   guidance::OdometryState odometry;
   GroundSlope slope;
   int scale_loaded = -1;  ///< the scale of the filter is that of a robot with (1) or without (0) an object; -1: unknown
@@ -32,8 +33,8 @@ struct GuidanceState {
   ParameterState parameters;
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_tick, imu_tick, map_tick, imu_silent, odometry, slope, scale_loaded, brushes, filter, track_tick,
-            track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
+    archive(last_tick, imu_tick, map_tick, imu_silent, left_out, odometry, slope, scale_loaded, brushes, filter,
+            track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad, parameters);
   }
 };
 
@@ -56,6 +57,8 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
   std::vector<const Message*> believed(const Events<Message>& input, const char* topic);
   /// Maps what the further cameras have seen. `level`: the head is not tilted.
   void map_further(const Tick& tick, guidance::FieldMapper& mapper, const guidance::BodyChain& chain, bool level);
+  /// Reports the first object or zone for which a full map has no room, once until it has room again.
+  void report_full_map(const guidance::FieldMapper& mapper);
   /// Maps objects and zones, and gives landmarks up that are not there any more.
   void map_objects(const Tick& tick, guidance::FieldMapper& mapper, const msg::ObjectPercepts& objects,
                    const guidance::BodyChain& chain, bool level);
