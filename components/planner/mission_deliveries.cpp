@@ -49,19 +49,28 @@ void MissionPlanner::note_drops(const PlannerInputs& inputs) {
       memory_.dropped_handle = event->object_handle;
       continue;
     }
-    // The planner does not know when the other source let the object go: every sighting counts.
-    constexpr std::int64_t kAnySighting = std::numeric_limits<std::int64_t>::min() / 2;
-    const DroppedObject dropped{event->colour, event->object_handle, event->object_handle, kAnySighting};
-    const bool outside =
-        inputs.map &&
-        view_delivery(*inputs.map, dropped, config_.seen_sd_m, config_.zone_radius_m).verdict == Delivery::kOutside;
-    if (outside) continue;
-    for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
-      if (config_.sequence[i] != event->colour || done(i)) continue;
-      memory_.delivered |= std::uint32_t{1} << i;
-      break;
-    }
+    note_drop_by_others(*event, inputs);
   }
+}
+
+void MissionPlanner::note_drop_by_others(const msg::TaskEvent& event, const PlannerInputs& inputs) {
+  memory_.rechecked = 0;
+  const auto again = std::find_if(memory_.placed.begin(), memory_.placed.end(), [&](const PlacedObject& object) {
+    return event.object_handle != 0 && object.handle == event.object_handle;
+  });
+  PlacedObject dropped{0, event.object_handle, memory_.newest_carried, inputs.tick, 0.0, false, true};
+  if (again != memory_.placed.end()) {
+    dropped.index = again->index;
+    *again = dropped;
+    return;
+  }
+  std::size_t i = 0;
+  while (i < config_.sequence.size() && (config_.sequence[i] != event.colour || done(i))) ++i;
+  if (i == config_.sequence.size()) return;
+  dropped.index = static_cast<std::uint16_t>(i);
+  memory_.placed.push_back(dropped);
+  memory_.delivered |= std::uint32_t{1} << i;
+  if (i == memory_.object_index) memory_.dropped = false;  // the planner's own drop of it does not count any more
 }
 
 MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
@@ -98,10 +107,11 @@ MissionState MissionPlanner::delivered(const PlannerInputs& inputs) {
   const std::uint16_t newest = inputs.map ? newest_handle(*inputs.map) : std::uint16_t{0};
   const std::uint16_t seen = dropped_object(inputs).handle;  // the map may have given the object a new handle
   const std::uint16_t handle = seen != 0 ? seen : memory_.dropped_handle;
-  memory_.placed.push_back({memory_.object_index, handle, newest, inputs.tick, 0.0, false});
+  memory_.placed.push_back({memory_.object_index, handle, newest, inputs.tick, 0.0, false, false});
   memory_.dropped = false;
   memory_.released_tick = -1;
   const std::uint16_t last = memory_.object_index;
+  if (inspect_unseen()) return kInspect;
   if (!choose_object()) return inspect_doubtful(inputs, last) ? kInspect : end_of_sequence();
   // An object that the robot has pushed off its zone is near.
   return (memory_.displaced >> memory_.object_index & 1u) != 0 ? kSearchObject : kTurnRound;
@@ -125,6 +135,7 @@ void MissionPlanner::watch_placed_objects(const PlannerInputs& inputs, double el
   };
   for (PlacedObject& object : memory_.placed) object.touched = object.touched || touched_since(object);
   const auto off_zone = [&](PlacedObject& object) {
+    if (object.unseen) return false;  // the planner will look
     const bool outside = placed_object(object, inputs).verdict == Delivery::kOutside;
     object.outside_s = outside ? object.outside_s + elapsed_s : 0.0;
     return object.outside_s > kNoticed_s;
@@ -164,18 +175,29 @@ bool MissionPlanner::inspect_doubtful(const PlannerInputs& inputs, std::uint16_t
   };
   const auto found = std::find_if(memory_.placed.begin(), memory_.placed.end(), doubtful);
   if (found == memory_.placed.end()) return false;
-  const std::uint32_t bit = std::uint32_t{1} << found->index;
-  memory_.rechecked |= bit;
-  memory_.delivered &= ~bit;
-  memory_.object_index = found->index;
+  memory_.rechecked |= std::uint32_t{1} << found->index;
+  look_at(found, inputs.tick);
+  return true;
+}
+
+bool MissionPlanner::inspect_unseen() {
+  const auto found = std::find_if(memory_.placed.begin(), memory_.placed.end(),
+                                  [](const PlacedObject& object) { return object.unseen; });
+  if (found == memory_.placed.end()) return false;
+  look_at(found, found->tick);
+  return true;
+}
+
+void MissionPlanner::look_at(PlacedObjects::iterator object, std::int64_t since_tick) {
+  memory_.delivered &= ~(std::uint32_t{1} << object->index);
+  memory_.object_index = object->index;
   memory_.dropped = true;
-  memory_.dropped_handle = found->handle;
-  memory_.newest_handle = found->newest_handle;
-  memory_.released_tick = inputs.tick;  // only images from now on count
-  memory_.placed.erase(found);
+  memory_.dropped_handle = object->handle;
+  memory_.newest_handle = object->newest_handle;
+  memory_.released_tick = since_tick;
+  memory_.placed.erase(object);
   memory_.entered_s = memory_.active_s;
   memory_.requested = false;
-  return true;
 }
 
 bool MissionPlanner::inspects_by_handle(const PlannerInputs& inputs) const {
@@ -231,6 +253,7 @@ bool MissionPlanner::may_try_again(Attempts& tried, const char* state, const std
 MissionState MissionPlanner::put_aside() {
   memory_.aside |= std::uint32_t{1} << memory_.object_index;
   memory_.released_tick = -1;
+  if (inspect_unseen()) return kInspect;
   return choose_object() ? kSearchLineOrObject : end_of_sequence();
 }
 

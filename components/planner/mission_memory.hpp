@@ -17,7 +17,7 @@
 
 namespace constrictor {
 
-/// An object that was seen on its zone. The robot may push it off again.
+/// An object that was seen on its zone, or that another source has dropped. The robot may push it off again.
 struct PlacedObject {
   std::uint16_t index = 0;          ///< in the sequence
   std::uint16_t handle = 0;         ///< of its landmark; 0: unknown
@@ -25,9 +25,10 @@ struct PlacedObject {
   std::int64_t tick = 0;            ///< at which it was delivered
   double outside_s = 0.0;           ///< time for which the map has shown it outside its zone
   bool touched = false;             ///< the body has touched it since then, and may have pushed it
+  bool unseen = false;              ///< another source has dropped it, and the planner has not looked at it yet
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(index, handle, newest_handle, tick, outside_s, touched);
+    archive(index, handle, newest_handle, tick, outside_s, touched, unseen);
   }
 };
 
@@ -50,17 +51,19 @@ struct MissionMemory {
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
   std::uint16_t object_index = 0;    ///< the first object of the sequence that is neither delivered nor put aside
-  std::uint32_t delivered = 0;       ///< bit i: object i of the sequence was seen on its zone, or dropped by others
+  std::uint32_t delivered = 0;       ///< bit i: object i of the sequence was seen on its zone, or is still `unseen`
   std::uint32_t aside = 0;           ///< bit i: object i was put aside after too many failures
   bool second_pass = false;          ///< the objects that were put aside are tried once more
   std::vector<Attempts> attempts;    ///< by place in the sequence; later entries are missing until they are needed
   bool dropped = false;              ///< the planner's drop is done, and its result is not yet decided
   std::uint16_t dropped_handle = 0;  ///< of the dropped object; 0: unknown
   std::uint16_t newest_handle = 0;   ///< highest handle of the map at the release
-  PlacedObjects placed;              ///< the delivered objects
-  std::uint32_t rechecked = 0;       ///< bit i: the robot has looked at object i again since the newest drop
-  std::uint32_t displaced = 0;       ///< bit i: object i was delivered, and was then pushed off its zone
-  std::int64_t released_tick = -1;   ///< last tick in which the body held or left the object last dropped; -1: none
+  std::uint16_t newest_carried =
+      0;                            ///< the same at the last tick in which the body held any object, whoever steered it
+  PlacedObjects placed;             ///< the delivered objects
+  std::uint32_t rechecked = 0;      ///< bit i: the robot has looked at object i again since the newest drop
+  std::uint32_t displaced = 0;      ///< bit i: object i was delivered, and was then pushed off its zone
+  std::int64_t released_tick = -1;  ///< last tick in which the body held or left the object last dropped; -1: none
   std::uint16_t recoveries = 0;
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
@@ -93,7 +96,7 @@ struct MissionMemory {
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
             trail, reason, standstill, sweep, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
             dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind,
-            refused_sequence, refusals, wrong_way, rechecked, turned_back_s);
+            refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried);
   }
 };
 

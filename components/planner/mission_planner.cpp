@@ -31,6 +31,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   if (memory_.state == kDone || memory_.state == kFailed) return std::nullopt;
   const double elapsed_s = std::max(0.0, inputs.time_s - memory_.last_s);
   memory_.last_s = inputs.time_s;
+  if (inputs.map && inputs.status && inputs.status->carrying) memory_.newest_carried = newest_handle(*inputs.map);
   note_drops(inputs);
   memory_.unseen_s = inputs.new_percepts ? 0.0 : memory_.unseen_s + elapsed_s;
   const bool mine = may_command(inputs, elapsed_s);
@@ -49,7 +50,7 @@ std::optional<WantedTask> MissionPlanner::step(const PlannerInputs& inputs) {
   memory_.contradiction_s = contradicts ? memory_.contradiction_s + elapsed_s : 0.0;
   if (memory_.state == kDrop) {
     memory_.released_tick = inputs.tick;  // the body may push the object until it has left it
-    if (inputs.map && inputs.status && inputs.status->carrying) memory_.newest_handle = newest_handle(*inputs.map);
+    memory_.newest_handle = memory_.newest_carried;
   }
   if (inputs.status && memory_.state == kPregrasp && inputs.status->goal_id == kGoalBase + memory_.goals &&
       inputs.status->parameters.direction != msg::kDirectionNone)
@@ -137,15 +138,17 @@ bool MissionPlanner::may_command(const PlannerInputs& inputs, double elapsed_s) 
   return true;
 }
 
-// The robot may be anywhere after a suspension: the mission continues with a search.
+// The robot may be anywhere after a suspension: the mission continues with a look at what was dropped, or a search.
 void MissionPlanner::resume(const PlannerInputs& inputs) {
   memory_.suspended = false;
   refusals().forget();
-  if (!config_.sequence.empty() && !choose_object()) {
+  const bool carrying = inputs.status ? inputs.status->carrying : holding();
+  const bool looks = !carrying && (memory_.dropped || inspect_unseen());
+  // If no other object is left, the robot may carry one of those that it has not looked at yet.
+  if (!looks && !config_.sequence.empty() && !choose_object() && !inspect_unseen()) {
     enter(end_of_sequence());
     return;
   }
-  const bool carrying = inputs.status ? inputs.status->carrying : holding();
   if (carrying) {
     enter(kSearchLine);
   } else if (memory_.dropped) {

@@ -93,6 +93,11 @@ class MissionPlanner {
   /// `except`, which was delivered just now, is not. Nor is an object without a handle whose colour another object of
   /// the mission has. False if there is no such object.
   [[nodiscard]] bool inspect_doubtful(const PlannerInputs& inputs, std::uint16_t except);
+  /// Selects for a look an object that another source has dropped, and that the planner has not looked at yet. False if
+  /// there is none.
+  [[nodiscard]] bool inspect_unseen();
+  /// Makes a delivered object the present one, whose drop is not judged yet. Images from `since_tick` on count.
+  void look_at(PlacedObjects::iterator object, std::int64_t since_tick);
   /// Whether the look must be at the landmark of the object in question: it was delivered before, and the map has it.
   [[nodiscard]] bool inspects_by_handle(const PlannerInputs& inputs) const;
   /// Counts a delivered object as undelivered again.
@@ -105,9 +110,10 @@ class MissionPlanner {
   /// Whether another object of the present object's colour is delivered.
   [[nodiscard]] bool has_delivered_twin() const;
   [[nodiscard]] DeliveryView dropped_object(const PlannerInputs& inputs) const;
-  /// Notes the end of the planner's own drop, and counts the objects that an operator or external planner dropped as
-  /// delivered unless the map shows them outside their zone.
+  /// Notes the end of the planner's own drop, and the objects that an operator or external planner has dropped: each
+  /// counts as delivered until the planner can look at it.
   void note_drops(const PlannerInputs& inputs);
+  void note_drop_by_others(const msg::TaskEvent& event, const PlannerInputs& inputs);
   /// Selects the next object. False if none is left.
   bool choose_object();
   /// The state at the end of the sequence: failed if an object was put aside and not delivered later.

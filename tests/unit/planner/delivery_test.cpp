@@ -222,21 +222,6 @@ TEST_F(DeliveryTest, AnotherObjectOfTheColourFarFromTheZoneIsNotTakenForTheDeliv
   EXPECT_EQ(memory_.delivered, 1u);
 }
 
-TEST_F(DeliveryTest, AnObjectThatAnOperatorDroppedOutsideItsZoneIsNotDelivered) {
-  find_line();
-  authority_.level = msg::kAuthorityOperator;
-  map_dropped(msg::kColourGreen, 0.8);
-  msg::TaskEvent event{};
-  event.goal_id = (std::uint64_t{msg::kAuthorityOperator} << 48) + 7;
-  event.event = msg::kEventDroppingDone;
-  event.colour = msg::kColourGreen;
-  event.object_handle = 2;
-  step({event});
-  authority_.level = msg::kAuthorityNone;
-  step();
-  EXPECT_EQ(memory_.object_index, 0);
-}
-
 TEST_F(DeliveryTest, EachRetryPassesTheObjectOnTheOtherSide) {
   find_line();
   drive(4.0);

@@ -1,4 +1,4 @@
-// Suspensions of the mission while another source has authority, and objects that another source drops.
+// Suspensions of the mission while another source has authority, or no percepts arrive.
 #include <gtest/gtest.h>
 
 #include "scripted_planner.hpp"
@@ -23,31 +23,6 @@ TEST_F(PlannerTest, AnOperatorSuspendsTheMissionWhichContinuesWithASearch) {
   carry();
 }
 
-TEST_F(PlannerTest, ObjectsDroppedByOthersCountAsDelivered) {
-  const auto dropped = [](std::uint8_t level, std::uint8_t colour) {
-    msg::TaskEvent event{};
-    event.goal_id = (std::uint64_t{level} << 48) + 7;
-    event.event = msg::kEventDroppingDone;
-    event.goal_state = msg::kGoalRunning;
-    event.colour = colour;
-    return event;
-  };
-  find_line();
-  authority_.level = msg::kAuthorityExternal;
-  step({dropped(msg::kAuthorityExternal, msg::kColourRed)});
-  authority_.level = msg::kAuthorityNone;
-  step();
-  EXPECT_EQ(memory_.object_index, 0);  // green comes first
-  EXPECT_NE(memory_.state, MissionState::kDone);
-  authority_.level = msg::kAuthorityOperator;
-  step();
-  step({dropped(msg::kAuthorityOperator, msg::kColourGreen)});
-  authority_.level = msg::kAuthorityNone;
-  EXPECT_FALSE(step());
-  EXPECT_EQ(memory_.object_index, 2);
-  EXPECT_EQ(memory_.state, MissionState::kDone);
-}
-
 // The last event of the drop crosses the change of authority.
 TEST_F(PlannerTest, ADropByThePlannerCountsAsDeliveredEvenIfAuthorityChangesAtThatMoment) {
   find_line();
@@ -69,23 +44,6 @@ TEST_F(PlannerTest, ADropByThePlannerCountsAsDeliveredEvenIfAuthorityChangesAtTh
   map_dropped(msg::kColourGreen, 0.1);
   step();
   EXPECT_EQ(memory_.object_index, 1) << "red is next";
-}
-
-TEST_F(PlannerTest, SkipsAnObjectThatAnotherSourceDropped) {
-  find_line();
-  authority_.level = msg::kAuthorityExternal;
-  msg::TaskEvent event{};
-  event.goal_id = std::uint64_t{msg::kAuthorityExternal} << 48;
-  event.event = msg::kEventDroppingDone;
-  event.colour = msg::kColourRed;
-  step({event});
-  authority_.level = msg::kAuthorityNone;
-  step();
-  find_line();
-  fetch(msg::kColourGreen);
-  carry();
-  drop(msg::kColourGreen);
-  EXPECT_EQ(memory_.state, MissionState::kDone);
 }
 
 TEST_F(PlannerTest, AfterAnEmergencyStopWaitsUntilASourceReleasesAuthority) {
