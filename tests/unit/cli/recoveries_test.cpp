@@ -121,6 +121,23 @@ TEST(Recoveries, RefusalsSuspensionsAndTheUsualCourseAreNone) {
   EXPECT_EQ(causes(usual), (Causes{{"other", 9}}));
 }
 
+// The planner counts a search that ends without the object, and then has no object left that it may try.
+TEST(Recoveries, TheLastOneMayEndTheMission) {
+  const auto failed = [](const std::string& from, const std::string& reason, int counted) {
+    json made = report(counted, {{0, "follow line"}, {9, from}, {99, "failed"}});
+    made["reason"] = "the planner gave up: " + reason;
+    return causes(made);
+  };
+  const std::string given_up = "not delivered: red (6 attempts failed, the last in search object: not found)";
+  EXPECT_EQ(failed("search object", given_up, 1), (Causes{{"search object: its time limit passed", 1}}));
+  EXPECT_EQ(failed("inspect drop", given_up, 1),
+            (Causes{{"inspect drop: the dropped object was not seen on its zone", 1}}));
+  EXPECT_EQ(failed("inspect drop", given_up, 0), Causes{}) << "another object had been put aside before";
+  EXPECT_EQ(failed("search object", "the time limit of the mission passed in state search object", 0), Causes{});
+  EXPECT_EQ(failed("search object", "the time limit of the mission passed in state search object", 1),
+            (Causes{{"other", 1}}));
+}
+
 // Another source's goals say nothing about the planner's.
 TEST(Recoveries, IgnoreTheGoalsOfOthers) {
   const json both = report(1, {{0, "track object"}, {9, "search object"}},
@@ -212,10 +229,12 @@ TEST(Recoveries, AddUpToTheReportsNumber) {
       if (below(2) == 0) events.push_back({at_s - static_cast<double>(below(20)) / 100, names[below(names.size())]});
     }
     const int counted = static_cast<int>(below(15));
-    const Recoveries found = recoveries_of(report(counted, states, events), at_s, {5, 20});
+    json made = report(counted, states, events);
+    if (below(2) == 0) made["reason"] = "the planner gave up: not delivered: red";
+    const Recoveries found = recoveries_of(made, at_s, {5, 20});
     int sum = 0;
     for (const auto& [cause, count] : found.by_cause) sum += count;
-    ASSERT_EQ(sum, counted) << "seed " << seed << ", trial " << trial << ": " << report(counted, states, events);
+    ASSERT_EQ(sum, counted) << "seed " << seed << ", trial " << trial << ": " << made;
     ASSERT_FALSE(found.longest.duration_s < 0);
   }
 }

@@ -51,7 +51,7 @@ bool is_recovery(const std::string& from, const std::string& to) {
   const bool lost_object = among(kAfterLostObject, to);
   if (from == "search line or object") return to == "search line";
   if (from == "follow line") return to == "search line or object" || to == "search line" || to == "turn round";
-  if (from == "search object") return to == "search line or object" || to == "search line";
+  if (from == "search object") return to == "search line or object" || to == "search line" || to == "failed";
   if (from == "search line") return lost_object || to == "turn back";
   if (from == "follow line to drop zone") return lost_object || to == "search line" || to == "turn back";
   if (from == "drop") return lost_object || to == "search line";
@@ -70,6 +70,12 @@ std::vector<Event> events_of(const json& report) {
                       text_field(parameters, "colour")});
   }
   return events;
+}
+
+/// Whether the planner gave up because it was left without objects that it may try, and not because a time limit of the
+/// mission had passed. Source: MissionPlanner::end_of_sequence().
+bool gave_up_objects(const json& report) {
+  return text_field(report, "reason").find("not delivered: ") != std::string::npos;
 }
 
 /// Texts without numbers, so that equal causes are counted together.
@@ -122,9 +128,9 @@ std::string silent_cause(const StateStay& stay, const std::string& to, const std
   return to == "search line" ? "the robot held an object" : "its time limit passed";
 }
 
-/// The recoveries of one stay, in the order of their times.
+/// The recoveries of one stay, in the order of their times. `gave_up`: see gave_up_objects().
 void add_recoveries(const std::vector<StateStay>& stays, std::size_t index, const std::vector<Event>& events,
-                    const SearchLimits& limits, std::vector<Recovery>& found) {
+                    const SearchLimits& limits, bool gave_up, std::vector<Recovery>& found) {
   const StateStay& stay = stays[index];
   std::vector<Event> at_end;
   const bool searches_line = stay.state == "search line" || stay.state == "search line or object";
@@ -144,7 +150,7 @@ void add_recoveries(const std::vector<StateStay>& stays, std::size_t index, cons
       std::any_of(at_end.begin(), at_end.end(), [](const Event& e) { return e.name == "goal_refused"; });
   if (refused || !is_recovery(stay.state, to)) return;
   const std::string reported = reported_failure(at_end);
-  if (to == "failed" && reported.empty()) return;  // a time limit of the mission
+  if (to == "failed" && reported.empty() && !gave_up) return;  // a time limit of the mission
   const std::string cause = reported.empty() ? silent_cause(stay, to, events) : reported;
   // The planner may have failed because there were too many recoveries; then it does not count the last one.
   found.push_back({stay.end_s, index, true, stay.state + ": " + cause, reported.empty() || to == "failed"});
@@ -193,8 +199,9 @@ Recoveries recoveries_of(const json& report, double end_s, const SearchLimits& l
   const std::vector<StateStay> stays = stays_of(report, end_s);
   const std::vector<Event> events = events_of(report);
   const int counted = count_field(report, "recoveries");
+  const bool gave_up = gave_up_objects(report);
   std::vector<Recovery> found;
-  for (std::size_t i = 0; i < stays.size(); ++i) add_recoveries(stays, i, events, limits, found);
+  for (std::size_t i = 0; i < stays.size(); ++i) add_recoveries(stays, i, events, limits, gave_up, found);
   keep(found, static_cast<std::size_t>(counted));
   Recoveries recoveries;
   for (const Recovery& recovery : found) ++recoveries.by_cause[recovery.cause];
