@@ -191,6 +191,8 @@ MissionState MissionPlanner::recover(MissionState to, const std::string& why) {
                 name_of(memory_.state) + (why.empty() ? "" : ": " + why));
   }
   ++memory_.recoveries;
+  // From the same place, a drop that has failed would be repeated on the same course.
+  if (memory_.state == kDrop && to == kSearchLine) memory_.standstill.lead_away();
   if (memory_.state == kSearchObject) return to == kSearchLineOrObject ? search_elsewhere(why) : to;
   return to == kSearchObject ? try_differently(why) : to;
 }

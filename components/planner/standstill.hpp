@@ -1,4 +1,5 @@
-// Recognises that a robot with an object does not move, because it is caught on an obstacle that it does not see.
+// Recognises that a robot with an object does not move, because it is caught on an obstacle that it does not see, and
+// chooses the moves that lead it to another place.
 #pragma once
 
 #include <cmath>
@@ -32,16 +33,19 @@ class Standstill {
   bool notice(double x_m, double y_m, double now_s, double near_m, double after_s) {
     const bool away = std::hypot(x_m - x_m_, y_m - y_m_) > near_m;
     const bool still = moves_left_ == 0 && since_s_ >= 0.0 && !away && now_s - since_s_ > after_s;
-    if (still) {
-      moves_left_ = kMoves;
-      ++times_;
-    }
+    if (still) lead_away();
     if (since_s_ < 0.0 || away || moves_left_ > 0) {
       x_m_ = x_m;
       y_m_ = y_m;
       since_s_ = now_s;
     }
     return still;
+  }
+  /// The next moves of a search lead away from here, also if the robot does not stand still.
+  void lead_away() {
+    if (moves_left_ > 0) return;
+    moves_left_ = kMoves;
+    ++times_;
   }
   /// Whether moves that lead away are still to come: what the robot sees meanwhile has not freed it.
   [[nodiscard]] bool leads_away() const { return moves_left_ > 0; }

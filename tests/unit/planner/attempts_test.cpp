@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include "planner/attempts.hpp"
 #include "scripted_planner.hpp"
@@ -65,6 +66,64 @@ TEST_F(AttemptPlanner, TheThirdAttemptPassesNearerAndWrapsWider) {
   EXPECT_EQ(passed_.parameters.wrap_scale, 0.0) << "a parameter of grasp";
   EXPECT_EQ(grasped_.parameters.wrap_scale, 1.15);
   EXPECT_EQ(grasped_.parameters.clearance_m, 0.0) << "a parameter of pregrasp";
+}
+
+// Each time the drop put the object beside its zone.
+TEST_F(AttemptPlanner, AnObjectThatWasDroppedOutsideItsZoneIsRetrievedInAnotherWayEachTime) {
+  find_line();
+  drive(4.0);
+  succeed(msg::kEventEndOfLine);
+  std::set<std::tuple<std::uint8_t, std::uint8_t, double, double>> ways;
+  std::uint8_t side = msg::kDirectionLeft;  // on which navigation passes if the planner leaves it the choice
+  for (int i = 0; i < config_.attempts; ++i) {
+    const std::uint8_t departure = memory_.state == kApproachAnew ? last_.parameters.direction : msg::kDirectionNone;
+    EXPECT_EQ(departure == msg::kDirectionNone, i < 2) << i;
+    if (memory_.state == kApproachAnew) succeed(msg::kEventNone);
+    succeed(msg::kEventObjectFound);
+    succeed(msg::kEventObjectReached);
+    ASSERT_EQ(memory_.state, kPregrasp) << i;
+    if (i > 0) {
+      EXPECT_NE(last_.parameters.direction, side) << "the other side";
+      side = last_.parameters.direction;
+    }
+    status_.parameters.direction = side;
+    const double clearance_m = last_.parameters.clearance_m;
+    steps(5);  // until navigation has taken the goal
+    succeed(msg::kEventObjectPregrasped);
+    ways.insert({departure, side, clearance_m, last_.parameters.wrap_scale});
+    status_.carrying = true;
+    succeed(msg::kEventObjectGrasped);
+    ASSERT_EQ(memory_.state, kSearchLine);
+    release(msg::kColourGreen);
+    succeed(msg::kEventDroppingDone);
+    steps(20);
+    map_dropped(msg::kColourGreen, 0.45);
+    step();
+  }
+  EXPECT_EQ(ways.size(), static_cast<std::size_t>(config_.attempts));
+  EXPECT_EQ(memory_.object_index, 1) << "it is put aside";
+}
+
+// The zone stays in view, and the robot would begin the same drop at once.
+TEST_F(AttemptPlanner, ADropThatDidNotReachTheZoneIsRepeatedFromElsewhere) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  steps(4);
+  for (const std::uint8_t side : {msg::kDirectionRight, msg::kDirectionLeft}) {
+    ASSERT_EQ(memory_.state, kDrop);
+    steps(5);
+    abort(msg::kEventNone);
+    std::vector<std::uint8_t> directions{last_.parameters.direction};
+    for (int i = 0; i < 3000 && memory_.state == kSearchLine; ++i) {
+      if (const auto wanted = step(); wanted && memory_.state == kSearchLine)
+        directions.push_back(wanted->parameters.direction);
+    }
+    EXPECT_EQ(directions, (std::vector<std::uint8_t>{msg::kDirectionBackwards, msg::kDirectionBackwards, side,
+                                                     msg::kDirectionForwards}));
+  }
+  EXPECT_EQ(memory_.recoveries, 2);
 }
 
 // An object stood far away where no search came. The robot searched for it until the mission's time was over, and left
