@@ -152,10 +152,8 @@ void Guidance::report_full_map(const guidance::FieldMapper& mapper) {
   if (left_out && !state_.left_out) {
     log_.warning(
         "the map is full: it has {} objects and zones, all confirmed. The {} {} at ({:.2f}, {:.2f}) m is left out, and "
-        "so "
-        "is what else is new, until one of these leaves the map: no task finds it, and a touch of it counts as one of "
-        "an "
-        "obstacle",
+        "so is what else is new, until one of these leaves the map: no task finds it, and a touch of it counts as one "
+        "of an obstacle",
         msg::kMaxMapObjects, name_of(constants::kColour, left_out->colour), name_of(constants::kBlob, left_out->kind),
         left_out->x_m, left_out->y_m);
     wiring_.count_refusal(fmt::format("perception/objects: found a new object or zone, accepted at most {} in the map",
