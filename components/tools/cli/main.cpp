@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <iostream>
+#include <stdexcept>
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "runtime/git_revision.hpp"
@@ -22,14 +20,15 @@ namespace {
 
 using namespace constrictor;
 
-/// The exit status of a command whose output must have arrived, for example on a full disk.
+/// The exit status of a command whose output must have arrived.
 int written(int status) {
-  errno = 0;
-  const bool whole = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (whole) return status;
-  say_error(fmt::format("constrictor: cannot write the standard output: {}",
-                        errno != 0 ? std::strerror(errno) : "some of it is missing"));
-  return status == exit_status::kOk ? exit_status::kSoftware : status;
+  try {
+    cli::write_standard_output();
+    return status;
+  } catch (const std::runtime_error& error) {
+    say_error(fmt::format("constrictor: {}", error.what()));
+    return status == exit_status::kOk ? exit_status::kSoftware : status;
+  }
 }
 
 int dispatch(int argc, char** argv) {

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 
 #include "cli/launch_plan.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/whole_file.hpp"
@@ -58,15 +58,15 @@ int export_robot(const RobotOptions& options) {
   const std::string text = options.mjcf   ? mujoco_model(robot)
                            : options.urdf ? urdf_model(robot, mesh)
                                           : sdf_model(robot, mesh);
-  const bool to_file = !options.output.empty();
+  if (options.output.empty()) {
+    write_standard_output(text);
+    return exit_status::kOk;
+  }
   errno = 0;
-  std::ofstream file;
-  if (to_file) file.open(options.output);
-  std::ostream& stream = to_file ? file : std::cout;
-  stream << text << std::flush;  // a full disk is noticed here, and not in the destructor, which reports nothing
-  if (stream) return exit_status::kOk;
-  throw std::runtime_error(fmt::format("robot export: cannot write {}: {}",
-                                       to_file ? options.output.string() : "the standard output",
+  std::ofstream file(options.output);
+  file << text << std::flush;  // a full disk is noticed here, and not in the destructor, which reports nothing
+  if (file) return exit_status::kOk;
+  throw std::runtime_error(fmt::format("robot export: cannot write {}: {}", options.output.string(),
                                        errno != 0 ? ::strerrordesc_np(errno) : "unknown error"));
 }
 

@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <iostream>
 #include <memory>
-#include <stdexcept>
 
 #include "cli/launch_plan.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
@@ -71,11 +68,8 @@ int write_draw(const ScenarioOptions& options, const std::string& scenario, cons
     fmt::print("wrote {}\n", options.output.string());
     return exit_status::kOk;
   }
-  errno = 0;
-  std::cout << text << std::flush;
-  if (std::cout) return exit_status::kOk;
-  throw std::runtime_error(fmt::format("scenario: cannot write the standard output: {}",
-                                       errno != 0 ? ::strerrordesc_np(errno) : "unknown error"));
+  write_standard_output(text);
+  return exit_status::kOk;
 }
 
 int draw_random(const ScenarioOptions& options) {
