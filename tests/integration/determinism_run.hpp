@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "integration/run_ticks.hpp"
 #include "runtime/host.hpp"
 #include "support/command_lines.hpp"
 #include "support/eventually.hpp"
@@ -110,27 +111,43 @@ class DeterminismRun : public ::testing::Test {
     const auto is_another = [&] { return (pid = pid_of(name)) > 0 && pid != dead; };
     return eventually(is_another, std::chrono::seconds(20), std::chrono::milliseconds(1)) ? pid : -1;
   }
-  /// Starts a run and stops (SIGSTOP) each of its processes in turn: `longest_stopped` for `longest`, each other one
-  /// for 2 s, and the launcher last. Returns the state hash of the run.
+  /// Starts a run and stops (SIGSTOP) each of its processes in turn, until the run stands: `longest_stopped` until
+  /// another process has announced that it waits for it, and at least for `longest`; and the launcher last. Returns the
+  /// state hash of the run.
   [[nodiscard]] std::string run_with_stops(const std::string& longest_stopped, std::chrono::seconds longest) {
     Process launcher = start("stopped", {"--pace", "2x"});
     EXPECT_GT(running("report"), 0);
+    RunTicks ticks(launcher);
     std::vector<std::string> all = kRestartable;
     all.insert(all.begin(), "physics");
     for (const auto& name : all) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      EXPECT_TRUE(ticks.pass(10)) << launcher.output();
       const pid_t pid = running(name);
       EXPECT_GT(pid, 0) << name << ": " << launcher.output();
       if (pid <= 0) break;
+      const auto begin = std::chrono::steady_clock::now();
       ::kill(pid, SIGSTOP);
-      std::this_thread::sleep_for(name == longest_stopped ? longest : std::chrono::seconds(2));
+      EXPECT_TRUE(ticks.stand()) << name << " is stopped, but the run goes on";
+      if (name == longest_stopped) {
+        EXPECT_TRUE(is_awaited(ticks.participant(), name));
+        std::this_thread::sleep_until(begin + longest);  // a stop of this length is what the test is about
+      }
       EXPECT_TRUE(launcher.running()) << "over before " << name << " was stopped";
       ::kill(pid, SIGCONT);
     }
-    launcher.signal(SIGSTOP);  // last: no process waits for it, the run goes on
-    std::this_thread::sleep_for(std::chrono::seconds(2));
+    launcher.signal(SIGSTOP);
+    EXPECT_TRUE(ticks.pass(50)) << "no process waits for the launcher: the run must go on";
     launcher.signal(SIGCONT);
     return hash_of("stopped", launcher);
+  }
+  /// Waits until a process announces that it waits for `name`.
+  [[nodiscard]] static bool is_awaited(dds_entity_t participant, const std::string& name) {
+    const auto waitings = dds::Reader<msg::Waiting>::observer(participant, dds::barrier_topics::kWaiting.name, 8);
+    bool awaited = false;
+    return eventually([&] {
+      waitings.take([&](const msg::Waiting& waiting) { awaited |= waiting.writer == name; });
+      return awaited;
+    });
   }
 
   std::string scenario_;

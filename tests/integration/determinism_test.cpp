@@ -80,6 +80,7 @@ TEST_F(Determinism, OneUlpInOneCommandChangesTheHash) {
   EXPECT_NE(diff.output().find("tick 200, component control"), std::string::npos) << diff.output();
 }
 
+// The delays are random: a kill may find any process in any state, also while it joins.
 TEST_F(Determinism, KilledMembersDoNotChangeTheHash) {
   const std::string expected = run("reference");
   PrintedRandom random;
@@ -115,9 +116,9 @@ TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesDoesNotChangeTheHash) 
   EXPECT_GE(kills, 8);
 }
 
-TEST_F(Determinism, EachProcessStoppedForTwoSecondsInTurnDoesNotChangeTheHash) {
+TEST_F(Determinism, EachProcessStoppedInTurnUntilTheRunStandsDoesNotChangeTheHash) {
   const std::string expected = run("reference");
-  EXPECT_EQ(run_with_stops("physics", 2s), expected);
+  EXPECT_EQ(run_with_stops("physics", 0s), expected);
 }
 
 TEST_F(Determinism, ARunThatWasResetPausedAndSteppedEqualsANewRunWithThatSeed) {

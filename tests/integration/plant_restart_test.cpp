@@ -96,8 +96,8 @@ TEST_F(PlantRestart, WithoutCheckpointsTheDeathOfThePlantEndsTheRun) {
 
 class RunResume : public PlantRestart {
  protected:
-  /// Starts a run, and kills its launcher again and again, so that the kernel kills its processes. `between` is called
-  /// while no process runs. Returns the launcher that ends the run.
+  /// Starts a run, and kills its launcher at random moments, so that the kernel kills its processes. `between` is
+  /// called while no process runs. Returns the launcher that ends the run.
   void run_with_kills(
       int kills, const std::function<void(int)>& between = [](int) {}) {
     ASSERT_EQ(run(500, "undisturbed").wait(30s), exit_status::kOk);

@@ -64,7 +64,7 @@ TEST_F(Recording, IsWholeAfterThePlantWasKilledAtAnyTick) {
   std::mt19937 random(20261122);
   int kills = 0;
   for (; kills < 4; ++kills) {
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 200'000));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 200'000));  // the kill comes at any moment
     pid_t dead = -1;
     if (!eventually([&] { return !launcher.running() || (dead = members()["physics"]) > 0; }) || dead <= 0) break;
     ::kill(dead, SIGKILL);

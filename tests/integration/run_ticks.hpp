@@ -1,6 +1,7 @@
 // The ticks of a run, seen from outside: for tests that have to wait until the run has gone on.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -27,6 +28,15 @@ class RunTicks {
       ticks_.take([&](const msg::Tick& tick) { now = tick.index; });
       if (!begin || (now && *now < *begin)) begin = now;
       return now && *now - *begin >= count;
+    });
+  }
+
+  /// Waits until the run has made no tick for 0.5 s. False if it goes on within the bound of eventually().
+  [[nodiscard]] bool stand() {
+    auto changed = std::chrono::steady_clock::now();
+    return eventually([&] {
+      ticks_.take([&](const msg::Tick&) { changed = std::chrono::steady_clock::now(); });
+      return std::chrono::steady_clock::now() - changed > std::chrono::milliseconds(500);
     });
   }
 

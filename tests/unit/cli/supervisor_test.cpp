@@ -52,6 +52,11 @@ class SupervisorTest : public ::testing::Test {
   bool poll_until_over() {
     return poll_until([this] { return supervisor_->poll() != State::kRunning; });
   }
+  /// Part of a script: waits for go().
+  [[nodiscard]] std::string wait_for_go() const {
+    return "while [ ! -e " + (folder_.path() / "go").string() + " ]; do sleep 0.01; done; ";
+  }
+  void go() const { std::ofstream(folder_.path() / "go").close(); }
   [[nodiscard]] bool printed(const std::string& text) const { return printed_.find(text) != std::string::npos; }
   [[nodiscard]] std::string log(const std::string& name) const {
     std::ifstream file(folder_.path() / "logs" / (name + ".log"));
@@ -140,27 +145,33 @@ TEST_F(SupervisorTest, RestartsThePlantAsEveryOtherProcess) {
 }
 
 TEST_F(SupervisorTest, RestartsAPlantThatIsKilledAfterTheEndOfTheRun) {
-  start("test $1 -lt 2 && { sleep 0.2; kill -KILL $$; }; exit 0", kWaitForever, 100, 2);
+  start("test $1 -lt 2 && { " + wait_for_go() + "kill -KILL $$; }; exit 0", kWaitForever, 100, 2);
   supervisor_->expect_end();
+  go();
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
   EXPECT_EQ(record(1).restarts, 1u);
 }
 
 TEST_F(SupervisorTest, EndsAMemberThatWasRestartedAfterTheRunWhenThePlantHasEnded) {
-  start("sleep 1; exit 0", "test $1 -lt 2 && kill -KILL $$; trap 'exit 0' TERM; while :; do sleep 0.05; done", 100, 2);
+  start(wait_for_go() + "exit 0", "test $1 -lt 2 && kill -KILL $$; trap 'exit 0' TERM; while :; do sleep 0.05; done",
+        100, 2);
   supervisor_->expect_end();
+  ASSERT_TRUE(poll_until([this] { return record(0).restarts == 1; }))
+      << "as long as the plant runs, it may still have something to write";
+  go();
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
-  EXPECT_EQ(record(0).restarts, 1u) << "as long as the plant runs, it may still have something to write";
+  EXPECT_EQ(record(0).restarts, 1u);
   ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it must end by itself";
 }
 
 TEST_F(SupervisorTest, EndsAMemberThatHeardOfTheEndOfTheRunSecondsBeforeTheLauncher) {
-  start("sleep 4; exit 0", "test $1 -lt 2 && exit 0; trap 'exit 0' TERM; while :; do sleep 0.05; done");
+  start(wait_for_go() + "exit 0", "test $1 -lt 2 && exit 0; trap 'exit 0' TERM; while :; do sleep 0.05; done");
   ASSERT_TRUE(poll_until([this] { return record(0).restarts == 1; })) << "it could also have ended by a fault";
   EXPECT_TRUE(printed("control ended before the run did; restarted as incarnation 2")) << printed_;
   supervisor_->expect_end();
+  go();
   ASSERT_TRUE(poll_until_over());
   EXPECT_EQ(supervisor_->poll(), State::kEnded) << supervisor_->failure();
   ASSERT_TRUE(poll_until([this] { return record(0).cpu_s > 0.0; })) << "it would wait for the plant for ever";

@@ -10,6 +10,7 @@
 #include "cyclone/domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/endpoint.hpp"
+#include "support/eventually.hpp"
 
 namespace constrictor {
 namespace {
@@ -103,11 +104,13 @@ TEST_F(RunControlClientTest, AStepDoesNotCountTheTicksOfAnotherRun) {
   state.run_id = kRunId + 1;
   state.tick = 1000;
   states.write(state);
-  RunControlClient control = client(20s);
+  std::atomic<int> looked = 0;  // how often the client has looked for answers and states
+  RunControlClient control = client(20s, [&] { return ++looked, false; });
   std::atomic<bool> stepped = false;
   std::thread own([&] {
-    while (conductor.obeyed() < 2) std::this_thread::sleep_for(1ms);  // pause and step
-    std::this_thread::sleep_for(50ms);
+    EXPECT_TRUE(testing::eventually([&] { return conductor.obeyed() == 2; }));  // pause and step
+    const int before = looked;
+    EXPECT_TRUE(testing::eventually([&] { return stepped || looked >= before + 5; }));
     EXPECT_FALSE(stepped) << "the tick of another run ended the wait";
     state.run_id = kRunId;
     state.tick = 45;
@@ -116,6 +119,28 @@ TEST_F(RunControlClientTest, AStepDoesNotCountTheTicksOfAnotherRun) {
   EXPECT_EQ(control.step(5).tick, 45);
   stepped = true;
   own.join();
+}
+
+// A tick every 200 ms: the steps last longer than the bound of an answer, within which there must be a tick.
+TEST_F(RunControlClientTest, StepsMayLastLongerThanTheBoundWhileTicksAdvance) {
+  constexpr auto kBound = 2s;
+  constexpr std::int64_t kSteps = 12;
+  const FakeConductor conductor(domain.participant(), 1, "");
+  const dds::Writer<msg::RunState> states(domain.participant(), barrier_topics::kRunState);
+  RunControlClient control = client(kBound);
+  std::thread run([&] {
+    EXPECT_TRUE(testing::eventually([&] { return conductor.obeyed() == 2; }));  // pause and step
+    msg::RunState state{};
+    state.run_id = kRunId;
+    for (state.tick = 41; state.tick <= 40 + kSteps; ++state.tick) {
+      std::this_thread::sleep_for(200ms);  // the pace of this run
+      states.write(state);
+    }
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(control.step(kSteps).tick, 40 + kSteps);
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, kBound);
+  run.join();
 }
 
 TEST_F(RunControlClientTest, AnInterruptEndsTheWait) {

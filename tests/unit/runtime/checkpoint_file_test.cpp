@@ -165,7 +165,7 @@ TEST_F(CheckpointFileTest, AWriterKilledAtAnyMomentLeavesACompleteCheckpoint) {
       MadeUpRun run;
       for (;;) file.write(run.next());
     }
-    ::usleep(static_cast<useconds_t>(1000 + random() % 40'000));
+    ::usleep(static_cast<useconds_t>(1000 + random() % 40'000));  // the kill comes at any moment of a write
     ::kill(pid, SIGKILL);
     ASSERT_EQ(::waitpid(pid, nullptr, 0), pid);
     if (!std::filesystem::exists(path_) || std::filesystem::file_size(path_) == 0) continue;
@@ -187,7 +187,7 @@ TEST_F(CheckpointFileTest, AWriterKilledWhileItBeginsAnewLeavesAFileOfThisBoot) 
       CheckpointFile file(path_);
       for (;;) file.clear();
     }
-    ::usleep(static_cast<useconds_t>(5'000 + random() % 5'000));
+    ::usleep(static_cast<useconds_t>(5'000 + random() % 5'000));  // the kill comes at any moment
     ::kill(pid, SIGKILL);
     ASSERT_EQ(::waitpid(pid, nullptr, 0), pid);
     EXPECT_TRUE(CheckpointFile(path_).of_this_boot());
