@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "perception/perception_config.hpp"
+
 namespace constrictor::perception {
 namespace {
 
@@ -19,19 +21,25 @@ std::uint8_t id_at(const cv::Mat& ids, const Eigen::Vector2d& p) {
   return ids.at<std::uint8_t>(static_cast<int>(p.y()), static_cast<int>(p.x()));
 }
 
-double strength(std::uint8_t colour, double r, double g, double b) {
-  switch (colour) {
-    case msg::kColourGreen:
-      return g - 0.5 * (r + b);
-    case msg::kColourRed:
-      return r - 0.5 * (g + b);
-    case msg::kColourBlue:
-      return b - 0.5 * (r + g);
-    case msg::kColourYellow:
-      return 0.5 * (r + g) - b;
-    default:
-      return 0.0;
+/// The primary or mixed colour that is nearest to the middle of each colour's shipped hues: 0 red, 1 yellow, 2 green,
+/// 3 cyan, 4 blue, 5 magenta.
+constexpr std::array<std::uint8_t, msg::kColourCount> kSixths = [] {
+  std::array<std::uint8_t, msg::kColourCount> sixths{};
+  for (std::size_t colour = 0; colour < sixths.size(); ++colour) {
+    const auto [from_deg, to_deg] = kShippedHues[colour];
+    const double middle_deg = 0.5 * (from_deg + to_deg + (from_deg > to_deg ? 360.0 : 0.0));
+    sixths[colour] = static_cast<std::uint8_t>(static_cast<int>((middle_deg + 30.0) / 60.0) % 6);
   }
+  return sixths;
+}();
+
+double strength(std::uint8_t colour, const std::array<double, 3>& rgb) {
+  if (colour == msg::kColourUnknown || colour >= msg::kColourCount) return 0.0;
+  const std::size_t sixth = kSixths[colour];
+  const bool primary = sixth % 2 == 0;
+  const std::size_t one = primary ? sixth / 2 : (sixth / 2 + 2) % 3;  // the channel that differs from the two others
+  const double others = 0.5 * (rgb[(one + 1) % 3] + rgb[(one + 2) % 3]);
+  return primary ? rgb[one] - others : others - rgb[one];
 }
 
 }  // namespace
@@ -47,7 +55,7 @@ double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vec
   for (std::size_t i = 0; i < 3; ++i) {
     c[i] = (1 - fy) * ((1 - fx) * upper[i] + fx * upper[i + 3]) + fy * ((1 - fx) * lower[i] + fx * lower[i + 3]);
   }
-  return strength(colour, c[0], c[1], c[2]);
+  return strength(colour, c);
 }
 
 Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, std::uint8_t id,

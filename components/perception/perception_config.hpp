@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,17 @@ struct HueRange {
   double from_deg = 0.0;
   double to_deg = 0.0;
 };
+
+/// The hues of each colour under the shipped configuration [deg]: one row for each constant kColour… of the IDL, in
+/// their order.
+inline constexpr HueRange kShippedHues[] = {
+    {},              // unknown
+    {85.0, 165.0},   // green
+    {340.0, 18.0},   // red
+    {195.0, 262.0},  // blue
+    {42.0, 72.0},    // yellow
+};
+static_assert(std::size(kShippedHues) == msg::kColourCount, "each colour of the IDL needs a row in kShippedHues");
 
 struct PerceptionConfig : ParameterSet {
   std::uint8_t line_colour = add(line_colour, "line.colour", msg::kColourBlue, colour_names(),
@@ -56,9 +68,7 @@ struct PerceptionConfig : ParameterSet {
                           "Least difference between the channels of a coloured pixel (full scale: 1)");
   double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, kWhileRunning,
                               "Least ratio of that difference to the largest channel of a coloured pixel");
-  std::array<HueRange, msg::kColourCount> hues{
-      HueRange{}, add_hues(msg::kColourGreen, 85.0, 165.0), add_hues(msg::kColourRed, 340.0, 18.0),
-      add_hues(msg::kColourBlue, 195.0, 262.0), add_hues(msg::kColourYellow, 42.0, 72.0)};
+  std::array<HueRange, msg::kColourCount> hues = add_hues();
   PerceptErrorConfig errors = add_section(errors, "error");
   bool height_stated = false;  ///< the mission states the height of the objects
 
@@ -78,13 +88,18 @@ struct PerceptionConfig : ParameterSet {
     names.insert(names.begin(), "");
     return names;
   }
-  HueRange add_hues(std::uint8_t colour, double from_deg, double to_deg) {
-    const std::string name = name_of(constants::kColour, colour);
-    const std::string key = "colour." + name;
-    return {add(hues[colour].from_deg, key + ".from_deg", from_deg, "deg", {0.0, 360.0}, kWhileRunning,
-                "First hue of " + name + " (0 red, 120 green, 240 blue)"),
-            add(hues[colour].to_deg, key + ".to_deg", to_deg, "deg", {0.0, 360.0}, kWhileRunning,
-                "Last hue of " + name + "; the range passes through 0 if it is less than the first")};
+  std::array<HueRange, msg::kColourCount> add_hues() {
+    std::array<HueRange, msg::kColourCount> shipped{};
+    for (std::uint8_t colour = msg::kColourUnknown + 1; colour < msg::kColourCount; ++colour) {
+      const std::string name = name_of(constants::kColour, colour);
+      const std::string key = "colour." + name;
+      const auto [from_deg, to_deg] = kShippedHues[colour];
+      shipped[colour] = {add(hues[colour].from_deg, key + ".from_deg", from_deg, "deg", {0.0, 360.0}, kWhileRunning,
+                             "First hue of " + name + " (0 red, 120 green, 240 blue)"),
+                         add(hues[colour].to_deg, key + ".to_deg", to_deg, "deg", {0.0, 360.0}, kWhileRunning,
+                             "Last hue of " + name + "; the range passes through 0 if it is less than the first")};
+    }
+    return shipped;
   }
 };
 

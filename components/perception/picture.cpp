@@ -9,13 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "constrictor/colours.hpp"
 #include "perception/perception_config.hpp"
 
 namespace constrictor::perception {
 namespace {
 
-const std::array<cv::Vec3b, msg::kColourCount> kPaint{
-    {{128, 128, 128}, {60, 200, 60}, {220, 60, 60}, {60, 110, 230}, {220, 200, 60}}};
+const std::array<cv::Vec3b, msg::kColourCount> kPaint = [] {
+  std::array<cv::Vec3b, msg::kColourCount> paint;
+  for (std::uint8_t colour = 0; colour < msg::kColourCount; ++colour)
+    std::copy_n(look_of(colour).screen.begin(), 3, paint[colour].val);
+  return paint;
+}();
 
 void dim_row(const std::uint8_t* in, std::uint8_t* out, int bytes) {
   // With numbers of 16 bits the compiler can use vector instructions.

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "constrictor/colours.hpp"
+
 namespace constrictor::figure {
 namespace {
 
@@ -31,10 +33,8 @@ Colour joint_colour(std::size_t joint, std::size_t count) {
 }  // namespace
 
 Colour display_colour(std::uint8_t colour) {
-  // M. Okabe, K. Ito, "Color Universal Design", 2008.
-  static constexpr std::array<Colour, 5> kColours{
-      {{0.60, 0.60, 0.60}, {0.00, 0.62, 0.45}, {0.84, 0.37, 0.00}, {0.00, 0.45, 0.70}, {0.94, 0.89, 0.26}}};
-  return kColours[colour < kColours.size() ? colour : 0];
+  const Rgb8& print = look_of(colour).print;
+  return {print[0] / 255.0, print[1] / 255.0, print[2] / 255.0};
 }
 
 std::string number(double value, int decimals) {

@@ -1,7 +1,9 @@
 #include "sim/render/scene.hpp"
 
-#include <array>
 #include <cmath>
+#include <iterator>
+
+#include "constrictor/messages.hpp"
 
 namespace constrictor {
 
@@ -30,13 +32,16 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& tar
 }
 
 Rgb colour_reflectance(std::uint8_t colour) {
-  // Order of msg::kColour…: unknown, green, red, blue, yellow.
-  static constexpr std::array<Rgb, 5> kReflectance{{{0.35F, 0.35F, 0.35F},
-                                                    {0.04F, 0.50F, 0.09F},
-                                                    {0.62F, 0.03F, 0.03F},
-                                                    {0.03F, 0.13F, 0.62F},
-                                                    {0.80F, 0.58F, 0.03F}}};
-  return kReflectance[colour < kReflectance.size() ? colour : 0];
+  // One row for each constant kColour… of the IDL, in their order.
+  static constexpr Rgb kReflectance[] = {
+      {0.35F, 0.35F, 0.35F},  // unknown
+      {0.04F, 0.50F, 0.09F},  // green
+      {0.62F, 0.03F, 0.03F},  // red
+      {0.03F, 0.13F, 0.62F},  // blue
+      {0.80F, 0.58F, 0.03F},  // yellow
+  };
+  static_assert(std::size(kReflectance) == msg::kColourCount, "each colour of the IDL needs a row in kReflectance");
+  return kReflectance[colour < msg::kColourCount ? colour : msg::kColourUnknown];
 }
 
 }  // namespace constrictor

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "constrictor/constants.hpp"
+
 namespace constrictor::camera_setup {
 namespace {
 
@@ -106,7 +108,9 @@ ColourResult teach_colours(const std::map<std::string, ColourSample>& samples) {
     saturation = std::min(saturation, seen.saturation);
     ranges.push_back({name, seen, std::max(1.5 * seen.spread_deg, kLeastMargin_deg)});
   }
-  if (ranges.empty()) throw std::invalid_argument("found no colour, accepted at least one of green, red, blue, yellow");
+  if (ranges.empty())
+    throw std::invalid_argument("found no colour, accepted at least one of " +
+                                listed(constants::kColour, msg::kColourUnknown + 1));
   std::sort(ranges.begin(), ranges.end(),
             [](const Range& a, const Range& b) { return a.seen.hue_deg < b.seen.hue_deg; });
   for (std::size_t i = 0; i < ranges.size() && ranges.size() > 1; ++i) {

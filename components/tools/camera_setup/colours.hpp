@@ -35,7 +35,7 @@ struct ColourResult {
   std::vector<std::string> warnings;
 };
 
-/// `samples`: by the name of the colour (green, red, blue, yellow); the name `ground` stands for everything that has
+/// `samples`: by the name of the colour in the IDL; the name `ground` stands for everything that has
 /// none. Throws std::invalid_argument if a sample of a colour is grey or shows several hues, or if two colours, or a
 /// colour and the ground, cannot be distinguished.
 [[nodiscard]] ColourResult teach_colours(const std::map<std::string, ColourSample>& samples);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -15,6 +14,7 @@
 #include "camera_setup/command_steps.hpp"
 #include "camera_setup/lens.hpp"
 #include "camera_setup/mount.hpp"
+#include "constrictor/constants.hpp"
 #include "robot/camera_mount.hpp"
 #include "runtime/host.hpp"
 #include "video/rectifier.hpp"
@@ -223,7 +223,11 @@ struct Sample {
   cv::Rect box;
 };
 
-constexpr std::array kSampleNames = {"green", "red", "blue", "yellow", "ground"};
+std::vector<std::string> sample_names() {
+  std::vector<std::string> names = names_of(constants::kColour, msg::kColourUnknown + 1);
+  names.emplace_back("ground");
+  return names;
+}
 
 /// The sample that a value of --sample describes; empty if there is none.
 std::optional<Sample> sample_in(const std::string& text) {
@@ -234,9 +238,9 @@ std::optional<Sample> sample_in(const std::string& text) {
   const bool box =
       equals != std::string::npos && std::sscanf(text.c_str() + equals + 1, "%d,%d,%d,%d%c", &sample.box.x,
                                                  &sample.box.y, &sample.box.width, &sample.box.height, &rest) == 4;
-  if (!box || std::find(kSampleNames.begin(), kSampleNames.end(), sample.name) == kSampleNames.end() ||
-      sample.box.width < 2 || sample.box.height < 2)
-    return std::nullopt;
+  const auto names = sample_names();
+  const bool named = std::find(names.begin(), names.end(), sample.name) != names.end();
+  if (!box || !named || sample.box.width < 2 || sample.box.height < 2) return std::nullopt;
   return sample;
 }
 
@@ -251,7 +255,7 @@ std::string wrong_board(const std::string& text) {
 std::string wrong_sample(const std::string& text) {
   if (sample_in(text)) return {};
   return fmt::format("found '{}', accepted COLOUR=X,Y,WIDTH,HEIGHT in pixels with one of {}", text,
-                     fmt::join(kSampleNames, ", "));
+                     fmt::join(sample_names(), ", "));
 }
 
 int colours(const Options& options) {

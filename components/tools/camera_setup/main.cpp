@@ -98,10 +98,10 @@ int main(int argc, char** argv) {
                 "write also a mount that is far from the head, or from the mount of the robot file");
   sub->add_option("--out", options.out, "calibration file with the mount (default: that of --calibration)");
   sub = add("colours", "teach colours from a picture", colours);
-  sub->add_option(
-         "--sample", options.samples,
-         "COLOUR=X,Y,WIDTH,HEIGHT: a box in the picture that shows this colour only (green, red, blue, yellow, "
-         "or ground for what has none); may be repeated")
+  sub->add_option("--sample", options.samples,
+                  "COLOUR=X,Y,WIDTH,HEIGHT: a box in the picture that shows this colour only (" +
+                      listed(constants::kColour, msg::kColourUnknown + 1) +
+                      ", or ground for what has none); may be repeated")
       ->required()
       ->check(wrong_sample);
   sub->add_option("--calibration", options.calibration, "calibration file: the boxes are then in the rectified picture")

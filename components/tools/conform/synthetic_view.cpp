@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "conform/tick_period.hpp"
+#include "constrictor/colours.hpp"
 #include "robot/camera_mount.hpp"
 #include "robot/pose_message.hpp"
 
@@ -17,8 +18,11 @@ using Eigen::Vector3d;
 
 constexpr int kSub = 2;  // rays in each direction of a pixel
 const Vector3d kGround(0.50, 0.49, 0.47), kSky(0.66, 0.68, 0.72);
-const std::array<Vector3d, msg::kColourCount> kPaint = {
-    {{0.5, 0.5, 0.5}, {0.08, 0.60, 0.12}, {0.78, 0.08, 0.07}, {0.07, 0.18, 0.78}, {0.82, 0.74, 0.07}}};
+
+Vector3d paint_of(std::uint8_t colour) {
+  const Rgb8& screen = look_of(colour).screen;
+  return Vector3d(screen[0], screen[1], screen[2]) / 255.0;
+}
 
 /// The distance along a ray at which it meets a cylinder, and how bright the surface is there; none if it misses.
 struct Hit {
@@ -51,7 +55,7 @@ Vector3d colour_of(const SyntheticScene& scene, const Vector3d& eye, const Vecto
     const Hit hit = meet(body, eye, ray);
     if (hit.along >= nearest.along) continue;
     nearest = hit;
-    colour = hit.bright * kPaint.at(body.colour);
+    colour = hit.bright * paint_of(body.colour);
   }
   const double down = ray.z() < -1e-9 ? -eye.z() / ray.z() : std::numeric_limits<double>::infinity();
   if (!(down < nearest.along)) return colour;
@@ -59,9 +63,9 @@ Vector3d colour_of(const SyntheticScene& scene, const Vector3d& eye, const Vecto
   colour = kGround;
   for (const Standing& disc : scene.standing) {
     if (disc.height_m <= 0.0 && (point - Vector2d(disc.x_m, disc.y_m)).norm() <= disc.radius_m)
-      colour = kPaint.at(disc.colour);
+      colour = paint_of(disc.colour);
   }
-  if (scene.line && scene.line->distance_m(point) <= 0.5 * scene.line->width_m) colour = kPaint.at(scene.line->colour);
+  if (scene.line && scene.line->distance_m(point) <= 0.5 * scene.line->width_m) colour = paint_of(scene.line->colour);
   return colour;
 }
 

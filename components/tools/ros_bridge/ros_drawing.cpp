@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constrictor/colours.hpp"
 #include "ros_bridge/ros_values.hpp"
 
 namespace constrictor::ros {
@@ -22,19 +23,9 @@ constexpr double kObjectRadius_m = 0.08, kZoneRadius_m = 0.25;
 double drawable_m(double size_m) { return std::clamp(size_m, 0.001, 1000.0); }
 
 std_msgs_msg_dds__ColorRGBA_ colour_of(std::uint8_t named, double alpha) {
-  const auto a = static_cast<float>(alpha);
-  switch (named) {
-    case msg::kColourGreen:
-      return {0.1f, 0.6f, 0.2f, a};
-    case msg::kColourRed:
-      return {0.8f, 0.15f, 0.1f, a};
-    case msg::kColourBlue:
-      return {0.1f, 0.3f, 0.8f, a};
-    case msg::kColourYellow:
-      return {0.9f, 0.75f, 0.1f, a};
-    default:
-      return {0.5f, 0.5f, 0.5f, a};
-  }
+  const Rgb8& screen = look_of(named).screen;
+  const auto part = [&](std::size_t channel) { return static_cast<float>(screen[channel]) / 255.0F; };
+  return {part(0), part(1), part(2), static_cast<float>(alpha)};
 }
 
 }  // namespace

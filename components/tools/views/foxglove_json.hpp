@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "constrictor/colours.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor::views {
@@ -31,18 +32,8 @@ inline nlohmann::json colour(double r, double g, double b, double a = 1) {
 }
 
 inline nlohmann::json colour_of(std::uint8_t named, double alpha = 1) {
-  switch (named) {
-    case msg::kColourGreen:
-      return colour(0.1, 0.6, 0.2, alpha);
-    case msg::kColourRed:
-      return colour(0.8, 0.15, 0.1, alpha);
-    case msg::kColourBlue:
-      return colour(0.1, 0.3, 0.8, alpha);
-    case msg::kColourYellow:
-      return colour(0.9, 0.75, 0.1, alpha);
-    default:
-      return colour(0.5, 0.5, 0.5, alpha);
-  }
+  const Rgb8& screen = look_of(named).screen;
+  return colour(screen[0] / 255.0, screen[1] / 255.0, screen[2] / 255.0, alpha);
 }
 
 }  // namespace constrictor::views

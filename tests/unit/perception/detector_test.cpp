@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "constrictor/colours.hpp"
 #include "lit_scene.hpp"
+#include "perception/colour_edge.hpp"
 
 namespace constrictor {
 namespace {
@@ -234,6 +236,28 @@ TEST(Blobs, BlobCutByTheBorderIsMarked) {
   ASSERT_NE(blob, nullptr);
   EXPECT_TRUE(blob->cut_top);
   EXPECT_NEAR(blob->bearing_rad, 0.0, 1.5 * kDegree);
+}
+
+// The shipped hues decide which channels make up a colour.
+TEST(ColourStrength, IsTheDifferenceOfTheChannelsThatMakeUpTheColour) {
+  const cv::Mat image(2, 2, CV_8UC3, cv::Scalar(200, 140, 20));  // red, green, blue
+  const auto strength = [&](std::uint8_t colour) { return perception::colour_strength(image, colour, {1.0, 1.0}); };
+  EXPECT_DOUBLE_EQ(strength(msg::kColourRed), 200.0 - 0.5 * (140.0 + 20.0));
+  EXPECT_DOUBLE_EQ(strength(msg::kColourGreen), 140.0 - 0.5 * (200.0 + 20.0));
+  EXPECT_DOUBLE_EQ(strength(msg::kColourBlue), 20.0 - 0.5 * (200.0 + 140.0));
+  EXPECT_DOUBLE_EQ(strength(msg::kColourYellow), 0.5 * (200.0 + 140.0) - 20.0);
+  EXPECT_EQ(strength(msg::kColourUnknown), 0.0);
+  EXPECT_EQ(strength(msg::kColourCount), 0.0);
+}
+
+TEST(ColourStrength, IsPositiveForEachColourAndZeroForGrey) {
+  for (std::uint8_t colour = msg::kColourUnknown + 1; colour < msg::kColourCount; ++colour) {
+    const Rgb8& seen = look_of(colour).screen;
+    const cv::Mat coloured(2, 2, CV_8UC3, cv::Scalar(seen[0], seen[1], seen[2]));
+    const cv::Mat grey(2, 2, CV_8UC3, cv::Scalar(130, 130, 130));
+    EXPECT_GT(perception::colour_strength(coloured, colour, {1.0, 1.0}), 80.0) << int{colour};
+    EXPECT_EQ(perception::colour_strength(grey, colour, {1.0, 1.0}), 0.0) << int{colour};
+  }
 }
 
 }  // namespace

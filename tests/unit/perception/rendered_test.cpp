@@ -30,7 +30,7 @@ const Light kLights[] = {
     {{0.8, 0.2, 0.4}, 0.7, 0.25, 0.05, {0.0, 0.04, 2.0, 0.035}},
 };
 
-perception::Percepts look(testing::Scene scene, const Light& light) {
+perception::Percepts look(testing::Scene scene, const Light& light, std::uint8_t line_colour = msg::kColourBlue) {
   static perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
   scene.light = light.direction;
   scene.light_intensity = light.intensity;
@@ -41,7 +41,7 @@ perception::Percepts look(testing::Scene scene, const Light& light) {
   const cv::Mat image = rendered.draw(info, light.head);
   return detector.detect(
       image, perception::GroundCamera(info, testing::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
-      msg::kColourBlue);
+      line_colour);
 }
 
 std::string describe(const Light& light) {
@@ -99,6 +99,24 @@ TEST(Rendered, ObjectsAndZonesAreFoundAndDistinguished) {
       EXPECT_NEAR(blob->bearing_rad, std::atan2(r.centre.y(), r.centre.x()), 1.5 * kDegree);
       EXPECT_NEAR(blob->range_m, range, 0.06 * range);
       EXPECT_NEAR(blob->width_m, 2.0 * r.radius_m, 0.03);
+    }
+  }
+}
+
+// Holds for a colour that is added to the IDL: the simulator's reflectance lies within perception's hues.
+TEST(Rendered, AnObjectOfEachColourIsRecognised) {
+  for (std::uint8_t colour = msg::kColourUnknown + 1; colour < msg::kColourCount; ++colour) {
+    const std::uint8_t line_colour = colour == msg::kColourBlue ? msg::kColourGreen : msg::kColourBlue;
+    for (const Light& light : kLights) {
+      SCOPED_TRACE("colour " + std::to_string(colour) + ", " + describe(light));
+      testing::Scene scene;
+      scene.rounds = {Round{colour, {0.9, 0.1}, 0.08, 0.15}};
+      const perception::Percepts percepts = look(scene, light, line_colour);
+      EXPECT_EQ(percepts.objects.blob_count, 1);
+      const msg::Blob* blob = find(percepts, colour, msg::kBlobObject);
+      ASSERT_NE(blob, nullptr);
+      EXPECT_NEAR(blob->bearing_rad, std::atan2(0.1, 0.9), 1.5 * kDegree);
+      EXPECT_NEAR(blob->width_m, 0.16, 0.03);
     }
   }
 }
