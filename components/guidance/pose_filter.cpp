@@ -24,7 +24,7 @@ double PoseFilter::scale_sd() const { return std::sqrt(covariance()(kScale, kSca
 Eigen::Vector2d PoseFilter::predict(const Eigen::Vector2d& step_m, double turn_rad, const Eigen::Matrix3d& noise,
                                     const ScaledDrift& drift) {
   const double yaw = state_.mean[2] + 0.5 * turn_rad;  // in the middle of the step
-  const Eigen::Vector2d scaled_m = step_m + (state_.mean[kScale] - 1.0) * drift.step_m;
+  Eigen::Vector2d scaled_m = step_m + (state_.mean[kScale] - 1.0) * drift.step_m;
   const Eigen::Vector2d step = turned(scaled_m, yaw), drifted = turned(drift.step_m, yaw);
   const double keep = 1.0 - drift.forget;
   state_.mean[0] += step.x();

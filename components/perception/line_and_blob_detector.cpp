@@ -59,7 +59,7 @@ std::string image_error(const msg::CameraImage& image, const msg::CameraInfo& in
   }
   if (image.width < 32 || image.height < 24)
     return cv::format("size: found %d x %d, accepted 32 x 24 or more", image.width, image.height);
-  if (const std::string violation = image_violation(image); !violation.empty()) return violation;
+  if (std::string violation = image_violation(image); !violation.empty()) return violation;
   // From a fish-eye of 170 degrees to a telescope of 1 degree.
   constexpr double kShortest = 0.04, kLongest = 60.0;
   const double size = std::max(info.width, info.height);

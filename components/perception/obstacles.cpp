@@ -117,7 +117,7 @@ std::optional<Eigen::Vector2d> foot_in_column(const Walk& walk, const GroundCame
   if (!shade) return std::nullopt;
   const auto foot = walk.end(plane->horizon, plane->down, *shade);
   if (!foot) return std::nullopt;
-  const auto p = camera.ground(foot->x(), foot->y(), config.obstacle_max_range_m);
+  auto p = camera.ground(foot->x(), foot->y(), config.obstacle_max_range_m);
   if (!p) return std::nullopt;
   const double range_m = (*p - camera.position_on_ground()).norm();
   if (range_m < kNearest_m) return std::nullopt;

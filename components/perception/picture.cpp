@@ -98,7 +98,7 @@ void draw_blobs(cv::Mat& picture, const msg::ObjectPercepts& objects) {
   std::vector<cv::Rect> labels;
   for (int i = 0; i < objects.blob_count; ++i) {
     const msg::Blob& blob = objects.blobs[i];
-    const cv::Vec3b paint = kPaint[blob.colour];
+    const cv::Vec3b& paint = kPaint[blob.colour];
     cv::rectangle(picture, cv::Point(blob.u_min, blob.v_min), cv::Point(blob.u_max, blob.v_max),
                   cv::Scalar(paint[0], paint[1], paint[2]), 1, cv::LINE_8);
   }

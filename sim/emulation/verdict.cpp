@@ -40,7 +40,7 @@ std::string shortfall(const World& world, const std::vector<std::uint8_t>& seque
     return distance_m <= kAtEnd_m ? "" : fmt::format("the head is {:.2f} m from the end of the line", distance_m);
   }
   std::vector<std::string> faults;
-  for (std::uint8_t colour = 1; colour < constants::kColour.names.size(); ++colour) {
+  for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
     const auto wanted = std::count(sequence.begin(), sequence.end(), colour);
     if (wanted == 0) continue;
     std::ptrdiff_t found = 0;

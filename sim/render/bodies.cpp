@@ -65,6 +65,7 @@ void Flat::draw(const Needed& needed) const {
       continue;
     }
     glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT,
+                   // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL expects the offset as a pointer
                    reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint32_t)));
   }
 }

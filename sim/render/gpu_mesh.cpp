@@ -29,9 +29,9 @@ GpuMesh upload(const Mesh& mesh, bool instanced) {
   const auto attribute = [](GLuint location, GLint count, std::size_t stride_floats, std::size_t offset_floats,
                             GLuint divisor) {
     glEnableVertexAttribArray(location);
-    glVertexAttribPointer(
-        location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
-        reinterpret_cast<const void*>(offset_floats * sizeof(float)));  // OpenGL expects the offset as a pointer
+    glVertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride_floats * sizeof(float)),
+                          // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL expects the offset as a pointer
+                          reinterpret_cast<const void*>(offset_floats * sizeof(float)));
     glVertexAttribDivisor(location, divisor);
   };
   attribute(0, 3, Mesh::kFloatsPerVertex, 0, 0);

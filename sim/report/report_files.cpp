@@ -34,7 +34,7 @@ ordered_json lines_of(const std::string& journal) {
 
 /// `mission_ended`: whether a moment without an event is the end of the mission or only the end of the run.
 std::string caption_of(const report::Moment& moment, bool mission_ended) {
-  const std::string end = mission_ended ? "end of the mission" : "end of the run";
+  std::string end = mission_ended ? "end of the mission" : "end of the run";
   if (moment.event == msg::kEventNone) return end;
   const std::string words = figure::event_caption(moment.event, moment.colour);
   return moment.ends ? words + ", " + end : words;

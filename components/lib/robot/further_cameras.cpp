@@ -18,7 +18,7 @@ constexpr double kLeastAboveGround_m = 0.02;
 constexpr double kLeastGround_rad = 0.05;  // angle below the horizon that must be in view
 
 std::string read_name(Configuration& camera, const std::vector<CameraModel>& before) {
-  const std::string name = camera.text("name");
+  std::string name = camera.text("name");
   const auto accepted = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (name.empty() || name.size() > 31 || !std::all_of(name.begin(), name.end(), accepted))
     throw camera.error("name", fmt::format("found '{}', accepted 1 to 31 characters of a to z, 0 to 9 and _", name));
