@@ -1,4 +1,4 @@
-// The inertia that the joints of one axis feel: of links in the plane that no ground holds, and of the rotors.
+// The inertia that the joints of one axis feel: that of the links, which move freely in one plane, and of the rotors.
 #pragma once
 
 #include <Eigen/Core>

@@ -21,7 +21,8 @@ struct DirectMotionState {
   }
 };
 
-/// Begins the motion of a command; the caller has ended the running task. Both open and wrap release a held object.
+/// Begins the motion of a command; the caller has ended the running task. The motions kMotionOpen and kMotionWrap
+/// release a held object.
 void begin_motion(const msg::MotionCommand& command, DirectMotionState& state, Grip& grip);
 
 /// Sets the trajectory of the present motion. A squeezed body keeps a torque cap on the base joints of the U, so that

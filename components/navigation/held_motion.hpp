@@ -19,8 +19,9 @@ class HeldMotion {
   };
   /// The present motion.
   struct Motion {
-    /// [m] The object's place in M. The mean over the last period lies half a period back; the way from the mean over
-    /// the period before leads from there to the present.
+    /// [m] The object's present place in M. The mean over the last period is where the object was half a period ago. In
+    /// a whole period, the object moves from the mean over the period before to this mean: half of this way is added to
+    /// the mean. Before two periods have been observed, the place is the mean itself.
     Eigen::Vector2d place;
     double heading_rad;  ///< direction in M in which the U points, found in the same way
     /// From the direction in which the U points to the direction in which it moves, positive left. On a slope the body

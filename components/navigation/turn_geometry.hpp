@@ -12,7 +12,8 @@ struct TurnTowards {
       -1.0;  ///< distance from the end of the turn to the target; negative: the circle never points at it
 };
 
-/// `target` [m] in the frame that turns. The turn is to the side of the target, on a circle of `radius_m` > 0.
+/// `target` [m] in the frame of the start: the turn begins at (0, 0), heading along x. The turn is to the side of the
+/// target, on a circle of `radius_m` > 0.
 [[nodiscard]] TurnTowards turn_towards(const Eigen::Vector2d& target, double radius_m);
 
 }  // namespace constrictor

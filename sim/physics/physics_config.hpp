@@ -23,17 +23,16 @@ struct PhysicsConfig : PlantParameters {
       add(solver.over_relaxation, "solver.over_relaxation", SolverSettings{}.over_relaxation, "", {0.1, 1.9}, kAtStart,
           "ode: W of QuickStep"),
       add(solver.erp, "solver.erp", SolverSettings{}.erp, "", {0.0, 1.0}, kAtStart,
-          "ode: fraction of the position error of a hinge that a step corrects. chain: the same at the limits of an "
-          "angle"),
+          "Share of an error that a step corrects. ode: position of a hinge; chain: angle beyond its limit"),
       add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, kAtStart,
-          "ode: softness of hinges. chain: softness of the limits of an angle"),
+          "Softness. ode: of the hinges; chain: of the stops at the limits of the joint angles"),
       add(solver.contact_stiffness_n_m, "solver.contact_stiffness_n_m", SolverSettings{}.contact_stiffness_n_m, "N/m",
           {100.0, 1e9}, Changes::kAtStart, "Stiffness of each contact"),
       add(solver.contact_damping_n_s_m, "solver.contact_damping_n_s_m", SolverSettings{}.contact_damping_n_s_m, "N s/m",
           {0.0, 1e6}, Changes::kAtStart, "Damping of each contact"),
       add(solver.creep_resistance_n_s_m, "solver.creep_resistance_n_s_m", SolverSettings{}.creep_resistance_n_s_m,
           "N s/m", {100.0, 1e9}, Changes::kAtStart,
-          "chain: friction below its bound lets bodies creep with force / creep_resistance_n_s_m"),
+          "chain: bodies that friction F holds creep at the speed F / (value of this parameter)"),
       add(solver.surface_layer_m, "solver.surface_layer_m", SolverSettings{}.surface_layer_m, "m", {0.0, 0.01},
           kAtStart, "Depth at which contacts may rest without correction"),
       add(solver.max_correcting_velocity_m_s, "solver.max_correcting_velocity_m_s",
@@ -41,12 +40,11 @@ struct PhysicsConfig : PlantParameters {
           "Greatest velocity at which bodies that overlap leave each other"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "At a joint only the front module touches the ground: a tick takes 30 % less CPU time (ode: 22 %), and the "
-          "gait is 0.9 % faster (ode: 0.2 %)")};
+          "true: at a joint only the front module touches the ground, to save CPU time (see README.md)")};
   GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},
-          "Ticks at which an emergency stop is latched, rising: repeats a run with stops (emergency_stop/state)");
+          "Ticks of emergency stops, in rising order, to repeat the stops of a run (emergency_stop/state)");
 
   [[nodiscard]] std::int64_t period_ns() const { return std::llround(control_period_s * 1e9); }
   /// [s] the period of the run's ticks: `period_s` rounded to whole nanoseconds.

@@ -60,7 +60,7 @@ void emulate(const Options& options, const Log& log) {
 
   // Real servos answer in time however busy the computer is.
   for (const auto& refusal : apply(Scheduling{kPriority, false, {}}))
-    log.warning("on a busy computer answers may be late: {}", refusal);
+    log.warning("the emulated servos may answer late when the computer is busy: {}", refusal);
   const auto start = Clock::now();
   const auto now_ns = [&] { return std::chrono::nanoseconds(Clock::now() - start).count(); };
   std::vector<pollfd> waits;

@@ -11,7 +11,8 @@
 namespace constrictor {
 namespace {
 
-/// Limit of the waiting changes: those that `input` lets wait, and as many again for those of the next tick.
+/// At most this many changes wait for their tick. `input` lets at most kMaxParameterChanges wait for a later tick;
+/// there is room for as many changes that take effect at the next tick.
 constexpr std::size_t kMostWaiting = std::size_t{2} * msg::kMaxParameterChanges;
 
 template <std::size_t N>

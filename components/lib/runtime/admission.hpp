@@ -38,10 +38,10 @@ class Admission {
   [[nodiscard]] Verdict judge(const std::string& component, dds_instance_handle_t writer);
   /// Whether keep() has room for a message of this writer.
   [[nodiscard]] bool has_room(dds_instance_handle_t writer, std::size_t bytes) const;
-  /// Keeps a message whose verdict is not kAccepted: `deliver` is called as soon as the participant of its writer
-  /// announces the member. Messages of the process that replaces a member may arrive before its Hello, because
-  /// different writers send them. Messages that wait when another participant announces the member are dropped. Returns
-  /// false if there is no room: the message is dropped.
+  /// Keeps a message whose verdict is not kAccepted, and calls `deliver` when the participant of its writer announces
+  /// the member. When a restarted process takes the place of a member, its first messages may arrive before its Hello,
+  /// because they come from other writers than the Hello. If another participant announces the member, the message is
+  /// dropped. Returns false, and drops the message, if there is no room.
   bool keep(const std::string& component, dds_instance_handle_t writer, std::size_t bytes,
             std::function<void()> deliver);
 

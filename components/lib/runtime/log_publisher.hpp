@@ -15,9 +15,8 @@ namespace constrictor {
 /// process that logs without end publishes only part of its lines, which readers see by the gaps in LogLine.number.
 class LogPublisher {
  public:
-  /// In each second, at most this many lines are published of each kind: informative ones, and warnings with errors.
-  static constexpr int kMostInfo = 100;
-  static constexpr int kMostTrouble = 200;
+  static constexpr int kMostInfo = 100;     ///< limit of the informative lines that are published in a second
+  static constexpr int kMostTrouble = 200;  ///< the same for warnings and errors together
 
   /// `process`: names of the components of this process, comma separated, or the name of the program. Lines about one
   /// of several components carry its name. The log must not be destroyed before this object. If the topic cannot

@@ -70,7 +70,7 @@ RunRecorder::RunRecorder(const HostContext& context, std::optional<RecordingPosi
   try {
     tap_ = std::make_unique<DomainTap>(context.options.domain, identity, arrives_over_dds);
   } catch (const std::exception& error) {
-    context_.log.warning("the recording has no topics of clients and other programs: {}", error.what());
+    context_.log.warning("topics of clients and other programs are not recorded: {}", error.what());
   }
 }
 

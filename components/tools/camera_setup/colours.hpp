@@ -35,9 +35,9 @@ struct ColourResult {
   std::vector<std::string> warnings;
 };
 
-/// `samples`: by the name of the colour in the IDL; the name `ground` stands for everything that has
-/// none. Throws std::invalid_argument if a sample of a colour is grey or shows several hues, or if two colours, or a
-/// colour and the ground, cannot be distinguished.
+/// `samples`: by the name of the colour in the IDL; the name `ground` stands for everything that has no such colour.
+/// Throws std::invalid_argument if a sample of a colour is grey or shows several hues, or if two colours, or a colour
+/// and the ground, cannot be distinguished.
 [[nodiscard]] ColourResult teach_colours(const std::map<std::string, ColourSample>& samples);
 
 }  // namespace constrictor::camera_setup

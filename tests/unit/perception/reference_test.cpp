@@ -55,7 +55,9 @@ TEST(Reference, SmoothingEqualsTheGaussianBlurOfOpenCv) {
   Smoother smoother;
   cv::Mat smooth, expected;
   std::uint32_t seed = 0;
-  // Widths around a multiple of the 16 bytes of a vector, and images of other sizes after each other.
+  // The smoother computes 16 bytes of a row at once (SIMD): the rows of some sizes are a multiple of 16 bytes long,
+  // those of others are not. One smoother gets images of all sizes in turn, because it uses the memory of the previous
+  // image again.
   for (const cv::Size size : {cv::Size(320, 240),
                               {32, 24},
                               {33, 25},

@@ -19,8 +19,9 @@ namespace {
 
 Blob blob_of(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
-/// Checkpoint `number` of a made-up run: it keeps the last eight blobs of various sizes, as the conductor keeps the
-/// last samples of a topic. All of its bytes follow from its number.
+/// A made-up run, which makes the checkpoints 1, 2, 3 and so on. Each checkpoint has the newest eight blobs, of various
+/// sizes, as the conductor keeps the last samples of a topic, and one blob that never changes. All bytes of a
+/// checkpoint follow from its number.
 class MadeUpRun {
  public:
   const Checkpoint& next() {
