@@ -101,7 +101,7 @@ std::optional<msg::Blob> Gauge::zone() const {
                             : region_.standing()             ? probability_above(kBeside_sd)
                                                              : probability_above(std::min(region_.rise_sd, 0.0));
   bool cut = false;
-  const double range_m = lower_edge_range(left, right, cut);
+  const double range_m = is_behind_object(left, right) ? kNan : lower_edge_range(left, right, cut);
   blob.cut_bottom |= cut;
   blob.cut_left |= left_hidden;
   blob.cut_right |= right_hidden;
@@ -208,6 +208,24 @@ void Gauge::find_sides() {
 double Gauge::lower_edge_range(double left, double right, bool& cut) const {
   const double max_gap = region_.standing() && !region_.low ? kMaxGapPixels : 1e9;
   return lower_edge_range_m(rgb_, camera_, regions_, id_, right, left, max_gap, cut);
+}
+
+bool Gauge::is_behind_object(double left, double right) const {
+  constexpr double kFarther = 1.1, kFarther_m = 0.02;
+  const double pixel_rad = 1.0 / camera_.width();
+  if (!region_.standing() || left_ <= right_) return false;
+  bool cut = false;
+  const double foot_m = lower_edge_range(left_, right_, cut);
+  double beside_m = std::numeric_limits<double>::infinity();
+  const auto look = [&](double from, double to) {
+    if (to - from < 2.0 * pixel_rad) return;
+    const double range_m = lower_edge_range_m(rgb_, camera_, regions_, id_, from, to, 1e9, cut);
+    if (std::isfinite(range_m)) beside_m = std::min(beside_m, range_m);
+  };
+  const double gap = 3.0 * pixel_rad, width = 12.0 * pixel_rad;
+  look(left_ + gap, std::min(left_ + width, left));
+  look(std::max(right_ - width, right), right_ - gap);
+  return std::isfinite(beside_m) && beside_m > kFarther * foot_m + kFarther_m;  // false for NaN
 }
 
 bool Gauge::ends_in_zone(double range_m) const {

@@ -24,7 +24,8 @@ class Gauge {
   /// object's size if the image shows it.
   [[nodiscard]] std::optional<msg::Blob> object(bool on_zone, ObjectSize& measured) const;
 
-  /// The part that lies flat: the whole region, or the part beside the object.
+  /// The part that lies flat: the whole region, or the part beside the object. If the object stands before it and hides
+  /// its near edge, only its direction is known.
   [[nodiscard]] std::optional<msg::Blob> zone() const;
 
   /// The pixels beside the object, and whether the flat part reaches nearer than the object.
@@ -54,6 +55,10 @@ class Gauge {
   void find_sides();
 
   [[nodiscard]] double lower_edge_range(double left, double right, bool& cut) const;
+
+  /// Whether the lower edge of the flat part, whose sides have these azimuths, is clearly farther away right beside the
+  /// object than below it: below the object is the object's foot, then, and no edge of the flat part.
+  [[nodiscard]] bool is_behind_object(double left, double right) const;
 
   /// Whether the lower edge of an object at this range [m] is rather the edge of a zone of its colour before it, which
   /// is so thin in the image that nothing else tells: at that range the object would be narrower than it is known to

@@ -181,6 +181,30 @@ TEST(Blobs, ObjectOnAZoneOfItsColourGivesBoth) {
   }
 }
 
+// The foot of the object is the lower edge of what is in view of the zone behind it, and no edge of the zone.
+TEST(Blobs, AZoneBehindAnObjectOfItsColourIsNoNearerThanItIs) {
+  int seen = 0;
+  for (const Conditions& c : kConditions) {
+    for (const double behind_m : {0.6, 0.9}) {
+      SCOPED_TRACE(describe(c));
+      Scene scene;
+      scene.rounds = {Round{msg::kColourGreen, {1.2 + behind_m, 0.0}, 0.4},
+                      Round{msg::kColourGreen, {1.2, 0.0}, 0.085, 0.15}};
+      const Percepts percepts = look(scene, c);
+      const msg::Blob* object = find(percepts, msg::kColourGreen, msg::kBlobObject);
+      ASSERT_NE(object, nullptr);
+      EXPECT_NEAR(object->range_m, 1.2 - 0.085, 0.08);
+      const msg::Blob* zone = find(percepts, msg::kColourGreen, msg::kBlobZone);
+      if (zone == nullptr) continue;
+      ++seen;
+      EXPECT_NEAR(zone->bearing_rad, 0.0, 0.05);
+      const double near_edge_m = 1.2 + behind_m - 0.4;
+      EXPECT_TRUE(std::isnan(zone->range_m) || zone->range_m > near_edge_m - 0.1) << zone->range_m;
+    }
+  }
+  EXPECT_GT(seen, 3);
+}
+
 TEST(Blobs, SeveralColoursAtOnceWithTheLine) {
   for (const Conditions& c : kConditions) {
     SCOPED_TRACE(describe(c));
