@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "constrictor/text.hpp"
+#include "planner/short_text.hpp"
 
 namespace constrictor {
-
 Planner::Planner(Wiring& wiring, const Setup& setup)
     : ConfiguredComponent(wiring, load_planner_config(setup.config_file, setup.mission)),
       log_(setup.log),
@@ -23,8 +23,9 @@ void Planner::step(const Tick& tick) {
   inputs.status = status_.get();
   inputs.authority = authority_.get();
   for (const auto& event : events_) inputs.events.push_back(&event);
-  const std::string hindrance = state_.hindrance;
+  const std::string hindrance = state_.hindrance, reason = state_.reason;
   const auto wanted = planner_.step(inputs);
+  if (state_.reason != reason) log_.warning("the mission has failed: {}", state_.reason);
   if (state_.hindrance != hindrance) {
     if (state_.hindrance.empty()) log_.info("the mission goes on in state {}", name_of(state_.state));
     else log_.warning("the mission {}", state_.hindrance);
@@ -50,7 +51,8 @@ void Planner::step(const Tick& tick) {
   mission.object_count = static_cast<std::uint16_t>(config_.sequence.size());
   mission.colour = planner_.colour();
   mission.recoveries = memory.recoveries;
-  set_text(mission.reason, memory.reason.empty() ? memory.hindrance : memory.reason);
+  set_text(mission.reason,
+           shortened(memory.reason.empty() ? memory.hindrance : memory.reason, sizeof mission.reason - 1));
   mission_.write(mission);
 }
 

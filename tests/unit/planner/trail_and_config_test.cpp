@@ -10,6 +10,7 @@
 #include "configuration/configuration.hpp"
 #include "planner/line_trail.hpp"
 #include "planner/planner_config.hpp"
+#include "planner/short_text.hpp"
 #include "robot/planar.hpp"
 #include "support/project.hpp"
 #include "support/temporary_folder.hpp"
@@ -180,6 +181,15 @@ TEST(PlannerConfig, AnErrorNamesFileLineKeyAndTheAcceptedValues) {
   EXPECT_NE(message_of("confirm_images: 0").find("confirm_images: found 0"), std::string::npos);
   EXPECT_NE(message_of("explore: 8").find("explore"), std::string::npos);
   EXPECT_EQ(message_of("sequence: [red]"), "") << "the other keys keep their defaults";
+}
+
+TEST(ShortText, EndsAfterAWord) {
+  EXPECT_EQ(shortened("not delivered", 13), "not delivered");
+  EXPECT_EQ(shortened("not delivered: green", 17), "not ...") << "the colon belongs to the word before";
+  EXPECT_EQ(shortened("not delivered: green", 18), "not delivered: ...");
+  EXPECT_EQ(shortened("onewordonly", 8), "onew ...");
+  for (std::size_t bytes = 5; bytes < 40; ++bytes)
+    EXPECT_LE(shortened("the object is too large for the U: found a radius of 0.139 m", bytes).size(), bytes);
 }
 
 }  // namespace
