@@ -110,10 +110,6 @@ class Member {
   /// Tick of the last finished step; -1 before the first.
   [[nodiscard]] std::int64_t last_done() const { return last_done_; }
   [[nodiscard]] std::int64_t newest_tick() const { return newest_tick_; }
-  /// The number of ticks that are still to arrive until one comes at which the component steps; at least 1.
-  [[nodiscard]] std::int64_t ticks_until_due() const {
-    return newest_tick_ < 0 ? 1 : timing_.period - newest_tick_ % timing_.period;
-  }
   [[nodiscard]] bool in_epoch() const { return epoch_.has_value(); }
   /// The present epoch. Aborts if in_epoch() is false.
   [[nodiscard]] const EpochId& epoch() const;

@@ -78,12 +78,6 @@ class Gathering {
  public:
   [[nodiscard]] const GatheredSends::Counts& counts() const { return counts_; }
   void let_receivers_wait(bool may_wait) { may_wait_ = may_wait; }
-  void send_tick(std::int64_t index, std::span<const std::int64_t> periods_ticks) {
-    unneeded_by_.clear();
-    for (const std::int64_t period : periods_ticks) {
-      if (index % period != 0) unneeded_by_.push_back(period);
-    }
-  }
 
   /// Takes the message if it can wait, and returns its size; otherwise sends it, after the messages that wait for its
   /// address.
@@ -121,7 +115,6 @@ class Gathering {
     }
     used_ = 0;
     may_wait_ = false;
-    unneeded_by_.clear();
   }
 
  private:
@@ -162,7 +155,7 @@ class Gathering {
 
   void send_waiting(Datagram& datagram) {
     if (datagram.bytes.empty()) return;
-    if (may_stay(datagram)) {
+    if (datagram.may_wait && mail_.put(ntohs(datagram.to.sin_port), datagram.bytes)) {
       ++counts_.datagrams;
       datagram.bytes.clear();
       return;
@@ -178,14 +171,6 @@ class Gathering {
     datagram.bytes.clear();
   }
 
-  /// Puts the datagram into a mailbox of its receiver, if that need not wake up.
-  bool may_stay(const Datagram& datagram) {
-    const std::uint16_t port = ntohs(datagram.to.sin_port);
-    if (datagram.may_wait) return mail_.put(port, datagram.bytes);
-    return std::any_of(unneeded_by_.begin(), unneeded_by_.end(),
-                       [&](std::int64_t period) { return mail_.put_tick(port, period, datagram.bytes); });
-  }
-
   ssize_t send_now(int socket, const msghdr& message, int flags) {
     ++counts_.datagrams;
     return send_of_c_library()(socket, &message, flags);
@@ -194,8 +179,7 @@ class Gathering {
   std::vector<Datagram> datagrams_;  // the first used_ ones wait; all keep their memory
   std::size_t used_ = 0;
   std::string part_;
-  bool may_wait_ = false;                  ///< of what is sent now
-  std::vector<std::int64_t> unneeded_by_;  ///< [ticks] processes of these periods do not need the tick that is sent now
+  bool may_wait_ = false;  ///< of what is sent now
   MailSender mail_;
   GatheredSends::Counts counts_;
 };
@@ -210,10 +194,6 @@ GatheredSends::GatheredSends(Receivers receivers) {
 }
 
 void GatheredSends::wake_receivers() { t_gathering.let_receivers_wait(false); }
-
-void GatheredSends::send_tick(std::int64_t index, std::span<const std::int64_t> periods_ticks) {
-  t_gathering.send_tick(index, periods_ticks);
-}
 
 GatheredSends::~GatheredSends() {
   if (--t_objects == 0) t_gathering.send_all();

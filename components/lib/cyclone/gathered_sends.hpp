@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 namespace constrictor::dds {
 
@@ -28,11 +27,6 @@ class GatheredSends {
 
   /// What this thread sends from now on until the object is destroyed wakes the processes to which it goes.
   static void wake_receivers();
-
-  /// What this thread sends until the object is destroyed is the tick with this index, and what becomes visible with
-  /// it. It wakes only processes that need this tick. `periods_ticks`: the periods with which there may be processes
-  /// that do not (Mailbox::let_ticks_wait), each at least 2.
-  static void send_tick(std::int64_t index, std::span<const std::int64_t> periods_ticks);
 
   struct Counts {
     std::uint64_t messages = 0;   ///< that Cyclone DDS gave to the kernel while an object existed

@@ -31,7 +31,6 @@ constexpr std::string_view kReceivingThread = "recvUC";
 std::atomic<bool> g_open = false;
 std::atomic<int> g_emptied_at_once = 0;
 std::atomic<std::uint64_t> g_taken = 0;
-std::atomic<std::int64_t> g_period_ticks = 0;  // of the ticks for which the process must wake; 0: each one
 
 using Receive = ssize_t (*)(int, msghdr*, int);
 
@@ -40,12 +39,11 @@ Receive receive_of_c_library() {
   return receive;
 }
 
-/// The address of a mailbox that belongs to a UDP port; `period_ticks` 0: the one for samples. A name that begins with
-/// a zero is no file: the kernel forgets it with the socket, and like the ports it belongs to a network namespace.
+/// The address of the mailbox that belongs to a UDP port. A name that begins with a zero is no file: the kernel forgets
+/// it with the socket, and like the ports it belongs to a network namespace.
 struct Address {
-  Address(std::uint16_t port, std::int64_t period_ticks) {
-    std::string name = "constrictor.mailbox." + std::to_string(port);
-    if (period_ticks > 0) name += ".every." + std::to_string(period_ticks);
+  explicit Address(std::uint16_t port) {
+    const std::string name = "constrictor.mailbox." + std::to_string(port);
     un.sun_family = AF_UNIX;
     std::memcpy(un.sun_path + 1, name.data(), name.size());
     size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
@@ -67,14 +65,6 @@ std::optional<sockaddr_in> own_address(int socket) {
     return {};
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   return address;
-}
-
-/// A socket for which no thread waits; -1: another process has this name.
-int open_box(const Address& name) {
-  const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket < 0 || ::bind(socket, name.get(), name.size) == 0) return socket;
-  ::close(socket);
-  return -1;
 }
 
 /// What a datagram consists of: its bytes, and the address of the sender.
@@ -101,8 +91,13 @@ struct Mail {
 class ReceivingMailbox {
  public:
   ReceivingMailbox(int udp_socket, const sockaddr_in& address) : udp_socket_(udp_socket), address_(address) {
-    samples_ = open_box({ntohs(address.sin_port), 0});
-    for (std::size_t i = 0; i < mails_.size(); ++i) {
+    const Address name(ntohs(address.sin_port));
+    socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (socket_ >= 0 && ::bind(socket_, name.get(), name.size) != 0) {
+      ::close(socket_);
+      socket_ = -1;
+    }
+    for (std::size_t i = 0; i < kBatch; ++i) {
       places_.at(i) = {mails_.at(i).bytes.get(), kLargest};
       mails_.at(i).from = address;
       headers_.at(i).msg_hdr.msg_iov = &places_.at(i);
@@ -110,7 +105,6 @@ class ReceivingMailbox {
     }
     const std::lock_guard lock(s_mutex);
     s_all.push_back(this);
-    open_for_ticks();
   }
   ReceivingMailbox(const ReceivingMailbox&) = delete;
   ReceivingMailbox& operator=(const ReceivingMailbox&) = delete;
@@ -119,12 +113,10 @@ class ReceivingMailbox {
       const std::lock_guard lock(s_mutex);
       std::erase(s_all, this);
     }
-    for (const int box : {samples_, ticks_.load()}) {
-      if (box >= 0) ::close(box);
-    }
+    if (socket_ >= 0) ::close(socket_);
   }
 
-  [[nodiscard]] bool is_of(int udp_socket) const { return samples_ >= 0 && udp_socket == udp_socket_; }
+  [[nodiscard]] bool is_of(int udp_socket) const { return socket_ >= 0 && udp_socket == udp_socket_; }
 
   /// Stands in for recvmsg() on the UDP socket.
   ssize_t receive(msghdr& message) {
@@ -138,10 +130,9 @@ class ReceivingMailbox {
     do {
       const bool at_once = g_emptied_at_once.load() > 0;
       if (at_once) {
-        std::array<pollfd, 3> all{pollfd{udp_socket_, POLLIN, 0}, pollfd{samples_, POLLIN, 0},
-                                  pollfd{ticks_, POLLIN, 0}};
-        if (::poll(all.data(), all.size(), -1) < 0) return -1;
-        if (all[0].revents == 0 && take_out()) return mails_.at(next_++).deliver(message);
+        std::array<pollfd, 2> both{pollfd{udp_socket_, POLLIN, 0}, pollfd{socket_, POLLIN, 0}};
+        if (::poll(both.data(), both.size(), -1) < 0) return -1;
+        if (both[0].revents == 0 && take_out()) return mails_.at(next_++).deliver(message);
       }
       size = receive_of_c_library()(udp_socket_, &message, at_once ? MSG_DONTWAIT : 0);
     } while (size < 0 && errno == EAGAIN);
@@ -156,12 +147,6 @@ class ReceivingMailbox {
     return mails_.at(next_++).deliver(message);
   }
 
-  /// Opens the mailboxes for ticks, in any thread.
-  static void open_all_for_ticks() {
-    const std::lock_guard lock(s_mutex);
-    for (ReceivingMailbox* one : s_all) one->open_for_ticks();
-  }
-
   /// Ends the receive() of each mailbox, in any thread.
   static void wake_all() {
     const std::lock_guard lock(s_mutex);
@@ -171,20 +156,11 @@ class ReceivingMailbox {
   }
 
  private:
-  /// The caller holds s_mutex.
-  void open_for_ticks() {
-    const std::int64_t period_ticks = g_period_ticks;
-    if (period_ticks > 0 && samples_ >= 0 && ticks_ < 0) ticks_ = open_box({ntohs(address_.sin_port), period_ticks});
-  }
-
-  /// Takes the datagrams out of the mailboxes. False if both are empty.
+  /// Takes the datagrams out of the mailbox. False if it is empty.
   bool take_out() {
-    next_ = count_ = 0;
-    for (const int box : {samples_, ticks_.load()}) {
-      if (box < 0) continue;
-      const int found = ::recvmmsg(box, headers_.data() + count_, kBatch, MSG_DONTWAIT, nullptr);
-      count_ += static_cast<std::size_t>(std::max(found, 0));
-    }
+    const int found = ::recvmmsg(socket_, headers_.data(), kBatch, MSG_DONTWAIT, nullptr);
+    next_ = 0;
+    count_ = static_cast<std::size_t>(std::max(found, 0));
     for (std::size_t i = 0; i < count_; ++i) {
       const bool whole = (headers_.at(i).msg_hdr.msg_flags & MSG_TRUNC) == 0;
       mails_.at(i).size = whole ? headers_.at(i).msg_len : 0;
@@ -194,15 +170,14 @@ class ReceivingMailbox {
   }
 
   inline static std::mutex s_mutex;
-  inline static std::vector<ReceivingMailbox*> s_all;
+  inline static std::vector<const ReceivingMailbox*> s_all;
 
   int udp_socket_;
-  int samples_ = -1;
-  std::atomic<int> ticks_ = -1;  ///< -1: each tick wakes the process
-  sockaddr_in address_;          ///< of this process
-  std::array<Mail, 2 * kBatch> mails_;
-  std::array<iovec, 2 * kBatch> places_{};
-  std::array<mmsghdr, 2 * kBatch> headers_{};
+  int socket_ = -1;
+  sockaddr_in address_;  ///< of this process
+  std::array<Mail, kBatch> mails_;
+  std::array<iovec, kBatch> places_{};
+  std::array<mmsghdr, kBatch> headers_{};
   std::size_t next_ = 0;  ///< of mails_
   std::size_t count_ = 0;
   Mail waiting_;  ///< the ordinary datagram that woke the thread; size 0: none
@@ -227,11 +202,6 @@ ReceivingMailbox* mailbox_of(int socket) {
 
 void Mailbox::open_for_this_process() { g_open = true; }
 
-void Mailbox::let_ticks_wait(std::int64_t period_ticks) {
-  g_period_ticks = period_ticks;
-  ReceivingMailbox::open_all_for_ticks();
-}
-
 std::uint64_t Mailbox::taken() { return g_taken; }
 
 Mailbox::EmptiedAtOnce::EmptiedAtOnce() {
@@ -245,19 +215,18 @@ MailSender::~MailSender() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-bool MailSender::put(std::uint16_t port, std::int64_t period_ticks, const std::string& datagram) {
-  const auto without = std::find_if(without_.begin(), without_.end(), [=](const Without& one) {
-    return one.port == port && one.period_ticks == period_ticks;
-  });
+bool MailSender::put(std::uint16_t port, const std::string& datagram) {
+  const auto without =
+      std::find_if(without_.begin(), without_.end(), [port](const Without& one) { return one.port == port; });
   if (without != without_.end()) {
     if (Clock::now() < without->ask_again) return false;
     without_.erase(without);
   }
   if (socket_ < 0) socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const Address to(port, period_ticks);
+  const Address to(port);
   const ssize_t sent = ::sendto(socket_, datagram.data(), datagram.size(), MSG_DONTWAIT, to.get(), to.size);
   if (sent >= 0) return true;
-  if (errno != EAGAIN) without_.push_back({port, period_ticks, Clock::now() + kAskAgain});
+  if (errno != EAGAIN) without_.push_back({port, Clock::now() + kAskAgain});
   return false;
 }
 

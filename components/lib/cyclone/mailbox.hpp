@@ -17,9 +17,6 @@ namespace constrictor::dds {
 /// datagrams that may wait into it, and the receiving thread empties it when an ordinary datagram arrives, before it
 /// passes on that one. Ordinary datagrams are ticks, heartbeats, and everything from processes that know no mailboxes.
 ///
-/// A process whose members do not step at each tick needs the ticks between only when the next tick comes at which one
-/// of them steps. It has a second mailbox for them, whose name contains the period.
-///
 /// A mailbox takes about ten datagrams. What it does not take, and what is for a process without a mailbox, is sent as
 /// an ordinary datagram. So nothing depends on mailboxes but the CPU time.
 ///
@@ -29,9 +26,6 @@ class Mailbox {
  public:
   /// From now on, each domain that this process joins has a mailbox. Cannot be undone. Any thread may call it.
   static void open_for_this_process();
-  /// From now on, ticks whose index is not a multiple of `period_ticks` (at least 2) may wait in the second mailbox of
-  /// this process. Any thread may call it, once.
-  static void let_ticks_wait(std::int64_t period_ticks);
 
   /// As long as an object of this class exists, the mailboxes of this process are emptied at once. Any thread may
   /// create it. Datagrams that are in a mailbox already are received soon after.
@@ -55,22 +49,16 @@ class MailSender {
   MailSender& operator=(const MailSender&) = delete;
   ~MailSender();
   /// False if the process that receives at this UDP port of this host has no mailbox, or if it is full.
-  [[nodiscard]] bool put(std::uint16_t port, const std::string& datagram) { return put(port, 0, datagram); }
-  /// The same with the mailbox for the ticks that are no multiples of `period_ticks`.
-  [[nodiscard]] bool put_tick(std::uint16_t port, std::int64_t period_ticks, const std::string& datagram) {
-    return put(port, period_ticks, datagram);
-  }
+  [[nodiscard]] bool put(std::uint16_t port, const std::string& datagram);
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Without {
     std::uint16_t port;
-    std::int64_t period_ticks;  ///< 0: the mailbox for samples
     Clock::time_point ask_again;
   };
-  [[nodiscard]] bool put(std::uint16_t port, std::int64_t period_ticks, const std::string& datagram);
   int socket_ = -1;
-  std::vector<Without> without_;  ///< mailboxes that were not found
+  std::vector<Without> without_;  ///< ports at which no mailbox was found
 };
 
 }  // namespace constrictor::dds

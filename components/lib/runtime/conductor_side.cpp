@@ -189,20 +189,11 @@ void ConductorSide::send_epoch(const EpochId& epoch, std::uint64_t seed) {
   members_.on_epoch(epoch, seed);
 }
 
-void ConductorSide::on_hello(const Hello& hello) {
-  constexpr std::size_t kMostPeriods = 8;
-  conductor_->on_hello(hello);
-  const std::int64_t period = hello.timing.period;
-  const bool known = std::find(periods_ticks_.begin(), periods_ticks_.end(), period) != periods_ticks_.end();
-  if (period > 1 && !known && periods_ticks_.size() < kMostPeriods) periods_ticks_.push_back(period);
-}
-
 void ConductorSide::tick(const msg::Tick& message) {
   if (recorder_) recorder_->add(message);
   save();
   {
     const dds::GatheredSends gathered;
-    if (!message.realtime && !message.final_tick) dds::GatheredSends::send_tick(message.index, periods_ticks_);
     plant_.publish_sample();
     tick_writer_.write(message);
   }

@@ -46,7 +46,7 @@ class ConductorSide : private ConductorSink {
   void publish_run_state(bool changed);
 
   // Reports of the members of this process.
-  void on_hello(const Hello& hello);
+  void on_hello(const Hello& hello) { conductor_->on_hello(hello); }
   /// Answers a Hello that is rejected, within a limit for each second.
   void refuse_hello(const Hello& hello, const std::string& reason) { refuse(hello, reason); }
   void on_ready(const Member& member) { conductor_->on_ready(member.name(), member.epoch(), member.incarnation()); }
@@ -120,8 +120,7 @@ class ConductorSide : private ConductorSink {
   std::unique_ptr<RunRecorder> recorder_;
   std::unique_ptr<Conductor> conductor_;
   RunControlAnswers control_answers_;
-  std::vector<std::int64_t> periods_ticks_;  ///< of members that do not step at each tick, without duplicates
-  std::set<std::string> ended_;              ///< members whose last status has arrived
+  std::set<std::string> ended_;  ///< members whose last status has arrived
   std::optional<HostContext::Clock::time_point> stays_until_;
   /// Answers to processes that may not take part or command, so that a flood of their messages causes no other flood.
   RateLimit strangers_;

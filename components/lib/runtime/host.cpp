@@ -89,7 +89,6 @@ class Host::Impl {
       while (members_.step()) stepped = true;  // the outputs of one member may let another one step
       const bool ticked = conductor_ && conductor_->tick();
       if (stepped || ticked) context_.note_progress();
-      members_.expect_ticks();
       if (conductor_) {
         conductor_->poll_recording();
         conductor_->publish_run_state(false);

@@ -209,7 +209,6 @@ void MemberSide::take_resume(const msg::Resume& message) {
 }
 
 void MemberSide::take_tick(const msg::Tick& tick) {
-  realtime_ = tick.realtime;
   for (auto& local : members_) {
     const std::int64_t newest = local.member->newest_tick();
     local.member->on_tick(tick);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "barrier/plant_topics.hpp"
@@ -54,7 +53,6 @@ MemberSide::MemberSide(HostContext& context, Links& links, std::vector<Component
   }
   make_endpoints();
   make_threads();
-  let_ticks_wait();
 }
 
 MemberSide::~MemberSide() = default;
@@ -66,14 +64,6 @@ void MemberSide::make_threads() {
   for (auto& local : members_) {
     if (local.member->timing().latency > 1) local.thread = std::make_unique<StepThread>([this] { links_.wake(); });
   }
-}
-
-void MemberSide::let_ticks_wait() const {
-  const auto period = [](const LocalMember& local) { return local.member->timing().period; };
-  const auto first = period(members_.front());
-  const bool same =
-      std::all_of(members_.begin(), members_.end(), [&](const auto& one) { return period(one) == first; });
-  if (!plant_ && same && first > 1) dds::Mailbox::let_ticks_wait(first);
 }
 
 void MemberSide::connect(ConductorSide& conductor) { conductor_ = &conductor; }
@@ -267,13 +257,6 @@ bool MemberSide::want_inputs() const {
   return std::any_of(members_.begin(), members_.end(), [](const auto& local) {
     return !local.ready_sent || local.member->has_due_tick() || local.member->concluding();
   });
-}
-
-void MemberSide::expect_ticks() {
-  if (plant_ || realtime_) return;
-  std::int64_t ticks = std::numeric_limits<std::int64_t>::max();
-  for (const auto& local : members_) ticks = std::min(ticks, local.member->ticks_until_due());
-  links_.expect(tick_reader_.get(), static_cast<std::size_t>(ticks));
 }
 
 bool MemberSide::all_ready() const {

@@ -54,8 +54,6 @@ class MemberSide : private MemberSink {
   /// Whether a sample of a member topic may let a member step, or get ready. Otherwise all members wait for ticks, and
   /// samples can wait for the next tick, too.
   [[nodiscard]] bool want_inputs() const;
-  /// In lock-step, no tick ends a wait for messages before the next one at which a member of this process steps.
-  void expect_ticks();
   /// False while a member has still to send Ready.
   [[nodiscard]] bool all_ready() const;
 
@@ -114,8 +112,6 @@ class MemberSide : private MemberSink {
   /// The run of this process: the launcher's, else the one that has begun; 0: none yet.
   [[nodiscard]] std::uint64_t run_id() const;
   void make_threads();
-  /// Lets ticks at which no member of this process steps wait in its mailbox.
-  void let_ticks_wait() const;
   /// Finishes the step that the member's thread has done, if any, and starts the next one.
   bool step_in_thread(LocalMember& local);
   /// Publishes the outputs of a step and reports it.
@@ -127,7 +123,6 @@ class MemberSide : private MemberSink {
   Links& links_;
   std::atomic<int> strange_hellos_{0};  ///< DDS counts them in its threads
   std::uint32_t refusers_ = 0;
-  bool realtime_ = true;  ///< the newest tick said so
   bool new_run_ = false;  ///< the plant has begun another run after this one had ended
   std::vector<LocalMember> members_;
   Member* plant_ = nullptr;
