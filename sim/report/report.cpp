@@ -31,6 +31,7 @@ Report::Report(Wiring& wiring, const Setup& setup) : Report(wiring, setup, load_
 
 Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
     : ConfiguredComponent(wiring, setup),
+      limit_(config_.limit(parse_mission(setup.mission).value_or(Mission{}).limits)),
       scenario_(setup.scenario_file.stem().string()),
       seed_(setup.seed),
       plant_limit_s_(setup.max_sim_time_s),
@@ -60,9 +61,10 @@ void Report::step(const Tick& tick) {
   journal_torques(tick);
   const auto settle_ticks = static_cast<std::int64_t>(std::llround(config_.settle_s / tick.period_s()));
   const bool settled = state_.mission_end_tick >= 0 && tick.index >= state_.mission_end_tick + settle_ticks;
-  const bool late = tick.time_s() >= config_.max_sim_time_s;
+  const bool late = tick.time_s() >= limit_.at_s;
   if (!settled && !late) return;
-  if (state_.mission_end_tick < 0) end_early(tick, fmt::format("time limit of {:g} s", config_.max_sim_time_s));
+  if (state_.mission_end_tick < 0)
+    end_early(tick, fmt::format("time limit of {:g} s ({})", limit_.at_s, limit_.source));
   write_files(tick);
   state_.finished = true;
   wiring_.request_end_of_run();
@@ -74,7 +76,7 @@ void Report::conclude(const Tick& last) {
   if (state_.mission_end_tick < 0) {
     // No component steps in the run's final tick: at the plant's time limit, the last step was one period earlier.
     const bool at_limit = plant_limit_s_ > 0 && last.time_s() + 1.5 * last.period_s() >= plant_limit_s_;
-    end_early(last, at_limit ? fmt::format("time limit of {:g} s", plant_limit_s_)
+    end_early(last, at_limit ? fmt::format("time limit of {:g} s (--max-sim-time)", plant_limit_s_)
                              : fmt::format("ended by user at {:.1f} s", last.time_s()));
   }
   write_files(last);

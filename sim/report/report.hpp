@@ -57,9 +57,9 @@ struct ReportState {
 /// the journals belong to the state, and pictures are named by tick: a restarted process leaves the same files.
 /// Pictures of the scene are drawn from saved world states when the run ends. Without an output directory it judges the
 /// mission and ends the run, but writes nothing. It ends the run `settle_s` after the end of the mission, or at
-/// `max_sim_time_s`. If a user or the plant's limit ends the run earlier, it writes the same files, and they give this
-/// end as the reason. Without ground truth (a real robot, or emulated hardware), success is the robot's own estimate,
-/// and the figures that need ground truth are unknown.
+/// `max_sim_time_s`, or later if the mission states a longer limit. If a user or the plant's limit ends the run
+/// earlier, it writes the same files, and they give this end as the reason. Without ground truth (a real robot, or
+/// emulated hardware), success is the robot's own estimate, and the figures that need ground truth are unknown.
 class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Concluding {
  public:
   Report(Wiring& wiring, const Setup& setup);
@@ -102,6 +102,7 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
     lost_.attempt([&] { journal.append(text, length); });
   }
 
+  ReportConfig::Limit limit_;
   std::string scenario_;  // name of the scenario file, without folder and ending
   std::uint64_t seed_;
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never

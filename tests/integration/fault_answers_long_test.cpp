@@ -8,8 +8,8 @@ struct Row {
   const char* name;
   const char* fault;
   bool succeeds;
-  double from_s, to_s;                        ///< [s] simulated time at which the mission ends
-  const char* reason = "time limit of 60 s";  ///< of a failure
+  double from_s, to_s;  ///< [s] simulated time at which the mission ends
+  const char* reason = "time limit of 60 s (max_sim_time_s of report)";  ///< of a failure
 };
 
 class FaultAnswer : public MissionRun, public ::testing::WithParamInterface<Row> {};

@@ -96,7 +96,7 @@ TEST_F(Package, IsInstalledRunAndRemoved) {
                   environment);
   EXPECT_EQ(mission.wait(60s), exit_status::kFailed) << mission.output() << mission.errors();
   const auto report = nlohmann::json::parse(std::ifstream(dir_.path() / "report/report.json"), nullptr, false);
-  EXPECT_EQ(report["reason"], "time limit of 4 s");
+  EXPECT_EQ(report["reason"], "time limit of 4 s (--max-sim-time)");
   EXPECT_EQ(report["processes"].size(), 2u);
 
   // The Python package that was installed, not that of the build tree.

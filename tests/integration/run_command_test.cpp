@@ -186,8 +186,8 @@ TEST_F(RunCommand, AStoppedLauncherDoesNotStopTheRun) {
 TEST_F(RunCommand, TheExitStatusIsOneIfTheMissionDoesNotSucceed) {
   Process launcher = run(100'000, "r", {"--max-sim-time", "20", "--pace", "20x"});
   EXPECT_EQ(launcher.wait(30s), exit_status::kFailed) << launcher.output();
-  EXPECT_EQ(report("r")["reason"], "time limit of 20 s");
-  EXPECT_NE(launcher.output().find("mission did not succeed (time limit of 20 s)"), std::string::npos)
+  EXPECT_EQ(report("r")["reason"], "time limit of 20 s (--max-sim-time)");
+  EXPECT_NE(launcher.output().find("mission did not succeed (time limit of 20 s (--max-sim-time))"), std::string::npos)
       << launcher.output();
   EXPECT_NEAR(report("r").value("ticks", 0.0), 1000, 1);  // members take no step in the final tick
 }

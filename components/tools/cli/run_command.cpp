@@ -230,7 +230,7 @@ class Launcher {
       outcome.error = supervisor_.failure();
       status = supervisor_.failure_status();
     } else if (options_.max_sim_time_s > 0 && view.sim_time_s() > options_.max_sim_time_s - 3 * view.period_s) {
-      outcome.end_reason = fmt::format("time limit of {:g} s", options_.max_sim_time_s);
+      outcome.end_reason = fmt::format("time limit of {:g} s (--max-sim-time)", options_.max_sim_time_s);
     }
     if (options_.record) outcome.recording = recording_report(report_dir_);
     if (!outcome.recording.is_null()) display_.print(outcome.recording["text"].get<std::string>());

@@ -9,63 +9,16 @@
 
 #include "barrier/local_run.hpp"
 #include "component/data_path.hpp"
-#include "support/temporary_folder.hpp"
-#include "synthetic_run.hpp"
+#include "report_of.hpp"
 
 namespace constrictor {
 namespace {
 
 using nlohmann::json;
+using testing::Outcome;
+using testing::report_of;
 using testing::Story;
-using testing::TemporaryFolder;
 using testing::travel_m;
-
-struct Outcome {
-  json mission;
-  std::map<std::string, std::string> files;
-  std::int64_t last_tick = 0;
-};
-
-/// An end of the run before the mission's end.
-struct EarlyEnd {
-  std::int64_t end_tick = -1;  ///< last tick that the report steps; -1: the report ends the run
-  double plant_limit_s = 0.0;
-};
-
-Outcome report_of(const Story& story, const std::vector<std::int64_t>& restarts = {},
-                  const std::string& configuration = {}, EarlyEnd early = {}) {
-  const TemporaryFolder folder;
-  const TemporaryFolder configurations;
-  Setup setup;
-  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  setup.output_dir = folder.path() / "run";
-  setup.max_sim_time_s = early.plant_limit_s;
-  setup.scenario_file = "/somewhere/blind_story.yaml";  // only its name is used, and only without ground truth
-  setup.seed = 12;
-  std::map<std::string, std::filesystem::path> config_files;
-  if (!configuration.empty()) {
-    report::replace_file(configurations.path() / "report.yaml", configuration);
-    config_files["report"] = configurations.path() / "report.yaml";
-  }
-  auto members = testing::story_members(story);
-  members.push_back(make_report_factory());
-  LocalRun run(members, setup, config_files);
-  for (const std::int64_t tick : restarts) {
-    run.advance(tick - run.tick());
-    run.restart("report");
-  }
-  if (early.end_tick >= 0) {
-    run.advance(early.end_tick + 1 - run.tick());
-    run.end_run();
-  }
-  run.advance(2000);
-  EXPECT_TRUE(run.ended());
-  Outcome outcome;
-  outcome.files = folder.contents();
-  outcome.last_tick = run.tick();
-  if (outcome.files.count("run/mission.json") > 0) outcome.mission = json::parse(outcome.files.at("run/mission.json"));
-  return outcome;
-}
 
 TEST(Report, FiguresAreThoseOfTheScript) {
   const Story story;
@@ -159,18 +112,6 @@ TEST(Report, AcceptsAnotherOrderOfAnExternalPlanner) {
   EXPECT_EQ(report_of(story).mission["success"], true);
 }
 
-TEST(Report, EndsAtTheTimeLimit) {
-  Story story;
-  story.mission_end_tick = 1'000'000;
-  const Outcome outcome =
-      report_of(story, {}, "max_sim_time_s: 9.0\nsettle_s: 2.0\ntorque_decimation_ticks: 5\ntorque_window_s: 30\n");
-  EXPECT_EQ(outcome.mission["ticks"], 450);
-  EXPECT_EQ(outcome.mission["success"], false);
-  EXPECT_EQ(outcome.mission["mission"], "unfinished");
-  EXPECT_EQ(outcome.mission["reason"], "time limit of 9 s");
-  EXPECT_TRUE(outcome.files.contains("run/snapshots/0000450_camera.png")) << "the figure shows the end of the run";
-}
-
 TEST(Report, WritesEverythingWhenAUserEndsTheRun) {
   const Outcome outcome = report_of({}, {}, {}, {.end_tick = 300});
   EXPECT_EQ(outcome.mission["success"], false);
@@ -183,11 +124,6 @@ TEST(Report, WritesEverythingWhenAUserEndsTheRun) {
   EXPECT_TRUE(outcome.files.contains("run/figure.png"));
   for (const std::string picture : {"camera", "processed", "scene"})
     EXPECT_TRUE(outcome.files.contains("run/snapshots/0000300_" + picture + ".png")) << picture;
-}
-
-TEST(Report, NamesThePlantsTimeLimit) {
-  const Outcome outcome = report_of({}, {}, {}, {.end_tick = 300, .plant_limit_s = 6.02});
-  EXPECT_EQ(outcome.mission["reason"], "time limit of 6.02 s");
 }
 
 TEST(Report, NamesThePlannersReason) {
