@@ -48,6 +48,7 @@ struct MissionMemory {
   double contradiction_s = 0.0;  ///< time for which navigation's report about a held object has contradicted the state
   double line_ended_s = -1e9;    ///< active time of the last end of the line
   double turned_back_s = -1e9;   ///< active time at which turning back to the line last ended without success
+  std::uint8_t vain_turns = 0;   ///< how often turning back with the present object has ended without success
   double zone_seen_s = -1e9;     ///< active time at which a zone of any colour was last seen
   std::uint64_t goals = 0;       ///< number of requests so far
   std::uint16_t object_index = 0;    ///< the first object of the sequence that is neither delivered nor put aside
@@ -96,7 +97,7 @@ struct MissionMemory {
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
             trail, reason, standstill, sweep, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
             dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind,
-            refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried);
+            refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried, vain_turns);
   }
 };
 

@@ -125,16 +125,16 @@ std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& input
   if (const msg::MapObject* landmark = searches() ? wanted_landmark(inputs) : nullptr) {
     const double x_m = landmark->x_m - pose.x_m, y_m = landmark->y_m - pose.y_m;
     const double distance_m = std::hypot(x_m, y_m);
-    if (distance_m > 0.3 && (distance_m < config_.remembered_range_m || memory_.trail.empty()))
+    if (distance_m > 0.3 && (distance_m < config_.remembered_range_m || sweeps() || memory_.trail.empty()))
       return wrap_angle(std::atan2(y_m, x_m) - course_rad(pose));
   }
+  if (sweeps() && memory_.sweep.leads()) return wrap_angle(memory_.sweep.direction_rad(pose) - course_rad(pose));
   const auto heading_rad = memory_.trail.heading_rad(pose, outbound(), [&](double x_m, double y_m) {
     const double room_m = holding() ? config_.carry_room_m : config_.room_m;
     return !inputs.map || is_free_way(*inputs.map, {pose.x_m, pose.y_m}, {x_m, y_m}, room_m);
   });
-  if (heading_rad) return wrap_angle(*heading_rad - course_rad(pose));
-  if (!sweeps() || !memory_.sweep.leads()) return std::nullopt;
-  return wrap_angle(memory_.sweep.direction_rad(pose) - course_rad(pose));
+  if (!heading_rad) return std::nullopt;
+  return wrap_angle(*heading_rad - course_rad(pose));
 }
 
 bool MissionPlanner::leads_wanted_way(const PlannerInputs& inputs) const {
@@ -192,7 +192,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
       parameters.line_colour = config_.line_colour;
       memory_.direction = side_for(wanted_turn_rad(inputs).value_or(1.0), inputs);
       parameters.direction = memory_.direction;
-      parameters.timeout_s = scaled_s(config_.turn_round_s);
+      parameters.timeout_s = longest_turn_s();
       break;
     }
     case msg::kTaskNone:

@@ -97,10 +97,13 @@ void MissionPlanner::enter(MissionState state) {
     constexpr double kAnew_s = 10.0;
     if (memory_.active_s - memory_.searched_s > kAnew_s) {
       memory_.searches = memory_.backed_off = 0;
-      memory_.sweep.end();
+      if (!leaves_line()) memory_.sweep.end();  // otherwise it would begin anew whenever a line has led the robot away
     }
   }
-  if (memory_.state == kTurnBack && state == kSearchLine) memory_.turned_back_s = memory_.active_s;
+  if (memory_.state == kTurnBack && state == kSearchLine) {
+    memory_.turned_back_s = memory_.active_s;
+    memory_.vain_turns = static_cast<std::uint8_t>(std::min(memory_.vain_turns + 1, 100));
+  }
   if (state != kFollowLine) memory_.wrong_way = false;
   if (state == kGrasp) {
     memory_.direction_known = true;
@@ -111,6 +114,7 @@ void MissionPlanner::enter(MissionState state) {
     memory_.released_tick = -1;
   } else {
     memory_.standstill.end();
+    memory_.vain_turns = 0;
   }
   if (state != kPregrasp && state != kGrasp) memory_.object_handle = 0;
   memory_.state = state;
@@ -285,8 +289,9 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
       if (zone) return kDrop;
       if (!line) return std::nullopt;
       if (leads_wanted_way(inputs)) return kTransport;
-      // Turning back helps only where the line leads to the zone, and not again where it has just failed.
-      if (remembered_m(inputs) < config_.remembered_range_m ||
+      // Turning back helps only where the line leads to the zone. It is not repeated where it has just failed, nor
+      // with an object with which it has failed twice.
+      if (leaves_line() || remembered_m(inputs) < config_.remembered_range_m ||
           memory_.active_s - memory_.turned_back_s < scaled_s(config_.any_way_s))
         return std::nullopt;
       return recover(kTurnBack);
@@ -339,8 +344,7 @@ std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& in
   }
   if (memory_.state == kApproachAnew)
     return in_state_s > config_.approach_anew_s ? std::optional(row.failed) : std::nullopt;
-  if (turns(memory_.state))
-    return in_state_s > scaled_s(config_.turn_round_s) ? std::optional(row.failed) : std::nullopt;
+  if (turns(memory_.state)) return in_state_s > longest_turn_s() ? std::optional(row.failed) : std::nullopt;
   const bool follows = memory_.state == kFollowLine || memory_.state == kTransport;
   const bool finds = memory_.state == kSearchObject;
   const bool at_end = finds && config_.zones_at == kZonesAnywhere;

@@ -201,7 +201,11 @@ class MissionPlanner {
   [[nodiscard]] bool stands_still(const PlannerInputs& inputs);
   /// Chooses the place to search at next, for a robot with an object that knows no line.
   void lead_sweep(const PlannerInputs& inputs);
-  [[nodiscard]] bool sweeps() const { return holding() && searches() && memory_.trail.empty(); }
+  [[nodiscard]] bool sweeps() const { return holding() && searches() && (memory_.trail.empty() || leaves_line()); }
+  /// Whether turning back to the line with the object was in vain so often that the robot searches without the line.
+  [[nodiscard]] bool leaves_line() const { return memory_.vain_turns >= 2; }
+  /// [s] limit of a turn.
+  [[nodiscard]] double longest_turn_s() const { return holding() ? config_.turn_back_s : config_.turn_round_s; }
   [[nodiscard]] bool searches() const { return row_of(memory_.state).task == msg::kTaskNone; }
   [[nodiscard]] bool holding() const { return row_of(memory_.state).holding; }
   /// Whether the state wants to follow the line outbound. Where zones may be anywhere, this is the direction that is

@@ -91,6 +91,8 @@ struct PlannerConfig : ParameterSet {
                            "The planner ignores the line for this time after its end");
   double turn_round_s =
       add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, kAtStart, "Longest time of turning back after a drop");
+  double turn_back_s = add(turn_back_s, "turn_back_s", 40.0, "s", {1, 600}, kAtStart,
+                           "Longest time of turning back to the line with an object, which takes a circle");
   double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, kAtStart,
                                 "A search for the line counts as a recovery after this time");
   double task_timeout_s = add(task_timeout_s, "task_timeout_s", 240.0, "s", {1, 3600}, kAtStart,

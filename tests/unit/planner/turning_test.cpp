@@ -42,7 +42,7 @@ TEST_F(PlannerTest, DoesNotTurnBackAgainAtOnceIfThatWasInVain) {
   const double from_s = time_s_;
   while (memory_.state == kTurnBack && time_s_ < from_s + 100.0) step();
   ASSERT_EQ(memory_.state, kSearchLine);
-  EXPECT_NEAR(time_s_ - from_s, config_.turn_round_s * config_.holding_factor, 1.0);
+  EXPECT_NEAR(time_s_ - from_s, config_.turn_back_s, 1.0);
   const double since_s = time_s_;
   while (memory_.state == kSearchLine && time_s_ < since_s + 100.0) {
     pose_.y_m = 0.4 * std::sin(time_s_);  // it is not caught
@@ -50,6 +50,46 @@ TEST_F(PlannerTest, DoesNotTurnBackAgainAtOnceIfThatWasInVain) {
   }
   EXPECT_EQ(memory_.state, kTurnBack);
   EXPECT_NEAR(time_s_ - since_s, config_.any_way_s * config_.holding_factor, 1.0);
+}
+
+// A robot at the wrong end of a short line turned back in vain every 77 s until the mission's time was over.
+TEST_F(PlannerTest, SearchesWithoutTheLineAfterTurningBackWasInVainTwice) {
+  find_line();
+  fetch(msg::kColourGreen);
+  face(0.2);
+  see_line(true);
+  int turns = 0;
+  double since_s = time_s_, farthest_m = 0.0;
+  for (MissionState before = memory_.state; time_s_ < since_s + 400.0; before = memory_.state) {
+    if (memory_.state == kSearchLine && turns == 2) {
+      // It drives as requested.
+      const bool turn = last_.task == msg::kTaskRotate;
+      const double side = last_.parameters.direction == msg::kDirectionLeft    ? 1.0
+                          : last_.parameters.direction == msg::kDirectionRight ? -1.0
+                                                                               : 0.0;
+      const double yaw_rad = pose_.yaw_rad + side * (turn ? 0.006 : 0.003);
+      face(yaw_rad);
+      pose_.x_m += 0.005 * std::cos(yaw_rad);
+      pose_.y_m += 0.005 * std::sin(yaw_rad);
+      farthest_m = std::max(farthest_m, std::abs(pose_.y_m));
+      see_line(std::cos(yaw_rad) > 0.6);  // when it leads to the objects
+    } else {
+      pose_.y_m = 0.2 * std::sin(time_s_);  // it is not caught
+    }
+    step();
+    if (memory_.state == kTurnBack && before != kTurnBack) ++turns;
+    if (turns < 2) since_s = time_s_;
+    ASSERT_TRUE(memory_.state == kSearchLine || memory_.state == kTurnBack) << name_of(memory_.state);
+  }
+  EXPECT_EQ(turns, 2);
+  EXPECT_GT(farthest_m, 3.0) << "the square grows";
+
+  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  steps(4);
+  ASSERT_EQ(memory_.state, kDrop);
+  status_.carrying = false;
+  step({event(msg::kEventObjectGraspLost)});
+  EXPECT_EQ(memory_.vain_turns, 0) << "the next load begins anew";
 }
 
 // An object that had fallen over was taken for a second zone. The robot dropped the object there, and the mission was
