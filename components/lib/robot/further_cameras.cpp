@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "constrictor/messages.hpp"
+#include "robot/camera_view.hpp"
 
 namespace constrictor {
 namespace {
@@ -14,8 +14,6 @@ namespace {
 constexpr std::size_t kMost = msg::kMaxCameras - 1;  // without the head's
 constexpr std::int64_t kLeastWidth = 32;             // [pixel] perception refuses smaller images
 constexpr std::int64_t kLeastHeight = 24;            // [pixel]
-constexpr double kLeastAboveGround_m = 0.02;
-constexpr double kLeastGround_rad = 0.05;  // angle below the horizon that must be in view
 
 std::string read_name(Configuration& camera, const std::vector<CameraModel>& before) {
   std::string name = camera.text("name");
@@ -27,28 +25,6 @@ std::string read_name(Configuration& camera, const std::vector<CameraModel>& bef
   return name;
 }
 
-void read_place(Configuration& camera, const RobotModel& robot, CameraModel& model) {
-  const std::vector<double> position = camera.numbers("position_m", {-1.0, 1.0}, 3, 3);
-  model.p_HC = {position[0], position[1], position[2]};
-  const double least_z_m = kLeastAboveGround_m - robot.module_radius_m;
-  if (model.p_HC.z() < least_z_m) {
-    throw camera.error("position_m",
-                       fmt::format("found z = {:.3g} m, accepted {:.3g} m or more: the ground is {} m below the "
-                                   "centre of the module",
-                                   model.p_HC.z(), least_z_m, robot.module_radius_m));
-  }
-  // The module is a capsule about its x axis.
-  const double half_m = 0.5 * robot.module_length_m;
-  const Eigen::Vector3d on_axis(std::clamp(model.p_HC.x(), -half_m, half_m), 0.0, 0.0);
-  const double from_axis_m = (model.p_HC - on_axis).norm();
-  if (from_axis_m <= robot.module_radius_m) {
-    throw camera.error("position_m",
-                       fmt::format("found a place {:.3g} m from the axis of the module, accepted more than "
-                                   "{} m (module.radius_m): the module hides everything else",
-                                   from_axis_m, robot.module_radius_m));
-  }
-}
-
 CameraModel read_further_camera(Configuration camera, const RobotModel& robot, const std::vector<CameraModel>& before) {
   CameraModel model = robot.camera;  // period, latency, and the defaults of the optics
   model.name = read_name(camera, before);
@@ -57,14 +33,9 @@ CameraModel read_further_camera(Configuration camera, const RobotModel& robot, c
   model.width = static_cast<int>(camera.integer("width", kLeastWidth, 4096, model.width));
   model.height = static_cast<int>(camera.integer("height", kLeastHeight, 4096, model.height));
   model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8}, model.horizontal_fov_rad);
-  read_place(camera, robot, model);
+  read_camera_place(camera, robot, model);
   model.yaw_rad = camera.number("yaw_rad", {-std::numbers::pi, std::numbers::pi}, 0.0);
-  model.tilt_rad = camera.number("tilt_rad", {-1.5, 1.5});
-  const double least_tilt_rad = kLeastGround_rad - std::atan(0.5 * model.height / model.focal_pixels());
-  if (model.tilt_rad < least_tilt_rad) {
-    throw camera.error("tilt_rad", fmt::format("found {}, accepted {:.3f} or more: no ground would be in view",
-                                               model.tilt_rad, least_tilt_rad));
-  }
+  read_camera_tilt(camera, model);
   camera.finish();
   return model;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "configuration/configuration.hpp"
+#include "robot/camera_view.hpp"
 #include "robot/further_cameras.hpp"
 
 namespace constrictor {
@@ -38,14 +39,13 @@ JointModel read_joint(Configuration& joints) {
   return joint;
 }
 
-CameraModel read_camera(Configuration camera) {
+CameraModel read_camera(Configuration camera, const RobotModel& robot) {
   CameraModel model;
   model.width = static_cast<int>(camera.integer("width", 16, 4096));
   model.height = static_cast<int>(camera.integer("height", 16, 4096));
   model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8});
-  const std::vector<double> position = camera.numbers("position_m", {-1.0, 1.0}, 3, 3);
-  model.p_HC = {position[0], position[1], position[2]};
-  model.tilt_rad = camera.number("tilt_rad", {-1.5, 1.5});
+  read_camera_place(camera, robot, model);
+  read_camera_tilt(camera, model);
   model.period_ticks = static_cast<int>(camera.integer("period_ticks", 1, 1000));
   model.latency_ticks = static_cast<int>(camera.integer("latency_ticks", 1, 100));
   camera.finish();
@@ -111,7 +111,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.imu = imu.flag("present", true);
   imu.finish();
 
-  robot.camera = read_camera(root.section("camera"));
+  robot.camera = read_camera(root.section("camera"), robot);
   robot.further_cameras = read_further_cameras(root, robot);
   read_noise(root.section("noise", false), robot);
   root.finish();

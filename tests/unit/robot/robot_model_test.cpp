@@ -117,6 +117,29 @@ TEST(RobotModel, ErrorNamesTheMistake) {
             "colour: found an unknown key, accepted the");
 }
 
+TEST(RobotModel, ACameraThatSeesNoGroundIsRefused) {
+  EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3", "  tilt_rad: -1.0"),
+            "camera.tilt_rad: found -1, accepted -0.594 or more: no ground would be in view");
+  EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3", "  tilt_rad: -0.5"), "");
+  EXPECT_EQ(error_of_changed_file("radius_m: 0.035", "radius_m: 0.06"),
+            "camera.position_m: found a place 0.0523 m from the axis of the module, accepted more than 0.06 m "
+            "(module.radius_m): the module hides everything else");
+  EXPECT_EQ(
+      error_of_changed_file("position_m: [0.06, 0.0, 0.05]", "position_m: [0.1, 0.0, -0.03]"),
+      "camera.position_m: found z = -0.03 m, accepted -0.015 m or more: the ground is 0.035 m below the centre of "
+      "the module");
+}
+
+TEST(RobotModel, EveryShippedRobotIsAccepted) {
+  std::size_t robots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kRobots)) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_NO_THROW((void)load_robot(entry.path())) << entry.path();
+    ++robots;
+  }
+  EXPECT_GE(robots, 6U);
+}
+
 TEST(JointLimits, RejectUnacceptableSetpoints) {
   const JointModel joint;
   EXPECT_TRUE(is_acceptable(joint, {0.5, 100.0, 100.0}));
