@@ -16,6 +16,29 @@ double front_arm_m(const RobotModel& robot, std::size_t first_base_joint) {
   return static_cast<double>(first_base_joint + 1) * robot.module_length_m;
 }
 
+/// Why these joints cannot form the base of a U, which opens to either side, and hold an object; empty: they can.
+std::string weak_joint_refusal(const RobotModel& robot, const std::vector<std::size_t>& base,
+                               const GripConfig& config) {
+  for (const std::size_t j : base) {
+    const JointModel& joint = robot.joints[j];
+    const std::string refusal = fmt::format("the robot {} cannot grasp: joints.", robot.name);
+    constexpr const char* kOpenU = "to bend to the open U";
+    if (joint.max_rad < config.base_angle_rad) {
+      return fmt::format("{}max_rad: found {:g}, accepted at least {:.4g} {}", refusal, joint.max_rad,
+                         config.base_angle_rad, kOpenU);
+    }
+    if (-joint.min_rad < config.base_angle_rad) {
+      return fmt::format("{}min_rad: found {:g}, accepted at most {:.4g} {}", refusal, joint.min_rad,
+                         -config.base_angle_rad, kOpenU);
+    }
+    if (joint.max_torque_nm < config.hold_torque_nm) {
+      return fmt::format("{}max_torque_nm: found {:g}, accepted at least {:.3g} to hold an object", refusal,
+                         joint.max_torque_nm, config.hold_torque_nm);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 int middle_base_joint(const RobotModel& robot, int base_joints) {
@@ -55,6 +78,7 @@ GripSense::GripSense(const RobotModel& robot, const GripConfig& config)
   first_ = static_cast<std::size_t>(first);
   for (int i = first; i < std::min(joints, end); ++i) base_joints_.push_back(yaw_joints_[static_cast<std::size_t>(i)]);
 
+  refusal_ = weak_joint_refusal(robot, base_joints_, config);
   if (named) return;
   const double arm_m = front_arm_m(robot, base_joints_.front());
   if (end >= joints) {

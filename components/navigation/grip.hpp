@@ -52,7 +52,8 @@ class GripSense {
   GripSense(const RobotModel& robot, const GripConfig& config);
 
   /// Why no U of this body can hold an object, for people; empty: it can. The body then has no room for a U with an arm
-  /// that drives and steers in front of it. A base that the configuration names is taken as it is.
+  /// that drives and steers in front of it, or its joints do not bend to the open U or have less than the torque that
+  /// holds an object. The place of a base that the configuration names is taken as it is.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
   /// Posture of the open U towards `side` (+1 left, -1 right), by yaw joint.

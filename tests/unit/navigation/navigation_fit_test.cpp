@@ -92,6 +92,52 @@ TEST(NavigationFit, ABodyWithoutRoomForTheArmsOfAUCannotGrasp) {
   EXPECT_NE(refusal_of(yaw_only).find("accepted at least 0.75 m"), std::string::npos) << refusal_of(yaw_only);
 }
 
+/// `mamba` with joints of this range, the same to either side, and this torque.
+RobotModel robot_with_joints(double range_rad, double max_torque_nm, std::size_t modules = 24) {
+  RobotModel robot = robot_with(modules);
+  for (JointModel& joint : robot.joints) {
+    joint.min_rad = -range_rad;
+    joint.max_rad = range_rad;
+    joint.max_torque_nm = max_torque_nm;
+  }
+  return robot;
+}
+
+TEST(NavigationFit, JointsThatCannotFormAUCannotGrasp) {
+  EXPECT_EQ(refusal_of(robot_with_joints(0.5, 6.0)),
+            "the robot mamba cannot grasp: joints.max_rad: found 0.5, accepted at least 1.047 to bend to the open U");
+  EXPECT_EQ(refusal_of(robot_with_joints(1.047, 6.0)), "");
+  RobotModel one_sided = robot_with_joints(1.5, 6.0);
+  for (JointModel& joint : one_sided.joints) joint.min_rad = -0.5;
+  EXPECT_EQ(refusal_of(one_sided),
+            "the robot mamba cannot grasp: joints.min_rad: found -0.5, accepted at most -1.047 to bend to the open U")
+      << "an object may lie on either side";
+  // The base of more joints bends each of them less.
+  RobotModel yaw_only = robot_with_joints(0.6, 6.0);
+  for (JointModel& joint : yaw_only.joints) joint.axis = JointAxis::kYaw;
+  EXPECT_EQ(refusal_of(yaw_only), "");
+  // The range of the pitch joints does not matter.
+  RobotModel stiff = robot_with(24);
+  for (JointModel& joint : stiff.joints) joint.max_rad = joint.axis == JointAxis::kYaw ? joint.max_rad : 0.3;
+  EXPECT_EQ(refusal_of(stiff), "");
+}
+
+TEST(NavigationFit, JointsThatAreTooWeakToHoldAnObjectCannotGrasp) {
+  EXPECT_EQ(refusal_of(robot_with_joints(1.5, 1.0)),
+            "the robot mamba cannot grasp: joints.max_torque_nm: found 1, accepted at least 1.5 to hold an object");
+  for (const std::size_t modules : {16U, 24U, 28U, 32U, 40U, 64U})
+    EXPECT_EQ(refusal_of(robot_with_joints(1.5, 1.5, modules)), "") << modules << " modules";
+  GripConfig named;
+  named.base_first_joint = 5;
+  const RobotModel weak = robot_with_joints(1.5, 1.0);
+  EXPECT_NE(GripSense(weak, named).refusal(), "") << "where the base lies makes its joints no stronger";
+}
+
+TEST(NavigationFit, EveryShippedRobotCanGrasp) {
+  for (const char* robot : {"mamba", "mamba_mx106", "mamba_no_skin", "mamba_two_cameras", "mamba_yaw_only", "serpens"})
+    EXPECT_EQ(refusal_of(load_robot(data_path(std::string("components/lib/robot/") + robot + ".yaml"))), "") << robot;
+}
+
 /// The error of a navigation that gets this mission, or "" if it accepts it.
 std::string error_of(const std::string& robot_file, const std::string& mission) {
   Setup setup;
