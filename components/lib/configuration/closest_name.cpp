@@ -6,6 +6,8 @@
 namespace constrictor {
 namespace {
 
+constexpr std::size_t kLongestName = 64;  // the comparison takes time in proportion to the product of the lengths
+
 char lower(char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); }
 
 /// Number of letters to change, insert, delete or swap with the next one (optimal string alignment distance).
@@ -27,7 +29,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string closest_name(std::string_view name, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongestName = 64;  // the comparison takes time in proportion to the product of the lengths
   if (name.size() > kLongestName) return {};
   std::string best;
   std::size_t fewest = 0;
@@ -41,6 +42,15 @@ std::string closest_name(std::string_view name, const std::vector<std::string>& 
   const auto longer = std::find_if(candidates.begin(), candidates.end(),
                                    [&](const std::string& candidate) { return candidate.starts_with(name); });
   return longer == candidates.end() ? best : *longer;
+}
+
+bool is_slip_of(std::string_view found, std::string_view meant) {
+  constexpr std::size_t kShortest = 4;  // a shorter name with another letter is another name, as x_m and y_m
+  constexpr std::size_t kShortestBeginning = 3;
+  if (std::max(found.size(), meant.size()) > kLongestName) return false;
+  const bool begins = found.starts_with(meant) || meant.starts_with(found);
+  if (begins && std::min(found.size(), meant.size()) >= kShortestBeginning) return true;
+  return std::max(found.size(), meant.size()) >= kShortest && distance(found, meant) <= 1;
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {

@@ -126,12 +126,9 @@ Configuration::Configuration(std::shared_ptr<YAML::Node> node, std::string file,
 
 Configuration Configuration::load(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) {
-    throw ConfigurationError(fmt::format("{}: found no readable file, accepted a YAML file", file.string()));
-  }
   std::ostringstream text;
   text << stream.rdbuf();
-  if (stream.bad() || (text.fail() && stream.peek() != std::ifstream::traits_type::eof())) {
+  if (!stream.is_open() || stream.bad() || (text.fail() && stream.peek() != std::ifstream::traits_type::eof())) {
     throw ConfigurationError(fmt::format("{}: found no readable file, accepted a YAML file", file.string()));
   }
   return parse(text.str(), file.string());
@@ -151,7 +148,7 @@ double Configuration::number(std::string_view key, Range accepted, std::optional
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
   if (const auto value = parse_finite(node, accepted)) return *value;
-  throw error(key, fmt::format("found {}, accepted {}", describe(node), describe(accepted)));
+  throw refusal(key, node, describe(accepted));
 }
 
 std::int64_t Configuration::integer(std::string_view key, std::int64_t min, std::int64_t max,
@@ -161,16 +158,15 @@ std::int64_t Configuration::integer(std::string_view key, std::int64_t min, std:
   if (!node.IsDefined() && fallback) return *fallback;
   const auto value = parse_number<std::int64_t>(node);
   if (value && *value >= min && *value <= max) return *value;
-  throw error(key, fmt::format("found {}, accepted a whole number {} to {}", describe(node), min, max));
+  throw refusal(key, node, fmt::format("a whole number {} to {}", min, max));
 }
 
 bool Configuration::flag(std::string_view key, std::optional<bool> fallback) {
   known_.emplace(key);
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
-  if (node.IsScalar() && node.Scalar() == "true") return true;
-  if (node.IsScalar() && node.Scalar() == "false") return false;
-  throw error(key, fmt::format("found {}, accepted true or false", describe(node)));
+  if (node.IsScalar() && (node.Scalar() == "true" || node.Scalar() == "false")) return node.Scalar() == "true";
+  throw refusal(key, node, "true or false");
 }
 
 std::string Configuration::text(std::string_view key, const std::vector<std::string>& choices,
@@ -179,7 +175,7 @@ std::string Configuration::text(std::string_view key, const std::vector<std::str
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
   if (node.IsScalar() && is_choice(node.Scalar(), choices)) return node.Scalar();
-  throw error(key, fmt::format("found {}, accepted {}", describe(node), describe(choices)));
+  throw refusal(key, node, describe(choices));
 }
 
 std::vector<double> Configuration::numbers(std::string_view key, Range accepted, std::size_t min_count,
@@ -187,13 +183,10 @@ std::vector<double> Configuration::numbers(std::string_view key, Range accepted,
   known_.emplace(key);
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
-  const std::string wanted =
-      min_count == max_count
-          ? fmt::format("a list of {} numbers, each {}", min_count, describe(accepted))
-          : fmt::format("a list of {} to {} numbers, each {}", min_count, max_count, describe(accepted));
-  if (!node.IsSequence() || node.size() < min_count || node.size() > max_count) {
-    throw error(key, fmt::format("found {}, accepted {}", describe(node), wanted));
-  }
+  const std::string count =
+      min_count == max_count ? std::to_string(min_count) : fmt::format("{} to {}", min_count, max_count);
+  if (!node.IsSequence() || node.size() < min_count || node.size() > max_count)
+    throw refusal(key, node, fmt::format("a list of {} numbers, each {}", count, describe(accepted)));
   std::vector<double> values;
   values.reserve(node.size());
   for (std::size_t i = 0; i < node.size(); ++i) {
@@ -212,9 +205,7 @@ std::vector<std::string> Configuration::texts(std::string_view key, const std::v
   known_.emplace(key);
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
-  if (!node.IsSequence()) {
-    throw error(key, fmt::format("found {}, accepted a list, each {}", describe(node), describe(choices)));
-  }
+  if (!node.IsSequence()) throw refusal(key, node, "a list, each " + describe(choices));
   std::vector<std::string> values;
   for (std::size_t i = 0; i < node.size(); ++i) {
     if (!node[i].IsScalar() || !is_choice(node[i].Scalar(), choices)) {
@@ -229,10 +220,8 @@ std::vector<std::string> Configuration::texts(std::string_view key, const std::v
 Configuration Configuration::section(std::string_view key, bool required) {
   known_.emplace(key);
   const YAML::Node node = value_of(*node_, key);
-  if (!present(node)) {
-    if (required) throw error(key, fmt::format("found {}, accepted a map", describe(node)));
-    return {std::make_shared<YAML::Node>(YAML::NodeType::Map), file_, key_path(path_, key)};
-  }
+  if (!present(node) && required) throw refusal(key, node, "a map");
+  if (!present(node)) return {std::make_shared<YAML::Node>(YAML::NodeType::Map), file_, key_path(path_, key)};
   return {std::make_shared<YAML::Node>(node), file_, key_path(path_, key)};
 }
 
@@ -240,7 +229,7 @@ std::vector<Configuration> Configuration::list(std::string_view key, bool requir
   known_.emplace(key);
   const YAML::Node node = value_of(*node_, key);
   if (!present(node) && !required) return {};
-  if (!node.IsSequence()) throw error(key, fmt::format("found {}, accepted a list of maps", describe(node)));
+  if (!node.IsSequence()) throw refusal(key, node, "a list of maps");
   std::vector<Configuration> items;
   for (std::size_t i = 0; i < node.size(); ++i) {
     const std::string path = fmt::format("{}[{}]", key_path(path_, key), i);
@@ -271,6 +260,22 @@ void Configuration::finish() const {
     throw located(file_, line_of(entry.first), key_path(path_, key), "an unknown key",
                   accepted + did_you_mean(key, {known_.begin(), known_.end()}));
   }
+}
+
+ConfigurationError Configuration::refusal(std::string_view key, const YAML::Node& node,
+                                          const std::string& accepted) const {
+  return error(key, fmt::format("found {}, accepted {}{}", describe(node), accepted,
+                                node.IsDefined() ? std::string() : misspelt(key)));
+}
+
+std::string Configuration::misspelt(std::string_view key) const {
+  if (!node_->IsMap()) return {};
+  for (const auto& entry : *node_) {
+    const std::string& other = entry.first.Scalar();
+    if (!known_.contains(other) && is_slip_of(other, key))
+      return fmt::format("; line {} has a key '{}': rename it if it is meant", line_of(entry.first), other);
+  }
+  return {};
 }
 
 ConfigurationError Configuration::error(std::string_view key, const std::string& found_and_accepted) const {

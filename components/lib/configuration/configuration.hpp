@@ -72,6 +72,13 @@ class Configuration {
 
  private:
   Configuration(std::shared_ptr<YAML::Node> node, std::string file, std::string path);
+  /// The error about the value of a key, or that it is missing.
+  [[nodiscard]] ConfigurationError refusal(std::string_view key, const YAML::Node& node,
+                                           const std::string& accepted) const;
+  /// For the end of the error that `key` is missing: the key that stands there, perhaps in its place. Which keys are
+  /// unknown is not yet known then, so that only similar ones are named.
+  [[nodiscard]] std::string misspelt(std::string_view key) const;
+
   std::shared_ptr<YAML::Node> node_;
   std::string file_;
   std::string path_;  ///< keys from the root to this map, joined by dots

@@ -72,6 +72,42 @@ TEST(Configuration, NamesAMissingKeyAtItsMap) {
             "x.yaml:3: module.mass_kg: found nothing, accepted 0 to 1");
 }
 
+/// The error that `radius_m` is missing in a file with this key.
+std::string error_without_radius(const std::string& key) {
+  return error_of([&] {
+    Configuration root = parse("name: x\n" + key + ": 0.1\n");
+    (void)root.text("name");
+    (void)root.number("radius_m", {0, 1});
+  });
+}
+
+TEST(Configuration, NamesTheKeyThatIsMisspeltForAMissingOne) {
+  for (const char* key : {"radus_m", "raduis_m", "Radius_m", "radius", "radius_mm"}) {
+    EXPECT_EQ(error_without_radius(key), std::string("x.yaml:1: radius_m: found nothing, accepted 0 to 1; line 2 has a "
+                                                     "key '") +
+                                             key + "': rename it if it is meant");
+  }
+  for (const char* key : {"height_m", "min_radius_m", "r"})
+    EXPECT_EQ(error_without_radius(key), "x.yaml:1: radius_m: found nothing, accepted 0 to 1");
+  EXPECT_EQ(error_of([] { parse("modul: {a: 1}").section("module"); }),
+            "x.yaml:1: module: found nothing, accepted a map; line 1 has a key 'modul': rename it if it is meant");
+  EXPECT_EQ(error_of([] { parse("object: []").list("objects"); }),
+            "x.yaml:1: objects: found nothing, accepted a list of maps; line 1 has a key 'object': rename it if it is "
+            "meant");
+  // Keys that have their own meaning are not named.
+  EXPECT_EQ(error_of([] {
+              parse("max_rad: 1").number("min_rad", {0, 1});
+            }),
+            "x.yaml:1: min_rad: found nothing, accepted 0 to 1");
+  EXPECT_EQ(error_of([] { parse("x_m: 1").number("y_m", {0, 1}); }), "x.yaml:1: y_m: found nothing, accepted 0 to 1");
+  EXPECT_EQ(error_of([] {
+              Configuration root = parse("points: 1");
+              (void)root.number("points", {0, 1});
+              (void)root.number("point", {0, 1});
+            }),
+            "x.yaml:1: point: found nothing, accepted 0 to 1");
+}
+
 TEST(Configuration, NamesAnEmptyValue) {
   EXPECT_EQ(error_of([] {
               parse("a:\n").number("a", {0, 1}, 0.5);
