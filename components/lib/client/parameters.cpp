@@ -122,10 +122,23 @@ ParameterView read_parameters(std::int32_t participant, std::chrono::millisecond
 }
 
 std::string did_you_mean(const std::string& name, const std::map<std::string, OwnedParameter>& known) {
+  constexpr std::size_t kMost = 6;  // as many motions of control have a method
   if (known.contains(name)) return {};
-  std::vector<std::string> names;
-  for (const auto& [each, owned] : known) names.push_back(each);
-  return did_you_mean(std::string_view(name), names);
+  const std::string component = name.substr(0, name.find('.') + 1);
+  const std::string last_part = name.substr(std::min(name.rfind('.'), name.size()));
+  std::vector<std::string> names, slips, same_last_part;
+  for (const auto& [each, owned] : known) {
+    names.push_back(each);
+    if (is_slip_of(name, each)) slips.push_back(each);
+    if (!component.empty() && each.starts_with(component) && each.ends_with(last_part)) same_last_part.push_back(each);
+  }
+  if (!slips.empty()) return did_you_mean(std::string_view(name), slips);
+  if (same_last_part.empty()) return did_you_mean(std::string_view(name), names);
+  const std::size_t shown = std::min(same_last_part.size(), kMost);
+  const std::string more =
+      same_last_part.size() > shown ? fmt::format(" or {} more", same_last_part.size() - shown) : "";
+  same_last_part.resize(shown);
+  return fmt::format(", did you mean {}'{}'{}?", shown > 1 ? "one of " : "", fmt::join(same_last_part, "', '"), more);
 }
 
 ParameterSetter::ParameterSetter(RequestClient& client)

@@ -66,7 +66,9 @@ class ParameterReader {
 ParameterView read_parameters(std::int32_t participant,
                               std::chrono::milliseconds bound = std::chrono::milliseconds(2000));
 
-/// ", did you mean 'PARAMETER'?" for an error message about a name that is not known, or nothing.
+/// ", did you mean 'PARAMETER'?" for an error message about a name that is not known, or nothing. Unless the name is a
+/// slip of the pen, the parameters of the component that end with the same part are named, for `control.method` those
+/// of all motions.
 [[nodiscard]] std::string did_you_mean(const std::string& name, const std::map<std::string, OwnedParameter>& known);
 
 /// Changes parameters through a client, which needs no authority for that.

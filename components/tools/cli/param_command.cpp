@@ -271,10 +271,9 @@ void add_param(CLI::App& app, Action& action) {
   auto options = std::make_shared<ParamOptions>();
   auto* param = add_group(app, "param", "list and change the parameters of a run while it runs");
   param->footer(help_footer(
-      "A parameter's name is that of its component and the keys in its configuration file: "
-      "navigation.travel.speed_m_s is `travel:\n"
-      "frequency_hz:` in navigation.yaml. Each component announces which of its parameters may change, with unit and "
-      "bounds.\n\n"
+      "A parameter's name is that of its component and the keys in its configuration file:\n"
+      "navigation.travel.speed_m_s is `travel: speed_m_s:` in navigation.yaml. Each component announces which of its\n"
+      "parameters may change, with unit and bounds.\n\n"
       "A change takes effect at a tick: the next one, or the one that --at-tick names. The run's report records it. A "
       "run with the same\n"
       "changes at the same ticks has the same result, bit for bit (to repeat one: `parameter_changes` in a copy of\n"

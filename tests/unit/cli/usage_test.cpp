@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/subcommands.hpp"
+
 namespace constrictor::cli {
 namespace {
 
@@ -68,6 +70,15 @@ TEST_F(CommandLineTest, NamesTheClosestSubcommandOrOption) {
   EXPECT_EQ(error({"run", "--quite-different"}), "no option '--quite-different' (see constrictor run --help)");
   app_.name("constrictor");
   EXPECT_EQ(error({"run", "elsewhere"}), "unexpected argument 'elsewhere' (see constrictor run --help)");
+}
+
+TEST(ParamHelp, ExplainsTheNameOfAParameterByItsKey) {
+  CLI::App app;
+  Action action;
+  add_param(app, action);
+  const std::string footer = app.get_subcommand("param")->get_footer();
+  EXPECT_NE(footer.find("navigation.travel.speed_m_s is `travel: speed_m_s:` in navigation.yaml"), std::string::npos)
+      << footer;
 }
 
 }  // namespace

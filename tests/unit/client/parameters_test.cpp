@@ -54,5 +54,37 @@ TEST(ParameterChanges, DoNotConcernTheListsOfOtherComponents) {
   EXPECT_FALSE(has_taken(damaged, change_for(100)));
 }
 
+std::string suggestion_for(const std::string& name) {
+  std::map<std::string, OwnedParameter> known;
+  for (const char* each : {"control.motion.carry.method", "control.motion.creep.method", "control.motion.travel.method",
+                           "control.motion.travel.amplitude_rad", "navigation.law", "navigation.travel.speed_m_s"})
+    known[each] = {};
+  for (const char* each : {"a", "b", "c", "d", "e", "f", "g", "h"})
+    known[std::string("guidance.") + each + ".radius_m"] = {};
+  return did_you_mean(name, known);
+}
+
+TEST(UnknownParameter, SuggestsThoseWithTheSameLastPart) {
+  const std::string methods =
+      ", did you mean one of 'control.motion.carry.method', 'control.motion.creep.method', "
+      "'control.motion.travel.method'?";
+  EXPECT_EQ(suggestion_for("control.method"), methods);
+  EXPECT_EQ(suggestion_for("control.motion.grasp.method"), methods);
+  EXPECT_EQ(suggestion_for("control.amplitude_rad"), ", did you mean 'control.motion.travel.amplitude_rad'?");
+  EXPECT_EQ(suggestion_for("guidance.radius_m"),
+            ", did you mean one of 'guidance.a.radius_m', 'guidance.b.radius_m', 'guidance.c.radius_m', "
+            "'guidance.d.radius_m', 'guidance.e.radius_m', 'guidance.f.radius_m' or 2 more?");
+}
+
+TEST(UnknownParameter, SuggestsTheOneThatIsMisspelt) {
+  EXPECT_EQ(suggestion_for("control.motion.travle.method"), ", did you mean 'control.motion.travel.method'?");
+  EXPECT_EQ(suggestion_for("navigation.travel.speed"), ", did you mean 'navigation.travel.speed_m_s'?");
+  EXPECT_EQ(suggestion_for("navigation.travl.sped_m_s"), ", did you mean 'navigation.travel.speed_m_s'?");
+  EXPECT_EQ(suggestion_for("method"), "");
+  EXPECT_EQ(suggestion_for(""), "");
+  EXPECT_EQ(suggestion_for("planner.method"), "");
+  EXPECT_EQ(suggestion_for("navigation.law"), "") << "it is known";
+}
+
 }  // namespace
 }  // namespace constrictor
