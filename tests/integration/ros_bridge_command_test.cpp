@@ -44,7 +44,7 @@ TEST_F(RosBridgeCommand, BridgesTheOnlyRunUntilItEndsAndRefusesToChooseAmongSeve
   first.signal(SIGTERM);
   EXPECT_TRUE(first.wait(20s));
   EXPECT_EQ(only.wait(20s), exit_status::kOk) << only.errors();
-  EXPECT_NE(only.output().find("the run has ended"), std::string::npos);
+  EXPECT_NE(only.output().find("the run has ended"), std::string::npos) << only.output();
   second.signal(SIGTERM);
   EXPECT_TRUE(second.wait(20s));
 }

@@ -15,7 +15,7 @@ void RunAttachment::look(const RunSigns& signs, Clock::time_point now) {
   if (!had_input_ || signs.input) input_gone_.reset();
   else if (!input_gone_) input_gone_ = now;
 
-  if (signs.run_id && signs.run_id != run_id_) over_ = "another run has started in its DDS domain";
+  if (signs.run_id && signs.run_id != run_id_) over_ = "the run has ended: another one has started in its DDS domain";
   else if (!signs.launcher || signs.plant_ended) over_ = "the run has ended";
   else if (input_gone_ && now - *input_gone_ >= kInputGrace) over_ = "`input` is gone and was not restarted";
 }

@@ -37,7 +37,7 @@ TEST_F(Attachment, LeavesWhenAnotherRunStartsInTheDomain) {
   ++signs_.states_heard;
   look();
   EXPECT_FALSE(attachment_.may_send());
-  EXPECT_EQ(attachment_.over(), "another run has started in its DDS domain");
+  EXPECT_EQ(attachment_.over(), "the run has ended: another one has started in its DDS domain");
   signs_.run_id = 77;  // does not come back
   look();
   EXPECT_FALSE(attachment_.may_send());
