@@ -75,7 +75,7 @@ bool FieldMapper::make_room(std::int64_t tick, std::vector<bool>& used) {
   if (!full()) return true;
   const Landmark* weakest = nullptr;
   for (const Landmark& landmark : state_.landmarks) {
-    if (landmark.hits >= config_.confirm || landmark.carried || landmark.last_seen_tick >= tick) continue;
+    if (!may_give_way(landmark) || landmark.last_seen_tick >= tick) continue;
     const auto rank = [](const Landmark& one) { return std::pair(one.last_seen_tick, one.hits); };
     if (weakest == nullptr || rank(landmark) < rank(*weakest)) weakest = &landmark;
   }
@@ -95,7 +95,7 @@ void FieldMapper::create(const msg::Blob& blob, const Eigen::Vector2d& z, const 
     const Eigen::Vector2d p_M = to_parent(filter_.pose(), z);
     landmark.x_m = p_M.x();
     landmark.y_m = p_M.y();
-    const auto may_go = [this](const Landmark& other) { return other.hits < config_.confirm && !other.carried; };
+    const auto may_go = [this](const Landmark& other) { return may_give_way(other); };
     if (!left_out_ && std::none_of(state_.landmarks.begin(), state_.landmarks.end(), may_go)) left_out_ = landmark;
     return;
   }

@@ -81,6 +81,10 @@ class FieldMapper {
   /// Whether the map has room for one more landmark. If it is full, the unconfirmed landmark that was not seen for the
   /// longest time is forgotten; of several, the one with the fewest percepts. One that this image shows stays.
   [[nodiscard]] bool make_room(std::int64_t tick, std::vector<bool>& used);
+  /// Whether a new landmark may take this one's place in a full map: it is neither confirmed nor carried.
+  [[nodiscard]] bool may_give_way(const Landmark& landmark) const {
+    return landmark.hits < config_.confirm && !landmark.carried;
+  }
   void forget(std::size_t index);
   /// Whether the landmark so likely exists, and stands where it was seen, that it may correct the pose.
   [[nodiscard]] bool trusted(const Landmark& landmark) const;
@@ -96,8 +100,8 @@ class FieldMapper {
   [[nodiscard]] double radius_of(const Landmark& landmark) const {
     return landmark.radius_m > 0.0 ? landmark.radius_m : usual_radius_m(landmark.kind);
   }
-  /// [m] distance of a point from the axis of a module; both in the head's frame.
-  [[nodiscard]] double off_axis_m(const PlanarPose& module, const Eigen::Vector2d& p) const;
+  /// Whether the axis of a module is nearer than `distance_m` to a point in the head's frame.
+  [[nodiscard]] bool is_near_body(const BodyChain& chain, const Eigen::Vector2d& p, double distance_m) const;
   /// True if the point `p` (in the head's frame) lies on the robot's own body, apart from `module` and its neighbours.
   [[nodiscard]] bool is_self(const BodyChain& chain, std::size_t module, const Eigen::Vector2d& p) const;
   /// The view of these percepts with the modules that may hide something in it. None if the robot has no such camera.

@@ -41,18 +41,17 @@ Obstacle* FieldMapper::obstacle_at(const Eigen::Vector2d& p_M, const Eigen::Vect
   return nearest;
 }
 
-double FieldMapper::off_axis_m(const PlanarPose& module, const Eigen::Vector2d& p) const {
+bool FieldMapper::is_near_body(const BodyChain& chain, const Eigen::Vector2d& p, double distance_m) const {
   const double half_m = 0.5 * model_.module_length_m;
-  Eigen::Vector2d local = module.to_local(p);
-  local.x() -= std::clamp(local.x(), -half_m, half_m);
-  return local.norm();
+  return std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
+    Eigen::Vector2d local = module.to_local(p);
+    local.x() -= std::clamp(local.x(), -half_m, half_m);
+    return local.norm() < distance_m;
+  });
 }
 
 bool FieldMapper::is_no_obstacle(const Eigen::Vector2d& p, const BodyChain& chain) const {
-  const bool body = std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
-    return off_axis_m(module, p) < model_.module_radius_m + kBesideBody_m;
-  });
-  if (body) return true;
+  if (is_near_body(chain, p, model_.module_radius_m + kBesideBody_m)) return true;
   const Eigen::Vector2d p_M = to_parent(filter_.pose(), p);
   return std::any_of(state_.landmarks.begin(), state_.landmarks.end(), [&](const Landmark& landmark) {
     return landmark.kind == msg::kBlobObject &&
@@ -137,9 +136,7 @@ void FieldMapper::feel_obstacle(const Eigen::Vector2d& p_M) {
 void FieldMapper::clear_obstacles(const BodyChain& chain) {
   std::erase_if(state_.obstacles, [&](const Obstacle& obstacle) {
     const Eigen::Vector2d p = filter_.pose().to_local({obstacle.x_m, obstacle.y_m});
-    return std::any_of(chain.begin(), chain.end(), [&](const PlanarPose& module) {
-      return off_axis_m(module, p) < model_.module_radius_m - kInside_m;
-    });
+    return is_near_body(chain, p, model_.module_radius_m - kInside_m);
   });
 }
 

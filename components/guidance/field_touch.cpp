@@ -81,10 +81,9 @@ bool FieldMapper::brush(const BodyChain& chain) {
     if (landmark.kind != msg::kBlobObject || landmark.carried || landmark.hits < config_.confirm) continue;
     const Eigen::Vector2d p = filter_.pose().to_local(position(landmark));
     const double near_m = radius_of(landmark) + model_.module_radius_m + kBrush_m + std::min(sd(landmark), kBrushSd_m);
-    const bool passes = std::any_of(chain.begin(), chain.end(),
-                                    [&](const PlanarPose& module) { return off_axis_m(module, p) < near_m; });
-    if (passes) expect_push(landmark);
-    any = any || passes;
+    if (!is_near_body(chain, p, near_m)) continue;
+    expect_push(landmark);
+    any = true;
   }
   return any;
 }

@@ -215,7 +215,6 @@ bool Gauge::is_behind_object(double left, double right) const {
   const double pixel_rad = 1.0 / camera_.width();
   if (!region_.standing() || left_ <= right_) return false;
   bool cut = false;
-  const double foot_m = lower_edge_range(left_, right_, cut);
   double beside_m = std::numeric_limits<double>::infinity();
   const auto look = [&](double from, double to) {
     if (to - from < 2.0 * pixel_rad) return;
@@ -225,7 +224,8 @@ bool Gauge::is_behind_object(double left, double right) const {
   const double gap = 3.0 * pixel_rad, width = 12.0 * pixel_rad;
   look(left_ + gap, std::min(left_ + width, left));
   look(std::max(right_ - width, right), right_ - gap);
-  return std::isfinite(beside_m) && beside_m > kFarther * foot_m + kFarther_m;  // false for NaN
+  if (!std::isfinite(beside_m)) return false;
+  return beside_m > kFarther * lower_edge_range(left_, right_, cut) + kFarther_m;  // false for NaN
 }
 
 bool Gauge::ends_in_zone(double range_m) const {

@@ -6,6 +6,7 @@
 #include "planner/short_text.hpp"
 
 namespace constrictor {
+
 Planner::Planner(Wiring& wiring, const Setup& setup)
     : ConfiguredComponent(wiring, load_planner_config(setup.config_file, setup.mission)),
       log_(setup.log),

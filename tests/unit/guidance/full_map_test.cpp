@@ -10,6 +10,7 @@
 #include "component/data_path.hpp"
 #include "guidance/guidance.hpp"
 #include "mapping.hpp"
+#include "still_plant.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -84,25 +85,6 @@ TEST(FullMap, AnImageDoesNotForgetWhatItShows) {
   EXPECT_EQ(m.mapper.left_out()->kind, all[16].kind);
 }
 
-/// A robot that lies still.
-class Stillness : public testing::PlantBase {
- public:
-  Stillness(Wiring& wiring, const Setup&)
-      : joints_(wiring.output(topics::kJointState)), imu_(wiring.output(topics::kImuState)) {}
-  void sample(const Tick&) override {
-    msg::JointState joints{};
-    joints.joint_count = 23;
-    joints_.write(joints);
-    msg::ImuState imu{};
-    imu.orientation.w = 1.0;
-    imu_.write(imu);
-  }
-
- private:
-  Output<msg::JointState> joints_;
-  Output<msg::ImuState> imu_;
-};
-
 /// Shows 16 objects and zones in each image; from tick 50 on, another one instead of the last.
 class Crowd : public StatefulComponent<std::int64_t> {
  public:
@@ -125,9 +107,7 @@ class Crowd : public StatefulComponent<std::int64_t> {
 TEST(FullMap, WhatIsLeftOutIsReportedOnce) {
   constrictor::Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  LocalRun run({testing::member_of_class<Stillness>("physics"), testing::member_of_class<Crowd>("perception"),
-                make_guidance_factory()},
-               setup);
+  LocalRun run({testing::still_plant(), testing::member_of_class<Crowd>("perception"), make_guidance_factory()}, setup);
   run.advance(50);
   EXPECT_EQ(run.latest(topics::kFieldMap)->object_count, 16);
   EXPECT_EQ(run.member("guidance").counters().refused, 0U);

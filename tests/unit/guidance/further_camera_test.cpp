@@ -10,6 +10,7 @@
 #include "component/data_path.hpp"
 #include "guidance/guidance.hpp"
 #include "mapping.hpp"
+#include "still_plant.hpp"
 #include "support/scripted_members.hpp"
 
 namespace constrictor {
@@ -147,16 +148,6 @@ TEST(FurtherCameraMap, TheLineBehindTheRobotIsMapped) {
 std::unique_ptr<LocalRun> make_run_with_rear_camera() {
   Setup setup;
   setup.robot_file = data_path("components/lib/robot/mamba_two_cameras.yaml");
-  const auto plant = testing::scripted_plant([](Wiring& wiring) -> testing::StepFunction {
-    return [joints = wiring.output(topics::kJointState), imu = wiring.output(topics::kImuState)](const Tick&) {
-      msg::JointState state{};
-      state.joint_count = 23;
-      joints.write(state);
-      msg::ImuState attitude{};
-      attitude.orientation.w = 1.0;
-      imu.write(attitude);
-    };
-  });
   const auto eyes =
       testing::scripted_member("perception",
                                [](Wiring& wiring) -> testing::StepFunction {
@@ -169,7 +160,7 @@ std::unique_ptr<LocalRun> make_run_with_rear_camera() {
                                  };
                                },
                                {5, 1});
-  return std::make_unique<LocalRun>(std::vector{plant, eyes, make_guidance_factory()}, setup);
+  return std::make_unique<LocalRun>(std::vector{testing::still_plant(), eyes, make_guidance_factory()}, setup);
 }
 
 TEST(GuidanceWithFurtherCameras, MapsWhatTheySeeAndRefusesWhatTheyCannot) {
