@@ -1,6 +1,7 @@
 #include "planner/planner.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "constrictor/text.hpp"
 #include "planner/short_text.hpp"
@@ -50,6 +51,7 @@ void Planner::step(const Tick& tick) {
   set_text(mission.state, memory.suspended ? "suspended" : name_of(memory.state));
   mission.object_index = memory.object_index;
   mission.object_count = static_cast<std::uint16_t>(config_.sequence.size());
+  mission.delivered_count = static_cast<std::uint16_t>(std::popcount(memory.delivered));
   mission.colour = planner_.colour();
   mission.recoveries = memory.recoveries;
   set_text(mission.reason,

@@ -35,7 +35,7 @@ inline std::vector<NamedFault> planner_faults() {
           {"wrong_handle", "handle", "handle 10"},
           {"ignores_grasped", "carries", "grasp"},
           {"wrong_zone", "drop", "yellow zone"},
-          {"counts_nothing", "delivered", "object_index 0"},
+          {"counts_nothing", "delivered", "delivered_count 0"},
           {"only_green", "rest", "when the red object is in view"},
           {"never_ends", "ends", "outcome 0"},
           {"commands_as_operator", "form", "level 3"},
@@ -124,7 +124,7 @@ inline PartFault planner_fault(const std::string& name, const std::shared_ptr<st
     request([](msg::Request& r) {
       if (r.parameters.drop_zone_colour) r.parameters.drop_zone_colour = msg::kColourYellow;
     });
-  if (is("counts_nothing")) mission([](msg::MissionStatus& m) { m.object_index = 0; });
+  if (is("counts_nothing")) mission([](msg::MissionStatus& m) { m.delivered_count = 0; });
   if (is("only_green"))
     request([](msg::Request& r) {
       if (r.parameters.object_colour) r.parameters.object_colour = msg::kColourGreen;
@@ -141,8 +141,8 @@ inline PartFault planner_fault(const std::string& name, const std::shared_ptr<st
     });
   if (is("remembers"))
     mission([memory](msg::MissionStatus& m) {
-      *memory = std::max<std::uint64_t>(*memory, m.object_index);
-      m.object_index = static_cast<std::uint16_t>(*memory);
+      *memory = std::max<std::uint64_t>(*memory, m.delivered_count);
+      m.delivered_count = static_cast<std::uint16_t>(*memory);
     });
   if (is("forgets")) fault.forgets = true;
   if (is("random"))

@@ -170,8 +170,8 @@ class Summariser {
     for (auto& [key, epoch] : epochs_) summary_.epochs.push_back(epoch);
     if (mission_) {
       summary_.mission =
-          fmt::format("{}, state {}, {} of {} objects done{}{}", name_of(constants::kMission, mission_->outcome),
-                      printable(mission_->state), mission_->object_index, mission_->object_count,
+          fmt::format("{}, state {}, {} of {} objects delivered{}{}", name_of(constants::kMission, mission_->outcome),
+                      printable(mission_->state), mission_->delivered_count, mission_->object_count,
                       mission_->reason[0] == '\0' ? "" : ": ", printable(mission_->reason));
     }
   }

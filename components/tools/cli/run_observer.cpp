@@ -135,9 +135,7 @@ void RunView::take(const msg::RunState& message) {
   tick = std::max(tick, message.tick - 1);  // RunState.tick is the next one
 }
 
-bool RunView::mission_done() const {
-  return mission && mission->object_count > 0 && mission->object_index == mission->object_count;
-}
+bool RunView::mission_done() const { return mission && mission->outcome != msg::kMissionRunning; }
 
 RunObserver::RunObserver(std::uint32_t domain, std::uint64_t run_id)
     : readers_(std::make_unique<Readers>(domain)), view_(run_id) {}
@@ -199,7 +197,7 @@ std::string progress_line(const RunView& view, double real_time_factor) {
     line += " | ";
   }
   if (view.mission && view.mission->object_count > 0) {
-    line += fmt::format("{} of {} objects done", view.mission->object_index, view.mission->object_count);
+    line += fmt::format("{} of {} objects delivered", view.mission->delivered_count, view.mission->object_count);
     if (view.mission->object_index < view.mission->object_count)
       line += fmt::format(", {} next", words_of(constants::kColour, view.mission->colour));
     line += " | ";

@@ -87,7 +87,7 @@ class RunObserver {
   std::chrono::steady_clock::time_point cause_reported_{};  ///< last report of a wait that is not for a tick
 };
 
-/// "follow_line | mission carry | green, 1 of 2 done | 45.2 s simulated at 6.3x real time".
+/// "search line | follow line (drive) | 1 of 2 objects delivered, red next | 45.2 s simulated, 6.3x real time".
 std::string progress_line(const RunView& view, double real_time_factor);
 
 }  // namespace constrictor::cli

@@ -132,7 +132,7 @@ std::string contact_line(const TeleopScreen& s) {
 std::string mission_line(const TeleopScreen& s) {
   if (!s.view.mission) return "mission    no planner";
   const msg::MissionStatus& m = *s.view.mission;
-  return fmt::format("mission    {} {} of {}  {}", m.state, m.object_index, m.object_count, m.reason);
+  return fmt::format("mission    {}, {} of {} delivered  {}", m.state, m.delivered_count, m.object_count, m.reason);
 }
 
 /// The newest events, at most `most`.

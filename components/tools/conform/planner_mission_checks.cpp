@@ -124,13 +124,14 @@ bool PlannerConformance::check_delivery(std::size_t index) {
   const bool last = index + 1 == mission_.sequence.size();
   const bool counted = hand_->run(profile_.end_s, [&] {
     const msg::MissionStatus& mission = hand_->missions().back();
-    return last ? mission.outcome != msg::kMissionRunning : mission.object_index > index;
+    return last ? mission.outcome != msg::kMissionRunning : mission.delivered_count > index;
   });
   const msg::MissionStatus& mission = hand_->missions().back();
   if (first)
-    report_.judge("delivered", !counted,
-                  fmt::format("object_index {}, state {}", mission.object_index, printable(text_of(mission.state))),
-                  "count an object as delivered when the map shows it on its zone after the drop");
+    report_.judge(
+        "delivered", !counted,
+        fmt::format("delivered_count {}, state {}", mission.delivered_count, printable(text_of(mission.state))),
+        "count an object in delivered_count when the map shows it on its zone after the drop");
   return counted || (last && !first);  // check_end() judges the end
 }
 
@@ -191,14 +192,19 @@ void PlannerConformance::check_form() {
       wrong = fmt::format("{} objects, in a mission of {}", now.object_count, mission_.sequence.size());
     else if (now.object_index > now.object_count)
       wrong = fmt::format("object {} of {}", now.object_index, now.object_count);
+    else if (now.delivered_count > now.object_count)
+      wrong = fmt::format("{} of {} objects delivered", now.delivered_count, now.object_count);
+    else if (now.outcome == msg::kMissionSucceeded && now.delivered_count < now.object_count)
+      wrong = fmt::format("succeeded with {} of {} objects delivered", now.delivered_count, now.object_count);
     else if (now.object_index < mission_.sequence.size() && now.colour != mission_.sequence[now.object_index])
       wrong = fmt::format("object {} is {}", now.object_index, colour_name(now.colour));
     else if (text_of(now.state).empty()) wrong = "no state";
     if (i == 0 || !wrong.empty()) continue;
     const msg::MissionStatus& before = missions[i - 1];
-    if (now.recoveries < before.recoveries || now.object_index < before.object_index)
-      wrong = fmt::format("object {} and {} recoveries, after {} and {}", now.object_index, now.recoveries,
-                          before.object_index, before.recoveries);
+    // The hand takes no delivered object off its zone, so the count does not fall.
+    if (now.recoveries < before.recoveries || now.delivered_count < before.delivered_count)
+      wrong = fmt::format("{} objects delivered and {} recoveries, after {} and {}", now.delivered_count,
+                          now.recoveries, before.delivered_count, before.recoveries);
     if (before.outcome != msg::kMissionRunning && now.outcome != before.outcome) wrong = "the outcome changes";
   }
   report_.pass_unless("status", wrong, counted(missions.size(), "message"),
@@ -222,13 +228,14 @@ void PlannerConformance::check_epoch() {
   const std::vector<msg::Request> first = play([] {});
   const std::vector<msg::MissionStatus> missions = hand_->missions();
   const bool fresh = !missions.empty() && missions.front().outcome == msg::kMissionRunning &&
-                     missions.front().object_index == 0 && missions.front().recoveries == 0;
+                     missions.front().delivered_count == 0 && missions.front().object_index == 0 &&
+                     missions.front().recoveries == 0;
   const std::uint64_t goal = first.empty() ? 0 : first.front().goal_id;
   report_.judge("epoch", !fresh || first.empty() || goal > 2,
                 first.empty() ? std::string("no request in the new epoch")
-                : !fresh      ? fmt::format("the mission goes on with outcome {} and object {}",
+                : !fresh      ? fmt::format("the mission goes on with outcome {} and {} objects delivered",
                                        missions.empty() ? 0 : missions.front().outcome,
-                                       missions.empty() ? 0 : missions.front().object_index)
+                                       missions.empty() ? 0 : missions.front().delivered_count)
                               : fmt::format("begins with goal {}", goal),
                 "construct the component anew at each EpochStart");
   const auto difference = [&](const std::vector<msg::Request>& second) -> std::string {

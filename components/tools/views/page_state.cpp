@@ -137,6 +137,7 @@ json page_state(const Newest& newest) {
                         {"state", mission.state},
                         {"object", mission.object_index},
                         {"objects", mission.object_count},
+                        {"delivered", mission.delivered_count},
                         {"colour", name_of(constants::kColour, mission.colour)},
                         {"recoveries", mission.recoveries},
                         {"reason", mission.reason}};

@@ -155,7 +155,7 @@ TEST(RunView, CountsOverrunsOfAllIncarnations) {
   EXPECT_EQ(view.overruns["control"], 7u);
 }
 
-TEST(RunView, TheMissionIsDoneAfterItsLastObject) {
+TEST(RunView, TheMissionIsDoneWhenItHasItsOutcome) {
   RunView view;
   EXPECT_FALSE(view.mission_done());
   view.take(state(1, 100, 1));
@@ -163,14 +163,29 @@ TEST(RunView, TheMissionIsDoneAfterItsLastObject) {
   mission.header.run_id = kRun;
   mission.header.epoch = 1;
   view.take(mission);
-  EXPECT_FALSE(view.mission_done()) << "a mission without objects ends otherwise";
-  mission.object_count = 2;
-  mission.object_index = 1;
-  view.take(mission);
   EXPECT_FALSE(view.mission_done());
+  mission.object_count = 2;
   mission.object_index = 2;
   view.take(mission);
-  EXPECT_TRUE(view.mission_done());
+  EXPECT_FALSE(view.mission_done()) << "the robot still looks at the last object";
+  for (const std::uint8_t outcome : {msg::kMissionSucceeded, msg::kMissionFailed}) {
+    mission.outcome = outcome;
+    view.take(mission);
+    EXPECT_TRUE(view.mission_done());
+  }
+}
+
+TEST(RunView, TheProgressCountsWhatIsDeliveredAndNotThePlaceInTheSequence) {
+  RunView view;
+  view.take(state(1, 101, 1));
+  msg::MissionStatus status = mission(1, 100);
+  std::snprintf(status.state, sizeof status.state, "search object");
+  status.object_count = 3;
+  status.object_index = 2;  // the first object was put aside, the second one was delivered
+  status.delivered_count = 1;
+  status.colour = msg::kColourRed;
+  view.take(status);
+  EXPECT_EQ(progress_line(view, 0.0), "search object | 1 of 3 objects delivered, red next | 2.0 s simulated");
 }
 
 TEST(RunView, ARunThatStandsStillShowsNoSpeed) {

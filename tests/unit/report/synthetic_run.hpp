@@ -202,6 +202,7 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
       mission.object_count = story.objects_in_mission;
       mission.object_index = second && story.objects_in_mission > 1 ? 1 : 0;
       const std::uint8_t other = story.first_colour == msg::kColourGreen ? msg::kColourRed : msg::kColourGreen;
+      mission.delivered_count = mission.outcome == msg::kMissionSucceeded ? mission.object_count : mission.object_index;
       mission.colour = second ? other : story.first_colour;
       mission.recoveries = tick.index > 230 ? 1 : 0;
       std::snprintf(mission.state, sizeof mission.state, "%s",

@@ -28,8 +28,9 @@ function runText({ scene, world, run, stopped, replay }) {
 
 function missionText(mission) {
   if (!mission) return "no mission";
+  const next = mission.object < mission.objects ? `now ${mission.colour}, ` : "";
   const objects = mission.objects > 0 // a mission along the line only has none
-    ? `object ${Math.min(mission.object + 1, mission.objects)} of ${mission.objects} (${mission.colour}), `
+    ? `${mission.delivered} of ${mission.objects} objects delivered, ${next}`
     : "";
   return `${mission.outcome}: ${objects}${mission.recoveries} recoveries ${mission.reason}`;
 }
