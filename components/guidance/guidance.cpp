@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t kMapPeriodTicks = 5;
 constexpr std::int64_t kMapLeastTicks = 3;
 constexpr double kSilent_s = 0.2;         // after which guidance does without the IMU
+constexpr double kLiftingTime_s = 0.5;    // time constant of the mean rate of the pitch joints
 constexpr std::size_t kTrackTicks = 110;  // covers the window of the speed and the delay of any camera
 
 /// [rad] yaw of the x axis in the ground plane, also if the length of the quaternion of an IMU is not exactly 1.
@@ -71,7 +72,12 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   const double speed_m_s = input.dt_s > 0.0 ? step.step_m.norm() / input.dt_s : 0.0;
   const double share_sd = state_.brushes ? std::max(config_.pushing_speed_sd, config_.speed_sd) : config_.speed_sd;
   const double speed_sd = share_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
-  const double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
+  double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
+  watch_lifting(input.dt_s);
+  if (state_.lifts) {
+    variance +=
+        config_.lifting_speed_sd_m_s * config_.lifting_speed_sd_m_s * config_.lifting_correlation_s * input.dt_s;
+  }
   const double yaw_sd = imu ? config_.yaw_sd_rad_sqrt_s : config_.unmeasured_yaw_sd_rad_sqrt_s;
   const Eigen::Vector3d noise(variance, variance, yaw_sd * yaw_sd * input.dt_s);
   const double scale_sd = input.ground.empty() ? config_.unmeasured_scale_sd : config_.scale_sd;
@@ -82,6 +88,24 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
     filter.forget_scale(scale_sd);
   }
   remember(tick.index, filter.predict(step.step_m, step.turn_rad, noise.asDiagonal(), drift), step.turn_rad);
+}
+
+void Guidance::watch_lifting(double dt_s) {
+  double sum_rad_s = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    if (model_.joints[i].axis != JointAxis::kPitch) continue;
+    sum_rad_s += std::abs(body_.joints->velocity_rad_s[i]);
+    ++count;
+  }
+  if (count == 0) return;
+  state_.pitch_rate_rad_s += (sum_rad_s / count - state_.pitch_rate_rad_s) * std::min(1.0, dt_s / kLiftingTime_s);
+  const bool lifts = state_.pitch_rate_rad_s > config_.lifting_rad_s;
+  if (lifts && !state_.lifts)
+    log_.info(
+        "the pitch joints move, so that modules leave the ground: the pose becomes uncertain until images show "
+        "what the map contains");
+  state_.lifts = lifts;
 }
 
 void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {

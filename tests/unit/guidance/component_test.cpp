@@ -133,6 +133,46 @@ TEST(GuidanceComponent, KnowsItsPoseLessWellBesideAnObjectThatItWouldNotFeel) {
   EXPECT_GT(beside->latest(topics::kRobotPose)->covariance[0], 4.0 * alone->latest(topics::kRobotPose)->covariance[0]);
 }
 
+/// A body at rest whose pitch joints all move at this rate, in [mrad/s].
+template <int kPitchRate>
+class LiftedSnake : public testing::PlantBase {
+ public:
+  LiftedSnake(Wiring& wiring, const Setup&)
+      : joints_(wiring.output(topics::kJointState)), imu_(wiring.output(topics::kImuState)) {}
+  void sample(const Tick& tick) override {
+    msg::JointState joints{};
+    joints.joint_count = 23;
+    // Up and down for 0.1 s each. Joints with an odd index turn about the pitch axis.
+    const double sign = tick.index / 5 % 2 == 0 ? 1.0 : -1.0;
+    for (int i = 1; i < 23; i += 2) joints.velocity_rad_s[i] = sign * 1e-3 * kPitchRate;
+    joints_.write(joints);
+    msg::ImuState imu{};
+    imu.orientation.w = 1.0;
+    imu_.write(imu);
+  }
+
+ private:
+  Output<msg::JointState> joints_;
+  Output<msg::ImuState> imu_;
+};
+
+template <int kPitchRate>
+double variance_after_m2(int ticks) {
+  Setup setup;
+  setup.robot_file = data_path("components/lib/robot/mamba.yaml");
+  LocalRun run({testing::member_of_class<LiftedSnake<kPitchRate>>("physics"), make_guidance_factory()}, setup);
+  run.advance(ticks);
+  return run.latest(topics::kRobotPose)->covariance[0];
+}
+
+TEST(GuidanceComponent, KnowsThatItsPoseIsUncertainWhileModulesLeaveTheGround) {
+  const double at_rest_m2 = variance_after_m2<0>(550);
+  EXPECT_EQ(variance_after_m2<40>(550), at_rest_m2) << "the ripple of a body in the plane";
+  // A random walk: the variance grows by sd^2 T dt in each tick, here for 10 s.
+  const double growth_m2 = variance_after_m2<400>(550) - variance_after_m2<400>(50);
+  EXPECT_NEAR(growth_m2, 0.3 * 0.3 * 10.0 * 10.0, 0.02 * growth_m2);
+}
+
 TEST(GuidanceComponent, RestartChangesNothing) {
   auto whole = make_run(), broken = make_run();
   whole->advance(200);
