@@ -46,6 +46,7 @@ msg::SceneDescription scene_description(const Scenario& scenario, const RobotMod
   scene.ambient_intensity = scenario.light.ambient;
   scene.camera_noise_sd = scenario.camera_noise_sd;
   scene.ground_colour = vector3(scenario.ground_colour);
+  scene.ground_gloss = scenario.ground_gloss;
   return scene;
 }
 

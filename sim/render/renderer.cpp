@@ -92,8 +92,9 @@ Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions
   const ContextScope scope(context_);
   const std::string lighting = shaders::lighting(options.shadow_taps);
   solid_program_ = build_program(shaders::kSolidVertex, (lighting + shaders::kSolidFragment).c_str());
-  flat_program_ = build_program(shaders::kFlatVertex, (lighting + shaders::kFlatFragment).c_str());
-  lit_flat_program_ = build_program(shaders::kFlatVertex, (shaders::lighting(0) + shaders::kFlatFragment).c_str());
+  const std::string flat = shaders::flat_fragment(scene.ground_gloss > 0.0);
+  flat_program_ = build_program(shaders::kFlatVertex, (lighting + flat).c_str());
+  lit_flat_program_ = build_program(shaders::kFlatVertex, (shaders::lighting(0) + flat).c_str());
   depth_program_ = build_program(shaders::kSolidVertex, shaders::kDepthFragment);
   build_meshes();
   build_textures();
@@ -232,6 +233,7 @@ void Renderer::Implementation::draw_flats(const std::function<void(const GlProgr
     use(program);
     set_uniform(program, "pattern", 0);
     set_uniform(program, "texture_scale", static_cast<float>(1.0 / kGroundTextureExtent_m));
+    if (scene_.ground_gloss > 0.0) set_uniform(program, "gloss", static_cast<float>(scene_.ground_gloss));
   };
   const auto paint = [&](const GlProgram& program, const Flat& flat, const PixelBox& box) {
     if (box.empty()) return;

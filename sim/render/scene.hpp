@@ -50,6 +50,7 @@ struct Scene {
   double line_width_m = 0.05;
   Rgb line_colour;
   Rgb ground_colour{0.5F, 0.5F, 0.5F};
+  double ground_gloss = 0.0;  ///< strength of the light's reflection in ground, zones and line; 0: matt, 1: polished
   Light light;
 };
 

@@ -43,6 +43,7 @@ Scene scene_of(const msg::SceneDescription& description) {
   scene.line_colour = colour_reflectance(description.line_colour);
   const msg::Vector3& ground = description.ground_colour;
   scene.ground_colour = {static_cast<float>(ground.x), static_cast<float>(ground.y), static_cast<float>(ground.z)};
+  scene.ground_gloss = description.ground_gloss;
   scene.light = {vector_of(description.light_direction), description.light_intensity, description.ambient_intensity};
   return scene;
 }

@@ -112,15 +112,45 @@ void main() {
 }
 )";
 
-inline constexpr const char* kFlatFragment = R"(
+/// Flat surfaces. `glossy`: with a reflection of the light, of the strength `gloss`. The lobe is that of Blinn and
+/// Phong with the exponent 64, normalised so that it reflects the same energy as a mirror; Schlick's approximation of
+/// Fresnel's equations gives the share of the light, from 0.04 (a dielectric, seen from above) to 1 (at grazing
+/// angles). `sun` is the irradiance divided by pi, as a matt surface reflects it.
+inline std::string flat_fragment(bool glossy) {
+  return std::string(R"(
 uniform sampler2D pattern;
 uniform vec3 colour;
 uniform float pattern_strength;
 in vec2 texture_position;
+)") + (glossy ? R"(
+uniform float gloss;
+float glare() {
+  vec3 view = eye - world;
+  vec3 between = to_light + view / sqrt(dot(view, view));
+  float length2 = dot(between, between);
+  float cosine = sqrt(length2) * 0.5;                     // of the angle of incidence on a facet that mirrors the light
+  float lobe2 = between.z * between.z / length2;          // squared cosine of the slope of this facet
+  float lobe8 = lobe2 * lobe2 * lobe2 * lobe2;
+  float lobe16 = lobe8 * lobe8;
+  float lobe64 = lobe16 * lobe16 * lobe16 * lobe16;
+  float grazing = max(1.0 - cosine, 0.0);
+  float grazing2 = grazing * grazing;
+  float fresnel = 0.04 + 0.96 * grazing2 * grazing2 * grazing;
+  return gloss * sun * max(to_light.z, 0.0) * ((64.0 + 8.0) / 8.0) * lobe64 * fresnel;
+}
+void main() {
+  float brightness = mix(1.0, texture(pattern, texture_position).r * (255.0 / 200.0), pattern_strength);
+  float light = lit();
+  vec3 matt = colour * brightness * (ambient + sun * max(to_light.z, 0.0) * light);
+  pixel = finish(matt + vec3(glare() * light));
+}
+)"
+              : R"(
 void main() {
   float brightness = mix(1.0, texture(pattern, texture_position).r * (255.0 / 200.0), pattern_strength);
   pixel = finish(colour * brightness * (ambient + sun * max(to_light.z, 0.0) * lit()));
 }
-)";
+)");
+}
 
 }  // namespace constrictor::shaders

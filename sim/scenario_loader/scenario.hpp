@@ -96,6 +96,7 @@ struct Scenario {
   ScenarioBody body;
   ScenarioLight light;
   Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  ///< linear RGB
+  double ground_gloss = 0.0;                     ///< strength of the light's reflection in the ground; 0: matt
   Eigen::Vector2d start_m{0.0, 0.0};             ///< centre of the head; the body lies straight behind it
   double start_yaw_rad = 0.0;
   double start_height_m = 0.0;  ///< [m] height of the body above the ground; only tests set it

@@ -197,6 +197,7 @@ void read_surroundings(Configuration& root, Scenario& scenario) {
     const std::vector<double> colour = root.numbers("ground_colour", {0.0, 1.0}, 3, 3);
     scenario.ground_colour = {colour[0], colour[1], colour[2]};
   }
+  scenario.ground_gloss = root.number("ground_gloss", {0.0, 4.0}, scenario.ground_gloss);
   Configuration noise = root.section("noise", false);
   scenario.sensor_noise = noise.flag("sensors", true);
   scenario.camera_noise_sd = noise.number("camera_sd", {0.0, 0.3}, 0.0);

@@ -131,6 +131,7 @@ void put_surroundings(Emitter& out, const Scenario& scene) {
     });
   }
   put(out, "ground_colour", scene.ground_colour);
+  put(out, "ground_gloss", scene.ground_gloss);
   put_section(out, "noise", [&] {
     out << YAML::Key << "sensors" << YAML::Value << scene.sensor_noise;
     put(out, "camera_sd", scene.camera_noise_sd);

@@ -32,11 +32,13 @@ TEST(SceneDescription, HasTheValuesOfTheScenario) {
 TEST(SceneDescription, PutsObstaclesOnTheGround) {
   Scenario scenario;
   scenario.obstacles.push_back({BodyShape::kBox, {2.0, 0.1, 0.4}, {1.0, 2.0}, 1.0});
+  scenario.ground_gloss = 0.7;
   const msg::SceneDescription scene = scene_description(scenario, RobotModel{});
   ASSERT_EQ(scene.obstacle_count, 1);
   EXPECT_DOUBLE_EQ(scene.obstacles[0].pose.position_m.z, 0.2);
   EXPECT_DOUBLE_EQ(scene.obstacles[0].pose.orientation.z, std::sin(0.5));
   EXPECT_EQ(scene.line_colour, msg::kColourUnknown);
+  EXPECT_EQ(scene.ground_gloss, 0.7);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ TEST(SceneFromMessages, ReadsAsManyEntriesAsTheCounts) {
   description->obstacle_count = 1;
   description->obstacles[0].shape = msg::kShapeBox;
   description->obstacles[0].pose.orientation.w = 1;
+  description->ground_gloss = 0.7;
   description->line_point_count = 3;
   description->line_x_m[2] = 5.0;
   const Scene scene = scene_of(*description);
@@ -44,6 +45,7 @@ TEST(SceneFromMessages, ReadsAsManyEntriesAsTheCounts) {
   EXPECT_EQ(scene.X_WObstacle.size(), 1U);
   ASSERT_EQ(scene.line_m.size(), 3U);
   EXPECT_EQ(scene.line_m[2].x(), 5.0);
+  EXPECT_EQ(scene.ground_gloss, 0.7);
 }
 
 }  // namespace

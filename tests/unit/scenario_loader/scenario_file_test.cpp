@@ -43,6 +43,13 @@ TEST(ScenarioFile, ASlopeTiltsGravityRelativeToTheGround) {
   EXPECT_NE(error_of(kMinimal + "slope: {angle: 0.1}\n").find("angle"), std::string::npos);
 }
 
+TEST(ScenarioFile, TheGroundMayBeGlossy) {
+  EXPECT_EQ(read(kMinimal).ground_gloss, 0.0);
+  EXPECT_EQ(read(kMinimal + "ground_gloss: 1.5\n").ground_gloss, 1.5);
+  EXPECT_NE(error_of(kMinimal + "ground_gloss: 4.5\n").find("ground_gloss"), std::string::npos);
+  EXPECT_NE(error_of(kMinimal + "ground_gloss: -0.1\n").find("ground_gloss"), std::string::npos);
+}
+
 TEST(ScenarioFile, EveryShippedFileIsAcceptedForManySeeds) {
   for (const auto& entry : std::filesystem::directory_iterator(testing::source_path("sim/scenarios"))) {
     if (entry.path().extension() != ".yaml") continue;

@@ -80,6 +80,7 @@ void expect_same_scene(const Scenario& drawn, const Scenario& again) {
   EXPECT_EQ(drawn.light.intensity, again.light.intensity);
   EXPECT_EQ(drawn.light.ambient, again.light.ambient);
   EXPECT_EQ(drawn.ground_colour, again.ground_colour);
+  EXPECT_EQ(drawn.ground_gloss, again.ground_gloss);
   EXPECT_EQ(drawn.start_m, again.start_m);
   expect_same_angle(drawn.start_yaw_rad, again.start_yaw_rad);
   EXPECT_LT((drawn.gravity_m_s2 - again.gravity_m_s2).norm(), 10.0 * kLastBits);
@@ -130,6 +131,7 @@ TEST(ScenarioWriter, WritesEveryKeyOfAScene) {
       "light: {direction: [0.1, 0.2, 0.7], intensity: 0.9, ambient: 0.2}\n"
       "slope: {grade: 0.07, uphill_rad: -2.5}\n"
       "ground_colour: [0.1, 0.2, 0.3]\n"
+      "ground_gloss: 0.7\n"
       "noise: {sensors: false, camera_sd: 0.02}\n"
       "start: {frame: line_begin, position_m: [-3, 0], yaw_rad: 6}\n",
       1);
