@@ -7,11 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <stdexcept>
+#include <vector>
 
 #include "configuration/xml_escaped.hpp"
 #include "constrictor/text.hpp"
 #include "sim/figure/cairo_status.hpp"
+#include "sim/figure/png.hpp"
 
 namespace constrictor::figure {
 namespace {
@@ -44,6 +48,24 @@ cairo_surface_t* surface_for(Format format, double width, double height, double 
       return cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(w)),
                                         static_cast<int>(std::ceil(h)));
   }
+}
+
+/// The pixels of an image surface without gaps, red first. Cairo stores a pixel as a number of 32 bits.
+std::vector<std::uint8_t> rgb_of(const std::uint8_t* pixels, cairo_surface_t* surface) {
+  const int width = cairo_image_surface_get_width(surface);
+  const int height = cairo_image_surface_get_height(surface);
+  const int stride = cairo_image_surface_get_stride(surface);
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(static_cast<std::size_t>(3 * width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      std::uint32_t pixel = 0;
+      std::memcpy(&pixel, pixels + static_cast<std::ptrdiff_t>(y) * stride + static_cast<std::ptrdiff_t>(x) * 4,
+                  sizeof pixel);
+      for (const unsigned shift : {16U, 8U, 0U}) rgb.push_back(static_cast<std::uint8_t>(pixel >> shift));
+    }
+  }
+  return rgb;
 }
 
 /// Removes the last character of UTF-8.
@@ -232,8 +254,9 @@ std::vector<std::string> Canvas::wrapped(std::string_view words, double width, c
 std::string Canvas::finish() {
   require(cairo_status(parts_->cairo));
   if (parts_->format == Format::kPng) {
-    require(cairo_surface_write_to_png_stream(parts_->surface, append, &parts_->bytes));
-    return std::move(parts_->bytes);
+    // Cairo itself would save another tenth of the bytes, but take five times as long to compress as to draw.
+    return encode_png(cairo_image_surface_get_width(parts_->surface), cairo_image_surface_get_height(parts_->surface),
+                      rgb_of(pixels(), parts_->surface).data());
   }
   cairo_surface_finish(parts_->surface);
   require(cairo_surface_status(parts_->surface));

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "sim/figure/png.hpp"
 #include "sim/report/files.hpp"
-#include "sim/report/png.hpp"
 #include "sim/report/scene_pictures.hpp"
 
 namespace constrictor::report {

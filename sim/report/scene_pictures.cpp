@@ -8,9 +8,9 @@
 
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
+#include "sim/figure/png.hpp"
 #include "sim/overview/overview_view.hpp"
 #include "sim/report/files.hpp"
-#include "sim/report/png.hpp"
 
 namespace constrictor::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "sim/report/png.hpp"
+#include "sim/figure/png.hpp"
 
 namespace constrictor::validation {
 namespace {
@@ -131,7 +131,7 @@ void Results::write(const std::filesystem::path& folder) const {
   for (const Section& section : sections_) {
     for (const Figure& figure : section.figures) {
       const cv::Mat rgb = draw(figure);
-      write_file(folder / figure.file, constrictor::report::encode_png(rgb.cols, rgb.rows, rgb.data));
+      write_file(folder / figure.file, constrictor::encode_png(rgb.cols, rgb.rows, rgb.data));
     }
   }
 }

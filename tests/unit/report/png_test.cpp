@@ -1,5 +1,5 @@
 // Our PNG files against OpenCV's reader.
-#include "sim/report/png.hpp"
+#include "sim/figure/png.hpp"
 
 #include <gtest/gtest.h>
 

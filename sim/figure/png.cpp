@@ -1,10 +1,10 @@
-#include "sim/report/png.hpp"
+#include "sim/figure/png.hpp"
 
 #include <png.h>
 
 #include <stdexcept>
 
-namespace constrictor::report {
+namespace constrictor {
 
 std::string encode_png(int width, int height, const std::uint8_t* rgb) {
   png_image header{};
@@ -21,4 +21,4 @@ std::string encode_png(int width, int height, const std::uint8_t* rgb) {
   return bytes;
 }
 
-}  // namespace constrictor::report
+}  // namespace constrictor
