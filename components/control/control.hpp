@@ -35,6 +35,7 @@ struct ControlState {
 class Control : public TunableComponent<ControlState, ControlConfig> {
  public:
   Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
 
  private:

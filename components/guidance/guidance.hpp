@@ -49,6 +49,7 @@ struct GuidanceState {
 class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig> {
  public:
   Guidance(Wiring& wiring, const Setup& setup);
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
 
  private:

@@ -36,6 +36,7 @@ struct InputState {
 class Input : public StatefulComponent<InputState> {
  public:
   Input(Wiring& wiring, const Setup& setup, std::shared_ptr<ClientRequests> client_requests = nullptr);
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
 
  private:

@@ -66,6 +66,7 @@ struct NavigationState {
 class Navigation : public TunableComponent<NavigationState, NavigationConfig>, public ObjectHolder {
  public:
   Navigation(Wiring& wiring, const Setup& setup);
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
   [[nodiscard]] double largest_radius_m() const override { return grip_sense_.largest_radius_m(); }
 

@@ -12,6 +12,7 @@ namespace constrictor {
 class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig> {
  public:
   Planner(Wiring& wiring, const Setup& setup);
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
 
  private:

@@ -70,6 +70,10 @@ class Component {
   virtual ~Component() = default;
 
   [[nodiscard]] virtual Timing timing() const { return {}; }
+  /// Whether a step, and to build the component, always take a few milliseconds at most. Then the runtime may step in
+  /// the thread that receives messages: that saves a switch between threads for each tick, but the process receives
+  /// nothing during a step.
+  [[nodiscard]] virtual bool has_short_steps() const { return false; }
   virtual void step(const Tick& tick) = 0;
 
   /// The whole state, such that load(save()) into a newly built component continues bit-identically.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -74,15 +75,17 @@ struct Datagram {
   std::string bytes;
 };
 
+std::atomic<std::uint64_t> g_messages = 0;
+std::atomic<std::uint64_t> g_datagrams = 0;
+
 class Gathering {
  public:
-  [[nodiscard]] const GatheredSends::Counts& counts() const { return counts_; }
   void let_receivers_wait(bool may_wait) { may_wait_ = may_wait; }
 
   /// Takes the message if it can wait, and returns its size; otherwise sends it, after the messages that wait for its
   /// address.
   ssize_t send(int socket, const msghdr& message, int flags) {
-    ++counts_.messages;
+    ++g_messages;
     sockaddr_in to{};
     std::size_t size = 0;
     for (std::size_t i = 0; i < message.msg_iovlen; ++i) size += message.msg_iov[i].iov_len;
@@ -156,7 +159,7 @@ class Gathering {
   void send_waiting(Datagram& datagram) {
     if (datagram.bytes.empty()) return;
     if (datagram.may_wait && mail_.put(ntohs(datagram.to.sin_port), datagram.bytes)) {
-      ++counts_.datagrams;
+      ++g_datagrams;
       datagram.bytes.clear();
       return;
     }
@@ -171,8 +174,8 @@ class Gathering {
     datagram.bytes.clear();
   }
 
-  ssize_t send_now(int socket, const msghdr& message, int flags) {
-    ++counts_.datagrams;
+  static ssize_t send_now(int socket, const msghdr& message, int flags) {
+    ++g_datagrams;
     return send_of_c_library()(socket, &message, flags);
   }
 
@@ -181,7 +184,6 @@ class Gathering {
   std::string part_;
   bool may_wait_ = false;  ///< of what is sent now
   MailSender mail_;
-  GatheredSends::Counts counts_;
 };
 
 thread_local int t_objects = 0;  // apart, because threads that end may still send
@@ -199,7 +201,7 @@ GatheredSends::~GatheredSends() {
   if (--t_objects == 0) t_gathering.send_all();
 }
 
-GatheredSends::Counts GatheredSends::counts() { return t_gathering.counts(); }
+GatheredSends::Counts GatheredSends::counts() { return {g_messages, g_datagrams}; }
 
 }  // namespace constrictor::dds
 

@@ -32,7 +32,7 @@ class GatheredSends {
     std::uint64_t messages = 0;   ///< that Cyclone DDS gave to the kernel while an object existed
     std::uint64_t datagrams = 0;  ///< in which they were sent
   };
-  /// The counts of this thread, since it began.
+  /// The counts of this process, since it began.
   [[nodiscard]] static Counts counts();
 };
 

@@ -17,7 +17,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string_view>
+#include <utility>
 
 namespace constrictor::dds {
 namespace {
@@ -31,6 +33,13 @@ constexpr std::string_view kReceivingThread = "recvUC";
 std::atomic<bool> g_open = false;
 std::atomic<int> g_emptied_at_once = 0;
 std::atomic<std::uint64_t> g_taken = 0;
+std::shared_mutex g_before_waiting_mutex;
+std::function<void()> g_before_waiting;
+
+void call_before_waiting() {
+  const std::shared_lock lock(g_before_waiting_mutex);
+  if (g_before_waiting) g_before_waiting();
+}
 
 using Receive = ssize_t (*)(int, msghdr*, int);
 
@@ -126,6 +135,7 @@ class ReceivingMailbox {
       waiting_.size = 0;
       return size;
     }
+    call_before_waiting();
     ssize_t size = -1;
     do {
       const bool at_once = g_emptied_at_once.load() > 0;
@@ -203,6 +213,16 @@ ReceivingMailbox* mailbox_of(int socket) {
 void Mailbox::open_for_this_process() { g_open = true; }
 
 std::uint64_t Mailbox::taken() { return g_taken; }
+
+Mailbox::BeforeWaiting::BeforeWaiting(std::function<void()> call) {
+  const std::unique_lock lock(g_before_waiting_mutex);
+  g_before_waiting = std::move(call);
+}
+
+Mailbox::BeforeWaiting::~BeforeWaiting() {
+  const std::unique_lock lock(g_before_waiting_mutex);
+  g_before_waiting = nullptr;
+}
 
 Mailbox::EmptiedAtOnce::EmptiedAtOnce() {
   ++g_emptied_at_once;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,16 @@ class Mailbox {
     EmptiedAtOnce(const EmptiedAtOnce&) = delete;
     EmptiedAtOnce& operator=(const EmptiedAtOnce&) = delete;
     ~EmptiedAtOnce();
+  };
+
+  /// As long as an object of this class exists, the threads that receive call a function whenever they have passed on
+  /// everything that has arrived, before they wait for more. Only one object may exist at a time.
+  class BeforeWaiting {
+   public:
+    explicit BeforeWaiting(std::function<void()> call);
+    BeforeWaiting(const BeforeWaiting&) = delete;
+    BeforeWaiting& operator=(const BeforeWaiting&) = delete;
+    ~BeforeWaiting();  ///< waits until no thread calls the function any more
   };
 
   /// The number of datagrams that this process has taken out of its mailboxes.

@@ -28,6 +28,8 @@ class Arrivals {
   /// Ends the present or else the next wait().
   void wake();
 
+  /// Whether a source of `wanted` has samples that were not taken, and that would end a wait(). Any thread may ask.
+  [[nodiscard]] bool has(Sources wanted) const { return that_matter(wanted & ~kWoken) != 0; }
   /// Returns when a source of `wanted` has samples that were not taken, wake() was called, or `bound` is over.
   void wait(std::chrono::nanoseconds bound, Sources wanted);
   /// The sources that have noted samples since the last call. The caller must take the samples of all of them.

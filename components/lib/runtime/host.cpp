@@ -82,11 +82,11 @@ class Host::Impl {
     if (!g_stop) members_.send_hello();
     if (conductor_) conductor_->continue_epoch();
     links_.take_all();
+    if (may_step_in_receiver()) links_.let_receiver_turn([this] { return turn(); });
     while (!context_.exit_status && !g_stop) {
       members_.repeat_hello();
       members_.send_ready();
-      bool stepped = false;
-      while (members_.step()) stepped = true;  // the outputs of one member may let another one step
+      const bool stepped = step();
       const bool ticked = conductor_ && conductor_->tick();
       if (stepped || ticked) context_.note_progress();
       if (conductor_) {
@@ -95,7 +95,8 @@ class Host::Impl {
         conductor_->expect_done();
       }
       if (members_.all_ended() && !stays()) break;
-      links_.wait(ticked ? 0 : longest_wait_ns(), members_.want_inputs());
+      // After a tick, the member of this process steps before it is clear whether it lacks inputs.
+      links_.wait(ticked ? 0 : longest_wait_ns(), !ticked && members_.want_inputs());
       if (!stepped && !ticked) check_patience();
     }
     const int status = context_.exit_status.value_or(exit_status::kOk);
@@ -106,6 +107,25 @@ class Host::Impl {
   }
 
  private:
+  bool step() {
+    bool stepped = false;
+    while (members_.step()) stepped = true;  // the outputs of one member may let another one step
+    return stepped;
+  }
+
+  /// A writer whose history is full waits for acknowledgements, which it would not get in the thread that receives
+  /// them. With the configuration of this project none is ever full (WhcHigh); a user's may be another one.
+  [[nodiscard]] bool may_step_in_receiver() const {
+    return members_.have_short_steps() && !conductor_ && !std::getenv("CYCLONEDDS_URI");
+  }
+
+  /// In the thread that receives. Returns whether there is something to do besides steps.
+  bool turn() {
+    if (step()) context_.note_progress();
+    links_.want(members_.want_inputs());
+    return context_.exit_status || !members_.all_ready() || members_.all_ended();
+  }
+
   /// Whether this process is still needed, although its members have ended. The plant's process waits for the members
   /// of the others. These stay until it has left: a member that is restarted now needs the last samples of all others,
   /// and DDS drops the samples of a process that leaves.

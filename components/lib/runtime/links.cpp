@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "cyclone/acknowledgements.hpp"
 #include "cyclone/create_domain.hpp"
@@ -47,12 +48,52 @@ void Links::expect(dds_entity_t reader, std::size_t samples) {
   if (one != attached_.end()) arrivals_.expect(one->place.source, samples);
 }
 
-void Links::wait(dds_duration_t bound_ns, bool wanted) {
+void Links::let_receiver_turn(std::function<bool()> turn) {
+  turn_ = std::move(turn);
+  active_ = std::unique_lock(active_mutex_);
+  before_waiting_.emplace([this] { turn_in_receiver(); });
+}
+
+void Links::want(bool wanted) {
   if (wanted && !emptied_at_once_) emptied_at_once_.emplace();
   else if (!wanted) emptied_at_once_.reset();
-  arrivals_.wait(std::chrono::nanoseconds(bound_ns), wanted ? ~Arrivals::Sources{0} : always_);
+  mattering_ = wanted ? ~Arrivals::Sources{0} : always_;
+}
+
+void Links::take_arrived() {
   for (Arrivals::Sources found = arrivals_.take(); found != 0; found &= found - 1)
     attached_[static_cast<std::size_t>(std::countr_zero(found))].take();
+}
+
+// No sample is left: a thread that finds the mutex locked leaves what has arrived to the other thread, which looks for
+// it after it has unlocked the mutex.
+void Links::turn_in_receiver() {
+  receiver_turns_ = true;
+  while (arrivals_.has(mattering_)) {
+    const std::unique_lock active(active_mutex_, std::try_to_lock);
+    if (!active || thrown_) return;
+    try {
+      take_arrived();
+      if (turn_()) arrivals_.wake();
+    } catch (...) {
+      thrown_ = std::current_exception();
+      arrivals_.wake();
+    }
+  }
+}
+
+void Links::wait(dds_duration_t bound_ns, bool wanted) {
+  want(wanted);
+  const std::chrono::nanoseconds bound(bound_ns);
+  if (receiver_turns_) {
+    active_.unlock();
+    if (!arrivals_.has(mattering_)) arrivals_.wait(bound, 0);
+    active_.lock();
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+  } else {
+    arrivals_.wait(bound, mattering_);
+  }
+  take_arrived();
 }
 
 }  // namespace constrictor

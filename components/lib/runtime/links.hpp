@@ -1,8 +1,11 @@
 // The DDS side of one process: its participant, and a wait that calls a function when a reader has samples.
 #pragma once
 
+#include <atomic>
 #include <deque>
+#include <exception>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -77,6 +80,12 @@ class Links {
   /// Lets the samples of a reader end a wait() only when there are so many more of them than at the last wait(), until
   /// one of them was taken. It saves switches between threads when the samples are useful only together.
   void expect(dds_entity_t reader, std::size_t samples);
+  /// From now on, the thread that receives takes during a wait() what has arrived, and calls `turn` then: that saves a
+  /// switch between threads. The wait() ends only if `turn` returns true; what `turn` throws, wait() throws. `turn` and
+  /// the thread of wait() never run at the same time. Must be called by the thread of wait(), before the first wait().
+  void let_receiver_turn(std::function<bool()> turn);
+  /// Whether readers with Wakes::kIfWanted matter from now on. Only wait() and `turn` may call it.
+  void want(bool wanted);
   /// Takes everything that has arrived.
   void take_all();
   /// Waits until a message arrives or wake() is called, for at most `bound_ns`, and takes everything that has arrived.
@@ -84,6 +93,11 @@ class Links {
   void wait(dds_duration_t bound_ns, bool wanted);
 
  private:
+  /// Takes from the readers that have samples.
+  void take_arrived();
+  /// In the thread that receives: takes and turns, unless the thread of wait() is active.
+  void turn_in_receiver();
+
   /// What the listener of a reader is given.
   struct Place {
     Arrivals* arrivals;
@@ -103,6 +117,14 @@ class Links {
   dds::Entity domain_;
   dds::Entity participant_;
   Reject reject_;
+
+  std::function<bool()> turn_;
+  std::mutex active_mutex_;  ///< held by the thread of wait() except while it waits, and during a turn
+  std::unique_lock<std::mutex> active_;
+  std::atomic<bool> receiver_turns_ = false;
+  std::atomic<Arrivals::Sources> mattering_ = 0;
+  std::exception_ptr thrown_;                                  ///< by turn_
+  std::optional<dds::Mailbox::BeforeWaiting> before_waiting_;  // last: it calls the others
 };
 
 }  // namespace constrictor

@@ -263,6 +263,11 @@ bool MemberSide::all_ready() const {
   return std::all_of(members_.begin(), members_.end(), [](const auto& local) { return local.ready_sent; });
 }
 
+bool MemberSide::have_short_steps() const {
+  return std::all_of(members_.begin(), members_.end(),
+                     [](const auto& local) { return !local.thread && local.member->component().has_short_steps(); });
+}
+
 void MemberSide::publish(const TopicInfo& topic, const Sample& sample) {
   for (auto& local : members_) {
     if (local.member->reads().contains(topic.id)) local.member->on_sample(topic.id, sample);

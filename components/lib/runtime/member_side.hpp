@@ -56,6 +56,8 @@ class MemberSide : private MemberSink {
   [[nodiscard]] bool want_inputs() const;
   /// False while a member has still to send Ready.
   [[nodiscard]] bool all_ready() const;
+  /// Whether no step of this process takes long (Component::has_short_steps).
+  [[nodiscard]] bool have_short_steps() const;
 
   // Messages of the conductor of this process.
   void on_epoch(const EpochId& epoch, std::uint64_t seed);

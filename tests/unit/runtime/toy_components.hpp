@@ -90,6 +90,7 @@ class ToyNavigation : public Toy {
 class ToyControl : public Toy {
  public:
   using Toy::Toy;
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick&) override {
     state_.mix(joints_->position_rad[0]);
     for (const auto& event : events_) state_.mix(event.goal_id);
@@ -110,6 +111,7 @@ class ToyPlanner : public Toy {
  public:
   using Toy::Toy;
   [[nodiscard]] Timing timing() const override { return {1, 1}; }
+  [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick&) override {
     for (const auto& event : events_) state_.mix(event.goal_id);
     if (command_) state_.mix(command_->position_rad[0]);
