@@ -136,6 +136,21 @@ bool report_missing(const Evaluation& evaluation, const std::vector<MissionResul
   return false;
 }
 
+/// Names the runs that were refused before their start. Returns true if there are any.
+bool report_refused(const std::vector<MissionResult>& results) {
+  const auto is_refused = [](const MissionResult& result) { return result.refused; };
+  const auto refused = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), is_refused));
+  if (refused == 0) return false;
+  const MissionResult& first = *std::find_if(results.begin(), results.end(), is_refused);
+  fmt::print(
+      stderr,
+      "{} of {} refused, because the scene that its seed draws is not accepted, and does not count as a mission; "
+      "no repetition changes that: change the ranges of the scenario, or leave out the seeds. The first one, "
+      "{}: {}\n",
+      refused, counted(results.size(), "run"), first.folder.string(), first.reason);
+  return true;
+}
+
 int evaluate(const EvaluateOptions& given) {
   EvaluationRequest request = given.request;
   if (!given.merge.empty() && request.folder.empty()) throw UsageError("--merge: --output FOLDER is missing");
@@ -182,7 +197,8 @@ int evaluate(const EvaluateOptions& given) {
                "them again\n",
                counted(errors, "run"), folder);
   }
-  return errors > 0 ? exit_status::kSoftware : exit_status::kOk;
+  const bool refused = report_refused(results);
+  return errors > 0 ? exit_status::kSoftware : refused ? exit_status::kConfiguration : exit_status::kOk;
 }
 
 void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
@@ -238,8 +254,8 @@ void add_evaluate(CLI::App& app, Action& action) {
        "constrictor evaluate short --seeds 1..100 --shard 1/2 --output part1",
        "constrictor evaluate short --seeds 1..100 --merge part1 part2 --output all"},
       "0 all runs are done, whether or not their missions succeeded; 1 the folders of --merge lack runs;\n"
-      "  64 wrong usage; 70 a run ended with an error; 74 results could not be written; 78 wrong configuration;\n"
-      "  130 Ctrl-C, 143 SIGTERM",
+      "  64 wrong usage; 70 a run ended with an error; 74 results could not be written; 78 wrong configuration, or a\n"
+      "  run was refused, because the scene that its seed draws is not accepted; 130 Ctrl-C, 143 SIGTERM",
       kDataEnvironment));
 }
 

@@ -56,6 +56,25 @@ std::string quoted(const std::string& word) {
   return !word.empty() && std::all_of(word.begin(), word.end(), plain) ? word : "'" + word + "'";
 }
 
+/// Throws ConfigurationError if a component refuses a file of this variant. A scene that only one seed draws is left to
+/// its run: it is enough that one of the first seeds is accepted.
+void check_variant(const Variant& variant, RunOptions options, const std::vector<std::uint64_t>& seeds) {
+  constexpr std::size_t kTried = 20;
+  std::string first, last;
+  for (std::size_t i = 0; i < std::min(kTried, seeds.size()); ++i) {
+    options.seed = seeds[i];
+    try {
+      check_components(options, make_launch_plan(options));
+      return;
+    } catch (const ConfigurationError& error) {
+      if (last == error.what()) break;  // the seed does not matter
+      last = error.what();
+      if (first.empty()) first = last;
+    }
+  }
+  throw ConfigurationError(variant.settings.empty() ? first : fmt::format("--vary {}: {}", variant.name, first));
+}
+
 std::string duration_text(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
   if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
@@ -83,7 +102,7 @@ Evaluation::Evaluation(EvaluationRequest request) : request_(std::move(request))
   try {
     for (const auto& variant : variants_) {
       options_.push_back(options_of(variant, request_.run, request_.folder / "variants" / variant.folder));
-      check_components(options_.back(), make_launch_plan(options_.back()));
+      check_variant(variant, options_.back(), request_.seeds);
       limits_.push_back(search_limits_of(options_.back()));
     }
   } catch (const ConfigurationError&) {
@@ -232,9 +251,9 @@ int Evaluation::carry_out(const Print& show, const Print& progress) {
     ++done;
     succeeded += result.success ? 1 : 0;
     const std::string& variant = variants_[run.variant].name;
-    show(fmt::format("seed {}{}: {}", run.seed, variants_.size() > 1 ? " with " + variant : "",
-                     result.success ? fmt::format("succeeded in {:.1f} s", result.mission_time_s)
-                                    : (result.error() ? "error: " : "failed: ") + result.reason));
+    show(fmt::format(
+        "seed {}{}: {}", run.seed, variants_.size() > 1 ? " with " + variant : "",
+        result.success ? fmt::format("succeeded in {:.1f} s", result.mission_time_s) : result.kind() + result.reason));
   };
   while (next < due.size() || !jobs.empty()) {
     while (jobs.size() < request_.jobs && next < due.size()) {

@@ -50,11 +50,11 @@ class Evaluation {
   [[nodiscard]] const std::filesystem::path& folder() const { return request_.folder; }
   [[nodiscard]] const std::string& scenario() const { return scenario_; }
 
-  /// Does the runs of this shard that have no result yet, and repeats runs whose result is an error. After a failed run
-  /// the others go on, also after one whose files cannot be written: it is an error, and it leaves only its run.log.
-  /// Calls `show` with a line for each run that ended, and `progress` with the state of the whole. Returns 0, or the
-  /// number of the signal that interrupted it: the runs that had not ended are then stopped, and the next call does
-  /// them again.
+  /// Does the runs of this shard that have no result yet, and repeats runs whose result is an error, but not those that
+  /// were refused: a repetition would be refused, too. After a failed run the others go on, also after one whose files
+  /// cannot be written: it is an error, and it leaves only its run.log. Calls `show` with a line for each run that
+  /// ended, and `progress` with the state of the whole. Returns 0, or the number of the signal that interrupted it: the
+  /// runs that had not ended are then stopped, and the next call does them again.
   int carry_out(const Print& show, const Print& progress);
   /// The results of runs(), in their order: those that the folder has, and an error for each run whose
   /// files could not be written.

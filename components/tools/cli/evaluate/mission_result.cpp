@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/child_process.hpp"
+#include "runtime/host.hpp"
 
 namespace constrictor::cli {
 
@@ -43,16 +44,19 @@ bool reached(const MissionResult& result, std::size_t phase) {
   }
 }
 
-MissionResult read_result(const std::filesystem::path& folder, int exit_status, const SearchLimits& limits) {
+MissionResult read_result(const std::filesystem::path& folder, int status, const SearchLimits& limits) {
   MissionResult result;
-  result.exit_status = exit_status;
+  result.exit_status = status;
   std::ifstream stream(folder / "report.json");
   const nlohmann::json report = stream ? nlohmann::json::parse(stream, nullptr, false) : nlohmann::json();
   if (!report.is_object()) {
-    result.incomplete = true;
-    result.reason = fmt::format("no report; `constrictor run` ended with status {}", exit_status);
+    // `run` makes a report of every run that has begun.
+    result.refused = !stream.is_open() && status == exit_status::kConfiguration;
+    result.incomplete = !result.refused;
+    if (result.incomplete) result.reason = fmt::format("no report; `constrictor run` ended with status {}", status);
     // The launcher's last line says why there is none.
-    for (const auto& line : last_lines(folder / "run.log", 0, 1)) result.reason += ": " + line;
+    for (const auto& line : last_lines(folder / "run.log", 0, 1))
+      result.reason += (result.reason.empty() ? "" : ": ") + line;
     return result;
   }
   if (lacks_verdict(report)) {

@@ -26,6 +26,7 @@ struct MissionResult {
   std::string command;               ///< repeats the run
   int exit_status = -1;              ///< of `constrictor run`: 0 and 1 are outcomes of the mission, others are errors
   bool incomplete = false;           ///< the files of its result could not be written; `reason` tells why
+  bool refused = false;              ///< before its start, because of its files and seed; `reason` tells why
   bool success = false;              ///< by ground truth
   bool believed = false;             ///< the planner ended the mission as succeeded
   std::string reason;                ///< why it did not succeed
@@ -41,8 +42,11 @@ struct MissionResult {
   std::map<std::string, int> recoveries_by_cause;  ///< their sum is `recoveries`
   RecoveryTime longest_recovery;
 
-  /// The run itself failed, so that nothing is known about the mission.
-  [[nodiscard]] bool error() const { return incomplete || (exit_status != 0 && exit_status != 1); }
+  /// The run itself failed, so that nothing is known about the mission. A repetition may succeed, unlike one of a run
+  /// that was refused.
+  [[nodiscard]] bool error() const { return !refused && (incomplete || (exit_status != 0 && exit_status != 1)); }
+  /// What `reason` is, for people.
+  [[nodiscard]] const char* kind() const { return error() ? "error: " : refused ? "refused: " : "failed: "; }
   /// The run did not fail, but its files could not be written.
   [[nodiscard]] bool unwritten() const { return incomplete && exit_status <= 1; }
 };
@@ -52,10 +56,10 @@ inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", 
                                           "mission succeeded"};
 [[nodiscard]] bool reached(const MissionResult& result, std::size_t phase);
 
-/// The result of a `constrictor run` that wrote into `folder` and ended with `exit_status`. A run without a
-/// whole report is incomplete. Text and numbers of the report are not trusted: what is missing or of a wrong type
-/// stays unknown.
-[[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int exit_status,
+/// The result of a `constrictor run` that wrote into `folder` and ended with `status`. A run without a whole report is
+/// incomplete, or refused if it ended with exit_status::kConfiguration and has no report at all. Text and numbers of
+/// the report are not trusted: what is missing or of a wrong type stays unknown.
+[[nodiscard]] MissionResult read_result(const std::filesystem::path& folder, int status,
                                         const SearchLimits& limits = {});
 
 }  // namespace constrictor::cli

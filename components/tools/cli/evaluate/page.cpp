@@ -57,17 +57,19 @@ std::string overview(const std::vector<VariantSummary>& summaries) {
   std::string html =
       "<div class=\"table\"><table><tr><th>variant</th><th class=\"n\">runs</th><th class=\"n\">succeeded</th>"
       "<th>95 % interval</th><th class=\"n\">believed, but not true</th><th class=\"n\">errors</th>"
+      "<th class=\"n\">refused</th>"
       "<th class=\"n\">median time</th><th class=\"n\">median placement</th><th class=\"n\">95 % of placements</th>"
       "<th class=\"n\">cost of transport</th><th class=\"n\">longest recovery</th></tr>\n";
   for (const auto& summary : summaries) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td>"
-        "<td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td class=\"n\">{} m</td>"
+        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td "
+        "class=\"n\">{} m</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-        xml_escaped(summary.name), summary.runs, summary.successes(), interval_text(summary.successes(), summary.runs),
-        summary.false_successes, summary.errors, known(summary.mission_time_s.at(0.5), 1),
-        known(summary.placement_m.at(0.5), 3), known(summary.placement_m.at(0.95), 3),
-        known(summary.cost_of_transport.at(0.5), 2), worst_recovery(summary));
+        xml_escaped(summary.name), summary.runs, summary.successes(),
+        interval_text(summary.successes(), summary.begun()), summary.false_successes, summary.errors, summary.refused,
+        known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
+        known(summary.placement_m.at(0.95), 3), known(summary.cost_of_transport.at(0.5), 2), worst_recovery(summary));
   }
   return html + "</table></div>\n";
 }
@@ -79,12 +81,12 @@ std::string phases(const std::vector<VariantSummary>& summaries) {
     for (std::size_t i = 0; i < shown; ++i) {
       const VariantSummary& summary = summaries[i];
       const double share =
-          summary.runs == 0 ? 0 : static_cast<double>(summary.reached[phase]) / static_cast<double>(summary.runs);
-      const Interval interval = wilson_interval(summary.reached[phase], summary.runs);
+          summary.begun() == 0 ? 0 : static_cast<double>(summary.reached[phase]) / static_cast<double>(summary.begun());
+      const Interval interval = wilson_interval(summary.reached[phase], summary.begun());
       bars.push_back({i == 0 ? kPhases[phase] : "",
                       100 * share,
-                      fmt::format("{} of {}", summary.reached[phase], summary.runs),
-                      summary.runs > 0,
+                      fmt::format("{} of {}", summary.reached[phase], summary.begun()),
+                      summary.begun() > 0,
                       {100 * interval.low, 100 * interval.high},
                       i});
     }
@@ -130,10 +132,10 @@ std::string over_the_value(const std::vector<Variant>& variants, const std::vect
     if (!x) return {};
     name = setting.file == "scenario" ? setting.key : setting.file + ":" + setting.key;
     const VariantSummary& summary = summaries[i];
-    if (summary.runs == 0) continue;
-    const Interval interval = wilson_interval(summary.successes(), summary.runs);
+    if (summary.begun() == 0) continue;
+    const Interval interval = wilson_interval(summary.successes(), summary.begun());
     success.points.push_back({*x,
-                              100.0 * static_cast<double>(summary.successes()) / static_cast<double>(summary.runs),
+                              100.0 * static_cast<double>(summary.successes()) / static_cast<double>(summary.begun()),
                               true,
                               {100 * interval.low, 100 * interval.high}});
     const auto add = [&](Curve& curve, const Distribution& values) {
@@ -193,7 +195,7 @@ std::string run_rows(const PageContent& content, bool successes) {
         "class=\"n\">{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
         xml_escaped(result.folder.string()), result.seed, xml_escaped(content.variants.at(result.variant).name),
         successes ? "" : "bad",
-        successes ? "succeeded" : xml_escaped((result.error() ? "error: " : "") + result.reason),
+        successes ? "succeeded" : xml_escaped((result.error() || result.refused ? result.kind() : "") + result.reason),
         known(result.mission_time_s, 1), known(worst_m, 2), result.recoveries,
         known(result.longest_recovery.duration_s, 1), xml_escaped(result.longest_recovery.cause),
         xml_escaped(result.command));

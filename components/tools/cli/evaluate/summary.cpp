@@ -32,7 +32,7 @@ std::string csv(double value) { return std::isfinite(value) ? fmt::format("{:.6g
 
 /// 0: the run had no recovery; NaN: the report does not tell it.
 double longest_recovery_s(const MissionResult& result) {
-  return !result.error() && result.recoveries == 0 ? 0.0 : result.longest_recovery.duration_s;
+  return !result.error() && !result.refused && result.recoveries == 0 ? 0.0 : result.longest_recovery.duration_s;
 }
 
 /// "2 follow line: line lost; 1 other"
@@ -55,10 +55,11 @@ ordered_json worst_recovery_json(const VariantSummary& summary) {
 void add(VariantSummary& summary, const MissionResult& result) {
   ++summary.runs;
   summary.errors += result.error() ? 1 : 0;
+  summary.refused += result.refused ? 1 : 0;
   summary.false_successes += result.believed && !result.success ? 1 : 0;
   for (std::size_t phase = 0; phase < std::size(kPhases); ++phase)
     summary.reached[phase] += reached(result, phase) ? 1 : 0;
-  if (result.error()) return;
+  if (result.error() || result.refused) return;
   for (const auto& object : result.objects) {
     if (object.dropped) add_known(summary.placement_m, object.zone_distance_m);
   }
@@ -88,7 +89,7 @@ std::vector<VariantSummary> summarise(const std::vector<Variant>& variants, cons
   }
   for (const auto& result : results) add(summaries.at(result.variant), result);
   for (auto& summary : summaries) {
-    const auto missions = static_cast<double>(std::max<std::size_t>(summary.runs - summary.errors, 1));
+    const auto missions = static_cast<double>(std::max<std::size_t>(summary.begun() - summary.errors, 1));
     for (auto& [state, time_s] : summary.mean_time_in_state_s) time_s /= missions;
   }
   return summaries;
@@ -99,12 +100,13 @@ ordered_json to_json(const std::vector<VariantSummary>& summaries) {
   for (const auto& summary : summaries) {
     ordered_json phases = ordered_json::object();
     for (std::size_t i = 0; i < std::size(kPhases); ++i) {
-      const Interval interval = wilson_interval(summary.reached[i], summary.runs);
+      const Interval interval = wilson_interval(summary.reached[i], summary.begun());
       phases[kPhases[i]] = {{"runs", summary.reached[i]}, {"wilson_95", {interval.low, interval.high}}};
     }
     list.push_back({{"variant", summary.name},
                     {"runs", summary.runs},
                     {"errors", summary.errors},
+                    {"refused", summary.refused},
                     {"false_successes", summary.false_successes},
                     {"phases", phases},
                     {"placement_m", to_json(summary.placement_m)},
@@ -166,16 +168,17 @@ std::string to_table(const std::vector<VariantSummary>& summaries) {
   };
   std::size_t width = 8;
   for (const auto& summary : summaries) width = std::max(width, summary.name.size());
-  constexpr const char* kRow = "{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>9}  {:>9}  {:>10}  {:>11}\n";
-  std::string text = fmt::format(kRow, "variant", width, "runs", "succeeded", "95 % interval", "errors", "time [s]",
-                                 "place [m]", "recoveries", "longest [s]");
+  constexpr const char* kRow = "{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>7}  {:>9}  {:>9}  {:>10}  {:>11}\n";
+  std::string text = fmt::format(kRow, "variant", width, "runs", "succeeded", "95 % interval", "errors", "refused",
+                                 "time [s]", "place [m]", "recoveries", "longest [s]");
   const VariantSummary* worst = nullptr;
   for (const auto& summary : summaries) {
-    const Interval interval = wilson_interval(summary.successes(), summary.runs);
-    text += fmt::format(kRow, summary.name, width, summary.runs, summary.successes(),
-                        fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high), summary.errors,
-                        known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
-                        known(summary.recoveries.at(0.5), 1), known(summary.worst_recovery.duration_s, 1));
+    const Interval interval = wilson_interval(summary.successes(), summary.begun());
+    text +=
+        fmt::format(kRow, summary.name, width, summary.runs, summary.successes(),
+                    fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high), summary.errors,
+                    summary.refused, known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
+                    known(summary.recoveries.at(0.5), 1), known(summary.worst_recovery.duration_s, 1));
     if (!std::isfinite(summary.worst_recovery.duration_s)) continue;
     if (!worst || summary.worst_recovery.duration_s > worst->worst_recovery.duration_s) worst = &summary;
   }

@@ -25,6 +25,7 @@ struct VariantSummary {
   std::string name;
   std::size_t runs = 0;
   std::size_t errors = 0;            ///< runs that ended with an error; they count as not successful
+  std::size_t refused = 0;           ///< runs that were refused before their start; they do not count as missions
   std::size_t false_successes = 0;   ///< missions that only the robot believed to have succeeded
   std::vector<std::size_t> reached;  ///< runs that reached each of kPhases
   Distribution placement_m;          ///< distance of each dropped object from the centre of its zone
@@ -41,6 +42,8 @@ struct VariantSummary {
   std::map<std::string, int> recoveries_by_cause;
 
   [[nodiscard]] std::size_t successes() const { return reached.back(); }
+  /// The runs to which numbers of successes relate.
+  [[nodiscard]] std::size_t begun() const { return runs - refused; }
 };
 
 /// One summary for each variant, also for those without a run.
