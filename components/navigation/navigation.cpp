@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
 #include "component/mission.hpp"
 #include "component/task_parameters.hpp"
 #include "component/task_refusal.hpp"
+#include "configuration/counted.hpp"
 #include "constrictor/text.hpp"
 #include "navigation/motions.hpp"
 #include "navigation/navigation_fit.hpp"
@@ -19,11 +21,12 @@ namespace {
 constexpr double kSwayPeriod_s = 1.5;  // until control has told its own
 
 /// Throws ConfigurationError if the mission demands a grasp of which this body is not capable.
-void check_mission(const std::optional<Mission>& mission, const RobotModel& robot, const GripSense& sense) {
+void check_mission(const std::optional<Mission>& mission, const std::filesystem::path& robot_file,
+                   const RobotModel& robot, const GripSense& sense) {
   if (!mission || mission->sequence.empty()) return;
   if (!sense.refusal().empty()) {
-    throw ConfigurationError(fmt::format("mission.sequence: found {} object(s), accepted none: {}",
-                                         mission->sequence.size(), sense.refusal()));
+    throw ConfigurationError(fmt::format("{}: {}; mission.sequence demands {}", robot_file.string(), sense.refusal(),
+                                         counted(mission->sequence.size(), "object")));
   }
   const double radius_m = mission->known.object_radius_m.value_or(0.0);
   if (radius_m > sense.largest_radius_m()) {
@@ -42,7 +45,7 @@ Navigation::Navigation(Wiring& wiring, const Setup& setup)
                        topics::kNavigationParameters),
       robot_(load_robot(setup.robot_file)),
       grip_sense_(robot_, config_.grip) {
-  check_mission(parse_mission(setup.mission), robot_, grip_sense_);
+  check_mission(parse_mission(setup.mission), setup.robot_file, robot_, grip_sense_);
 }
 
 bool Navigation::senses_ready() const {

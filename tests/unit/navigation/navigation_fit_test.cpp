@@ -75,21 +75,48 @@ std::string refusal_of(const RobotModel& robot) {
   return GripSense(robot, config.grip).refusal();
 }
 
-/// The bound follows from lengths: the arm in front of the base, which drives and steers, has at least 0.75 m, and one
+/// This bound follows from lengths: the arm in front of the base, which drives and steers, has at least 0.75 m, and one
 /// yaw joint lies behind the three of the base.
 TEST(NavigationFit, ABodyWithoutRoomForTheArmsOfAUCannotGrasp) {
   for (const std::size_t modules : {10U, 12U, 14U, 15U})
     EXPECT_NE(refusal_of(robot_with(modules)).find("cannot grasp"), std::string::npos) << modules << " modules";
   for (std::size_t modules = 16; modules <= 64; ++modules)
     EXPECT_EQ(refusal_of(robot_with(modules)), "") << modules << " modules";
-  RobotModel longer = robot_with(14);
-  longer.module_length_m = 0.12;  // the same number of joints, and an arm of 0.84 m
-  EXPECT_EQ(refusal_of(longer), "");
   RobotModel yaw_only = load_robot(data_path("components/lib/robot/mamba_yaw_only.yaml"));
   EXPECT_EQ(refusal_of(yaw_only), "");
   yaw_only.module_count = 12;
   yaw_only.joints.resize(11);
   EXPECT_NE(refusal_of(yaw_only).find("accepted at least 0.75 m"), std::string::npos) << refusal_of(yaw_only);
+}
+
+/// Missions of `short` with three seeds each, and with two for 24 modules.
+TEST(NavigationFit, ABodyWhoseArmsHaveTooFewJointsCannotGrasp) {
+  const auto of = [](std::size_t modules, double length_m) {
+    RobotModel robot = robot_with(modules);
+    robot.module_length_m = length_m;
+    return refusal_of(robot);
+  };
+  EXPECT_EQ(of(18, 0.12), "") << "3 of 3 missions succeeded";
+  EXPECT_EQ(of(24, 0.12), "") << "2 of 2";
+  EXPECT_EQ(of(16, 0.105), "") << "3 of 3";
+  EXPECT_EQ(of(30, 0.07), "");
+  for (const auto& [modules, length_m] : {std::pair{14U, 0.12}, {14U, 0.14}, {16U, 0.12}, {16U, 0.135}})
+    EXPECT_NE(of(modules, length_m).find("module.count"), std::string::npos) << modules << ", " << length_m << ": none";
+  EXPECT_EQ(of(14, 0.15),
+            "the robot mamba cannot grasp: module.count: found 14 of 0.15 m, accepted more modules: the arms of its U "
+            "would have 2 and 2 yaw joints, accepted at least 4 in front of it, or 3 in each");
+}
+
+TEST(NavigationFit, ABodyWhoseLinksAreTooLongForAWaveCannotGrasp) {
+  RobotModel robot = robot_with(24);
+  robot.module_length_m = 0.15;
+  EXPECT_EQ(refusal_of(robot), "") << "3.6 links; 1 of 2 missions of `short` succeeded";
+  robot.module_length_m = 0.2;
+  EXPECT_EQ(refusal_of(robot),
+            "the robot mamba cannot grasp: module.length_m: found 0.2, accepted at most 0.178: its yaw joints would be "
+            "0.40 m apart, and a wave of 1.07 m needs 3 links");
+  for (JointModel& joint : robot.joints) joint.axis = JointAxis::kYaw;
+  EXPECT_EQ(refusal_of(robot), "") << "the yaw joints are as near to each other as modules";
 }
 
 /// `mamba` with joints of this range, the same to either side, and this torque.
@@ -162,9 +189,10 @@ TEST(NavigationFit, AMissionThatNeedsAGraspIsRefusedBeforeItStarts) {
   EXPECT_EQ(error_of(mamba, "{sequence: [green], line_colour: blue}"), "");
   EXPECT_EQ(error_of(small, "{sequence: [], line_colour: blue}"), "");
   const std::string found = error_of(small, "{sequence: [green, red], line_colour: blue}");
-  EXPECT_NE(found.find("mission.sequence: found 2 object(s), accepted none: the robot mamba cannot grasp: the arm"),
-            std::string::npos)
-      << found;
+  EXPECT_EQ(found, small +
+                       ": the robot mamba cannot grasp: module.count: found 12 of 0.089 m, accepted more or longer "
+                       "modules: the arm in front of its U would be 0.44 m long, accepted at least 0.75 m; "
+                       "mission.sequence demands 2 objects");
   EXPECT_EQ(error_of(mamba, "{sequence: [green], line_colour: blue, known: {object_radius_m: 0.1}}"), "");
   const std::string large = error_of(mamba, "{sequence: [green], line_colour: blue, known: {object_radius_m: 0.15}}");
   EXPECT_NE(large.find("mission.known.object_radius_m: found 0.150, accepted at most 0.1"), std::string::npos) << large;
