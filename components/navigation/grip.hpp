@@ -68,6 +68,9 @@ class GripSense {
   /// [m] radius of the largest object that the U with the angles base_angle_rad can hold: the circle that touches the
   /// middle of each link between the base joints of the U, minus the radius of a module.
   [[nodiscard]] double largest_radius_m() const;
+  /// [m] the largest radius as the camera may measure it, which is right to a few percent. What looks larger is not
+  /// grasped.
+  [[nodiscard]] double largest_seen_radius_m() const { return kMeasured * largest_radius_m(); }
   /// [Nm] largest and mean torque by which the base joints close the U.
   [[nodiscard]] double largest_closing_nm(const msg::JointState& joints, double side) const;
   [[nodiscard]] double mean_closing_nm(const msg::JointState& joints, double side) const;
@@ -104,6 +107,7 @@ class GripSense {
   [[nodiscard]] std::size_t base_first_joint() const { return first_; }
 
  private:
+  static constexpr double kMeasured = 1.06;
   /// Chooses a larger torque while the base has opened. `share`: weight of the new angles in the low-pass.
   void choose_torque(const msg::JointState& joints, bool feels, double share, Grip& grip) const;
   /// Unit vector to which the mouth of the U points, in the head's frame.

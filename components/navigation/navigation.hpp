@@ -9,6 +9,7 @@
 #include "component/parameters.hpp"
 #include "component/robot_views.hpp"
 #include "navigation/direct_motion.hpp"
+#include "navigation/object_limits.hpp"
 #include "navigation/task.hpp"
 
 namespace constrictor {
@@ -63,12 +64,14 @@ struct NavigationState {
 /// and TaskStatus every tick and TaskEvent on occurrence. Each goal is answered once, accepted or refused with a
 /// reason, and each accepted goal ends once. Without a goal, and while pose, joints or contacts are missing or stale,
 /// the robot stands still in its posture and keeps hold of an object.
-class Navigation : public TunableComponent<NavigationState, NavigationConfig>, public ObjectHolder {
+class Navigation : public TunableComponent<NavigationState, NavigationConfig>, public ObjectJudge {
  public:
   Navigation(Wiring& wiring, const Setup& setup);
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
-  [[nodiscard]] double largest_radius_m() const override { return grip_sense_.largest_radius_m(); }
+  [[nodiscard]] ObjectVerdict judge(const DemandedObject& object) const override {
+    return judge_object(grip_sense_, robot_, object);
+  }
 
  private:
   [[nodiscard]] bool senses_ready() const;

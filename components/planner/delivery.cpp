@@ -1,5 +1,7 @@
 #include "planner/delivery.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,6 +63,18 @@ DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& droppe
     best_object = &landmark;
   }
   return best;
+}
+
+ObjectVerdict judge_zone_size(const DemandedObject& object) {
+  constexpr double kLeast_m = 0.06;  // kRim_m, and a standard deviation of the places of object and zone
+  const double least_m = std::max(kLeast_m, object.radius_m());
+  if (object.zone_key.empty() || object.zone_radius_m >= least_m) return {};
+  const char* why = object.radius_m() > kLeast_m ? "the object hides a smaller zone"
+                                                 : "the robot knows the places of object and zone no better";
+  return {{fmt::format("{}.radius_m: found {:.3f} m, accepted at least {:.3f} m for {}: {}, and the robot cannot see "
+                       "that the object was delivered",
+                       object.zone_key, object.zone_radius_m, least_m, object.key, why)},
+          {}};
 }
 
 bool all_on_zone(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m, double zone_radius_m) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "component/object_bounds.hpp"
 #include "constrictor/messages.hpp"
 
 namespace constrictor {
@@ -59,6 +60,10 @@ struct DroppedObject {
 /// may take one for the other, so that it has no new image of the one that was dropped.
 [[nodiscard]] bool all_on_zone(const msg::FieldMap& map, const DroppedObject& dropped, double seen_sd_m,
                                double zone_radius_m);
+
+/// Whether the zone of this object is large enough to see that the object was delivered: at least as large as the
+/// object, which would hide it, and larger than what the map may be wrong by.
+[[nodiscard]] ObjectVerdict judge_zone_size(const DemandedObject& object);
 
 /// The highest handle in the map; 0 if it is empty.
 [[nodiscard]] std::uint16_t newest_handle(const msg::FieldMap& map);

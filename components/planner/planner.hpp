@@ -2,18 +2,21 @@
 #pragma once
 
 #include "component/component.hpp"
+#include "component/object_bounds.hpp"
 #include "component/robot_views.hpp"
+#include "planner/delivery.hpp"
 #include "planner/mission_planner.hpp"
 
 namespace constrictor {
 
 /// Reads percepts, pose, map, events, status and authority; writes a Request for each task and MissionStatus every
 /// tick.
-class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig> {
+class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig>, public ObjectJudge {
  public:
   Planner(Wiring& wiring, const Setup& setup);
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
+  [[nodiscard]] ObjectVerdict judge(const DemandedObject& object) const override { return judge_zone_size(object); }
 
  private:
   Log log_;

@@ -65,16 +65,26 @@ void Physics::step(const Tick& tick) {
   world_.advance(config_.period_s());
 }
 
-std::optional<DemandedObject> Physics::largest_object(const std::vector<std::uint8_t>& colours) const {
-  std::optional<DemandedObject> largest;
-  const auto& objects = world_.scenario().objects;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (std::find(colours.begin(), colours.end(), objects[i].colour) == colours.end()) continue;
-    if (largest && objects[i].inner_radius_m() <= largest->radius_m) continue;
-    const char* key = objects[i].shape == BodyShape::kBox ? "].size_m / 2" : "].radius_m";
-    largest = DemandedObject{"objects[" + std::to_string(i) + key, objects[i].inner_radius_m()};
+std::vector<DemandedObject> Physics::demanded_objects(const std::vector<std::uint8_t>& colours) const {
+  std::vector<DemandedObject> demanded;
+  const Scenario& scene = world_.scenario();
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const ScenarioObject& object = scene.objects[i];
+    if (std::find(colours.begin(), colours.end(), object.colour) == colours.end()) continue;
+    DemandedObject& one = demanded.emplace_back();
+    one.key = "objects[" + std::to_string(i) + "]";
+    one.box = object.shape == BodyShape::kBox;
+    const Eigen::Vector2d sides_m = (one.box ? 1.0 : 2.0) * object.size_m.head<2>();
+    one.width_m = sides_m.minCoeff();
+    one.length_m = sides_m.maxCoeff();
+    one.height_m = object.size_m.z();
+    for (std::size_t z = 0; z < scene.zones.size(); ++z) {
+      if (scene.zones[z].colour != object.colour || scene.zones[z].radius_m <= one.zone_radius_m) continue;
+      one.zone_key = "zones[" + std::to_string(z) + "]";
+      one.zone_radius_m = scene.zones[z].radius_m;
+    }
   }
-  return largest;
+  return demanded;
 }
 
 std::string Physics::save() const {

@@ -26,7 +26,7 @@ class Physics final : public Plant, public ObjectSource {
   [[nodiscard]] std::string save() const override;
   void load(const std::string& bytes) override;
 
-  [[nodiscard]] std::optional<DemandedObject> largest_object(const std::vector<std::uint8_t>& colours) const override;
+  [[nodiscard]] std::vector<DemandedObject> demanded_objects(const std::vector<std::uint8_t>& colours) const override;
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_.state(); }

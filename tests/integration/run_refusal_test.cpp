@@ -62,33 +62,67 @@ TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
   EXPECT_FALSE(fs::exists("runs"));
 }
 
-TEST_F(RunCommand, RefusesASceneWhoseObjectsTheBodyCannotHold) {
+TEST_F(RunCommand, RefusesASceneInWhichTheMissionCannotSucceed) {
   // mamba's U holds up to 0.119 m (components/navigation/README.md).
   const std::string scene =
       "line: {colour: blue, width_m: 0.05, begin_m: [0.3, 0.0], segments: [{length_m: 1.0}]}\n"
       "objects:\n"
       "  - {colour: green, position_m: [2.0, 0.0], shape: cylinder, radius_m: 0.1, height_m: 0.15, mass_kg: 0.4}\n"
       "  - {colour: red, position_m: [2.5, 0.0], shape: cylinder, radius_m: 0.13, height_m: 0.15, mass_kg: 0.4}\n"
-      "  - {colour: yellow, position_m: [3.0, 0.0], shape: box, size_m: [0.22, 0.3, 0.15], mass_kg: 0.4}\n"
+      "  - {colour: yellow, position_m: [3.0, 0.0], shape: box, size_m: [0.19, 0.19, 0.15], mass_kg: 0.4}\n"
       "zones:\n"
       "  - {colour: green, position_m: [-1.0, 0.5], radius_m: 0.4}\n"
-      "  - {colour: red, position_m: [-1.0, -0.5], radius_m: 0.4}\n"
+      "  - {colour: red, position_m: [-1.0, -0.5], radius_m: 0.1}\n"
       "  - {colour: yellow, position_m: [-2.0, 0.5], radius_m: 0.4}\n"
       "start: {position_m: [0.0, 0.0]}\n";
   const auto check = [&](const std::string& sequence) {
     write("scene.yaml", "name: scene\nmission: {line_colour: blue, sequence: " + sequence + "}\n" + scene);
-    Process refused = command({"check", (dir_ / "scene.yaml").string()});
-    const auto status = refused.wait(30s);
-    return std::pair(status, refused.errors());
+    Process checked = command({"check", (dir_ / "scene.yaml").string()});
+    const auto status = checked.wait(30s);
+    return std::pair(status, checked.errors());
   };
-  const auto [fits, silence] = check("[green, yellow]");
-  EXPECT_EQ(fits, exit_status::kOk) << "the red object is too large, but not demanded; the box fits by its shorter side"
-                                    << silence;
+  const auto [fits, silence] = check("[green]");
+  EXPECT_EQ(fits, exit_status::kOk) << "the others are not demanded: " << silence;
+  EXPECT_EQ(silence, "");
+  const auto [accepted, warning] = check("[green, yellow]");
+  EXPECT_EQ(accepted, exit_status::kOk) << warning;
+  EXPECT_NE(warning.find("warning: " + (dir_ / "scene.yaml").string() + ": objects[2].size_m: found a diagonal of"),
+            std::string::npos)
+      << warning;
   const auto [status, errors] = check("[green, red]");
   EXPECT_EQ(status, exit_status::kConfiguration);
-  EXPECT_NE(errors.find("scene.yaml: objects[1].radius_m: found 0.130 m with seed 1, accepted at most 0.119 m"),
-            std::string::npos)
-      << errors;
+  for (const char* error :
+       {"scene.yaml: objects[1].radius_m: found 0.130 m, accepted at most 0.119 m",
+        "scene.yaml: zones[1].radius_m: found 0.100 m, accepted at least 0.130 m for objects[1]", "(seed 1; "})
+    EXPECT_NE(errors.find(error), std::string::npos) << error << " in: " << errors;
+}
+
+TEST_F(RunCommand, EvaluateCountsRefusedDrawsApart) {
+  std::ifstream from(source_path("sim/scenarios/wide.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(from), {}};
+  write("wider.yaml", replaced(text, "radius: 0.41", "radius: 0.7"));
+  // Of seeds 3 and 4, 3 draws an object that is too large.
+  const std::vector<std::string> arguments{"evaluate", (dir_ / "wider.yaml").string(), "--max-sim-time", "0.2",
+                                           "--output", (dir_ / "e").string(),          "--seeds",        "3,4"};
+  for (const char* time : {"the first time", "continued"}) {
+    Process evaluation = command(arguments);
+    EXPECT_EQ(evaluation.wait(60s), exit_status::kConfiguration) << time << evaluation.output() << evaluation.errors();
+    EXPECT_NE(evaluation.errors().find("1 of 2 runs refused"), std::string::npos) << evaluation.errors();
+    EXPECT_EQ(evaluation.errors().find("the same command"), std::string::npos) << evaluation.errors();
+    const auto summary = nlohmann::json::parse(read("e/summary.json")).at("variants").at(0);
+    EXPECT_EQ(summary.at("errors"), 0);
+    EXPECT_EQ(summary.at("refused"), 1);
+    EXPECT_EQ(summary.at("runs"), 2);
+  }
+}
+
+TEST_F(RunCommand, EvaluateNamesTheVariantThatIsRefused) {
+  Process refused = command({"evaluate", "short", "--seeds", "1..40", "--vary", "robot:module.count=24,12", "--output",
+                             (dir_ / "e").string()});
+  EXPECT_EQ(refused.wait(60s), exit_status::kConfiguration) << refused.output();
+  for (const char* text :
+       {"--vary robot:module.count=12: ", "robot.yaml: the robot mamba cannot grasp: module.count: "})
+    EXPECT_NE(refused.errors().find(text), std::string::npos) << text << " in: " << refused.errors();
 }
 
 TEST_F(RunCommand, EveryShippedManifestAndItsConfigurationsAreAccepted) {

@@ -1,9 +1,9 @@
-// What `--check` asks components, to find out before the start whether the robot can hold the objects that the mission
-// demands. Nothing of this reaches a component of the robot during a run.
+// What `--check` asks components, to find out before the start whether the robot can retrieve the objects that the
+// mission demands. Nothing of this reaches a component of the robot during a run.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,26 +11,42 @@ namespace constrictor {
 
 /// An object that the mission demands, as the scene has it.
 struct DemandedObject {
-  std::string key;  ///< of its size in the scenario, for people
-  /// [m] of the largest circle in its footprint. A narrower U cannot hold it, whichever way it turns.
-  double radius_m = 0.0;
+  std::string key;  ///< in the scenario, for people: "objects[1]"
+  bool box = false;
+  double width_m = 0.0;   ///< shorter side of the footprint; of a cylinder its diameter
+  double length_m = 0.0;  ///< longer side; of a cylinder its diameter
+  double height_m = 0.0;
+  std::string zone_key;        ///< of the largest zone of its colour: "zones[0]"
+  double zone_radius_m = 0.0;  ///< of this zone
+
+  /// [m] of the smallest circle round the footprint.
+  [[nodiscard]] double radius_m() const { return box ? 0.5 * std::hypot(width_m, length_m) : 0.5 * width_m; }
+  /// The key of its size: "objects[1].radius_m".
+  [[nodiscard]] std::string size_key() const { return key + (box ? ".size_m" : ".radius_m"); }
+  /// The key of its height: "objects[1].height_m".
+  [[nodiscard]] std::string height_key() const { return key + (box ? ".size_m" : ".height_m"); }
+};
+
+/// What a component finds wrong with an object, for people: key, found, accepted and reason.
+struct ObjectVerdict {
+  std::vector<std::string> refusals;  ///< why its retrieval cannot succeed
+  std::vector<std::string> warnings;  ///< why it often fails
 };
 
 /// A component that knows the true scene.
 class ObjectSource {
  public:
   virtual ~ObjectSource() = default;
-  /// The largest object of these colours (msg::kColour…); nothing if there is none.
-  [[nodiscard]] virtual std::optional<DemandedObject> largest_object(
+  /// The objects of these colours (msg::kColour…).
+  [[nodiscard]] virtual std::vector<DemandedObject> demanded_objects(
       const std::vector<std::uint8_t>& colours) const = 0;
 };
 
-/// A component that lets the robot hold objects.
-class ObjectHolder {
+/// A component that knows which objects it can deal with.
+class ObjectJudge {
  public:
-  virtual ~ObjectHolder() = default;
-  /// [m] radius of the largest object that the body can hold.
-  [[nodiscard]] virtual double largest_radius_m() const = 0;
+  virtual ~ObjectJudge() = default;
+  [[nodiscard]] virtual ObjectVerdict judge(const DemandedObject& object) const = 0;
 };
 
 }  // namespace constrictor

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <set>
 
 #include "barrier/history_depth.hpp"
@@ -66,27 +67,40 @@ Setup setup_of(const HostOptions& options, const ComponentFactory& factory) {
   return setup;
 }
 
-/// What the components that were built say of the objects of the mission.
-class ObjectSizes {
+/// A component without a run.
+struct Built {
+  std::unique_ptr<UnconnectedWiring> wiring;
+  std::unique_ptr<Component> component;  // after its wiring, so that it is destroyed first
+};
+
+/// Whether the components that were built can deal with the objects of the mission.
+class ObjectCheck {
  public:
-  void ask(const Component& component, const std::string& mission) {
-    if (const auto* holder = dynamic_cast<const ObjectHolder*>(&component)) bound_m_ = holder->largest_radius_m();
-    const auto* source = dynamic_cast<const ObjectSource*>(&component);
+  /// Keeps a component that knows which objects it can deal with.
+  void ask(Built built, const std::string& mission) {
+    const auto* source = dynamic_cast<const ObjectSource*>(built.component.get());
     if (const auto read = source ? parse_mission(mission) : std::nullopt)
-      largest_ = source->largest_object(read->sequence);
+      objects_ = source->demanded_objects(read->sequence);
+    if (dynamic_cast<const ObjectJudge*>(built.component.get())) judges_.push_back(std::move(built));
   }
-  /// Why the robot cannot hold all objects; nothing: it can, or these components do not know.
-  [[nodiscard]] std::optional<std::string> violation(const HostOptions& options) const {
-    if (!largest_ || !bound_m_ || largest_->radius_m <= *bound_m_) return std::nullopt;
-    return fmt::format(
-        "{}: {}: found {:.3f} m with seed {}, accepted at most {:.3f} m: the robot can hold no larger object, and "
-        "mission.sequence demands this one",
-        options.setup.scenario_file.string(), largest_->key, largest_->radius_m, options.setup.seed, *bound_m_);
+  /// Adds what is wrong with the objects; nothing if these components do not know them.
+  void report(const HostOptions& options, Findings& findings) const {
+    const auto line = [&](const std::string& what) {
+      return fmt::format("{}: {} (seed {}; mission.sequence demands this object)", options.setup.scenario_file.string(),
+                         what, options.setup.seed);
+    };
+    for (const DemandedObject& object : objects_) {
+      for (const Built& judge : judges_) {
+        const ObjectVerdict verdict = dynamic_cast<const ObjectJudge&>(*judge.component).judge(object);
+        for (const auto& what : verdict.refusals) findings.errors.push_back(line(what));
+        for (const auto& what : verdict.warnings) findings.warnings.push_back(line(what));
+      }
+    }
   }
 
  private:
-  std::optional<DemandedObject> largest_;
-  std::optional<double> bound_m_;
+  std::vector<DemandedObject> objects_;
+  std::vector<Built> judges_;
 };
 
 }  // namespace
@@ -120,33 +134,35 @@ std::string pace_violation(const HostOptions& options, const Component& plant) {
       options.plant);
 }
 
-std::vector<std::string> check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories) {
-  std::vector<std::string> errors;
+Findings check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories) {
+  Findings findings;
   std::set<std::string> reported;
   std::vector<Hello> hellos;
-  ObjectSizes sizes;
+  ObjectCheck objects;
   for (const auto& factory : factories) {
     Setup setup = setup_of(options, factory);
     try {
-      UnconnectedWiring wiring;
-      const auto component = factory.create(wiring, setup);
+      Built built{std::make_unique<UnconnectedWiring>(), nullptr};
+      built.component = factory.create(*built.wiring, setup);
       const auto latency = options.latency_ticks.find(factory.name);
       if (factory.name == options.plant) {
-        if (auto why = pace_violation(options, *component); !why.empty()) errors.push_back(std::move(why));
+        if (auto why = pace_violation(options, *built.component); !why.empty())
+          findings.errors.push_back(std::move(why));
       }
-      sizes.ask(*component, setup.mission);
-      wiring.hello.component = factory.name;
-      wiring.hello.timing = component->timing();
+      Hello hello = built.wiring->hello;
+      hello.component = factory.name;
+      hello.timing = built.component->timing();
       if (latency != options.latency_ticks.end())
-        wiring.hello.timing.latency = std::max(wiring.hello.timing.latency, latency->second);
-      hellos.push_back(wiring.hello);
+        hello.timing.latency = std::max(hello.timing.latency, latency->second);
+      hellos.push_back(std::move(hello));
+      objects.ask(std::move(built), setup.mission);
     } catch (const std::exception& error) {
-      if (reported.insert(error.what()).second) errors.push_back(factory.name + ": " + error.what());
+      if (reported.insert(error.what()).second) findings.errors.push_back(factory.name + ": " + error.what());
     }
   }
-  if (auto why = sizes.violation(options)) errors.push_back(std::move(*why));
-  if (auto why = depth_violation(hellos, options.plant)) errors.push_back(std::move(*why));
-  return errors;
+  objects.report(options, findings);
+  if (auto why = depth_violation(hellos, options.plant)) findings.errors.push_back(std::move(*why));
+  return findings;
 }
 
 }  // namespace constrictor

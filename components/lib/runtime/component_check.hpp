@@ -9,13 +9,21 @@
 
 namespace constrictor {
 
+/// Begins each line of a warning that `--check` prints.
+inline constexpr const char* kWarningMark = "warning: ";
+
+/// What a check has found, for people.
+struct Findings {
+  std::vector<std::string> errors;    ///< the run cannot begin
+  std::vector<std::string> warnings;  ///< it can, and often fails
+};
+
 /// Builds each component once from its files (robot, scenario, configuration), with ports that are connected to
-/// nothing, and destroys it again. Joins no DDS domain and writes no file. Returns one line "NAME: what is wrong" for
+/// nothing, and destroys it again. Joins no DDS domain and writes no file. Returns one error "NAME: what is wrong" for
 /// each component that cannot be built; an error that several components report is returned once.
-/// Also compares the latencies of these components with the depths of the topics between them, and the objects that the
-/// mission demands with those that the robot can hold, if both are known here.
-[[nodiscard]] std::vector<std::string> check_components(const HostOptions& options,
-                                                        const std::vector<ComponentFactory>& factories);
+/// Also compares the latencies of these components with the depths of the topics between them, and asks the components
+/// whether they can deal with the objects that the mission demands, if the scene is known here.
+[[nodiscard]] Findings check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories);
 
 /// The topics that the components of a process exchange with other processes, one line each: "reads TOPIC" or "writes
 /// TOPIC". Topics of the barrier aside, which every process uses. Throws what the components' constructors throw.

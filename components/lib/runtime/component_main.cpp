@@ -206,9 +206,11 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
     const auto wait_ms = [](double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); };
     for (auto& factory : factories) factory = with_faults(std::move(factory), plan, wait_ms);
     if (check) {
-      const std::vector<std::string> errors = check_components(options, factories);
-      for (const auto& error : errors) std::fprintf(stderr, "%s\n", error.c_str());
-      return errors.empty() ? exit_status::kOk : exit_status::kConfiguration;
+      const Findings findings = check_components(options, factories);
+      for (const auto& error : findings.errors) std::fprintf(stderr, "%s\n", error.c_str());
+      if (findings.errors.empty())
+        for (const auto& warning : findings.warnings) std::printf("%s%s\n", kWarningMark, warning.c_str());
+      return findings.errors.empty() ? exit_status::kOk : exit_status::kConfiguration;
     }
     if (topics) {
       for (const auto& line : topics_of_components(options, factories)) std::printf("%s\n", line.c_str());

@@ -50,11 +50,7 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const Sighting& object = input.sightings.objects[input.parameters.object_colour];
     const double unseen_s = static_cast<double>(input.tick.index - object.seen_tick) * input.tick.period_s();
     if (!object.known || unseen_s > input.config.pregrasp.seen_within_s) return "the object is not in view";
-    constexpr double kMeasured = 1.06;  // the camera measures the radius to a few percent
-    const double largest_m = input.grip_sense.largest_radius_m();
-    if (object.radius_m > kMeasured * largest_m)
-      return fmt::format("the object is too large for the U: found a radius of {:.3f} m, accepted at most {:.3f} m",
-                         object.radius_m, largest_m);
+    if (object.radius_m > input.grip_sense.largest_seen_radius_m()) return too_large(object, input.grip_sense);
     return handle_refusal(input);
   }
 
@@ -119,6 +115,15 @@ class Pregrasp : public StatefulTask<PregraspState> {
     const double wanted_m = input.config.pregrasp.other_clearance_m;
     if (std::min(room_m[0], wanted_m) != std::min(room_m[1], wanted_m)) return room_m[0] > room_m[1] ? 1.0 : -1.0;
     return input.X_MH.to_local(state_.p_MO).y() >= 0.0 ? 1.0 : -1.0;
+  }
+
+  /// Why an object that looks too large is not grasped.
+  static std::string too_large(const Sighting& object, const GripSense& sense) {
+    constexpr double kLow = 0.9;  // height by radius: one that stands, and is as low, would be a plate
+    const bool lies = object.height_m > 0.0 && object.height_m < kLow * object.radius_m;
+    return fmt::format("the object {} the U: found a radius of {:.3f} m, accepted at most {:.3f} m",
+                       lies ? "lies on its side, or is too large for" : "is too large for", object.radius_m,
+                       sense.largest_radius_m());
   }
 
   /// Steers along the passing line.

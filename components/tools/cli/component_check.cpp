@@ -12,6 +12,7 @@
 #include "cli/launch_plan.hpp"
 #include "cli/program_groups.hpp"
 #include "configuration/configuration.hpp"
+#include "runtime/component_check.hpp"
 #include "runtime/host.hpp"
 
 namespace constrictor::cli {
@@ -108,7 +109,7 @@ std::vector<std::string> ask_host(const std::string& option) {
 
 std::vector<std::string> hosted_components() { return ask_host("--components"); }
 
-void check_components(const RunOptions& options, const LaunchPlan& plan) {
+std::vector<std::string> check_components(const RunOptions& options, const LaunchPlan& plan) {
   std::vector<std::string> components;
   for (const auto& process : plan.manifest.processes) {
     if (!process.program.empty()) continue;
@@ -123,7 +124,7 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
     const bool own = process.host.empty() && program_groups().contains(process.program);
     if (own && process.components.size() > 1) check_program(options, plan, process, process.program, {});
   }
-  if (components.empty()) return;
+  if (components.empty()) return {};
   std::vector<std::string> arguments = check_arguments(options, plan, components);
   const auto mission = mission_arguments(plan.manifest);
   arguments.insert(arguments.end(), mission.begin(), mission.end());
@@ -132,7 +133,16 @@ void check_components(const RunOptions& options, const LaunchPlan& plan) {
   arguments.insert(arguments.end(), latencies.begin(), latencies.end());
   const auto configs = config_arguments(plan.manifest, components);
   arguments.insert(arguments.end(), configs.begin(), configs.end());
-  expect_clean(run_program(std::move(arguments)));
+  const HostOutput output = run_program(std::move(arguments));
+  expect_clean(output);
+  std::vector<std::string> warnings;
+  for (const auto& line : output.lines)
+    if (line.starts_with(kWarningMark)) warnings.push_back(line);
+  return warnings;
+}
+
+void show_warnings(const std::vector<std::string>& warnings) {
+  for (const auto& warning : warnings) fmt::print(stderr, "constrictor: {}\n", warning);
 }
 
 void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,

@@ -66,8 +66,11 @@ struct LaunchPlan {
 /// Lets the components that constrictor_host hosts read all of their files, in one process that joins no run.
 /// Components with a program of their own are not checked, but whether a program of this project can host its group of
 /// components is. Throws ConfigurationError with one line for each component
-/// whose files are wrong.
-void check_components(const RunOptions& options, const LaunchPlan& plan);
+/// whose files are wrong. Returns the warnings: what the run may begin with, and often fails with.
+[[nodiscard]] std::vector<std::string> check_components(const RunOptions& options, const LaunchPlan& plan);
+
+/// Prints them to standard error, which has no results.
+void show_warnings(const std::vector<std::string>& warnings);
 
 /// The same for one process that gets another program. `config`: of its component; empty: the default.
 void check_program(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process,

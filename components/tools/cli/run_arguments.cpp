@@ -131,7 +131,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
 
 int check_command(const RunOptions& options) {
   const LaunchPlan plan = make_launch_plan(options);
-  check_components(options, plan);
+  show_warnings(check_components(options, plan));
   fmt::print("no errors: scenario {}, robot {}, {}\n", plan.manifest.scenario_file.string(),
              plan.manifest.robot_file.string(), counted(plan.roster.size(), "component"));
   for (const auto& process : plan.manifest.processes) {

@@ -288,7 +288,7 @@ int run_command(const RunOptions& given) {
   if (fs::is_directory(options.report_dir)) lock = lock_run(options.report_dir);  // before anything in it is changed
   LaunchPlan plan = make_launch_plan(options);
   if (resumed) require_continuable(plan.manifest);
-  check_components(options, plan);
+  show_warnings(check_components(options, plan));
   if (!options.secure.empty()) use_keys(options.secure, plan);
   try {
     return Launcher(options, std::move(plan), resumed ? &*resumed : nullptr, std::move(lock)).run();

@@ -138,7 +138,7 @@ class Server {
 int serve_command(const ServeOptions& options) {
   LaunchPlan plan = make_launch_plan(options.run);
   keep_processes(plan, options.components);
-  check_components(options.run, plan);
+  show_warnings(check_components(options.run, plan));
   return Server(options, std::move(plan)).run();
 }
 

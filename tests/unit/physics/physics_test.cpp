@@ -197,5 +197,36 @@ TEST(Physics, RejectsAPeriodThatIsNoMultipleOfTheStep) {
   }
 }
 
+TEST(Physics, TellsACheckTheObjectsOfTheMission) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "demanded.yaml";
+  std::ofstream(file) << "name: demanded\n"
+                         "objects:\n"
+                         "  - {colour: red, position_m: [2, 0], radius_m: 0.1, height_m: 0.2, mass_kg: 0.4}\n"
+                         "  - {colour: green, position_m: [3, 0], shape: box, size_m: [0.2, 0.1, 0.3], mass_kg: 0.4}\n"
+                         "zones:\n"
+                         "  - {colour: green, position_m: [-4, 0], radius_m: 0.2}\n"
+                         "  - {colour: red, position_m: [-5, 0], radius_m: 0.5}\n"
+                         "  - {colour: green, position_m: [-6, 0], radius_m: 0.3}\n"
+                         "start: {position_m: [0, 0]}\n";
+  LocalRun run({make_physics_factory()}, testing::setup_of(file));
+  const auto& source = dynamic_cast<const ObjectSource&>(run.component("physics"));
+  const auto red = source.demanded_objects({msg::kColourRed});
+  ASSERT_EQ(red.size(), 1u);
+  EXPECT_EQ(red[0].size_key(), "objects[0].radius_m");
+  EXPECT_DOUBLE_EQ(red[0].radius_m(), 0.1);
+  EXPECT_DOUBLE_EQ(red[0].height_m, 0.2);
+  EXPECT_EQ(red[0].zone_key, "zones[1]");
+  const auto both = source.demanded_objects({msg::kColourGreen, msg::kColourRed});
+  ASSERT_EQ(both.size(), 2u);
+  const DemandedObject& box = both[1];
+  EXPECT_EQ(box.size_key(), "objects[1].size_m");
+  EXPECT_DOUBLE_EQ(box.width_m, 0.1);
+  EXPECT_DOUBLE_EQ(box.length_m, 0.2);
+  EXPECT_DOUBLE_EQ(box.radius_m(), std::hypot(0.05, 0.1));
+  EXPECT_EQ(box.zone_key, "zones[2]") << "the largest of its colour";
+  EXPECT_DOUBLE_EQ(box.zone_radius_m, 0.3);
+  EXPECT_TRUE(source.demanded_objects({}).empty());
+}
+
 }  // namespace
 }  // namespace constrictor

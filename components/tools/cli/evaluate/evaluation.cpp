@@ -64,7 +64,7 @@ void check_variant(const Variant& variant, RunOptions options, const std::vector
   for (std::size_t i = 0; i < std::min(kTried, seeds.size()); ++i) {
     options.seed = seeds[i];
     try {
-      check_components(options, make_launch_plan(options));
+      show_warnings(check_components(options, make_launch_plan(options)));
       return;
     } catch (const ConfigurationError& error) {
       if (last == error.what()) break;  // the seed does not matter
