@@ -45,7 +45,8 @@ mkdir -p "$output/parts"
 output=$(realpath "$output")
 evaluate=$(printf '%q ' "$command" evaluate "$@")
 # Each part runs in a temporary folder of its host and comes back as an archive through its standard output. `evaluate`
-# ends with 0 also if missions fail; a part whose command ends otherwise is tried again. Parts that are here are not.
+# ends with 0 also if missions fail, and with 78 and a summary if draws were refused; a part whose command ends otherwise
+# is tried again. Parts that are here are not.
 archive_of() { echo "$output/parts/results/1/$1/stdout"; }
 todo=()
 for part in $(seq 1 "$parts"); do
@@ -59,8 +60,10 @@ if [ ${#todo[@]} -gt 0 ]; then
   if [ -t 2 ]; then progress=(--eta); fi
   parallel --will-cite --sshlogin "$hosts" --retries 2 "${progress[@]}" --joblog "$output/parts/jobs.log" \
     --results "$output/parts/results" \
-    "folder=\$(mktemp -d) && cd \$folder && $evaluate --shard {}/$parts --output part_{} >&2 && tar czf - part_{};
-     ended=\$?; rm -rf \$folder; exit \$ended" ::: "${todo[@]}" >/dev/null || status=1
+    "folder=\$(mktemp -d) && cd \$folder && $evaluate --shard {}/$parts --output part_{} >&2;
+     ended=\$?; if [ \$ended -eq 78 ] && [ -e part_{}/summary.json ]; then ended=0; fi
+     if [ \$ended -eq 0 ]; then tar czf - part_{}; ended=\$?; fi
+     rm -rf \$folder; exit \$ended" ::: "${todo[@]}" >/dev/null || status=1
 fi
 
 folders=()
