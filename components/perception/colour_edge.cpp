@@ -42,9 +42,8 @@ double strength(std::uint8_t colour, const std::array<double, 3>& rgb) {
   return primary ? rgb[one] - others : others - rgb[one];
 }
 
-}  // namespace
-
-double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vector2d& pixel) {
+/// The channels at a point between the centres of pixels.
+std::array<double, 3> channels_at(const cv::Mat& rgb, const Eigen::Vector2d& pixel) {
   const double x = std::clamp(pixel.x() - 0.5, 0.0, rgb.cols - 1.001);
   const double y = std::clamp(pixel.y() - 0.5, 0.0, rgb.rows - 1.001);
   const int u = static_cast<int>(x), v = static_cast<int>(y);
@@ -55,7 +54,22 @@ double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vec
   for (std::size_t i = 0; i < 3; ++i) {
     c[i] = (1 - fy) * ((1 - fx) * upper[i] + fx * upper[i + 3]) + fy * ((1 - fx) * lower[i] + fx * lower[i + 3]);
   }
-  return strength(colour, c);
+  return c;
+}
+
+/// By how much the saturation at a point exceeds that of ground of this colour; the same in light and shadow.
+double strength_above_ground(const cv::Mat& rgb, const GroundColour& ground, const Eigen::Vector2d& pixel) {
+  const std::array<double, 3> c = channels_at(rgb, pixel);
+  const double sum = std::max(c[0] + c[1] + c[2], 1.0);
+  const Tint& tint = ground.tint;
+  const double of_ground = strength(ground.colour, {tint.red, 1.0 - tint.red - tint.blue, tint.blue});
+  return 255.0 * std::max(strength(ground.colour, c) / sum - of_ground, 0.0);
+}
+
+}  // namespace
+
+double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vector2d& pixel) {
+  return strength(colour, channels_at(rgb, pixel));
 }
 
 Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, std::uint8_t id,
@@ -75,7 +89,12 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& c
   if (last < 0.0) return edge;
 
   const Region& region = regions.regions[static_cast<std::size_t>(id - 1)];
-  const auto value = [&](double t) { return colour_strength(rgb, region.colour, start + t * direction); };
+  const GroundColour& ground = regions.ground;
+  const bool like_ground = ground.coloured() && region.colour == ground.colour;
+  const auto value = [&](double t) {
+    const Eigen::Vector2d p = start + t * direction;
+    return like_ground ? strength_above_ground(rgb, ground, p) : colour_strength(rgb, region.colour, p);
+  };
   edge.pixel = start + last * direction;
   // A walk along the border may leave a region only because the border cuts its side.
   const double aside = std::min(edge.pixel.x(), rgb.cols - edge.pixel.x());

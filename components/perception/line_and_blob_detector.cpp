@@ -87,17 +87,21 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
 }
 
 Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                     const ObjectSizes& seen_sizes, const Change& change) {
+                                     const ObjectSizes& seen_sizes, const Change& change,
+                                     const GroundColour& seen_ground) {
   const ObjectSizes sizes = config_.object_radius_m > 0.0
                                 ? seen_sizes.with_prior(config_.object_radius_m, config_.object_height_m)
                                 : seen_sizes;
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
-  find_regions(labels_, camera, config_, line_colour, region_buffers_, regions_);
+  Percepts percepts;
+  percepts.ground = seen_ground;
+  percepts.ground.learn(ground_in_view(smooth_, labels_, camera));
+  if (percepts.ground.coloured()) remove_ground(smooth_, percepts.ground, camera, labels_);
+  find_regions(labels_, camera, config_, line_colour, percepts.ground, region_buffers_, regions_);
   mark_low_objects(smooth_, camera, config_, regions_);
   split_objects_from_zones(smooth_, camera, config_, sizes, regions_);
   const LineTrace trace = trace_line(labels_, regions_, camera, config_, line_colour);
-  Percepts percepts;
   const std::vector<msg::Blob> blobs =
       find_blobs(smooth_, regions_, camera, config_, line_colour, sizes, percepts.measured);
   percepts.line = line_percept(trace, line_colour, config_.lookahead_m);

@@ -8,6 +8,7 @@
 
 #include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
+#include "perception/ground_colour.hpp"
 #include "perception/object_sizes.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/regions.hpp"
@@ -22,6 +23,7 @@ struct Percepts {
   msg::LinePercept line{};
   msg::ObjectPercepts objects{};
   ObjectSizes measured{};  ///< the sizes of objects that this image shows
+  GroundColour ground{};   ///< what this image and earlier ones have shown of the ground
   cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it; valid until the next call of `detect`
 };
 
@@ -34,10 +36,11 @@ class LineAndBlobDetector {
   /// Changes percepts before they are drawn into the picture.
   using Change = std::function<void(msg::LinePercept&, msg::ObjectPercepts&)>;
 
-  /// `rgb`: CV_8UC3 of the camera's size. `seen_sizes`: what earlier images have shown. The caller fills in
-  /// exposure_tick and the headers of the percepts.
+  /// `rgb`: CV_8UC3 of the camera's size. `seen_sizes`, `seen_ground`: what earlier images have shown. The caller fills
+  /// in exposure_tick and the headers of the percepts.
   [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                const ObjectSizes& seen_sizes = {}, const Change& change = {});
+                                const ObjectSizes& seen_sizes = {}, const Change& change = {},
+                                const GroundColour& seen_ground = {});
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 

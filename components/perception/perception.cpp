@@ -113,8 +113,9 @@ void Perception::look(const Tick& tick, const msg::CameraImage& image, const per
       perception::PerceptErrors(config_.errors, seed).apply(exposure_s, yaw_rad, camera, line, objects);
     };
   }
-  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, errors);
+  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, errors, state_.ground);
   state_.sizes.learn(percepts.measured);
+  state_.ground = percepts.ground;
 
   const auto complete = [&](auto& percept) {
     percept.camera = image.camera;

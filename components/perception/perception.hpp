@@ -61,18 +61,19 @@ struct FurtherCamera {
 };
 
 struct PerceptionState {
-  std::deque<Attitude> attitudes;  ///< of the last ticks, the oldest first
-  std::uint8_t line_colour = 0;    ///< named by a task; 0: no task has named one
-  std::uint64_t images = 0;        ///< number of processed images
-  ImageRepeats repeats;            ///< of the head's camera
-  perception::ObjectSizes sizes;   ///< from the images so far
+  std::deque<Attitude> attitudes;   ///< of the last ticks, the oldest first
+  std::uint8_t line_colour = 0;     ///< named by a task; 0: no task has named one
+  std::uint64_t images = 0;         ///< number of processed images
+  ImageRepeats repeats;             ///< of the head's camera
+  perception::ObjectSizes sizes;    ///< from the images so far
+  perception::GroundColour ground;  ///< from the images so far
   GroundSlope slope;
   ParameterState parameters;
   std::vector<FurtherCamera> further;  ///< one for each further camera of the robot
   std::deque<Posture> postures;        ///< of the last ticks, the oldest first
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, repeats, sizes, slope, parameters, further, postures);
+    archive(attitudes, line_colour, images, repeats, sizes, ground, slope, parameters, further, postures);
   }
 };
 

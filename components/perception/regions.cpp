@@ -161,6 +161,13 @@ void find_standing_columns(const cv::Mat& ids, std::uint8_t id, const GroundCame
   }
 }
 
+/// Whether an upright region, on ground of its colour, ends at the horizon, because no foot was found below it.
+bool foot_is_unseen(const Region& region, const GroundCamera& camera, const GroundColour& ground) {
+  if (!region.standing() || !ground.coloured() || region.colour != ground.colour) return false;
+  const double middle = 0.5 * (region.standing_first + region.standing_last + 1);
+  return region.standing_bottom <= camera.horizon_row(middle) + kHorizonMarginPixels;
+}
+
 /// Whether a flat region is so long and thin on the ground that it is a piece of line.
 bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camera, const Region& region,
                   double line_width_m) {
@@ -206,8 +213,9 @@ bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camer
 }  // namespace
 
 void find_regions(const Labels& labels, const GroundCamera& camera, const PerceptionConfig& config,
-                  std::uint8_t line_colour, RegionBuffers& buffers, Regions& out) {
+                  std::uint8_t line_colour, const GroundColour& ground, RegionBuffers& buffers, Regions& out) {
   out.regions.clear();
+  out.ground = ground;
   out.ids.create(labels.image.size(), CV_8UC1);
   out.ids.setTo(0);
   for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
@@ -223,6 +231,7 @@ void find_regions(const Labels& labels, const GroundCamera& camera, const Percep
       continue;
     }
     find_standing_columns(out.ids, id, camera, region);
+    region.on_zone = foot_is_unseen(region, camera, ground);
     region.line = region.colour == line_colour && !region.standing() &&
                   is_elongated(out.ids, id, camera, region, config.line_width_m);
   }

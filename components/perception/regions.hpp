@@ -7,6 +7,7 @@
 
 #include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
+#include "perception/ground_colour.hpp"
 #include "perception/perception_config.hpp"
 
 namespace constrictor::perception {
@@ -26,7 +27,7 @@ struct Region {
   bool line = false;         ///< elongated on the ground and of the line's colour
   // Fields of a low object, set by mark_low_objects() or split_objects_from_zones():
   bool low = false;                        ///< stands upright although it does not reach above the horizon
-  bool on_zone = false;                    ///< a part of a zone of the same colour was taken for it
+  bool on_zone = false;                    ///< its foot is not seen before a zone, or ground, of the same colour
   bool doubtful = false;                   ///< too little is in view to distinguish a low object from a zone
   double left_rad = 0.0, right_rad = 0.0;  ///< azimuths of its sides
   double height_m = 0.0;
@@ -50,6 +51,7 @@ struct Region {
 struct Regions {
   std::vector<Region> regions;
   cv::Mat ids;  ///< CV_8UC1: 1 + index of the pixel's region, 0: none
+  GroundColour ground;
 };
 
 /// Images that find_regions() uses again, so that it need not allocate them for each image.
@@ -58,8 +60,8 @@ struct RegionBuffers {
 };
 
 /// Finds the regions of labels: joins fragments of one colour, drops specks and the fringes of mixed colour
-/// between two others. The memory of `out` and `buffers` is used again.
+/// between two others. The labels contain no coloured `ground`. The memory of `out` and `buffers` is used again.
 void find_regions(const Labels& labels, const GroundCamera& camera, const PerceptionConfig& config,
-                  std::uint8_t line_colour, RegionBuffers& buffers, Regions& out);
+                  std::uint8_t line_colour, const GroundColour& ground, RegionBuffers& buffers, Regions& out);
 
 }  // namespace constrictor::perception

@@ -1,9 +1,6 @@
 #include "sim/render/scene.hpp"
 
 #include <cmath>
-#include <iterator>
-
-#include "constrictor/messages.hpp"
 
 namespace constrictor {
 
@@ -29,19 +26,6 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& tar
   X_WC.linear().col(2) = z;
   X_WC.translation() = eye;
   return X_WC;
-}
-
-Rgb colour_reflectance(std::uint8_t colour) {
-  // One row for each constant kColour… of the IDL, in their order.
-  static constexpr Rgb kReflectance[] = {
-      {0.35F, 0.35F, 0.35F},  // unknown
-      {0.04F, 0.50F, 0.09F},  // green
-      {0.62F, 0.03F, 0.03F},  // red
-      {0.03F, 0.13F, 0.62F},  // blue
-      {0.80F, 0.58F, 0.03F},  // yellow
-  };
-  static_assert(std::size(kReflectance) == msg::kColourCount, "each colour of the IDL needs a row in kReflectance");
-  return kReflectance[colour < msg::kColourCount ? colour : msg::kColourUnknown];
 }
 
 }  // namespace constrictor

@@ -7,14 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace constrictor {
+#include "sim/scenario_loader/reflectance.hpp"
 
-/// Linear RGB reflectance, 0 to 1.
-struct Rgb {
-  float r = 0.0F;
-  float g = 0.0F;
-  float b = 0.0F;
-};
+namespace constrictor {
 
 enum class SolidShape { kCylinder, kBox };
 
@@ -77,8 +72,5 @@ struct PinholeCamera {
 
 /// The pose of a camera at `eye` that looks at `target`, both in W, with the image upright.
 [[nodiscard]] Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
-
-/// Reflectance of a colour of the messages (msg::kColour…); grey for unknown ones.
-[[nodiscard]] Rgb colour_reflectance(std::uint8_t colour);
 
 }  // namespace constrictor

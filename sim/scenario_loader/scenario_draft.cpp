@@ -10,6 +10,7 @@
 
 #include "component/mission.hpp"
 #include "constrictor/constants.hpp"
+#include "sim/scenario_loader/contrast_check.hpp"
 
 namespace constrictor {
 namespace {
@@ -108,8 +109,8 @@ void read_bodies(Configuration& root, ScenarioDraft& draft) {
 }
 
 /// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the
-/// launcher passes this section of the file to the components.
-void check_mission(const Configuration& section, const Scenario& scenario) {
+/// launcher passes this section of the file to the components. Returns the mission.
+Mission check_mission(const Configuration& section, const Scenario& scenario) {
   const Mission mission = read_mission(section);
   const std::vector<std::uint8_t>& sequence = mission.sequence;
   for (const std::uint8_t colour : sequence) {
@@ -130,6 +131,7 @@ void check_mission(const Configuration& section, const Scenario& scenario) {
                                                    name_of(constants::kColour, mission.line_colour),
                                                    name_of(constants::kColour, scenario.line_colour)));
   }
+  return mission;
 }
 
 void read_perturbations(Configuration& root, Scenario& scenario) {
@@ -249,6 +251,7 @@ void read_random(Configuration& root, ScenarioDraft& draft) {
   draft.random = read_random_scene(root.section("random"));
   draft.mission = read_random_mission(root.section("mission"));
   read_surroundings(root, draft.fixed);
+  check_contrast(root, draft.fixed.ground_colour, true, draft.mission);
   root.finish();
 }
 
@@ -266,9 +269,11 @@ ScenarioDraft read_scenario_draft(Configuration root) {
   }
   if (root.has("line")) read_line(root.section("line"), draft);
   read_bodies(root, draft);
-  if (root.has("mission")) check_mission(root.section("mission"), draft.fixed);
+  if (root.has("mission")) draft.mission = check_mission(root.section("mission"), draft.fixed);
   read_perturbations(root, draft.fixed);
   read_surroundings(root, draft.fixed);
+  if (root.has("mission"))
+    check_contrast(root, draft.fixed.ground_colour, !draft.fixed.line_segments.empty(), draft.mission);
   Configuration start = root.section("start");
   draft.start = read_placement(start);
   start.finish();

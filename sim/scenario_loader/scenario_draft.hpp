@@ -40,7 +40,7 @@ struct ScenarioDraft {
   Placement start;
   Variation variation;
   std::optional<RandomScene> random;  ///< the seed draws the whole scene; the placements and the variation are empty
-  Mission mission;                    ///< of a random scene
+  Mission mission;                    ///< of the file, if it has one
 };
 
 /// Reads and checks the keys of a scenario file. Throws ConfigurationError.

@@ -55,7 +55,7 @@ struct Steps : Bench {
   Steps() {
     smoother.smooth(rgb, smooth);
     classifier.classify(smooth, labels);
-    find_regions(labels, camera, config, msg::kColourBlue, buffers, regions);
+    find_regions(labels, camera, config, msg::kColourBlue, {}, buffers, regions);
   }
 };
 
@@ -70,7 +70,7 @@ void classify(benchmark::State& state) {
 void regions(benchmark::State& state) {
   Steps steps;
   for (auto _ : state)
-    find_regions(steps.labels, steps.camera, steps.config, msg::kColourBlue, steps.buffers, steps.regions);
+    find_regions(steps.labels, steps.camera, steps.config, msg::kColourBlue, {}, steps.buffers, steps.regions);
 }
 void line(benchmark::State& state) {
   Steps steps;

@@ -43,6 +43,9 @@ struct Scene {
   double noise_sd = 0.0;
   bool gamma = false;
   std::uint64_t seed = 1;
+  // Only a RenderedScene has these; the ray-caster's ground is grey and matt.
+  Eigen::Vector3d ground_colour{0.5, 0.5, 0.5};  // linear RGB
+  double ground_gloss = 0.0;
 };
 
 struct Head {

@@ -125,12 +125,12 @@ TEST(Reference, RegionsOfAWindowAreThoseOfTheWholeImage) {
   for (const cv::Mat& image : pictures(head)) {
     Labels labels;
     classifier.classify(image, labels);
-    find_regions(labels, camera, config, msg::kColourBlue, buffers, found);
+    find_regions(labels, camera, config, msg::kColourBlue, {}, buffers, found);
     for (ColourExtent& extent : labels.extents)
       extent = {extent.pixels, 0, 0, labels.image.cols - 1, labels.image.rows - 1};
     RegionBuffers whole_buffers;
     Regions whole;
-    find_regions(labels, camera, config, msg::kColourBlue, whole_buffers, whole);
+    find_regions(labels, camera, config, msg::kColourBlue, {}, whole_buffers, whole);
     EXPECT_TRUE(equal(found.ids, whole.ids));
     ASSERT_EQ(found.regions.size(), whole.regions.size());
     regions += found.regions.size();

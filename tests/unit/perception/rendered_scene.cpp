@@ -21,6 +21,9 @@ constrictor::Scene convert(const Scene& from) {
       to.zones.push_back({r.centre, r.radius_m, colour_reflectance(r.colour)});
     }
   }
+  const Eigen::Vector3f ground = from.ground_colour.cast<float>();
+  to.ground_colour = {ground.x(), ground.y(), ground.z()};
+  to.ground_gloss = from.ground_gloss;
   to.light = {from.light.normalized(), from.light_intensity, from.ambient};
   return to;
 }

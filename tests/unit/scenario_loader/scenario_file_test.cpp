@@ -50,6 +50,26 @@ TEST(ScenarioFile, TheGroundMayBeGlossy) {
   EXPECT_NE(error_of(kMinimal + "ground_gloss: -0.1\n").find("ground_gloss"), std::string::npos);
 }
 
+TEST(ScenarioFile, WhatLiesOnTheGroundHasAnotherTint) {
+  const std::string mission =
+      "mission: {sequence: [green], line_colour: blue}\n"
+      "line: {colour: blue, width_m: 0.05, begin_m: [1, 0], segments: [{length_m: 2}]}\n"
+      "objects: [{colour: green, position_m: [4, 0], radius_m: 0.08, height_m: 0.15, mass_kg: 0.4}]\n"
+      "zones: [{colour: green, position_m: [0, 2], radius_m: 0.3}, {colour: red, position_m: [0, 4], radius_m: 0.3}]\n";
+  EXPECT_NO_THROW((void)read(kMinimal + mission + "ground_colour: [0.10, 0.30, 0.10]\n"));
+  EXPECT_NO_THROW((void)read(kMinimal + mission + "ground_colour: [0.62, 0.03, 0.03]\n")) << "no red zone is needed";
+  EXPECT_NO_THROW((void)read(kMinimal + "ground_colour: [0.04, 0.50, 0.09]\n")) << "there is no mission";
+  // Half as bright, a green paint has the same hue and saturation.
+  const std::string zone = error_of(kMinimal + mission + "ground_colour: [0.02, 0.25, 0.045]\n");
+  EXPECT_NE(zone.find("ground_colour"), std::string::npos) << zone;
+  EXPECT_NE(zone.find("the green zone"), std::string::npos) << zone;
+  EXPECT_NE(zone.find("accepted"), std::string::npos) << zone;
+  const std::string line = error_of(kMinimal + mission + "ground_colour: [0.03, 0.13, 0.62]\n");
+  EXPECT_NE(line.find("the line"), std::string::npos) << line;
+  const std::string drawn = "name: x\nmission: {sequence: [red], line_colour: blue}\nrandom: {}\n";
+  EXPECT_NE(error_of(drawn + "ground_colour: [0.62, 0.03, 0.03]\n").find("the red zone"), std::string::npos);
+}
+
 TEST(ScenarioFile, EveryShippedFileIsAcceptedForManySeeds) {
   for (const auto& entry : std::filesystem::directory_iterator(testing::source_path("sim/scenarios"))) {
     if (entry.path().extension() != ".yaml") continue;
