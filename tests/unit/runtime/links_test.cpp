@@ -112,8 +112,13 @@ TEST_F(LinksTest, WaitThrowsWhatATurnHasThrown) {
     return false;
   });
   fails = true;
-  write(1);
-  EXPECT_THROW(links_.wait(kLong_ns, false), std::runtime_error);
+  const auto wait_often = [&] {
+    for (int i = 0; i < 1000; ++i) {
+      write(i);  // a sample that arrives before the wait is taken without a turn
+      links_.wait(DDS_MSECS(100), false);
+    }
+  };
+  EXPECT_THROW(wait_often(), std::runtime_error);
 }
 
 }  // namespace
