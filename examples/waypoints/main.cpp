@@ -51,7 +51,8 @@ int main(int argc, char** argv) {
     client.release();
     std::printf("cross-track error: %.3f m rms, %.3f m at most, in %d ticks\n",
                 count > 0 ? std::sqrt(squares_m2 / count) : 0.0, largest_m, count);
-    return end.state == msg::kGoalSucceeded ? 0 : 1;
+    if (end.state != msg::kGoalSucceeded) throw std::runtime_error("the robot stopped on the way: " + end.reason);
+    return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "waypoints: %s\n", error.what());
     return 70;
