@@ -35,6 +35,7 @@ std::atomic<int> g_emptied_at_once = 0;
 std::atomic<std::uint64_t> g_taken = 0;
 std::shared_mutex g_before_waiting_mutex;
 std::function<void()> g_before_waiting;
+std::atomic<bool> g_calls = false;
 
 void call_before_waiting() {
   const std::shared_lock lock(g_before_waiting_mutex);
@@ -135,9 +136,12 @@ class ReceivingMailbox {
       waiting_.size = 0;
       return size;
     }
-    call_before_waiting();
     ssize_t size = -1;
-    do {
+    if (g_calls) {
+      size = receive_of_c_library()(udp_socket_, &message, MSG_DONTWAIT);
+      if (size < 0) call_before_waiting();
+    }
+    while (size < 0) {
       const bool at_once = g_emptied_at_once.load() > 0;
       if (at_once) {
         std::array<pollfd, 2> both{pollfd{udp_socket_, POLLIN, 0}, pollfd{socket_, POLLIN, 0}};
@@ -145,7 +149,8 @@ class ReceivingMailbox {
         if (both[0].revents == 0 && take_out()) return mails_.at(next_++).deliver(message);
       }
       size = receive_of_c_library()(udp_socket_, &message, at_once ? MSG_DONTWAIT : 0);
-    } while (size < 0 && errno == EAGAIN);
+      if (size < 0 && errno != EAGAIN) return size;
+    }
     if (size <= 0 || !take_out()) return size;
     // What was in the mailbox comes first, because it was sent first.
     const auto* bytes = static_cast<const char*>(message.msg_iov->iov_base);
@@ -217,11 +222,13 @@ std::uint64_t Mailbox::taken() { return g_taken; }
 Mailbox::BeforeWaiting::BeforeWaiting(std::function<void()> call) {
   const std::unique_lock lock(g_before_waiting_mutex);
   g_before_waiting = std::move(call);
+  g_calls = true;
 }
 
 Mailbox::BeforeWaiting::~BeforeWaiting() {
   const std::unique_lock lock(g_before_waiting_mutex);
   g_before_waiting = nullptr;
+  g_calls = false;
 }
 
 Mailbox::EmptiedAtOnce::EmptiedAtOnce() {

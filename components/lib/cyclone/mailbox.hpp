@@ -39,7 +39,8 @@ class Mailbox {
   };
 
   /// As long as an object of this class exists, the threads that receive call a function whenever they have passed on
-  /// everything that has arrived, before they wait for more. Only one object may exist at a time.
+  /// everything that has arrived, in the mailbox and otherwise, before they wait for more. Only one object may exist at
+  /// a time.
   class BeforeWaiting {
    public:
     explicit BeforeWaiting(std::function<void()> call);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -112,13 +113,20 @@ TEST_F(LinksTest, WaitThrowsWhatATurnHasThrown) {
     return false;
   });
   fails = true;
-  const auto wait_often = [&] {
-    for (int i = 0; i < 1000; ++i) {
-      write(i);  // a sample that arrives before the wait is taken without a turn
-      links_.wait(DDS_MSECS(100), false);
+  // A sample that arrives before the wait is taken without a turn.
+  std::atomic<bool> ended = false;
+  std::thread writer([&] {
+    for (std::int64_t i = 0; !ended; ++i) {
+      write(i);
+      std::this_thread::sleep_for(5ms);
     }
+  });
+  const auto wait_often = [&] {
+    for (const auto end = Clock::now() + 20s; Clock::now() < end;) links_.wait(DDS_MSECS(100), false);
   };
   EXPECT_THROW(wait_often(), std::runtime_error);
+  ended = true;
+  writer.join();
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -122,6 +124,37 @@ TEST_F(MailboxTest, IsEmptiedAtOnceOnRequest) {
   write(50);
   write_tick(0);
   ASSERT_TRUE(receive(50));
+}
+
+TEST_F(MailboxTest, TheFunctionBeforeAWaitIsCalledWhenEverythingHasBeenPassedOn) {
+  constexpr std::size_t kTicks = 40;
+  std::atomic<bool> held = true;
+  std::atomic<std::size_t> calls = 0;
+  std::mutex mutex;
+  std::vector<std::size_t> batches;
+  std::size_t sum = 0;
+  const dds::Mailbox::BeforeWaiting before_waiting([&] {
+    ++calls;
+    while (held) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const std::lock_guard lock(mutex);
+    std::size_t taken = 0;
+    ticks_.take([&](const msg::Tick&) { ++taken; });
+    if (taken > 0) batches.push_back(taken);
+    sum += taken;
+  });
+  // The threads that receive for the reader and for the writer are held in the function.
+  ASSERT_TRUE(eventually([&] {
+    write_tick(0);
+    return calls >= 1;
+  }));
+  for (std::size_t i = 0; i < kTicks; ++i) write_tick(1);
+  held = false;
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return sum > kTicks;
+  }));
+  const std::lock_guard lock(mutex);
+  EXPECT_LT(batches.size(), kTicks / 2) << "called between datagrams that had arrived";
 }
 
 TEST_F(MailboxTest, HeartbeatsBringTheMailOfASilentWriter) {
