@@ -24,9 +24,18 @@ bool within(double hue, const HueRange& range) {
   return hue >= range.from_deg || hue <= range.to_deg;
 }
 
+/// The first colour whose hues contain this one; kColourUnknown: there is none.
+std::uint8_t colour_with(double hue, const std::array<HueRange, msg::kColourCount>& hues) {
+  for (std::uint8_t colour = 1; colour < hues.size(); ++colour) {
+    if (within(hue, hues[colour])) return colour;
+  }
+  return msg::kColourUnknown;
+}
+
 }  // namespace
 
-ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 * 64 * 64, msg::kColourUnknown) {
+ColourClassifier::ColourClassifier(const PerceptionConfig& config)
+    : hues_(config.hues), table_(64 * 64 * 64, msg::kColourUnknown) {
   int least_spread = 64;  // between the indices of a coloured cell
   for (int ri = 0; ri < 64; ++ri) {
     for (int gi = 0; gi < 64; ++gi) {
@@ -36,19 +45,20 @@ ColourClassifier::ColourClassifier(const PerceptionConfig& config) : table_(64 *
         const double largest = std::max({r, g, b});
         const double chroma = largest - std::min({r, g, b});
         if (chroma < config.min_chroma || chroma < config.min_saturation * largest) continue;
-        const double hue = hue_deg(r, g, b, largest, chroma);
-        for (std::size_t colour = 1; colour < config.hues.size(); ++colour) {
-          if (within(hue, config.hues[colour])) {
-            table_[static_cast<std::size_t>(ri << 12 | gi << 6 | bi)] = static_cast<std::uint8_t>(colour);
-            least_spread = std::min(least_spread, std::max({ri, gi, bi}) - std::min({ri, gi, bi}));
-            break;
-          }
-        }
+        const std::uint8_t colour = colour_with(hue_deg(r, g, b, largest, chroma), hues_);
+        if (colour == msg::kColourUnknown) continue;
+        table_[static_cast<std::size_t>(ri << 12 | gi << 6 | bi)] = colour;
+        least_spread = std::min(least_spread, std::max({ri, gi, bi}) - std::min({ri, gi, bi}));
       }
     }
   }
   // The indices of two channels that differ by d are at most (d + 3) / 4 apart.
   grey_spread_ = static_cast<std::uint8_t>(4 * std::max(least_spread - 1, 0));
+}
+
+std::uint8_t ColourClassifier::colour_of_hue(std::uint8_t r, std::uint8_t g, std::uint8_t b) const {
+  const int largest = std::max({r, g, b}), chroma = largest - std::min({r, g, b});
+  return chroma > 0 ? colour_with(hue_deg(r, g, b, largest, chroma), hues_) : std::uint8_t{msg::kColourUnknown};
 }
 
 bool ColourClassifier::block_is_grey(const std::uint8_t* rgb) const {

@@ -25,9 +25,12 @@ struct ColourExtent {
   }
 };
 
+/// Label of ground on which glare leaves no colour to be told.
+inline constexpr std::uint8_t kDazzled = 255;
+
 /// The label image and where its colours are.
 struct Labels {
-  cv::Mat image;                                          ///< CV_8UC1, kColour... of each pixel, 0: none
+  cv::Mat image;                                          ///< CV_8UC1, kColour... of each pixel, 0: none; or kDazzled
   std::array<ColourExtent, msg::kColourCount> extents{};  ///< by colour; not of pixels without a colour
 };
 
@@ -45,6 +48,9 @@ class ColourClassifier {
     return table_[index(r, g, b)];
   }
 
+  /// Colour of one pixel by its hue alone, however pale it is. 0: none.
+  [[nodiscard]] std::uint8_t colour_of_hue(std::uint8_t r, std::uint8_t g, std::uint8_t b) const;
+
  private:
   static std::size_t index(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
     return (std::size_t{r} >> 2) << 12 | (std::size_t{g} >> 2) << 6 | std::size_t{b} >> 2;
@@ -53,6 +59,7 @@ class ColourClassifier {
   static constexpr int kBlock = 16;
   [[nodiscard]] bool block_is_grey(const std::uint8_t* rgb) const;
 
+  std::array<HueRange, msg::kColourCount> hues_;
   std::uint8_t grey_spread_ = 0;     ///< a pixel whose channels do not differ by more has no colour
   std::vector<std::uint8_t> table_;  ///< indexed by the upper 6 bits of red, green and blue
 };

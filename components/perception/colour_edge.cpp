@@ -110,6 +110,10 @@ Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& c
       edge.state = EdgeState::kCut;
       return edge;
     }
+    if (regions.dazzled_at(static_cast<int>(p.x()), static_cast<int>(p.y()))) {
+      edge.state = EdgeState::kHidden;
+      return edge;
+    }
     if (other != 0 && other != id && regions.regions[other - 1u].standing()) {
       edge.state = EdgeState::kHidden;
       return edge;

@@ -24,7 +24,7 @@ double colour_strength(const cv::Mat& rgb, std::uint8_t colour, const Eigen::Vec
 
 /// Walks from `start` in `direction` (unit vector) and finds the last pixel of region `id`, then the point around it
 /// where half of the colour is left. Up to `max_gap` pixels that do not belong to the region are passed over. Cut: the
-/// image ends there, or the robot's own body begins. Hidden: another standing region begins there.
+/// image ends there, or the robot's own body begins. Hidden: another standing region, or glare, begins there.
 Edge find_edge(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, std::uint8_t id,
                const Eigen::Vector2d& start, const Eigen::Vector2d& direction, double max_gap);
 

@@ -153,6 +153,14 @@ bool Gauge::in_object(int u, int v) const {
   return (right_open_ || a > right_ - margin) && (left_open_ || a < left_ + margin);
 }
 
+bool Gauge::hidden_beyond(int u, int v) const {
+  constexpr int kFadingPixels = 5;  // between a colour and the place where glare hides it
+  for (int aside = -kFadingPixels; aside <= kFadingPixels; ++aside) {
+    if (regions_.dazzled_at(u + aside, v)) return true;
+  }
+  return camera_.sees_body() && camera_.own_body(u, v + 0.5);
+}
+
 bool Gauge::may_be_object(const msg::Blob& blob, double left, double right) const {
   if (blob.cut_top) return true;
   if (blob.cut_left == blob.cut_right) return false;

@@ -41,7 +41,7 @@ class Gauge {
   [[nodiscard]] bool in_object(int u, int v) const;
 
   /// Whether the robot's body hides what lies beyond the side of the region, in the image of a further camera.
-  [[nodiscard]] bool hidden_beyond(int u, int v) const { return camera_.sees_body() && camera_.own_body(u, v + 0.5); }
+  [[nodiscard]] bool hidden_beyond(int u, int v) const;
 
   /// Whether a flat region at the image's border could be the foot of an object whose upper part is out of view: with
   /// the camera tilted, upright edges lean outwards in the image.

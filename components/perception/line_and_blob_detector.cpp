@@ -6,6 +6,7 @@
 
 #include "constrictor/image.hpp"
 #include "perception/blobs.hpp"
+#include "perception/glare.hpp"
 #include "perception/line_fit.hpp"
 #include "perception/line_tracer.hpp"
 #include "perception/low_objects.hpp"
@@ -94,11 +95,13 @@ Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& cam
                                 : seen_sizes;
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
+  const bool dazzled = recover_pale_colours(smooth_, classifier_, camera, labels_);
   Percepts percepts;
   percepts.ground = seen_ground;
   percepts.ground.learn(ground_in_view(smooth_, labels_, camera));
   if (percepts.ground.coloured()) remove_ground(smooth_, percepts.ground, camera, labels_);
   find_regions(labels_, camera, config_, line_colour, percepts.ground, region_buffers_, regions_);
+  regions_.dazzled = dazzled ? labels_.image : cv::Mat();
   mark_low_objects(smooth_, camera, config_, regions_);
   split_objects_from_zones(smooth_, camera, config_, sizes, regions_);
   const LineTrace trace = trace_line(labels_, regions_, camera, config_, line_colour);

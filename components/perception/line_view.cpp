@@ -52,7 +52,8 @@ Seen LineView::look(const Eigen::Vector2d& p) const {
   if (!pixel || !camera_.inside(*pixel)) return Seen::kOutside;
   const int u = static_cast<int>(pixel->x()), v = static_cast<int>(pixel->y());
   if (is_standing(u, v) || camera_.own_body(pixel->x(), pixel->y())) return Seen::kStanding;
-  return labels_.image.at<std::uint8_t>(v, u) == colour_ ? Seen::kLine : Seen::kGround;
+  const std::uint8_t label = labels_.image.at<std::uint8_t>(v, u);
+  return label == colour_ ? Seen::kLine : label == kDazzled ? Seen::kStanding : Seen::kGround;
 }
 
 double LineView::pixel_size_m(const Eigen::Vector2d& p, const Eigen::Vector2d& direction) const {

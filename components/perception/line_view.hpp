@@ -12,7 +12,7 @@ namespace constrictor::perception {
 enum class Seen {
   kGround,
   kLine,
-  kStanding,  ///< an upright object or the robot's own head hides the point
+  kStanding,  ///< an upright object, the robot's own head or glare hides the point
   kOutside,   ///< the point is out of view
 };
 

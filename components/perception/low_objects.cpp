@@ -85,6 +85,8 @@ void mark_low_objects(const cv::Mat& rgb, const GroundCamera& camera, const Perc
     } else if (!cut_left) {
       rise = rise_of_whole(walk_paths(rgb, camera, regions, i, sides), camera, sides, height);
     }
+    // Glare hides one side: what is left of a zone may have any shape.
+    if (!regions.dazzled.empty() && (sides.left_hidden || sides.right_hidden)) rise = Rise::kDoubtful;
     region.doubtful = rise == Rise::kDoubtful && !region.standing();
     if (rise == Rise::kLow || !region.standing()) region.rise_sd = height.sd;
     if (rise != Rise::kLow) continue;

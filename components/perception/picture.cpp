@@ -38,7 +38,7 @@ void paint_row(const cv::Vec3b* in, const std::uint8_t* labels, cv::Vec3b* out, 
       u += 7;
       continue;
     }
-    if (labels[u] == msg::kColourUnknown) continue;
+    if (labels[u] == msg::kColourUnknown || labels[u] == kDazzled) continue;
     for (int c = 0; c < 3; ++c) out[u][c] = static_cast<std::uint8_t>((in[u][c] + 2 * kPaint[labels[u]][c]) / 4);
   }
 }

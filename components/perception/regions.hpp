@@ -52,6 +52,13 @@ struct Regions {
   std::vector<Region> regions;
   cv::Mat ids;  ///< CV_8UC1: 1 + index of the pixel's region, 0: none
   GroundColour ground;
+  cv::Mat dazzled;  ///< labels with kDazzled; empty if no pixel has it
+
+  /// Whether glare hides what lies at a pixel.
+  [[nodiscard]] bool dazzled_at(int u, int v) const {
+    return !dazzled.empty() && u >= 0 && v >= 0 && u < dazzled.cols && v < dazzled.rows &&
+           dazzled.at<std::uint8_t>(v, u) == kDazzled;
+  }
 };
 
 /// Images that find_regions() uses again, so that it need not allocate them for each image.

@@ -1,0 +1,90 @@
+#include "perception/glare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "perception/ground_colour.hpp"
+#include "perception/sight.hpp"
+
+namespace constrictor::perception {
+namespace {
+
+constexpr int kGridColumns = 4, kGridRows = 8;  // [pixel] between the places at which glare is looked for
+constexpr int kBelowHorizonPixels = 6;          // an error of the attitude of 2 degrees lowers no sky so far
+constexpr int kBright = 195;                    // least value of all channels (of 255) in glare
+constexpr double kBrighter = 1.15;              // than the usual ground
+constexpr double kLeastGlareShare = 0.003;      // of the ground in view
+constexpr double kLitShare =
+    0.6;  // of the ground is at most as bright as usual ground; more than this lies in shadow rarely
+constexpr double kAsBright = 0.9;    // as the usual ground: no paint is so bright in all channels without glare
+constexpr double kOtherTint = 0.03;  // least difference of a pale colour from the usual ground
+// Where one channel is saturated and all are so bright, the tint of a paint cannot be told from that of the ground.
+constexpr int kSaturated = 250, kWashedOut = 220;
+
+int darkest_channel(const std::uint8_t* rgb) { return std::min({rgb[0], rgb[1], rgb[2]}); }
+
+/// The usual brightness and tint of ground without a colour; the brightness is 0 if there is no glare.
+struct UsualGround {
+  double brightness = 0.0;
+  Tint tint;
+};
+
+int first_ground_row(const GroundCamera& camera, int u) {
+  return static_cast<int>(std::clamp(std::floor(camera.horizon_row(u + 0.5)), -1e6, 1e6)) + kBelowHorizonPixels;
+}
+
+UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
+  std::vector<const std::uint8_t*> bright, ground;
+  for (int u = kGridColumns / 2; u < rgb.cols; u += kGridColumns) {
+    for (int v = std::max(first_ground_row(camera, u), 0); v < rgb.rows; v += kGridRows) {
+      const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
+      if (darkest_channel(pixel) >= kBright && !camera.own_body(u + 0.5, v + 0.5)) bright.push_back(pixel);
+      if (labels.image.at<std::uint8_t>(v, u) == msg::kColourUnknown) ground.push_back(pixel);
+    }
+  }
+  const auto least = static_cast<std::size_t>(kLeastGlareShare * static_cast<double>(ground.size())) + 1;
+  if (bright.size() < least) return {};
+  std::vector<double> brightness, red, blue;
+  for (const std::uint8_t* pixel : ground) {
+    const Tint tint = Tint::of(pixel);
+    brightness.push_back(darkest_channel(pixel));
+    red.push_back(tint.red);
+    blue.push_back(tint.blue);
+  }
+  const auto usual =
+      brightness.begin() + static_cast<std::ptrdiff_t>(kLitShare * static_cast<double>(brightness.size()));
+  std::nth_element(brightness.begin(), usual, brightness.end());
+  const double least_bright = std::max<double>(kBright, kBrighter * *usual);
+  const auto in_glare = std::count_if(
+      bright.begin(), bright.end(), [&](const std::uint8_t* pixel) { return darkest_channel(pixel) >= least_bright; });
+  if (static_cast<std::size_t>(in_glare) < least) return {};
+  return {*usual, {median(red), median(blue)}};
+}
+
+}  // namespace
+
+bool recover_pale_colours(const cv::Mat& rgb, const ColourClassifier& classifier, const GroundCamera& camera,
+                          Labels& labels) {
+  const UsualGround usual = ground_under_glare(rgb, camera, labels);
+  if (usual.brightness <= 0.0) return false;
+  bool dazzled = false;
+  for (int u = 0; u < rgb.cols; ++u) {
+    for (int v = std::max(first_ground_row(camera, u), 0); v < rgb.rows; ++v) {
+      std::uint8_t& label = labels.image.at<std::uint8_t>(v, u);
+      const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
+      const int darkest = darkest_channel(pixel);
+      if (label != msg::kColourUnknown || darkest < kAsBright * usual.brightness) continue;
+      if (Tint::of(pixel).distance(usual.tint) >= kOtherTint) {
+        label = classifier.colour_of_hue(pixel[0], pixel[1], pixel[2]);
+        if (label != msg::kColourUnknown) labels.extents[label].add(u, v);
+      } else if (darkest >= kWashedOut && std::max({pixel[0], pixel[1], pixel[2]}) >= kSaturated) {
+        label = kDazzled;
+        dazzled = true;
+      }
+    }
+  }
+  return dazzled;
+}
+
+}  // namespace constrictor::perception
