@@ -45,8 +45,8 @@ mkdir -p "$output/parts"
 output=$(realpath "$output")
 evaluate=$(printf '%q ' "$command" evaluate "$@")
 # Each part runs in a temporary folder of its host and comes back as an archive through its standard output. `evaluate`
-# ends with 0 also if missions fail, and with 78 and a summary if draws were refused; a part whose command ends otherwise
-# is tried again. Parts that are here are not.
+# ends with 0 also if missions fail, and with 78 and a summary if draws were refused; a part whose command ends
+# otherwise is tried again. Parts that are here are not.
 archive_of() { echo "$output/parts/results/1/$1/stdout"; }
 todo=()
 for part in $(seq 1 "$parts"); do
