@@ -15,8 +15,7 @@ constexpr int kBelowHorizonPixels = 6;          // an error of the attitude of 2
 constexpr int kBright = 195;                    // least value of all channels (of 255) in glare
 constexpr double kBrighter = 1.15;              // than the usual ground
 constexpr double kLeastGlareShare = 0.003;      // of the ground in view
-constexpr double kLitShare =
-    0.6;  // of the ground is at most as bright as usual ground; more than this lies in shadow rarely
+constexpr double kLitShare = 0.6;    // of the ground is at most as bright as usual; more rarely lies in shadow
 constexpr double kAsBright = 0.9;    // as the usual ground: no paint is so bright in all channels without glare
 constexpr double kOtherTint = 0.03;  // least difference of a pale colour from the usual ground
 // Where one channel is saturated and all are so bright, the tint of a paint cannot be told from that of the ground.

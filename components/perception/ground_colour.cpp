@@ -11,10 +11,9 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kLeastShare =
-    0.05;                         // of the image that has a colour if it is the ground's, also at a bound of its hues
-constexpr int kColumnsApart = 8;  // [pixel] between the columns in which the ground is looked at
-constexpr int kSampleApart = 8;   // [pixel] between the pixels whose tints are averaged
+constexpr double kLeastShare = 0.05;    // of the image that has the ground's colour, also at a bound of its hues
+constexpr int kColumnsApart = 8;        // [pixel] between the columns in which the ground is looked at
+constexpr int kSampleApart = 8;         // [pixel] between the pixels whose tints are averaged
 constexpr double kBandNear_m = 1.5;     // the ground is looked at from here
 constexpr double kBandFar_m = 3.4;      // to here
 constexpr int kAboveHorizonPixels = 6;  // an error of the attitude of 2 degrees raises no ground so far
