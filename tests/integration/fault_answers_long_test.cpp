@@ -47,7 +47,8 @@ constexpr Row kRows[] = {
     {"RequestsLost", "topic: planner/request/v2, kind: drop, probability: 0.5", true, 12, 30},
     {"RequestsTwice", "topic: planner/request/v2, kind: duplicate", true, 12, 16},
     {"AuthorityUnknown", "topic: authority, kind: drop, from_s: 3, until_s: 6", true, 13, 20},
-    {"EventsLost", "topic: task/event, kind: drop, probability: 0.3", false, 59, 61},
+    {"EventsLost", "topic: task/event, kind: drop, probability: 0.3", true, 12, 16},
+    {"EventsGone", "topic: task/event, kind: drop", true, 12, 16},
 };
 INSTANTIATE_TEST_SUITE_P(Line, FaultAnswer, ::testing::ValuesIn(kRows), [](const auto& row) { return row.param.name; });
 
