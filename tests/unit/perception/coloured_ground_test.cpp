@@ -14,42 +14,18 @@ namespace {
 using perception::GroundColour;
 using testing::Arc;
 using testing::find;
-using testing::Head;
 using testing::kDegree;
-using testing::RenderedScene;
+using testing::RenderedLight;
 using testing::Round;
 
 const Eigen::Vector3d kGreenGround{0.10, 0.30, 0.10};
 
-struct Lit {
-  Eigen::Vector3d direction;
-  double intensity, ambient, noise_sd;
-  Head head;
-};
-
-const Lit kLit[] = {
+const RenderedLight kLit[] = {
     {{0.3, -0.4, 0.85}, 1.0, 0.35, 0.01, {}},
     {{-0.6, 0.5, 0.5}, 0.6, 0.3, 0.02, {0.02, -0.02, 0.7, 0.035}},
     {{0.1, 0.1, 1.0}, 1.5, 0.35, 0.02, {-0.03, 0.02, 0.0, 0.035}},
     {{0.8, 0.2, 0.4}, 0.8, 0.3, 0.02, {0.0, 0.04, 2.0, 0.035}},
 };
-
-std::string describe(const Lit& lit) {
-  return "intensity " + std::to_string(lit.intensity) + ", noise " + std::to_string(lit.noise_sd);
-}
-
-perception::Percepts look_at(testing::Scene scene, const Lit& lit, const GroundColour& seen = {}) {
-  perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
-  scene.light = lit.direction;
-  scene.light_intensity = lit.intensity;
-  scene.ambient = lit.ambient;
-  scene.noise_sd = lit.noise_sd;
-  const msg::CameraInfo info = testing::camera_info();
-  RenderedScene rendered(scene);
-  const cv::Mat image = rendered.draw(info, lit.head);
-  const perception::GroundCamera camera(info, testing::orientation(lit.head), lit.head.height_m, {0.0445, 0.035});
-  return detector.detect(image, camera, msg::kColourBlue, {}, {}, seen);
-}
 
 void expect_round(const perception::Percepts& percepts, const Round& r, double range_error = 0.06) {
   SCOPED_TRACE("colour " + std::to_string(r.colour) + " at range " + std::to_string(r.centre.norm()));
@@ -63,13 +39,13 @@ void expect_round(const perception::Percepts& percepts, const Round& r, double r
 }
 
 TEST(ColouredGround, BareGroundIsNoPercept) {
-  for (const Lit& lit : kLit) {
+  for (const RenderedLight& lit : kLit) {
     for (const Eigen::Vector3d& colour : {kGreenGround, Eigen::Vector3d(0.4, 0.1, 0.1), Eigen::Vector3d(0.1, 0.15, 0.4),
                                           Eigen::Vector3d(0.4, 0.3, 0.05)}) {
       SCOPED_TRACE(describe(lit));
       testing::Scene scene;
       scene.ground_colour = colour;
-      const perception::Percepts percepts = look_at(scene, lit);
+      const perception::Percepts percepts = look(scene, lit);
       EXPECT_TRUE(percepts.ground.coloured());
       EXPECT_FALSE(percepts.line.visible);
       EXPECT_EQ(percepts.objects.blob_count, 0);
@@ -80,12 +56,12 @@ TEST(ColouredGround, BareGroundIsNoPercept) {
 
 // Noise then makes one pixel green and the next one colourless.
 TEST(ColouredGround, ItsHueMayLieAtTheBoundOfAColour) {
-  for (const Lit& lit : kLit) {
+  for (const RenderedLight& lit : kLit) {
     SCOPED_TRACE(describe(lit));
     testing::Scene scene;
     scene.ground_colour = {0.04, 0.28, 0.20};  // 165 degrees
     scene.rounds = {Round{msg::kColourGreen, {1.0, 0.3}, 0.09, 0.15}, Round{msg::kColourGreen, {0.7, -0.25}, 0.15}};
-    const perception::Percepts percepts = look_at(scene, lit);
+    const perception::Percepts percepts = look(scene, lit);
     EXPECT_EQ(percepts.ground.colour, msg::kColourGreen);
     EXPECT_EQ(percepts.objects.blob_count, 2);
     for (const Round& r : scene.rounds) expect_round(percepts, r);
@@ -93,14 +69,14 @@ TEST(ColouredGround, ItsHueMayLieAtTheBoundOfAColour) {
 }
 
 TEST(ColouredGround, ThingsOfItsHueAreFoundByTheirSaturation) {
-  for (const Lit& lit : kLit) {
+  for (const RenderedLight& lit : kLit) {
     SCOPED_TRACE(describe(lit));
     testing::Scene scene;
     scene.ground_colour = kGreenGround;
     scene.line = Arc{{-0.1, 0.0}, 0.0, 0.3};
     scene.rounds = {Round{msg::kColourGreen, {1.0, 0.5}, 0.09, 0.15}, Round{msg::kColourRed, {1.1, -0.35}, 0.08, 0.15},
                     Round{msg::kColourGreen, {0.7, -0.5}, 0.15}, Round{msg::kColourYellow, {0.55, 0.3}, 0.1}};
-    const perception::Percepts percepts = look_at(scene, lit);
+    const perception::Percepts percepts = look(scene, lit);
     EXPECT_EQ(percepts.ground.colour, msg::kColourGreen);
     EXPECT_TRUE(percepts.line.visible);
     EXPECT_EQ(percepts.objects.blob_count, 4);
@@ -109,14 +85,14 @@ TEST(ColouredGround, ThingsOfItsHueAreFoundByTheirSaturation) {
 }
 
 TEST(ColouredGround, AnObjectOfItsTintIsFoundAboveTheHorizonAndByItsShade) {
-  for (const Lit& lit : kLit) {
+  for (const RenderedLight& lit : kLit) {
     if (lit.direction.x() > 0.5) continue;  // a shadow that falls towards the camera counts as a part of the object
     for (const double range_m : {0.4, 0.6, 0.9}) {
       SCOPED_TRACE(describe(lit) + ", range " + std::to_string(range_m));
       testing::Scene scene;
       scene.ground_colour = {0.04, 0.50, 0.09};  // exactly the reflectance of a green object
       scene.rounds = {Round{msg::kColourGreen, {range_m + 0.085, 0.1}, 0.085, 0.15}};
-      const perception::Percepts percepts = look_at(scene, lit);
+      const perception::Percepts percepts = look(scene, lit);
       EXPECT_EQ(percepts.objects.blob_count, 1);
       expect_round(percepts, scene.rounds[0], 0.15);
     }
@@ -124,10 +100,10 @@ TEST(ColouredGround, AnObjectOfItsTintIsFoundAboveTheHorizonAndByItsShade) {
 }
 
 TEST(ColouredGround, AZoneAroundTheRobotIsNoGround) {
-  for (const Lit& lit : kLit) {
+  for (const RenderedLight& lit : kLit) {
     testing::Scene scene;
     scene.rounds = {Round{msg::kColourGreen, {0.2, 0.0}, 0.5}};
-    const perception::Percepts percepts = look_at(scene, lit);
+    const perception::Percepts percepts = look(scene, lit);
     EXPECT_FALSE(percepts.ground.coloured());
     ASSERT_EQ(percepts.objects.blob_count, 1);
     EXPECT_EQ(percepts.objects.blobs[0].kind, msg::kBlobZone);
@@ -137,7 +113,7 @@ TEST(ColouredGround, AZoneAroundTheRobotIsNoGround) {
 TEST(ColouredGround, AnObjectThatFillsTheViewIsNoGround) {
   testing::Scene scene;
   scene.rounds = {Round{msg::kColourRed, {0.32, 0.0}, 0.2, 0.3}};
-  const perception::Percepts percepts = look_at(scene, kLit[0]);
+  const perception::Percepts percepts = look(scene, kLit[0]);
   EXPECT_FALSE(percepts.ground.coloured());
   EXPECT_NE(find(percepts, msg::kColourRed, msg::kBlobObject), nullptr);
 }

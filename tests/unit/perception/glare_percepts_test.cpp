@@ -14,7 +14,6 @@ namespace {
 using testing::Arc;
 using testing::find;
 using testing::kDegree;
-using testing::RenderedScene;
 using testing::Round;
 
 struct Glare {
@@ -22,14 +21,8 @@ struct Glare {
 };
 
 perception::Percepts look_into(testing::Scene scene, const Glare& glare) {
-  perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
-  scene.light = {std::cos(glare.elevation_rad), 0.02, std::sin(glare.elevation_rad)};
-  scene.noise_sd = 0.01;
   scene.ground_gloss = glare.gloss;
-  const msg::CameraInfo info = testing::camera_info();
-  RenderedScene rendered(scene);
-  const perception::GroundCamera camera(info, testing::orientation({}), 0.035, {0.0445, 0.035});
-  return detector.detect(rendered.draw(info, {}), camera, msg::kColourBlue);
+  return look(scene, {{std::cos(glare.elevation_rad), 0.02, std::sin(glare.elevation_rad)}, 1.0, 0.35, 0.01, {}});
 }
 
 /// Calls `check` under lights of several heights, at several strengths of the reflection.

@@ -12,44 +12,19 @@ namespace {
 
 using testing::Arc;
 using testing::find;
-using testing::Head;
 using testing::kDegree;
-using testing::RenderedScene;
+using testing::RenderedLight;
 using testing::Round;
 
-struct Light {
-  Eigen::Vector3d direction;
-  double intensity, ambient, noise_sd;
-  Head head;
-};
-
-const Light kLights[] = {
+const RenderedLight kLights[] = {
     {{0.3, -0.4, 0.85}, 1.0, 0.35, 0.0, {}},
     {{-0.6, 0.5, 0.5}, 0.5, 0.3, 0.03, {0.02, -0.02, 0.7, 0.035}},
     {{0.1, 0.1, 1.0}, 1.5, 0.35, 0.05, {-0.03, 0.02, 0.0, 0.035}},
     {{0.8, 0.2, 0.4}, 0.7, 0.25, 0.05, {0.0, 0.04, 2.0, 0.035}},
 };
 
-perception::Percepts look(testing::Scene scene, const Light& light, std::uint8_t line_colour = msg::kColourBlue) {
-  static perception::LineAndBlobDetector detector{perception::PerceptionConfig{}};
-  scene.light = light.direction;
-  scene.light_intensity = light.intensity;
-  scene.ambient = light.ambient;
-  scene.noise_sd = light.noise_sd;
-  const msg::CameraInfo info = testing::camera_info();
-  RenderedScene rendered(scene);
-  const cv::Mat image = rendered.draw(info, light.head);
-  return detector.detect(
-      image, perception::GroundCamera(info, testing::orientation(light.head), light.head.height_m, {0.0445, 0.035}),
-      line_colour);
-}
-
-std::string describe(const Light& light) {
-  return "intensity " + std::to_string(light.intensity) + ", noise " + std::to_string(light.noise_sd);
-}
-
 TEST(Rendered, LineMatchesItsArc) {
-  for (const Light& light : kLights) {
+  for (const RenderedLight& light : kLights) {
     for (const Arc& arc : {Arc{{-0.2, 0.1}, -0.15, 0.7}, Arc{{-0.1, -0.1}, 0.35, -1.0}}) {
       SCOPED_TRACE(describe(light) + ", curvature " + std::to_string(arc.curvature_1_m));
       testing::Scene scene;
@@ -69,7 +44,7 @@ TEST(Rendered, LineMatchesItsArc) {
 }
 
 TEST(Rendered, EndOfTheLineIsReportedAtItsPlace) {
-  for (const Light& light : kLights) {
+  for (const RenderedLight& light : kLights) {
     SCOPED_TRACE(describe(light));
     testing::Scene scene;
     scene.line = Arc{{-0.1, 0.0}, 0.05, -0.2, 0.85};
@@ -81,7 +56,7 @@ TEST(Rendered, EndOfTheLineIsReportedAtItsPlace) {
 }
 
 TEST(Rendered, ObjectsAndZonesAreFoundAndDistinguished) {
-  for (const Light& light : kLights) {
+  for (const RenderedLight& light : kLights) {
     SCOPED_TRACE(describe(light));
     testing::Scene scene;
     scene.line = Arc{{-0.1, 0.0}, 0.0, 0.3};
@@ -107,7 +82,7 @@ TEST(Rendered, ObjectsAndZonesAreFoundAndDistinguished) {
 TEST(Rendered, AnObjectOfEachColourIsRecognised) {
   for (std::uint8_t colour = msg::kColourUnknown + 1; colour < msg::kColourCount; ++colour) {
     const std::uint8_t line_colour = colour == msg::kColourBlue ? msg::kColourGreen : msg::kColourBlue;
-    for (const Light& light : kLights) {
+    for (const RenderedLight& light : kLights) {
       SCOPED_TRACE("colour " + std::to_string(colour) + ", " + describe(light));
       testing::Scene scene;
       scene.rounds = {Round{colour, {0.9, 0.1}, 0.08, 0.15}};
@@ -122,7 +97,7 @@ TEST(Rendered, AnObjectOfEachColourIsRecognised) {
 }
 
 TEST(Rendered, RangeHoldsFromNearToFar) {
-  for (const Light& light : kLights) {
+  for (const RenderedLight& light : kLights) {
     for (const double range : {0.3, 1.5}) {
       SCOPED_TRACE(describe(light) + ", range " + std::to_string(range));
       testing::Scene scene;
@@ -139,7 +114,7 @@ TEST(Rendered, RangeHoldsFromNearToFar) {
 }
 
 TEST(Rendered, NothingIsSeenOnBareGround) {
-  for (const Light& light : kLights) {
+  for (const RenderedLight& light : kLights) {
     const perception::Percepts percepts = look({}, light);
     EXPECT_FALSE(percepts.line.visible);
     EXPECT_EQ(percepts.objects.blob_count, 0);
