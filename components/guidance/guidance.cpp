@@ -73,8 +73,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   const double share_sd = state_.brushes ? std::max(config_.pushing_speed_sd, config_.speed_sd) : config_.speed_sd;
   const double speed_sd = share_sd * speed_m_s + config_.speed_sd_m_s * (speed_m_s > 0.005 ? 1.0 : 0.1);
   double variance = speed_sd * speed_sd * config_.correlation_s * input.dt_s;
-  watch_lifting(input.dt_s);
-  if (state_.lifts) {
+  if (watch_lifting(input.dt_s)) {
     variance +=
         config_.lifting_speed_sd_m_s * config_.lifting_speed_sd_m_s * config_.lifting_correlation_s * input.dt_s;
   }
@@ -90,7 +89,7 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   remember(tick.index, filter.predict(step.step_m, step.turn_rad, noise.asDiagonal(), drift), step.turn_rad);
 }
 
-void Guidance::watch_lifting(double dt_s) {
+bool Guidance::watch_lifting(double dt_s) {
   double sum_rad_s = 0.0;
   int count = 0;
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
@@ -98,14 +97,15 @@ void Guidance::watch_lifting(double dt_s) {
     sum_rad_s += std::abs(body_.joints->velocity_rad_s[i]);
     ++count;
   }
-  if (count == 0) return;
+  if (count == 0) return false;
+  const bool lifted = state_.pitch_rate_rad_s > config_.lifting_rad_s;
   state_.pitch_rate_rad_s += (sum_rad_s / count - state_.pitch_rate_rad_s) * std::min(1.0, dt_s / kLiftingTime_s);
   const bool lifts = state_.pitch_rate_rad_s > config_.lifting_rad_s;
-  if (lifts && !state_.lifts)
+  if (lifts && !lifted)
     log_.info(
         "the pitch joints move, so that modules leave the ground: the pose becomes uncertain until images show "
         "what the map contains");
-  state_.lifts = lifts;
+  return lifts;
 }
 
 void Guidance::remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad) {

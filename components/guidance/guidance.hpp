@@ -24,7 +24,6 @@ struct GuidanceState {
   int scale_loaded = -1;  ///< the scale of the filter is that of a robot with (1) or without (0) an object; -1: unknown
   bool brushes = false;   ///< the body may push an object without feeling it
   double pitch_rate_rad_s = 0.0;  ///< smoothed mean rate of the pitch joints, without sign
-  bool lifts = false;             ///< modules leave the ground, for which the odometry has no equations
   guidance::PoseFilterState filter;
   /// Poses from dead reckoning, with the scale of the filter, one per tick, the oldest first. They give the motion
   /// between two ticks, independently of later corrections by the filter.
@@ -36,7 +35,7 @@ struct GuidanceState {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(last_tick, imu_tick, map_tick, imu_silent, left_out, odometry, slope, scale_loaded, brushes,
-            pitch_rate_rad_s, lifts, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
+            pitch_rate_rad_s, filter, track_tick, track_x_m, track_y_m, track_yaw_rad, field, body_turn_rad,
             parameters);
   }
 };
@@ -68,8 +67,9 @@ class Guidance : public TunableComponent<GuidanceState, guidance::GuidanceConfig
                    const guidance::BodyChain& chain, bool level);
   /// `imu`: the inertial unit measures the attitude of the head.
   void dead_reckon(const Tick& tick, const guidance::BodyChain& chain, bool imu);
-  /// Finds by the pitch joints whether modules leave the ground, and reports when that begins.
-  void watch_lifting(double dt_s);
+  /// Whether modules leave the ground, by the rate of the pitch joints; the odometry has no equations for that. Reports
+  /// when it begins.
+  bool watch_lifting(double dt_s);
   /// Appends a step to the track of dead-reckoned poses.
   void remember(std::int64_t tick, const Eigen::Vector2d& step_m, double turn_rad);
   /// Pose of the head at an earlier tick, in the head's present frame.

@@ -11,7 +11,6 @@ namespace constrictor::perception {
 namespace {
 
 constexpr int kGridColumns = 4, kGridRows = 8;  // [pixel] between the places at which glare is looked for
-constexpr int kBelowHorizonPixels = 6;          // an error of the attitude of 2 degrees lowers no sky so far
 constexpr int kBright = 195;                    // least value of all channels (of 255) in glare
 constexpr double kBrighter = 1.15;              // than the usual ground
 constexpr double kLeastGlareShare = 0.003;      // of the ground in view
@@ -30,13 +29,13 @@ struct UsualGround {
 };
 
 int first_ground_row(const GroundCamera& camera, int u) {
-  return static_cast<int>(std::clamp(std::floor(camera.horizon_row(u + 0.5)), -1e6, 1e6)) + kBelowHorizonPixels;
+  return std::max(camera.horizon_pixel(u) + kHorizonErrorPixels, 0);
 }
 
 UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
   std::vector<const std::uint8_t*> bright, ground;
   for (int u = kGridColumns / 2; u < rgb.cols; u += kGridColumns) {
-    for (int v = std::max(first_ground_row(camera, u), 0); v < rgb.rows; v += kGridRows) {
+    for (int v = first_ground_row(camera, u); v < rgb.rows; v += kGridRows) {
       const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
       if (darkest_channel(pixel) >= kBright && !camera.own_body(u + 0.5, v + 0.5)) bright.push_back(pixel);
       if (labels.image.at<std::uint8_t>(v, u) == msg::kColourUnknown) ground.push_back(pixel);
@@ -69,7 +68,7 @@ bool recover_pale_colours(const cv::Mat& rgb, const ColourClassifier& classifier
   if (usual.brightness <= 0.0) return false;
   bool dazzled = false;
   for (int u = 0; u < rgb.cols; ++u) {
-    for (int v = std::max(first_ground_row(camera, u), 0); v < rgb.rows; ++v) {
+    for (int v = first_ground_row(camera, u); v < rgb.rows; ++v) {
       std::uint8_t& label = labels.image.at<std::uint8_t>(v, u);
       const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
       const int darkest = darkest_channel(pixel);

@@ -107,4 +107,8 @@ double GroundCamera::horizon_row(double u) const {
   return cy_ - fy_ * (R_GC_(2, 0) * (u - cx_) / fx_ + R_GC_(2, 2)) / slope;
 }
 
+int GroundCamera::horizon_pixel(int column) const {
+  return static_cast<int>(std::clamp(std::floor(horizon_row(column + 0.5)), -1e6, 1e6));
+}
+
 }  // namespace constrictor::perception

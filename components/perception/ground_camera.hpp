@@ -15,6 +15,10 @@ struct HeadShape {
   double radius_m = 0.0;
 };
 
+/// An error of the attitude of 2 degrees misplaces the horizon by fewer rows. What reaches farther above it is no
+/// ground, and what lies farther below it is no sky.
+inline constexpr int kHorizonErrorPixels = 6;
+
 /// A pin-hole camera at a known height and attitude above flat ground. Frame G: origin on the ground below the head's
 /// centre, x forward along the head's yaw, y left, z up. For a further camera, the frame V of its view takes the place
 /// of G: origin on the ground below the camera, x along the direction in which it looks, y left, z up. Pixel
@@ -49,6 +53,8 @@ class GroundCamera {
 
   /// Row of the horizon at column u; +-1e9 if the camera looks straight up or down.
   [[nodiscard]] double horizon_row(double u) const;
+  /// The pixel of a column of the image in which the horizon lies; +-1e6 if that is far outside the image.
+  [[nodiscard]] int horizon_pixel(int column) const;
 
   /// [m] size of a pixel on the ground at a range: across the line of sight, and along it.
   [[nodiscard]] double pixel_across_m(double range_m) const { return range_m / fx_; }

@@ -11,14 +11,13 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kLeastShare = 0.05;    // of the image that has the ground's colour, also at a bound of its hues
-constexpr int kColumnsApart = 8;        // [pixel] between the columns in which the ground is looked at
-constexpr int kSampleApart = 8;         // [pixel] between the pixels whose tints are averaged
-constexpr double kBandNear_m = 1.5;     // the ground is looked at from here
-constexpr double kBandFar_m = 3.4;      // to here
-constexpr int kAboveHorizonPixels = 6;  // an error of the attitude of 2 degrees raises no ground so far
-constexpr double kSameShade = 15.0;     // least change of a channel (of 255) at the foot of an object
-constexpr int kLastingPixels = 3;       // over which this change must last
+constexpr double kLeastShare = 0.05;  // of the image that has the ground's colour, also at a bound of its hues
+constexpr int kColumnsApart = 8;      // [pixel] between the columns in which the ground is looked at
+constexpr int kSampleApart = 8;       // [pixel] between the pixels whose tints are averaged
+constexpr double kBandNear_m = 1.5;   // the ground is looked at from here
+constexpr double kBandFar_m = 3.4;    // to here
+constexpr double kSameShade = 15.0;   // least change of a channel (of 255) at the foot of an object
+constexpr int kLastingPixels = 3;     // over which this change must last
 
 enum class Ground { kHidden, kPlain, kColoured };
 
@@ -53,7 +52,7 @@ Ground ground_in_column(const cv::Mat& rgb, const Labels& labels, const GroundCa
                         const Tint& usual, int u) {
   const double horizon = camera.horizon_row(u + 0.5);
   const double height = camera.focal_pixels() * camera.height_m();
-  const Rows rows{static_cast<int>(std::floor(horizon)) - kAboveHorizonPixels,
+  const Rows rows{camera.horizon_pixel(u) - kHorizonErrorPixels,
                   static_cast<int>(std::lround(horizon + height / kBandFar_m)),
                   static_cast<int>(std::lround(horizon + height / kBandNear_m))};
   if (rows.above < 0 || rows.near >= labels.image.rows) return Ground::kHidden;
@@ -73,10 +72,10 @@ Ground ground_in_column(const cv::Mat& rgb, const Labels& labels, const GroundCa
 /// horizon, if the shade never changes.
 int foot_row(const cv::Mat& rgb, const GroundCamera& camera, int u, int horizon) {
   std::array<double, 3> shade{};
-  for (int v = horizon - kAboveHorizonPixels; v < horizon; ++v) {
+  for (int v = horizon - kHorizonErrorPixels; v < horizon; ++v) {
     for (std::size_t c = 0; c < 3; ++c) shade[c] += rgb.ptr<std::uint8_t>(v)[3 * u + static_cast<int>(c)];
   }
-  for (double& channel : shade) channel /= kAboveHorizonPixels;
+  for (double& channel : shade) channel /= kHorizonErrorPixels;
   int other = 0;
   for (int v = horizon; v < rgb.rows && !camera.own_body(u + 0.5, v + 0.5); ++v) {
     const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
@@ -138,8 +137,8 @@ void remove_ground(const cv::Mat& rgb, const GroundColour& ground, const GroundC
   // Down to these rows, nothing is ground.
   std::vector<int> last_upright(static_cast<std::size_t>(rgb.cols));
   for (int u = 0; u < rgb.cols; ++u) {
-    const int horizon = static_cast<int>(std::clamp(std::floor(camera.horizon_row(u + 0.5)), -1e6, 1e6));
-    const int top = horizon - kAboveHorizonPixels;
+    const int horizon = camera.horizon_pixel(u);
+    const int top = horizon - kHorizonErrorPixels;
     const bool rises = top > 0 && horizon < rgb.rows && labels.image.at<std::uint8_t>(top - 1, u) == ground.colour;
     last_upright[static_cast<std::size_t>(u)] = rises ? foot_row(rgb, camera, u, horizon) : top - 1;
   }

@@ -17,7 +17,6 @@ constexpr std::size_t kColumns = 3;  // neighbouring columns that must agree
 constexpr int kSustained = 3;        // pixels over which a change of shade must last
 constexpr double kSpacing_m = 0.05;  // between the points of a surface
 constexpr double kNearest_m = 0.12;  // nearer ground is hidden by the head in most attitudes
-constexpr double kTopPixels = 6.0;   // above the horizon: an error of the attitude of 2 degrees raises no ground so far
 constexpr double kHighest_m = 2.0;
 constexpr int kMargin = 3;  // [pixel] beside coloured things, where their border has mixed colours
 
@@ -124,7 +123,7 @@ std::optional<Eigen::Vector2d> foot_in_column(const Walk& walk, const GroundCame
   const auto top = walk.end(plane->horizon, -plane->down, *shade);
   if (!top) return std::nullopt;
   const double rise = -descent(camera, *top);
-  if (rise < kTopPixels / camera.focal_pixels() || range_m * rise > kHighest_m) return std::nullopt;
+  if (rise < kHorizonErrorPixels / camera.focal_pixels() || range_m * rise > kHighest_m) return std::nullopt;
   return p;
 }
 
