@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "cli/evaluate/mission_result.hpp"
 #include "cli/evaluate/page.hpp"
+#include "cli/evaluate/result_table.hpp"
 #include "cli/evaluate/statistics.hpp"
 #include "cli/evaluate/summary.hpp"
 #include "cli/evaluate/variation.hpp"
@@ -248,14 +250,36 @@ TEST_F(SummaryTest, CountsErrorsAsNotSuccessfulAndWhatWasOnlyBelieved) {
 
 TEST_F(SummaryTest, TheTerminalNamesTheRunWithTheLongestRecovery) {
   results_[1].longest_recovery = {12.0, 45.25, "drop: \"quoted\", and more"};
-  EXPECT_NE(to_table(summarise(variants_, results_)).find("longest recovery: 45.2 s, seed 2, 12.0 s after the start"),
-            std::string::npos)
-      << to_table(summarise(variants_, results_));
+  EXPECT_NE(
+      to_table(summarise(variants_, results_), 80).find("longest recovery: 45.2 s, seed 2, 12.0 s after the start"),
+      std::string::npos)
+      << to_table(summarise(variants_, results_), 80);
   EXPECT_NE(to_csv(variants_, results_).find(",45.25,\"drop: \"\"quoted\"\", and more\",1 grasp: no object"),
             std::string::npos);
   for (auto& result : results_) result.recoveries = 0, result.longest_recovery = {};
-  EXPECT_EQ(to_table(summarise(variants_, results_)).find("longest recovery:"), std::string::npos);
+  EXPECT_EQ(to_table(summarise(variants_, results_), 80).find("longest recovery:"), std::string::npos);
   EXPECT_EQ(summarise(variants_, results_).front().longest_recovery_s.at(1.0), 0.0) << "no recovery lasts 0 s";
+}
+
+TEST_F(SummaryTest, TheTableOfTheTerminalFitsItsColumnsAndHasNoEmptyOnes) {
+  const auto widest = [](const std::string& text) {
+    std::size_t most = 0;
+    for (std::istringstream lines(text); !lines.eof();) {
+      std::string line;
+      std::getline(lines, line);
+      if (line.find("longest recovery:") != 0) most = std::max(most, line.size());
+    }
+    return most;
+  };
+  const std::string wide = to_table(summarise(variants_, results_), 120);
+  EXPECT_NE(wide.find("  succeeded       95 %  not true  errors  time"), std::string::npos) << wide;
+  EXPECT_EQ(wide.find("refused"), std::string::npos) << "no run was refused\n" << wide;
+  variants_[0].name = "module.count=16, objects.0.radius_m=0.05, objects.0.height_m=0.1";
+  const std::string narrow = to_table(summarise(variants_, results_), 80);
+  EXPECT_LE(widest(narrow), 80u) << narrow;
+  EXPECT_NE(narrow.find("\n" + variants_[0].name + "\n"), std::string::npos) << "on a line of its own\n" << narrow;
+  for (auto& result : results_) result.exit_status = 0, result.believed = result.success;
+  EXPECT_EQ(to_table(summarise(variants_, results_), 80).find("not true"), std::string::npos);
 }
 
 TEST_F(SummaryTest, EveryRowOfTheCsvHasAsManyFieldsAsItsHeading) {

@@ -18,9 +18,11 @@
 #include "cli/evaluate/evaluation_record.hpp"
 #include "cli/evaluate/merge.hpp"
 #include "cli/evaluate/page.hpp"
+#include "cli/evaluate/result_table.hpp"
 #include "cli/evaluate/summary.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/run_command.hpp"
+#include "cli/screen_size.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "configuration/counted.hpp"
@@ -85,7 +87,7 @@ std::vector<std::string> write_summary(const Evaluation& evaluation, const Evalu
       unwritten.push_back(error.what());
     }
   }
-  fmt::print("\n{}", to_table(summaries));
+  fmt::print("\n{}", to_table(summaries, screen_size().columns));
   return unwritten;
 }
 

@@ -162,34 +162,4 @@ std::string to_csv(const std::vector<Variant>& variants, const std::vector<Missi
   return text;
 }
 
-std::string to_table(const std::vector<VariantSummary>& summaries) {
-  const auto known = [](double value, int decimals) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : std::string("-");
-  };
-  std::size_t width = 8;
-  for (const auto& summary : summaries) width = std::max(width, summary.name.size());
-  constexpr const char* kRow = "{:<{}}  {:>4}  {:>9}  {:>13}  {:>6}  {:>7}  {:>9}  {:>9}  {:>10}  {:>11}\n";
-  std::string text = fmt::format(kRow, "variant", width, "runs", "succeeded", "95 % interval", "errors", "refused",
-                                 "time [s]", "place [m]", "recoveries", "longest [s]");
-  const VariantSummary* worst = nullptr;
-  for (const auto& summary : summaries) {
-    const Interval interval = wilson_interval(summary.successes(), summary.begun());
-    text +=
-        fmt::format(kRow, summary.name, width, summary.runs, summary.successes(),
-                    fmt::format("{:.0f} to {:.0f} %", 100 * interval.low, 100 * interval.high), summary.errors,
-                    summary.refused, known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
-                    known(summary.recoveries.at(0.5), 1), known(summary.worst_recovery.duration_s, 1));
-    if (!std::isfinite(summary.worst_recovery.duration_s)) continue;
-    if (!worst || summary.worst_recovery.duration_s > worst->worst_recovery.duration_s) worst = &summary;
-  }
-  text +=
-      "(medians; time: of successful missions; place: distance of dropped objects from the centre of their zone;\n"
-      "longest: the longest recovery of all runs)\n";
-  if (!worst) return text;
-  return text + fmt::format("longest recovery: {:.1f} s, seed {}{}, {:.1f} s after the start, {}\n",
-                            worst->worst_recovery.duration_s, worst->worst_seed,
-                            summaries.size() > 1 ? " with " + worst->name : "", worst->worst_recovery.begin_s,
-                            worst->worst_recovery.cause);
-}
-
 }  // namespace constrictor::cli

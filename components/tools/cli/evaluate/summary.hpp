@@ -53,7 +53,5 @@ struct VariantSummary {
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<VariantSummary>& summaries);
 /// A row for each run, in the order of `results`; RFC 4180.
 [[nodiscard]] std::string to_csv(const std::vector<Variant>& variants, const std::vector<MissionResult>& results);
-/// A table for the terminal, and the longest recovery of all runs.
-[[nodiscard]] std::string to_table(const std::vector<VariantSummary>& summaries);
 
 }  // namespace constrictor::cli
