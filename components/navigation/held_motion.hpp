@@ -10,18 +10,19 @@
 
 namespace constrictor {
 
-/// The gait shakes the object and the U, so that both are averaged over whole periods of the gait.
+/// The gait shakes the object and the U, so that both are averaged over windows of two periods of the gait: a loaded
+/// body may rock with half of the gait's frequency.
 class HeldMotion {
  public:
   struct Config {
     double pivot_m = 0.0;   ///< distance from the object to the point of the U that turns do not move sideways
-    double filter_s = 0.0;  ///< time constant of the low-pass on the crab angle
+    double filter_s = 0.0;  ///< time constant of the low-pass on the way of a window
   };
   /// The present motion.
   struct Motion {
-    /// [m] The object's present place in M. The mean over the last period is where the object was half a period ago. In
-    /// a whole period, the object moves from the mean over the period before to this mean: half of this way is added to
-    /// the mean. Before two periods have been observed, the place is the mean itself.
+    /// [m] The object's present place in M. The mean over the last window is where the object was half a window ago. In
+    /// a whole window, the object moves from the mean over the window before to this mean: half of this way is added to
+    /// the mean. Before two windows have been observed, the place is the mean itself.
     Eigen::Vector2d place;
     double heading_rad;  ///< direction in M in which the U points, found in the same way
     /// From the direction in which the U points to the direction in which it moves, positive left. On a slope the body
@@ -36,21 +37,23 @@ class HeldMotion {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples_, crab_rad_, crab_s_);
+    archive(samples_, way_U_.x(), way_U_.y(), way_s_, crab_rad_);
   }
 
  private:
   struct Mean {
     Eigen::Vector2d place{0.0, 0.0}, mouth{0.0, 0.0};  ///< [m] in M; unit vector in M
   };
-  struct Means {
-    Mean last, before;  ///< over the last period, and over the period before it
-    bool two_periods;
-  };
-  [[nodiscard]] Means means(double period_s) const;
+  /// Over the samples that are at least `from_s` and less than `to_s` old.
+  [[nodiscard]] Mean mean(double from_s, double to_s) const;
+  [[nodiscard]] bool observed(double duration_s) const;
+  /// `last`, `before`: over the last window of `window_s`, and over the window before it. `since_s`: since the last
+  /// call.
+  void observe_crab(const Mean& last, const Mean& before, double since_s, double window_s, const Config& config);
   std::deque<std::array<double, 4>> samples_;  ///< (time [s], x, y [m] in M, mouth [rad]), oldest first
+  Eigen::Vector2d way_U_{0.0, 0.0};            ///< [m] filtered way of a window; x as the U points, y to its left
+  double way_s_ = 0.0;                         ///< time for which it has been measured
   double crab_rad_ = 0.0;
-  double crab_s_ = 0.0;  ///< time for which the crab angle has been measured
 };
 
 }  // namespace constrictor

@@ -32,13 +32,13 @@ DeliveryView view_of(const msg::FieldMap& map, const msg::MapObject& object, con
   view.offset_m = std::hypot(zone->x_m - object.x_m, zone->y_m - object.y_m);
   if (std::isfinite(zone->radius_m)) view.radius_m = zone->radius_m;
   view.precise = object.sd_m <= seen_sd_m;
-  const double sd_m = std::hypot(object.sd_m, zone->sd_m);
-  const bool clearly_outside = view.offset_m - kClearly * sd_m > view.radius_m;
-  view.verdict = dropped.may_have_moved && clearly_outside ? Delivery::kOutside
-                 : !view.precise                           ? Delivery::kUncertain
-                 : view.probably_inside(sd_m)              ? Delivery::kOnZone
-                 : view.offset_m - sd_m > view.radius_m    ? Delivery::kOutside
-                                                           : Delivery::kUncertain;
+  view.sd_m = std::hypot(object.sd_m, zone->sd_m);
+  const bool clearly_outside = view.offset_m - kClearly * view.sd_m > view.radius_m;
+  view.verdict = dropped.may_have_moved && clearly_outside   ? Delivery::kOutside
+                 : !view.precise                             ? Delivery::kUncertain
+                 : view.probably_inside(view.sd_m)           ? Delivery::kOnZone
+                 : view.offset_m - view.sd_m > view.radius_m ? Delivery::kOutside
+                                                             : Delivery::kUncertain;
   return view;
 }
 

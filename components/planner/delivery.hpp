@@ -23,6 +23,7 @@ struct DeliveryView {
   double offset_m = 0.0;     ///< between the centres of object and zone; NaN: one of them is not in the map
   double radius_m = 0.0;     ///< of the zone
   std::uint16_t handle = 0;  ///< of the object's landmark; 0: none was seen
+  double sd_m = 0.0;         ///< standard deviation of the offset, without what the places have in common
 
   /// Whether the object's centre lies inside the zone by this length [m], and by kRim_m for what the standard
   /// deviations do not contain, such as the error of the zone's radius.

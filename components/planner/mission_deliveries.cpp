@@ -95,8 +95,13 @@ MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs&
     ++memory_.vain_looks;
     return kInspect;
   }
+  // An object whose place is imprecise must look farther from the border: a search brings it into the middle of the
+  // image. A larger share would never be satisfied after an operator has driven the robot: all places are then
+  // imprecise, although the error is the same for object and zone.
+  constexpr double kDoubt = 0.25;  // of the standard deviation
   const bool seen = in_view || view.precise;
-  const bool likely = seen && view.verdict == Delivery::kUncertain && view.probably_inside();
+  const double doubt_m = view.precise ? 0.0 : kDoubt * view.sd_m;
+  const bool likely = seen && view.verdict == Delivery::kUncertain && view.probably_inside(doubt_m);
   return likely || view.verdict == Delivery::kOnZone ? delivered(inputs)
                                                      : recover(kSearchObject, "it was not seen on its zone");
 }

@@ -23,8 +23,10 @@ struct Drive {
 };
 
 /// The pivot of the U, which points to `mouth_rad` and turns at `turn_rad_s`, moves in the direction `mouth_rad +
-/// crab_rad`. The object lies behind the pivot, and all sway with the gait.
-Drive drive(double mouth_rad, double crab_rad, double turn_rad_s, double duration_s) {
+/// crab_rad`. The object lies behind the pivot, and all sway with the gait. With `rocking_m` the object also moves as
+/// far to each side in two periods of the gait.
+Drive drive(double mouth_rad, double crab_rad, double turn_rad_s, double duration_s, double speed_m_s = kSpeed_m_s,
+            double rocking_m = 0.0) {
   constexpr double kStep_s = 0.02;
   HeldMotion held;
   Drive result;
@@ -32,10 +34,11 @@ Drive drive(double mouth_rad, double crab_rad, double turn_rad_s, double duratio
   Eigen::Vector2d pivot(0.0, 0.0);
   for (double t = 0.0; t < duration_s; t += kStep_s) {
     const double phase = 2.0 * std::numbers::pi * t / kPeriod_s;
-    pivot += kSpeed_m_s * kStep_s * along(result.mouth_rad + crab_rad);
+    pivot += speed_m_s * kStep_s * along(result.mouth_rad + crab_rad);
     result.mouth_rad += kStep_s * turn_rad_s;
     result.place = pivot - kPivot_m * along(result.mouth_rad);
-    const Eigen::Vector2d sway = turned({0.0, 0.06 * std::sin(phase)}, result.mouth_rad);
+    const double aside_m = 0.06 * std::sin(phase) + rocking_m * std::sin(0.5 * phase + 0.3);
+    const Eigen::Vector2d sway = turned({0.0, aside_m}, result.mouth_rad);
     result.motion = held.observe(t, result.place + sway, result.mouth_rad + 0.2 * std::cos(phase), kPeriod_s, kConfig);
   }
   return result;
@@ -49,6 +52,15 @@ TEST(HeldMotion, FindsPlaceHeadingAndCrabAngleUnderTheSwayOfTheGait) {
       EXPECT_NEAR(wrap_angle(end.motion.heading_rad - mouth_rad), 0.0, 0.01) << "mouth " << mouth_rad;
       EXPECT_LT((end.motion.place - end.place).norm(), 0.01) << "mouth " << mouth_rad << ", crab " << crab_rad;
     }
+  }
+}
+
+// So moves a body of 16 modules with an object: at 0.035 m/s, askew by half a radian, and rocking by 0.03 m.
+TEST(HeldMotion, FindsTheCrabAngleOfASlowBodyThatRocksWithHalfOfTheGaitsFrequency) {
+  for (const double crab_rad : {0.0, 0.45, -0.45}) {
+    const Drive end = drive(2.5, crab_rad, 0.0, 20.0, 0.035, 0.03);
+    EXPECT_NEAR(end.motion.crab_rad, crab_rad, 0.03);
+    EXPECT_LT((end.motion.place - end.place).norm(), 0.02) << "crab " << crab_rad;
   }
 }
 
