@@ -17,12 +17,19 @@ std::filesystem::path or_default(const std::filesystem::path& file, const char* 
   return file.empty() ? data_path(fallback) : file;
 }
 
+Scenario scene_of(const Setup& setup, const RobotModel& robot) {
+  return load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed,
+                       static_cast<double>(robot.module_count) * robot.module_length_m, robot.module_radius_m);
+}
+
 }  // namespace
 
 Physics::Physics(Wiring& wiring, const Setup& setup)
     : Physics(wiring, setup, load_parameters<PhysicsConfig>(setup.config_file),
-              load_robot(or_default(setup.robot_file, "components/lib/robot/mamba.yaml")),
-              load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed)) {}
+              load_robot(or_default(setup.robot_file, "components/lib/robot/mamba.yaml"))) {}
+
+Physics::Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot)
+    : Physics(wiring, setup, config, robot, scene_of(setup, robot)) {}
 
 Physics::Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot,
                  const Scenario& scenario)

@@ -33,6 +33,7 @@ class Physics final : public Plant, public ObjectSource {
   [[nodiscard]] const PlantStopState& stop() const { return gate_.stop_state(); }
 
  private:
+  Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot);
   Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot,
           const Scenario& scenario);
   void obey(const Tick& tick);

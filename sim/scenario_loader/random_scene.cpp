@@ -147,7 +147,7 @@ bool is_beside_the_way(const Scenario& scene, std::size_t mission_objects, const
     if (distance_to_segment_m(before, scene.objects[i].position_m, at) < kTurning_m) return false;
     before = scene.objects[i].position_m;
   }
-  if (distance_to_segment_m(scene.start_m, scene.start_m - Vector2d(kLongestBody_m, 0.0), at) < kWay_m) return false;
+  if (distance_to_segment_m(scene.start_m, scene.start_m - Vector2d(kDrawnBody_m, 0.0), at) < kWay_m) return false;
   return std::all_of(scene.zones.begin(), scene.zones.end(), [&](const ScenarioZone& zone) {
     return (zone.position_m - at).norm() >= zone.radius_m + kTurning_m;
   });
@@ -156,7 +156,7 @@ bool is_beside_the_way(const Scenario& scene, std::size_t mission_objects, const
 /// A free place around the scene, not next to another one of `taken`; empty: none was found.
 std::optional<Vector2d> draw_place(const Scenario& scene, std::size_t mission_objects, std::vector<Vector2d>& taken,
                                    Random& random) {
-  Vector2d low = scene.start_m - Vector2d(kLongestBody_m, 0.0);
+  Vector2d low = scene.start_m - Vector2d(kDrawnBody_m, 0.0);
   Vector2d high = low;
   for (const Vector2d& point : scene.line_m) {
     low = low.cwiseMin(point);

@@ -120,4 +120,16 @@ Scenario load_scenario(const std::filesystem::path& file, std::uint64_t seed) {
   return read_scenario(Configuration::load(file), seed);
 }
 
+Scenario load_scenario(const std::filesystem::path& file, std::uint64_t seed, double body_length_m,
+                       double body_half_width_m) {
+  const Configuration root = Configuration::load(file);
+  Scenario scene = read_scenario(root, seed);
+  const std::string overlap = find_overlap(scene, body_length_m, body_half_width_m);
+  if (!overlap.empty())
+    throw root.error("start", fmt::format("found that {} with seed {}, accepted places beside the body of this robot, "
+                                          "which reaches {:.2f} m behind its head",
+                                          overlap, seed, body_length_m));
+  return scene;
+}
+
 }  // namespace constrictor

@@ -17,4 +17,9 @@ namespace constrictor {
 /// The same for a parsed file.
 [[nodiscard]] Scenario read_scenario(const Configuration& root, std::uint64_t seed);
 
+/// The same, for a robot whose straight body has this length [m] and half width [m]: also throws if this body overlaps
+/// something at the start. The scene does not depend on the robot.
+[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file, std::uint64_t seed, double body_length_m,
+                                     double body_half_width_m);
+
 }  // namespace constrictor

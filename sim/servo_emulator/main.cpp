@@ -43,7 +43,10 @@ void emulate(const Options& options, const Log& log) {
   fs::create_directories(options.output);
   // Before any other file: the folder may belong to an emulator that runs.
   emulation::CommandPipe commands(options.output / "servo_emulator.commands");
-  EmulatedRobot robot(load_robot(options.robot), load_scenario(options.scenario, options.seed), plan, options.seed);
+  const RobotModel model = load_robot(options.robot);
+  const double body_m = static_cast<double>(model.module_count) * model.module_length_m;
+  EmulatedRobot robot(model, load_scenario(options.scenario, options.seed, body_m, model.module_radius_m), plan,
+                      options.seed);
   WorldFile world(options.output / "world.jsonl", robot.world(), options.note_every_s);
   emulation::SharedWorldWriter shared(options.output / "world.state");
   const auto sequence = emulation::mission_sequence(options.scenario);

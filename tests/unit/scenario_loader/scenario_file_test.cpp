@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include "support/project.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace constrictor {
 namespace {
@@ -112,6 +114,27 @@ TEST(ScenarioFile, LinesOfTheCaseStudyHaveTheirLengthAndRadius) {
     }
     EXPECT_GT(length, 3.8);
     EXPECT_LT(length, 5.2);
+  }
+}
+
+TEST(ScenarioFile, AnObjectMustNotLieUnderALongRobot) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "x.yaml";
+  std::ofstream(file) << kMinimal
+                      << "objects: [{colour: red, position_m: [-2.9, 0], radius_m: 0.08, height_m: 0.15, "
+                         "mass_kg: 0.4}]\n";
+  const auto load = [&](double length_m, double half_width_m) {
+    return load_scenario(file, 1, length_m, half_width_m).objects.at(0).position_m;
+  };
+  EXPECT_EQ(load(2.16, 0.05), load_scenario(file, 1).objects.at(0).position_m);
+  EXPECT_NO_THROW((void)load(2.7, 0.05));
+  try {
+    (void)load(3.6, 0.05);
+    FAIL() << "accepted";
+  } catch (const ConfigurationError& error) {
+    const std::string text = error.what();
+    for (const char* part : {"x.yaml", "start", "objects[0] overlaps the robot's body", "3.60 m"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }
 
