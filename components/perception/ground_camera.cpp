@@ -7,9 +7,13 @@
 #include "robot/rotation.hpp"
 
 namespace constrictor::perception {
+namespace {
 
-GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
-                           const HeadShape& head, OwnBody body)
+constexpr double kLeastHeight_m = 1e-3;  // keeps a camera above the ground, also if its module lies on its side
+
+}  // namespace
+
+GroundCamera::GroundCamera(const msg::CameraInfo& info, const HeadShape& head, OwnBody body)
     : width_(info.width),
       height_(info.height),
       fx_(info.fx),
@@ -17,7 +21,11 @@ GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& o
       cx_(info.cx),
       cy_(info.cy),
       head_(head),
-      body_(std::move(body)) {
+      body_(std::move(body)) {}
+
+GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& orientation, double head_height_m,
+                           const HeadShape& head, OwnBody body)
+    : GroundCamera(info, head, std::move(body)) {
   const Eigen::Matrix3d R_WH = rotation_from(orientation);
   const double yaw = std::atan2(R_WH(1, 0), R_WH(0, 0));
   Eigen::Matrix3d R_GW;
@@ -28,23 +36,15 @@ GroundCamera::GroundCamera(const msg::CameraInfo& info, const msg::Quaternion& o
   p_HC_ = Eigen::Vector3d(p.x, p.y, p.z);
   R_GC_ = R_GH * R_HC_;
   p_GC_ = R_GH * p_HC_ + Eigen::Vector3d(0, 0, head_height_m);
-  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the head lies on its side
+  p_GC_.z() = std::max(p_GC_.z(), kLeastHeight_m);
   find_clear_side();
 }
 
 GroundCamera::GroundCamera(const msg::CameraInfo& info, const Eigen::Isometry3d& X_VC, OwnBody body)
-    : width_(info.width),
-      height_(info.height),
-      fx_(info.fx),
-      fy_(info.fy),
-      cx_(info.cx),
-      cy_(info.cy),
-      R_GC_(X_VC.linear()),
-      p_GC_(X_VC.translation()),
-      R_HC_(Eigen::Matrix3d::Identity()),
-      p_HC_(Eigen::Vector3d::Zero()),
-      body_(std::move(body)) {
-  p_GC_.z() = std::max(p_GC_.z(), 1e-3);  // keeps the camera above the ground, also if the robot lies on its side
+    : GroundCamera(info, HeadShape{}, std::move(body)) {
+  R_GC_ = X_VC.linear();
+  p_GC_ = X_VC.translation();
+  p_GC_.z() = std::max(p_GC_.z(), kLeastHeight_m);
 }
 
 void GroundCamera::find_clear_side() {

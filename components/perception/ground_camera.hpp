@@ -73,6 +73,8 @@ class GroundCamera {
   }
 
  private:
+  /// A camera without a place.
+  GroundCamera(const msg::CameraInfo& info, const HeadShape& head, OwnBody body);
   void find_clear_side();
   /// [m] a ray that passes the axis of the head at this distance or farther misses the head.
   [[nodiscard]] double head_reach_m() const { return head_.radius_m + 0.2 / fx_; }  // two pixels at 0.1 m
@@ -83,10 +85,10 @@ class GroundCamera {
   double fy_;
   double cx_;
   double cy_;
-  Eigen::Matrix3d R_GC_;
-  Eigen::Vector3d p_GC_;
-  Eigen::Matrix3d R_HC_;
-  Eigen::Vector3d p_HC_;
+  Eigen::Matrix3d R_GC_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_GC_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_HC_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_HC_ = Eigen::Vector3d::Zero();
   HeadShape head_;
   OwnBody body_;
   /// A pixel (u, v) with clear_·((u - cx) / fx, (v - cy) / fy, 1) > 0 does not show the head. Zero: there is no such
