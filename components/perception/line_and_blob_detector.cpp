@@ -88,8 +88,7 @@ LineAndBlobDetector::LineAndBlobDetector(const PerceptionConfig& config) : confi
 }
 
 Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                     const ObjectSizes& seen_sizes, const Change& change,
-                                     const GroundColour& seen_ground) {
+                                     const ObjectSizes& seen_sizes, const GroundColour& seen_ground) {
   const ObjectSizes sizes = config_.object_radius_m > 0.0
                                 ? seen_sizes.with_prior(config_.object_radius_m, config_.object_height_m)
                                 : seen_sizes;
@@ -114,10 +113,13 @@ Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& cam
     percepts.objects.obstacle_x_m[percepts.objects.obstacle_count] = p.x();
     percepts.objects.obstacle_y_m[percepts.objects.obstacle_count++] = p.y();
   }
-  if (change) change(percepts.line, percepts.objects);
-  draw_percepts(rgb, labels_.image, camera, percepts.line, percepts.objects, picture_);
-  percepts.picture = picture_;
   return percepts;
+}
+
+const cv::Mat& LineAndBlobDetector::draw(const cv::Mat& rgb, const GroundCamera& camera, const msg::LinePercept& line,
+                                         const msg::ObjectPercepts& objects) {
+  draw_percepts(rgb, labels_.image, camera, line, objects, picture_);
+  return picture_;
 }
 
 }  // namespace constrictor::perception

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -24,30 +23,30 @@ struct Percepts {
   msg::ObjectPercepts objects{};
   ObjectSizes measured{};  ///< the sizes of objects that this image shows
   GroundColour ground{};   ///< what this image and earlier ones have shown of the ground
-  cv::Mat picture;  ///< RGB, the dimmed image with the percepts drawn into it; valid until the next call of `detect`
 };
 
 /// Finds the line, the objects and the zones in an image, by the camera's model. It keeps tables, and memory that it
-/// uses again: the result depends on the arguments of `detect` alone.
+/// uses again: what `detect` finds depends on its arguments alone.
 class LineAndBlobDetector {
  public:
   explicit LineAndBlobDetector(const PerceptionConfig& config);
 
-  /// Changes percepts before they are drawn into the picture.
-  using Change = std::function<void(msg::LinePercept&, msg::ObjectPercepts&)>;
-
   /// `rgb`: CV_8UC3 of the camera's size. `seen_sizes`, `seen_ground`: what earlier images have shown. The caller fills
   /// in exposure_tick and the headers of the percepts.
   [[nodiscard]] Percepts detect(const cv::Mat& rgb, const GroundCamera& camera, std::uint8_t line_colour,
-                                const ObjectSizes& seen_sizes = {}, const Change& change = {},
-                                const GroundColour& seen_ground = {});
+                                const ObjectSizes& seen_sizes = {}, const GroundColour& seen_ground = {});
+
+  /// Draws percepts of the image that `detect` has seen last. `rgb`, `camera`: the same as then. Returns RGB, the
+  /// dimmed image with the percepts drawn into it, which is valid until the next call.
+  [[nodiscard]] const cv::Mat& draw(const cv::Mat& rgb, const GroundCamera& camera, const msg::LinePercept& line,
+                                    const msg::ObjectPercepts& objects);
 
   [[nodiscard]] const PerceptionConfig& config() const { return config_; }
 
  private:
   PerceptionConfig config_;
   ColourClassifier classifier_;
-  // Overwritten by each call of `detect`.
+  // Overwritten by each call of `detect`, and the picture by each call of `draw`.
   Smoother smoother_;
   cv::Mat smooth_, picture_;
   Labels labels_;

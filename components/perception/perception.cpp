@@ -98,22 +98,28 @@ void Perception::remember_body(const Tick& tick) {
   }
 }
 
+void Perception::follow_events() {
+  if (task_events_.empty()) return;
+  state_.turn.wanted = true;
+  for (FurtherCamera& camera : state_.further) camera.turn.wanted = true;
+}
+
+void Perception::disturb(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
+                         const PlanarPose& X_GV, perception::Percepts& percepts) const {
+  const double exposure_s = static_cast<double>(image.exposure_tick) * tick.period_s();
+  const double yaw_rad = yaw_of(attitude_at(image.exposure_tick)) + X_GV.yaw_rad;
+  const std::uint64_t seed = seed_ + (std::uint64_t{image.camera} << 32U);  // each camera has errors of its own
+  perception::PerceptErrors(config_.errors, seed).apply(exposure_s, yaw_rad, camera, percepts.line, percepts.objects);
+}
+
 void Perception::look(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
-                      const PlanarPose& X_GV, const PerceptOutputs& outputs) {
+                      const PlanarPose& X_GV, PictureTurn& turn, const PerceptOutputs& outputs) {
   ++state_.images;
   // The matrix is a view of the message's pixels. The detector does not write to them.
   const cv::Mat rgb(image.height, image.width, CV_8UC3, image.data._buffer);
   const std::uint8_t colour = state_.line_colour != 0 ? state_.line_colour : detector_.config().line_colour;
-  perception::LineAndBlobDetector::Change errors;
-  if (config_.errors.any()) {
-    errors = [&](msg::LinePercept& line, msg::ObjectPercepts& objects) {
-      const double exposure_s = static_cast<double>(image.exposure_tick) * tick.period_s();
-      const double yaw_rad = yaw_of(attitude_at(image.exposure_tick)) + X_GV.yaw_rad;
-      const std::uint64_t seed = seed_ + (std::uint64_t{image.camera} << 32U);  // each camera has errors of its own
-      perception::PerceptErrors(config_.errors, seed).apply(exposure_s, yaw_rad, camera, line, objects);
-    };
-  }
-  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, errors, state_.ground);
+  perception::Percepts percepts = detector_.detect(rgb, camera, colour, state_.sizes, state_.ground);
+  if (config_.errors.any()) disturb(tick, image, camera, X_GV, percepts);
   state_.sizes.learn(percepts.measured);
   state_.ground = percepts.ground;
 
@@ -126,13 +132,15 @@ void Perception::look(const Tick& tick, const msg::CameraImage& image, const per
   complete(percepts.objects);
   outputs.line.write(percepts.line);
   outputs.objects.write(percepts.objects);
+  if (!turn.take(config_.picture_period)) return;
 
+  const cv::Mat& drawn = detector_.draw(rgb, camera, percepts.line, percepts.objects);
   msg::CameraImage picture{};
   picture.camera = image.camera;
   picture.width = image.width;
   picture.height = image.height;
   picture.exposure_tick = image.exposure_tick;
-  picture.data._buffer = percepts.picture.data;
+  picture.data._buffer = drawn.data;
   picture.data._length = picture.data._maximum = image.data._length;
   picture.data._release = false;
   outputs.processed.write(picture);
@@ -155,13 +163,14 @@ void Perception::look_further(const Tick& tick) {
     const msg::Quaternion attitude =
         state_.slope.relative_to_ground(attitude_at(image.exposure_tick), config_.level_rad);
     const auto view = perception::further_view(from.info, robot_, attitude, angles_at(image.exposure_tick));
-    look(tick, image, view.camera, view.X_GV, further_->percepts);
+    look(tick, image, view.camera, view.X_GV, from.turn, further_->percepts);
   }
 }
 
 void Perception::step(const Tick& tick) {
   if (parameters_.step(tick, state_.parameters)) detector_ = perception::LineAndBlobDetector(config_);
   remember_body(tick);
+  follow_events();
   if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
   if (image_ && image_.fresh() && info_ && accepted(*image_, *info_, "camera/image", state_.repeats)) {
     const msg::Quaternion attitude =
@@ -170,7 +179,7 @@ void Perception::step(const Tick& tick) {
     const perception::GroundCamera camera(
         *info_, attitude, robot_.module_radius_m, head_,
         perception::body_before_head(*info_, robot_, angles_at(image_->exposure_tick)));
-    look(tick, *image_, camera, {}, percepts_);
+    look(tick, *image_, camera, {}, state_.turn, percepts_);
   }
   if (further_) look_further(tick);
 }

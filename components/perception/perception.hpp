@@ -48,15 +48,35 @@ struct ImageRepeats {
   }
 };
 
+/// Decides which images of a camera are drawn: the first one, the first one after an event, and one whenever `period`
+/// images have come since the last that was drawn.
+struct PictureTurn {
+  bool wanted = true;  ///< the next image is drawn, whatever the period
+  int images = 0;      ///< since the last one that was drawn, that one included
+
+  /// Whether the image that has come is drawn. To be called once for each.
+  [[nodiscard]] bool take(int period) {
+    const bool drawn = wanted || images >= period;
+    wanted = false;
+    images = drawn ? 1 : images + 1;
+    return drawn;
+  }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(wanted, images);
+  }
+};
+
 struct FurtherCamera {
   msg::CameraInfo info{};  ///< its width is 0 until it has arrived
   ImageRepeats repeats;
+  PictureTurn turn;
   template <class Archive>
   void serialize(Archive& archive) {
     auto& p = info.X_HC.position_m;
     auto& q = info.X_HC.orientation;
     archive(info.module_index, info.width, info.height, info.fx, info.fy, info.cx, info.cy);
-    archive(p.x, p.y, p.z, q.w, q.x, q.y, q.z, repeats);
+    archive(p.x, p.y, p.z, q.w, q.x, q.y, q.z, repeats, turn);
   }
 };
 
@@ -65,6 +85,7 @@ struct PerceptionState {
   std::uint8_t line_colour = 0;     ///< named by a task; 0: no task has named one
   std::uint64_t images = 0;         ///< number of processed images
   ImageRepeats repeats;             ///< of the head's camera
+  PictureTurn turn;                 ///< of the head's camera
   perception::ObjectSizes sizes;    ///< from the images so far
   perception::GroundColour ground;  ///< from the images so far
   GroundSlope slope;
@@ -73,7 +94,7 @@ struct PerceptionState {
   std::deque<Posture> postures;        ///< of the last ticks, the oldest first
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(attitudes, line_colour, images, repeats, sizes, ground, slope, parameters, further, postures);
+    archive(attitudes, line_colour, images, repeats, turn, sizes, ground, slope, parameters, further, postures);
   }
 };
 
@@ -81,6 +102,7 @@ struct PerceptionState {
 /// the first image and the first camera model. The line has the colour that a task named last; before that, the colour
 /// of the configuration. The angles that the joints had at the exposure show which parts of the image are the robot's
 /// own body. The images of further cameras are processed in the same way, and their percepts have topics of their own.
+/// Only some images are drawn with their percepts (PictureTurn), because control does not need these pictures.
 class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig> {
  public:
   Perception(Wiring& wiring, const Setup& setup);
@@ -107,9 +129,14 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
                               ImageRepeats& repeats);
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
   [[nodiscard]] std::vector<double> angles_at(std::int64_t tick) const;
-  /// Writes the percepts of an image. `X_GV`: frame V of the camera's view.
+  /// After an event of a task, the next image of each camera is drawn.
+  void follow_events();
+  /// Writes the percepts of an image, and its picture if it is its turn. `X_GV`: frame V of the camera's view.
   void look(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
-            const PlanarPose& X_GV, const PerceptOutputs& outputs);
+            const PlanarPose& X_GV, PictureTurn& turn, const PerceptOutputs& outputs);
+  /// Adds the errors of the configuration to the percepts of an image.
+  void disturb(const Tick& tick, const msg::CameraImage& image, const perception::GroundCamera& camera,
+               const PlanarPose& X_GV, perception::Percepts& percepts) const;
   void look_further(const Tick& tick);
 
   perception::LineAndBlobDetector detector_;
@@ -121,6 +148,7 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   Latest<msg::JointState> joints_ = wiring_.latest(topics::kJointState);
   Latest<msg::ImuState> imu_ = wiring_.latest(topics::kImuState);
   Latest<msg::TaskStatus> task_ = wiring_.latest(topics::kTaskStatus);
+  Events<msg::TaskEvent> task_events_ = wiring_.events(topics::kTaskEvent);
   PerceptOutputs percepts_{wiring_.output(topics::kLinePercept), wiring_.output(topics::kObjectPercepts),
                            wiring_.output(topics::kProcessedImage)};
   std::optional<Further> further_;

@@ -64,6 +64,8 @@ struct PerceptionConfig : ParameterSet {
                          "Ground that is inclined by less than this counts as level");
   int frozen_after = add(frozen_after, "camera.frozen_after", 3, "images", {0, 1000}, kWhileRunning,
                          "After this many equal images, further ones are refused: the camera is frozen. 0: never");
+  int picture_period = add(picture_period, "picture_period", 5, "images", {1, 1000}, kWhileRunning,
+                           "Every n-th image of a camera is drawn, and the first after an event; 1: every image");
   double min_chroma = add(min_chroma, "colour.min_chroma", 0.075, "", {0.01, 0.5}, kWhileRunning,
                           "Least difference between the channels of a coloured pixel (full scale: 1)");
   double min_saturation = add(min_saturation, "colour.min_saturation", 0.33, "", {0.05, 0.95}, kWhileRunning,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "sim/figure/png.hpp"
 #include "sim/report/files.hpp"
@@ -13,15 +15,26 @@ namespace {
 
 constexpr std::size_t kMostMoments = 100;
 
-void save(const std::filesystem::path& file, const msg::CameraImage& image) {
-  replace_file(file, encode_png(image.width, image.height, image.data._buffer));
+bool save(const std::filesystem::path& file, const msg::CameraImage& image, LostFiles& lost) {
+  return lost.attempt([&] { replace_file(file, encode_png(image.width, image.height, image.data._buffer)); });
 }
 
 /// A moment whose processed image cannot be written keeps none: a later image would show something else.
 void save_processed(Moment& moment, const std::filesystem::path& folder, const msg::CameraImage& image,
                     LostFiles& lost) {
-  moment.has_processed = lost.attempt([&] { save(MomentFiles(folder, moment).processed, image); });
+  moment.has_processed = save(MomentFiles(folder, moment).processed, image, lost);
   if (!moment.has_processed) moment.camera_exposure = -1;
+}
+
+/// Saves a processed image and the raw image of its exposure.
+void save_pair(Moment& moment, const std::filesystem::path& folder, const msg::CameraImage& processed,
+               const RawImage& raw, LostFiles& lost) {
+  moment.camera_exposure = processed.exposure_tick;
+  const auto write = [&] {
+    replace_file(MomentFiles(folder, moment).camera, encode_png(raw.width, raw.height, raw.rgb.data()));
+  };
+  if (lost.attempt(write)) save_processed(moment, folder, processed, lost);
+  else moment.camera_exposure = -1;
 }
 
 }  // namespace
@@ -72,30 +85,53 @@ std::vector<Moment> merge_end(std::vector<Moment> rows) {
   return rows;
 }
 
-void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-                      const msg::WorldState* world, LostFiles& lost) {
+void MomentAlbum::add(Moment moment, const std::filesystem::path& folder, const Newest& newest, LostFiles& lost) {
   if (moments.size() >= kMostMoments) return;
   if (!moments.empty() && moments.back().tick == moment.tick) return;  // that moment has the same pictures
   const MomentFiles files(folder, moment);
   std::error_code ignored;  // then no picture can be written either
   std::filesystem::remove(files.scene, ignored);
-  if (world != nullptr) lost.attempt([&] { save_world(files.world, *world); });
-  if (camera != nullptr && lost.attempt([&] { save(files.camera, *camera); }))
-    moment.camera_exposure = camera->exposure_tick;
+  if (newest.world != nullptr) lost.attempt([&] { save_world(files.world, *newest.world); });
+  if (newest.camera != nullptr && save(files.camera, *newest.camera, lost))
+    moment.camera_exposure = newest.camera->exposure_tick;
+  // This image may have been processed already.
+  if (newest.processed != nullptr && moment.camera_exposure >= 0 &&
+      newest.processed->exposure_tick == moment.camera_exposure)
+    save_processed(moment, folder, *newest.processed, lost);
   moments.push_back(std::move(moment));
 }
 
-void MomentAlbum::on_processed(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost) {
+void MomentAlbum::on_camera(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost) {
+  const bool needed = std::any_of(moments.begin(), moments.end(), [&](const Moment& moment) {
+    return !moment.has_processed && moment.camera_exposure >= 0 &&
+           image.exposure_tick - moment.camera_exposure <= kSameMoment_ticks;
+  });
+  if (needed || processed_are_late) raws.keep(folder, image, lost);
+}
+
+void MomentAlbum::on_processed(const std::filesystem::path& folder, const msg::CameraImage& image,
+                               const msg::CameraImage* camera, LostFiles& lost) {
+  if (camera != nullptr && camera->exposure_tick > image.exposure_tick) processed_are_late = true;
+  if (camera != nullptr && camera->exposure_tick == image.exposure_tick) raws.keep(folder, *camera, lost);
   for (Moment& moment : moments) {
-    if (moment.has_processed || moment.camera_exposure < 0 || image.exposure_tick < moment.camera_exposure) continue;
-    save_processed(moment, folder, image, lost);
+    const std::int64_t later_ticks = image.exposure_tick - moment.camera_exposure;
+    if (moment.has_processed || moment.camera_exposure < 0 || later_ticks < 0 || later_ticks > kSameMoment_ticks)
+      continue;
+    if (later_ticks == 0) save_processed(moment, folder, image, lost);
+    else if (const auto raw = raws.find(folder, image.exposure_tick)) save_pair(moment, folder, image, *raw, lost);
   }
+  raws.forget_before(image.exposure_tick);
 }
 
 void MomentAlbum::finish(const std::filesystem::path& folder, const msg::CameraImage& processed, LostFiles& lost) {
   for (Moment& moment : moments) {
     if (moment.has_processed) continue;
-    save_processed(moment, folder, processed, lost);
+    const std::int64_t seen_tick = moment.camera_exposure >= 0 ? moment.camera_exposure : moment.tick;
+    if (std::abs(processed.exposure_tick - seen_tick) > kSameMoment_ticks) continue;
+    if (moment.camera_exposure < 0 || processed.exposure_tick == moment.camera_exposure)
+      save_processed(moment, folder, processed, lost);
+    else if (const auto raw = raws.find(folder, processed.exposure_tick))
+      save_pair(moment, folder, processed, *raw, lost);
   }
 }
 

@@ -9,10 +9,14 @@
 #include <vector>
 
 #include "constrictor/messages.hpp"
+#include "sim/report/raw_images.hpp"
 
 namespace constrictor::report {
 
 class LostFiles;
+
+/// Images whose exposures are farther apart show something else.
+inline constexpr std::int64_t kSameMoment_ticks = 50;
 
 struct Moment {
   std::int64_t tick = 0;
@@ -52,25 +56,42 @@ struct MomentFiles {
 /// show the same pictures again. That row `ends`.
 [[nodiscard]] std::vector<Moment> merge_end(std::vector<Moment> rows);
 
-/// Saves the raw image and the world state of each moment at once, and the processed image of the same exposure when it
-/// arrives. The picture of the scene is drawn after the end of the run (draw_scene_pictures()).
+/// The newest messages at a moment; null: there is none.
+struct Newest {
+  const msg::CameraImage* camera = nullptr;
+  const msg::CameraImage* processed = nullptr;
+  const msg::WorldState* world = nullptr;
+};
+
+/// Saves raw image and world state of each moment at once. Perception draws only some of the images: when the first
+/// processed image arrives that was not exposed before the raw one, it is saved, and the raw image of its exposure
+/// takes the place of the first. The picture of the scene is drawn after the end of the run (draw_scene_pictures()).
+///
+/// The images of a moment always have the same exposure, at most kSameMoment_ticks from the raw image that was the
+/// newest one at the moment. If there is no such pair, the moment keeps the raw image alone.
+///
+/// Images given to this class must have the right number of bytes (image_violation()). A picture that cannot be written
+/// is noted in `lost` and not tried again.
 struct MomentAlbum {
   std::vector<Moment> moments;
+  RawImages raws;                   ///< the one of the newest processed image, and newer ones while they may be needed
+  bool processed_are_late = false;  ///< a processed image came when there was a newer raw image
 
-  /// Images given to this class must have the right number of bytes (image_violation()). `camera` and `world` may be
-  /// null. Moments after the first 100 are ignored, so that the state stays small. A picture of the scene that an
-  /// earlier run left for this tick is removed. A picture that cannot be written is noted in `lost` and not tried
-  /// again.
-  void add(Moment moment, const std::filesystem::path& folder, const msg::CameraImage* camera,
-           const msg::WorldState* world, LostFiles& lost);
-  void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost);
-  /// Saves the newest processed image for all moments that still have none, because no further images arrive after the
-  /// end of the run.
+  /// Moments after the first 100 are ignored, so that the state stays small. A picture of the scene that an earlier run
+  /// left for this tick is removed.
+  void add(Moment moment, const std::filesystem::path& folder, const Newest& newest, LostFiles& lost);
+  /// To be called for each raw image, before the processed image that came at the same tick.
+  void on_camera(const std::filesystem::path& folder, const msg::CameraImage& image, LostFiles& lost);
+  /// To be called for each processed image. `camera`: the newest raw image; null: there is none.
+  void on_processed(const std::filesystem::path& folder, const msg::CameraImage& image, const msg::CameraImage* camera,
+                    LostFiles& lost);
+  /// Saves the newest processed image, with its raw image, for the moments that still have none, because no further
+  /// images arrive after the end of the run. A moment without a raw image gets the processed one alone.
   void finish(const std::filesystem::path& folder, const msg::CameraImage& processed, LostFiles& lost);
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(moments);
+    archive(moments, raws, processed_are_late);
   }
 };
 

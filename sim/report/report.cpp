@@ -21,6 +21,11 @@ namespace {
 
 double seconds(const msg::Header& header) { return static_cast<double>(header.time_ns) * 1e-9; }
 
+/// The newest image, if it has all its bytes.
+const msg::CameraImage* whole(const Latest<msg::CameraImage>& image) {
+  return image && image_violation(*image).empty() ? image.get() : nullptr;
+}
+
 std::filesystem::path in_folder(const std::filesystem::path& folder, const char* name) {
   return folder.empty() ? folder : folder / name;
 }
@@ -192,24 +197,22 @@ void Report::add_moment(std::int64_t tick, double time_s, std::uint8_t event, st
   moment.event = event;
   moment.colour = colour;
   moment.state = state_.mission_state;
-  const bool has_camera = camera_ && image_violation(*camera_).empty();
-  state_.album.add(std::move(moment), folder_, has_camera ? &*camera_ : nullptr, world_ ? &*world_ : nullptr, lost_);
-  // The percepts of this image may have arrived already.
-  if (processed_ && image_violation(*processed_).empty()) state_.album.on_processed(folder_, *processed_, lost_);
+  state_.album.add(std::move(moment), folder_, {whole(camera_), whole(processed_), world_.get()}, lost_);
 }
 
 void Report::follow_images() {
   if (folder_.empty()) return;
   // Another program's camera may send images of a wrong size.
-  const auto whole = [&](const Latest<msg::CameraImage>& image, std::string_view topic) {
+  const auto accepted = [&](const Latest<msg::CameraImage>& image, std::string_view topic) {
     if (!image || !image.fresh()) return false;
     const std::string violation = image_violation(*image);
     if (violation.empty()) return true;
     wiring_.count_refusal(fmt::format("{}.{}", topic, violation));
     return false;
   };
-  static_cast<void>(whole(camera_, topics::kCameraImage.name));  // only counts refusals; add_moment() uses the image
-  if (whole(processed_, topics::kProcessedImage.name)) state_.album.on_processed(folder_, *processed_, lost_);
+  if (accepted(camera_, topics::kCameraImage.name)) state_.album.on_camera(folder_, *camera_, lost_);
+  if (accepted(processed_, topics::kProcessedImage.name))
+    state_.album.on_processed(folder_, *processed_, whole(camera_), lost_);
 }
 
 void Report::journal_torques(const Tick& tick) {

@@ -146,12 +146,12 @@ void Report::write_files(const Tick& tick) {
   // mission.json is written last: its presence shows that the other files are complete.
   const auto write_mission = [&] { report::replace_file(folder_ / "mission.json", mission_json(tick, figure_error)); };
   if (!lost_.attempt(write_mission)) {
-    report::remove_worlds(folder_);  // so that there may be space
+    report::remove_work_files(folder_);  // so that there may be space
     if (!lost_.attempt(write_mission)) log_.error("the mission {} {}", outcome(), failure());
   }
   // If this process is killed before this line, the restarted process draws all pictures again. If it is killed while
   // it removes world states, their moments keep the pictures that it has drawn.
-  report::remove_worlds(folder_);
+  report::remove_work_files(folder_);
 }
 
 }  // namespace constrictor

@@ -52,13 +52,14 @@ void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<
   }
 }
 
-void remove_worlds(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> worlds;
+void remove_work_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
   std::error_code error;  // without a moment there is no such folder
   for (const auto& entry : std::filesystem::directory_iterator(folder / MomentFiles::kFolder, error)) {
-    if (entry.path().filename().string().ends_with(MomentFiles::kWorld)) worlds.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(MomentFiles::kWorld) || name.starts_with(RawImages::kName)) files.push_back(entry.path());
   }
-  for (const auto& world : worlds) std::filesystem::remove(world, error);
+  for (const auto& file : files) std::filesystem::remove(file, error);
 }
 
 }  // namespace constrictor::report

@@ -26,7 +26,8 @@ void save_world(const std::filesystem::path& file, const msg::WorldState& world)
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
                          const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost);
 
-/// Removes all world states from the snapshots of `folder`, also those of an earlier epoch or run.
-void remove_worlds(const std::filesystem::path& folder);
+/// Removes all world states and raw images (RawImages) from the snapshots of `folder`, also those of an earlier epoch
+/// or run.
+void remove_work_files(const std::filesystem::path& folder);
 
 }  // namespace constrictor::report

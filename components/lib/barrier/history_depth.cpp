@@ -42,8 +42,8 @@ std::optional<std::string> depth_violation(const std::vector<Hello>& members, co
       for (const auto& topic : topics::kInfos) {
         if (!writer.writes.contains(topic.id) || !reader.reads.contains(topic.id)) continue;
         if (topic.rate == "once an epoch") continue;  // its only sample stays
-        // A component that steps at every tick, but writes only after an image, is as fast as the camera.
-        const bool after_images = topic.rate == "every image";
+        // A component that steps at every tick, but writes only after an image, is as fast as the camera at most.
+        const bool after_images = topic.rate.find(" image") != std::string_view::npos;
         if (after_images && !images) continue;
         const int interval = std::max<int>(writer.timing.period, after_images ? *images : 1);
         const int needed = needed_history(writer_latency, interval, reader.timing.latency);

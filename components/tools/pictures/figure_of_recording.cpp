@@ -126,7 +126,7 @@ int make_figure(const FigureOptions& options) {
   std::vector<double> times_s;
   std::vector<figure::Row> rows;
   for (const auto& moment : moments) times_s.push_back(moment.time_s);
-  const std::string wrong = feed_pictures(story, times_s, [&](const Seen& seen) {
+  const std::string wrong = feed_pictures(story, times_s, Choice::kPair, [&](const Seen& seen) {
     check_interrupt();
     const auto& moment = moments[rows.size()];
     rows.push_back({moment.time_s, caption_of(story, moment, chosen), moment.state, moment.colour, painter.scene(seen),

@@ -96,7 +96,7 @@ int make_film(const FilmOptions& options) {
     progress.note(film.frames());
   };
   try {
-    wrong = feed_pictures(story, times_s, [&](const Seen& seen) {
+    wrong = feed_pictures(story, times_s, Choice::kNewest, [&](const Seen& seen) {
       check_interrupt();
       frame.time_s = seen.time_s;
       frame.state = story.state_at(seen.time_s);

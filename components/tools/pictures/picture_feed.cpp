@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <deque>
+#include <map>
 
 #include "constrictor/image.hpp"
 #include "constrictor/topics.hpp"
@@ -11,12 +13,14 @@
 #include "recording/mcap_reader.hpp"
 #include "recording/message_cdr.hpp"
 #include "runtime/component_replay.hpp"
+#include "sim/report/moments.hpp"
 
 namespace constrictor::pictures {
 namespace {
 
-// [s] An image that is computed again, and the processed image of an exposure, come a few ticks after their time.
-constexpr double kPatience_s = 0.3;
+// [s] An image that is computed again, and the processed image of an exposure, come a few ticks after their time. The
+// next picture of perception comes up to a second after its time.
+constexpr double kPatience_s = 1.5;
 
 /// The newest element up to a time, without those before it.
 template <class T>
@@ -27,8 +31,9 @@ std::shared_ptr<const T> newest(std::deque<std::shared_ptr<const T>>& waiting, d
 
 class Feed {
  public:
-  Feed(const RecordedStory& story, const std::vector<double>& times_s, const std::function<void(const Seen&)>& use)
-      : story_(story), times_s_(times_s), use_(use) {}
+  Feed(const RecordedStory& story, const std::vector<double>& times_s, Choice choice,
+       const std::function<void(const Seen&)>& use)
+      : story_(story), times_s_(times_s), choice_(choice), use_(use) {}
 
   void take(const mcap::Channel& channel, const mcap::Message& message) {
     if (channel.topic == topics::kJointState.name) {  // the clock
@@ -46,6 +51,13 @@ class Feed {
     if (!mine(image->header) || !image_violation(*image).empty()) return;
     if (topic == topics::kCameraImage.name) cameras_.push_back(image);
     if (topic == topics::kProcessedImage.name) processed_.push_back(image);
+    if (choice_ != Choice::kPair) return;
+    // Those that no moment needs any more, because all until then have been shown, are given up.
+    constexpr double kKept_s = 2.0 * kPatience_s;
+    if (topic == topics::kCameraImage.name) raws_[image->exposure_tick] = image;
+    const double now_s = seconds(image->header);
+    std::erase_if(raws_, [&](const auto& raw) { return seconds(raw.second->header) < now_s - kKept_s; });
+    while (!processed_.empty() && seconds(processed_.front()->header) < now_s - kKept_s) processed_.pop_front();
   }
   void finish() { show(times_s_.empty() ? 0.0 : times_s_.back()); }
 
@@ -60,7 +72,8 @@ class Feed {
       seen.time_s = times_s_[next_];
       seen.world = newest(worlds_, seen.time_s);
       seen.camera = newest(cameras_, seen.time_s);
-      if (seen.camera) {
+      if (seen.camera && choice_ == Choice::kPair) pair(seen);
+      if (seen.camera && choice_ == Choice::kNewest) {
         const auto exposure = seen.camera->exposure_tick;
         while (processed_.size() > 1 && processed_[1]->exposure_tick <= exposure) processed_.pop_front();
         if (!processed_.empty() && processed_.front()->exposure_tick <= exposure) seen.processed = processed_.front();
@@ -69,19 +82,34 @@ class Feed {
     }
   }
 
+  void pair(Seen& seen) const {
+    const std::int64_t at = seen.camera->exposure_tick;
+    for (const auto& processed : processed_) {
+      const std::int64_t exposure = processed->exposure_tick;
+      if (std::abs(exposure - at) > report::kSameMoment_ticks) continue;
+      const auto raw = raws_.find(exposure);
+      if (raw == raws_.end()) continue;
+      seen.camera = raw->second;
+      seen.processed = processed;
+      if (exposure >= at) return;
+    }
+  }
+
   const RecordedStory& story_;
   const std::vector<double>& times_s_;
+  Choice choice_;
   const std::function<void(const Seen&)>& use_;
   std::size_t next_ = 0;
   std::deque<std::shared_ptr<const msg::WorldState>> worlds_;
   std::deque<std::shared_ptr<const msg::CameraImage>> cameras_, processed_;
+  std::map<std::int64_t, std::shared_ptr<const msg::CameraImage>> raws_;  // by exposure, for pairs
 };
 
 }  // namespace
 
-std::string feed_pictures(const RecordedStory& story, const std::vector<double>& times_s,
+std::string feed_pictures(const RecordedStory& story, const std::vector<double>& times_s, Choice choice,
                           const std::function<void(const Seen&)>& use) {
-  Feed feed(story, times_s, use);
+  Feed feed(story, times_s, choice, use);
   const auto take = [&](const mcap::Channel& channel, const mcap::Message& message) { feed.take(channel, message); };
   std::string wrong;
   if (story.images == Images::kComputed) {

@@ -1,6 +1,7 @@
 // A scripted mission: every member that the report reads from, without physics, vision or planning.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -31,6 +32,9 @@ struct Story {
   double line_length_m = 10.0;
   bool truth = true;                        ///< whether the plant publishes ground truth
   std::int64_t torn_from_tick = 1'000'000;  ///< from this tick on images have fewer bytes than their size requires
+  std::int64_t picture_period = 1;  ///< each n-th camera image is drawn by perception; 0: only those after events
+  bool pictures_after_events = true;
+  std::int64_t picture_delay = 3;  ///< [ticks] from the exposure of an image to the step in which it is drawn
 };
 
 constexpr double kStartX = 1.0, kStartY = 2.0, kStartYaw = 0.5;
@@ -59,6 +63,17 @@ inline const std::vector<ScriptedEvent>& scripted_events() {
 
 /// Distance of the head along the line.
 inline double travel_m(std::int64_t tick) { return 0.5 + 0.005 * static_cast<double>(tick); }
+
+/// Whether perception draws the image that was exposed at a tick.
+inline bool drawn(const Story& story, std::int64_t exposure_tick) {
+  if (exposure_tick < 0 || exposure_tick % 5 != 0) return false;
+  if (story.picture_period > 0 && exposure_tick / 5 % story.picture_period == 0) return true;
+  const std::int64_t handled = exposure_tick + story.picture_delay;
+  return story.pictures_after_events && std::any_of(scripted_events().begin(), scripted_events().end(), [&](auto& one) {
+           const std::int64_t visible = one.tick + 1;
+           return handled - 5 < visible && visible <= handled;
+         });
+}
 
 class StoryPlant : public PlantBase {
  public:
@@ -220,10 +235,9 @@ inline std::vector<ComponentFactory> story_members(const Story& story) {
   members.push_back(scripted("perception", {1, 1}, [story](Wiring& wiring) {
     return [story, line = wiring.output(topics::kLinePercept),
             out = wiring.output(topics::kProcessedImage)](const Tick& tick) {
-      // The image of three ticks ago has arrived and is shown.
       Tick exposure = tick;
-      exposure.index -= 3;
-      if (exposure.index >= 0 && exposure.index % 5 == 0) write_picture(out, exposure, 64, 48, story);
+      exposure.index -= story.picture_delay;
+      if (drawn(story, exposure.index)) write_picture(out, exposure, 64, 48, story);
       if (tick.index % 5 != 0) return;
       msg::LinePercept percept{};
       percept.visible = tick.index % 20 != 0;  // three of four
