@@ -9,7 +9,7 @@ namespace constrictor::perception {
 
 std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
                                   const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
-                                  ObjectSizes& measured) {
+                                  MeasuredSizes& measured) {
   std::vector<msg::Blob> blobs;
   std::array<int, msg::kColourCount> measured_area{};
   for (std::size_t i = 0; i < regions.regions.size(); ++i) {
@@ -31,7 +31,7 @@ std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, co
       // Of several objects of one colour the nearest one is measured best, and it is the largest in most images.
       if (size.images > 0 && region.area > measured_area[region.colour]) {
         measured_area[region.colour] = region.area;
-        measured.of[region.colour] = size;
+        measured[region.colour] = size;
       }
       if (with_zone) {
         if (const auto blob = gauge.zone()) blobs.push_back(*blob);

@@ -19,6 +19,6 @@ namespace constrictor::perception {
 /// shows of the size of objects.
 std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
                                   const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
-                                  ObjectSizes& measured);
+                                  MeasuredSizes& measured);
 
 }  // namespace constrictor::perception

@@ -32,7 +32,7 @@ Gauge::Gauge(const cv::Mat& rgb, const Regions& regions, std::size_t index, cons
       id_(static_cast<std::uint8_t>(index + 1)),
       camera_(camera),
       config_(config),
-      size_(sizes.of[regions.regions[index].colour]) {
+      sizes_(sizes.of[regions.regions[index].colour]) {
   if (region_.low) {
     left_ = region_.left_rad;
     right_ = region_.right_rad;
@@ -58,9 +58,9 @@ std::optional<msg::Blob> Gauge::object(bool on_zone, ObjectSize& measured) const
     // If something hides the foot of the object, the range follows from its height: a guessed height would give a
     // guessed range.
     const bool foot_hidden = !on_zone && !blob.cut_bottom;
-    if (!foot_hidden || size_.known() || config_.height_stated) range_m = range_by_size(blob);
+    if (!foot_hidden || sizes_.known() || config_.height_stated) range_m = range_by_size(blob, on_zone);
   } else if (whole && ends_in_zone(range_m)) {
-    range_m = range_by_width();
+    range_m = range_by_width(likeliest_size(blob, upper_slope(), false));
   }
   auto result = finish(blob, left_, right_, range_m);
   if (!result) return result;
@@ -239,22 +239,69 @@ bool Gauge::is_behind_object(double left, double right) const {
 bool Gauge::ends_in_zone(double range_m) const {
   constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
   constexpr double kNarrow = 0.88;
-  return range_m > kFar_m && range_m < kNarrow * range_by_width();  // false for NaN
+  const auto narrower = [&](const ObjectSize& size) { return !(range_m >= kNarrow * range_by_width(size)); };
+  return range_m > kFar_m && sizes_.known() && std::all_of(sizes_.sizes.begin(), sizes_.sizes.end(), narrower);
 }
 
-double Gauge::range_by_width() const {
+double Gauge::range_by_width(const ObjectSize& size) const {
   const double sine = std::sin(0.5 * (left_ - right_));
-  return size_.known() && sine > 1e-3 ? size_.radius_m * (1.0 / sine - 1.0) : kNan;
+  return size.known() && sine > 1e-3 ? size.radius_m * (1.0 / sine - 1.0) : kNan;
 }
 
-double Gauge::range_by_size(const msg::Blob& blob) const {
-  const double by_width_m = range_by_width();
-  if (std::isfinite(by_width_m) && !blob.cut_left && !blob.cut_right) return by_width_m;
-  const double above_m = (size_.known() ? size_.height_m : config_.object_height_m) - camera_.height_m();
+double Gauge::range_by_height(double height_m, double slope) const {
+  const double above_m = height_m - camera_.height_m();
+  return slope > 1e-3 && above_m >= kLeastAbove_m ? above_m / slope : kNan;  // NaN: no edge is in view
+}
+
+double Gauge::upper_slope() const {
   std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
-  if (slopes.empty() || above_m < kLeastAbove_m) return kNan;
-  const double slope = median(slopes);
-  return slope > 1e-3 ? above_m / slope : kNan;
+  return slopes.empty() ? kNan : median(slopes);
+}
+
+ObjectSize Gauge::likeliest_size(const msg::Blob& blob, double slope, bool on_zone) const {
+  constexpr double kShare = 0.15;     // standard deviation of a range by the width, as a share of it
+  constexpr double kPixels = 1.0;     // standard deviation of an edge
+  constexpr double kHeight_m = 0.02;  // standard deviation of a known height
+  constexpr double kOlder = 1.0;      // cost of a size that was not measured last
+  if (sizes_.known_count() < 2) return sizes_.first_known();
+  const double pixel_rad = kPixels / camera_.focal_pixels();
+  const bool whole = std::isfinite(slope) && !blob.cut_left && !blob.cut_right && !blob.cut_top;
+  const auto [near_m, far_m] = on_zone ? ground_around() : std::pair(0.0, std::numeric_limits<double>::infinity());
+  ObjectSize best;
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (const ObjectSize& size : sizes_.sizes) {
+    if (!size.known()) continue;
+    double cost = best.known() ? kOlder : 0.0;
+    const double range_m = range_by_width(size);
+    if (whole && std::isfinite(range_m)) {
+      const double range_sd_m = range_m * std::hypot(kShare, pixel_rad / (left_ - right_));
+      const double sd_m = std::hypot(range_sd_m * slope, range_m * pixel_rad, kHeight_m);
+      const double outside_m = std::max({near_m - range_m, range_m - far_m, 0.0});
+      cost += std::pow((camera_.height_m() + range_m * slope - size.height_m) / sd_m, 2.0);
+      cost += std::pow(outside_m / range_sd_m, 2.0);
+    }
+    if (cost >= best_cost) continue;
+    best = size;
+    best_cost = cost;
+  }
+  return best;
+}
+
+std::pair<double, double> Gauge::ground_around() const {
+  bool cut = false;
+  const double near_m = lower_edge_range(left_, right_, cut);
+  const auto flat = zone();
+  const bool whole = flat && !flat->cut_left && !flat->cut_right && std::isfinite(flat->width_m);
+  return {std::isfinite(near_m) && !cut ? near_m : 0.0,
+          std::isfinite(near_m) && whole ? near_m + flat->width_m : std::numeric_limits<double>::infinity()};
+}
+
+double Gauge::range_by_size(const msg::Blob& blob, bool on_zone) const {
+  const double slope = upper_slope();
+  const ObjectSize size = likeliest_size(blob, slope, on_zone);
+  const double by_width_m = range_by_width(size);
+  if (std::isfinite(by_width_m) && !blob.cut_left && !blob.cut_right) return by_width_m;
+  return range_by_height(size.known() ? size.height_m : config_.object_height_m, slope);
 }
 
 double Gauge::height_m(double range_m, bool cut_top) const {

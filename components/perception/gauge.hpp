@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <utility>
 
 #include "constrictor/messages.hpp"
 #include "perception/ground_camera.hpp"
@@ -61,15 +62,26 @@ class Gauge {
   [[nodiscard]] bool is_behind_object(double left, double right) const;
 
   /// Whether the lower edge of an object at this range [m] is rather the edge of a zone of its colour before it, which
-  /// is so thin in the image that nothing else tells: at that range the object would be narrower than it is known to
-  /// be.
+  /// is so thin in the image that nothing else tells: at that range the object would be narrower than each one that is
+  /// known.
   [[nodiscard]] bool ends_in_zone(double range_m) const;
 
-  /// [m] horizontal distance of an object of known size by its width; NaN if its size is not known.
-  [[nodiscard]] double range_by_width() const;
+  /// [m] horizontal distance of an object of this size by its width; NaN if the size is not known.
+  [[nodiscard]] double range_by_width(const ObjectSize& size) const;
+  /// [m] horizontal distance of an object of this height by its upper edge; NaN if it is not high enough above the
+  /// camera. `slope`: of the line of sight to the upper edge.
+  [[nodiscard]] double range_by_height(double height_m, double slope) const;
+  /// Of the known sizes of this colour, the one whose height fits the upper edge at the distance that its width gives,
+  /// and with which the object stands on the flat part if it is `on_zone`. If several fit, or too little is in view to
+  /// compare them, the one that was measured last. Not known if none is.
+  [[nodiscard]] ObjectSize likeliest_size(const msg::Blob& blob, double slope, bool on_zone) const;
+  /// [m] least and greatest distance of an object that stands on the flat part; 0 and infinity if they are not in view.
+  [[nodiscard]] std::pair<double, double> ground_around() const;
+  /// Slope of the line of sight to the upper edge; NaN if no edge is in view.
+  [[nodiscard]] double upper_slope() const;
   /// [m] horizontal distance of an object of known size: by its width, otherwise by its upper edge; NaN if too little
   /// of it is in view, or if it is not high enough above the camera.
-  [[nodiscard]] double range_by_size(const msg::Blob& blob) const;
+  [[nodiscard]] double range_by_size(const msg::Blob& blob, bool on_zone) const;
 
   /// [m] height above the ground of the object at this range; NaN if unknown. `cut_top`: the height up to the border of
   /// the image.
@@ -84,7 +96,7 @@ class Gauge {
   std::uint8_t id_;
   const GroundCamera& camera_;
   const PerceptionConfig& config_;
-  const ObjectSize& size_;
+  const SizesOfColour& sizes_;
   double left_ = 0.0, right_ = 0.0;  ///< azimuths of an object's sides
   bool left_open_ = false, right_open_ = false;
   bool left_hidden_ = false, right_hidden_ = false;  ///< something, or the robot's body, hides this side

@@ -21,8 +21,8 @@ namespace constrictor::perception {
 struct Percepts {
   msg::LinePercept line{};
   msg::ObjectPercepts objects{};
-  ObjectSizes measured{};  ///< the sizes of objects that this image shows
-  GroundColour ground{};   ///< what this image and earlier ones have shown of the ground
+  MeasuredSizes measured{};  ///< the sizes of objects that this image shows
+  GroundColour ground{};     ///< what this image and earlier ones have shown of the ground
 };
 
 /// Finds the line, the objects and the zones in an image, by the camera's model. It keeps tables, and memory that it

@@ -90,8 +90,9 @@ MissionState MissionPlanner::after_drop(const PlannerInputs& inputs) {
 MissionState MissionPlanner::after_inspection(bool in_view, const PlannerInputs& inputs) {
   const DeliveryView view = dropped_object(inputs);
   // The search has found the object, but no image has shown it to the map yet.
-  const bool in_time = memory_.active_s - memory_.entered_s < config_.inspect_s;
-  if (in_view && in_time && view.verdict == Delivery::kUnseen) {
+  constexpr std::uint8_t kMostStepBacks = 2;  // stepping back again and again would show the same
+  const bool goes_on = memory_.active_s - memory_.entered_s < config_.inspect_s && memory_.step_backs < kMostStepBacks;
+  if (in_view && goes_on && view.verdict == Delivery::kUnseen) {
     ++memory_.vain_looks;
     return kInspect;
   }
@@ -202,6 +203,7 @@ void MissionPlanner::look_at(PlacedObjects::iterator object, std::int64_t since_
   memory_.released_tick = since_tick;
   memory_.placed.erase(object);
   memory_.entered_s = memory_.active_s;
+  memory_.vain_looks = memory_.step_backs = 0;
   memory_.requested = false;
 }
 

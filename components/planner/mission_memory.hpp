@@ -77,6 +77,7 @@ struct MissionMemory {
   Sweep sweep;                                   ///< of a search with an object that nothing remembered leads
   std::uint8_t vain_looks = 0;                   ///< looks at the dropped object after which the map did not have it
   bool steps_back = false;                       ///< the robot moves away from the dropped object to see it
+  std::uint8_t step_backs = 0;                   ///< how often it has done so in this look
   std::uint8_t backed_off = 0;                   ///< moves of this search that backed off from obstacles
   bool wrong_way = false;                        ///< the robot follows the line the wrong way, and will turn round
   bool search_by_memory = false;                 ///< its direction comes from the memory of line, object or zone
@@ -95,9 +96,10 @@ struct MissionMemory {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
             object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
-            trail, reason, standstill, sweep, vain_looks, steps_back, backed_off, aside, second_pass, attempts, dropped,
-            dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s, unseen_s, blind,
-            refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried, vain_turns);
+            trail, reason, standstill, sweep, vain_looks, steps_back, step_backs, backed_off, aside, second_pass,
+            attempts, dropped, dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s,
+            unseen_s, blind, refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried,
+            vain_turns);
   }
 };
 

@@ -173,6 +173,7 @@ WantedTask MissionPlanner::task_of_state(const PlannerInputs& inputs) {
     // The object is in view and the map does not get its place: it is so near that the image cuts it. Step back.
     memory_.vain_looks = 0;
     memory_.steps_back = true;
+    ++memory_.step_backs;
     wanted.task = msg::kTaskExplore;
     wanted.parameters.timeout_s = std::numeric_limits<double>::quiet_NaN();
     wanted.parameters.direction = msg::kDirectionBackwards;

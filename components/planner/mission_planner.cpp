@@ -91,7 +91,7 @@ void MissionPlanner::enter(MissionState state) {
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
     memory_.standstill.begin();
-    memory_.vain_looks = 0;
+    memory_.vain_looks = memory_.step_backs = 0;
     // A new search begins with what it remembers. The count goes on while a search alternates with the following of a
     // line that is lost again at once.
     constexpr double kAnew_s = 10.0;

@@ -79,7 +79,7 @@ void line(benchmark::State& state) {
 }
 void blobs(benchmark::State& state) {
   Steps steps;
-  ObjectSizes measured;
+  MeasuredSizes measured;
   for (auto _ : state)
     benchmark::DoNotOptimize(
         find_blobs(steps.smooth, steps.regions, steps.camera, steps.config, msg::kColourBlue, {}, measured));

@@ -1,6 +1,8 @@
 // Objects lower and higher than the camera, and zones of any radius, in the scenes of an independent ray caster.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -53,7 +55,7 @@ TEST(ObjectSize, ObjectsOfAnyHeightAreFoundAndMeasured) {
           EXPECT_NEAR(blob->bearing_rad, std::atan2(0.05, range + radius), 1.5 * kDegree);
           EXPECT_NEAR(blob->range_m, seen_range, 0.06 * seen_range);
           EXPECT_NEAR(blob->width_m, 2.0 * radius, 0.03);
-          const perception::ObjectSize& size = percepts.measured.of[msg::kColourRed];
+          const perception::ObjectSize& size = percepts.measured[msg::kColourRed];
           if (blob->cut_top) {  // the upper edge is out of view: a lower bound, and no size follows
             EXPECT_GT(blob->height_m, 0.1);
             EXPECT_LT(blob->height_m, height + 0.02 * range);
@@ -82,7 +84,7 @@ TEST(ObjectSize, ZonesOfAnyRadiusAreZones) {
         const msg::Blob* zone = find(percepts, msg::kBlobZone);
         ASSERT_NE(zone, nullptr);
         EXPECT_TRUE(std::isnan(zone->height_m));
-        EXPECT_EQ(percepts.measured.of[msg::kColourRed].images, 0);
+        EXPECT_EQ(percepts.measured[msg::kColourRed].images, 0);
       }
     }
   }
@@ -123,10 +125,15 @@ TEST(ObjectSize, WhatTheBorderCutsIsNeverMistaken) {
   }
 }
 
-ObjectSizes known(double radius_m, double height_m) {
-  ObjectSizes sizes, one;
-  one.of[msg::kColourGreen] = {radius_m, height_m, 1};
+void learn(ObjectSizes& sizes, double radius_m, double height_m) {
+  perception::MeasuredSizes one;
+  one[msg::kColourGreen] = {radius_m, height_m, 1};
   for (int i = 0; i < perception::ObjectSize::kEnoughImages; ++i) sizes.learn(one);
+}
+
+ObjectSizes known(double radius_m, double height_m) {
+  ObjectSizes sizes;
+  learn(sizes, radius_m, height_m);
   return sizes;
 }
 
@@ -143,10 +150,79 @@ TEST(ObjectSize, TheKnownSizeGivesTheRangeOnAZoneOfTheObjectsColour) {
         ASSERT_NE(object, nullptr);
         ASSERT_NE(find(percepts, msg::kBlobZone), nullptr);
         EXPECT_NEAR(object->range_m, distance - 0.085, 0.07 * distance);
-        EXPECT_EQ(percepts.measured.of[msg::kColourGreen].images, 0);
+        EXPECT_EQ(percepts.measured[msg::kColourGreen].images, 0);
       }
     }
   }
+}
+
+// Two objects of one colour have different sizes. A mean of both would be 0.4 m too far for one of them.
+TEST(ObjectSize, OnAZoneTheFittingOneOfSeveralKnownSizesGivesTheRange) {
+  const std::array<std::array<double, 2>, 3> known_sizes{{{0.11, 0.12}, {0.05, 0.2}, {0.09, 0.2}}};
+  for (const Conditions& c : kAttitudes) {
+    for (const std::size_t last : {0U, 1U, 2U}) {
+      ObjectSizes sizes;
+      for (std::size_t i = 1; i <= known_sizes.size(); ++i) {
+        const auto& [radius, height] = known_sizes[(last + i) % known_sizes.size()];
+        learn(sizes, radius, height);
+      }
+      for (const auto& [radius, height] : known_sizes) {
+        for (const double distance : {0.6, 0.9, 1.2}) {
+          SCOPED_TRACE(describe(c, radius, height, distance));
+          Scene scene;
+          scene.rounds = {Round{msg::kColourGreen, {distance, 0.0}, 0.35},
+                          Round{msg::kColourGreen, {distance, 0.0}, radius, height}};
+          const Percepts percepts = look(scene, c, 1, sizes);
+          const msg::Blob* object = find(percepts, msg::kBlobObject);
+          ASSERT_NE(object, nullptr);
+          EXPECT_NEAR(object->range_m, distance - radius, 0.1 * distance) << "size " << last << " was measured last";
+        }
+      }
+    }
+  }
+}
+
+// By width and height alone, a small object looks like a larger one that is farther away.
+TEST(ObjectSize, AnObjectOnAZoneStandsWithinIt) {
+  for (const Conditions& c : kAttitudes) {
+    for (const bool small_last : {false, true}) {
+      ObjectSizes sizes;
+      learn(sizes, small_last ? 0.1 : 0.05, small_last ? 0.31 : 0.2);
+      learn(sizes, small_last ? 0.05 : 0.1, small_last ? 0.2 : 0.31);
+      for (const double radius : {0.05, 0.1}) {
+        SCOPED_TRACE(describe(c, radius, small_last ? 0.2 : 0.31, 0.9));
+        Scene scene;
+        scene.rounds = {Round{msg::kColourGreen, {0.9, 0.0}, 0.3},
+                        Round{msg::kColourGreen, {0.9, 0.0}, radius, radius < 0.07 ? 0.2 : 0.31}};
+        const Percepts percepts = look(scene, c, 1, sizes);
+        const msg::Blob* object = find(percepts, msg::kBlobObject);
+        ASSERT_NE(object, nullptr);
+        EXPECT_NEAR(object->range_m, 0.9 - radius, 0.1)
+            << (small_last ? "the small one" : "the large one") << " is last";
+      }
+    }
+  }
+}
+
+TEST(ObjectSize, OneSizeIsLearntForEachObjectOfAColour) {
+  perception::SizesOfColour sizes;
+  const auto learn_some = [&](double radius, double height, int images) {
+    for (int i = 0; i < images; ++i) sizes.learn({radius + 0.004 * (i % 3 - 1), height, 1});
+  };
+  learn_some(0.08, 0.15, 20);
+  learn_some(0.05, 0.2, 9);
+  EXPECT_NEAR(sizes.sizes[0].radius_m, 0.05, 0.002);
+  EXPECT_NEAR(sizes.sizes[1].radius_m, 0.08, 0.002);
+  EXPECT_EQ(sizes.sizes[1].images, 20);
+  // Wrong measurements of single images do not drive the sizes out.
+  for (int i = 0; i < 4; ++i) learn_some(0.02 + 0.03 * i, 0.4, 1);
+  EXPECT_EQ(std::count_if(sizes.sizes.begin(), sizes.sizes.end(), [](const auto& size) { return size.known(); }), 2);
+  learn_some(0.08, 0.15, 1);
+  EXPECT_EQ(sizes.sizes[0].images, 21) << "the size that was measured last comes first";
+  // A further object takes the place of the one that was seen longest ago.
+  learn_some(0.12, 0.1, 3);
+  learn_some(0.03, 0.3, 3);
+  EXPECT_NEAR(sizes.sizes[2].radius_m, 0.08, 0.002);
 }
 
 // The near rim of the zone slopes in the image, so that it is lowest where the border cuts the object.

@@ -201,6 +201,17 @@ TEST_F(DeliveryTest, TheRobotStepsBackFromAnObjectThatIsInViewAndNotInTheMap) {
   for (int i = 0; i < 200 && last_.task == msg::kTaskExplore; ++i) step();
   EXPECT_NEAR(time_s_ - from_s, config_.step_back_s, 0.1);
   EXPECT_EQ(last_.task, msg::kTaskSearchObject) << "it looks again";
+
+  // The same once more, and then another way: to search for the object and to track it.
+  for (int look = 0; look < 2; ++look) {
+    succeed(msg::kEventObjectFound);
+    step();
+  }
+  ASSERT_EQ(last_.task, msg::kTaskExplore);
+  for (int i = 0; i < 200 && last_.task == msg::kTaskExplore; ++i) step();
+  succeed(msg::kEventObjectFound);
+  EXPECT_EQ(memory_.state, kSearchObject);
+  EXPECT_LT(time_s_ - from_s, config_.inspect_s - 2.0);
 }
 
 TEST_F(DeliveryTest, AnUncertainObjectThatIsOnlyGlimpsedIsSearchedFor) {
