@@ -5,18 +5,24 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <new>
+#include <span>
 #include <stdexcept>
 #include <tuple>
+
+#define XXH_INLINE_ALL  // so that programs that use this library need not link libxxhash
+#include <xxhash.h>
 
 #include "barrier/topic_ops.hpp"
 
 namespace constrictor {
 namespace {
 
-constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '3'};
+constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '4'};
 
 struct Header {
   char magic[sizeof kMagic];
@@ -114,20 +120,28 @@ void HashLog::add(const TopicInfo& topic, const Sample& sample) {
   add(topic.id, bytes);
 }
 
+MessageHasher::MessageHasher() : state_(XXH3_createState()) {
+  if (state_ == nullptr) throw std::bad_alloc();
+}
+
+MessageHasher::~MessageHasher() { XXH3_freeState(static_cast<XXH3_state_t*>(state_)); }
+
 std::optional<HashLog::Entry> MessageHasher::entry_of(std::uint8_t topic, const std::string& bytes) {
   const auto message = std::as_bytes(std::span(bytes));
   const auto header_at = topic_ops(topic).header_at(message);
   if (!header_at) return {};
   const auto header = parse_header(message.subspan(*header_at).first<kHeaderSize>());
   constexpr std::array<std::byte, sizeof(std::uint16_t)> kNoRobot{};
-  hash_.update(kNoRobot);
-  hash_.update(message.first(*header_at).subspan(kNoRobot.size()));
-  hash_.update(header_bytes(neutral_header(header)));
-  hash_.update(message.subspan(*header_at + kHeaderSize));
-  const auto digest = hash_.finish();
-  HashLog::Entry entry{header.tick, header.sequence_number, topic, 0, {}};
-  std::memcpy(&entry.hash, digest.data(), sizeof(entry.hash));
-  return entry;
+  auto* state = static_cast<XXH3_state_t*>(state_);
+  const auto update = [state](std::span<const std::byte> part) {
+    static_cast<void>(XXH3_64bits_update(state, part.data(), part.size()));
+  };
+  static_cast<void>(XXH3_64bits_reset(state));
+  update(kNoRobot);
+  update(message.first(*header_at).subspan(kNoRobot.size()));
+  update(header_bytes(neutral_header(header)));
+  update(message.subspan(*header_at + kHeaderSize));
+  return HashLog::Entry{header.tick, header.sequence_number, topic, XXH3_64bits_digest(state), {}};
 }
 
 void HashLog::add(std::uint8_t topic, const std::string& bytes) {

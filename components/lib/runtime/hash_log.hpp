@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "component/ports.hpp"
-#include "constrictor/sha256.hpp"
 
 namespace constrictor {
 
@@ -22,7 +21,7 @@ class HashLog {
     std::int64_t tick;
     std::uint64_t sequence_number;
     std::uint8_t topic;
-    std::uint64_t hash;  ///< first 8 bytes of the SHA-256 of the message with a neutral header
+    std::uint64_t hash;  ///< XXH3 of the message with a neutral header
     std::string bytes;   ///< canonical bytes of the message, if the caller has them; a hash log has none
   };
 
@@ -60,15 +59,20 @@ class HashLog {
   std::unique_ptr<MessageHasher> hasher_;
 };
 
-/// Hashes messages as the hash log does.
+/// Hashes messages as the hash log does: with XXH3, which finds differences of runs, but resists no forgery. A
+/// cryptographic hash of all pixels would cost a noticeable part of a run.
 class MessageHasher {
  public:
-  /// The first 8 bytes of the SHA-256 of a message of a topic, given as canonical bytes, with a neutral header and
-  /// robot id 0, and its tick and sequence number; nothing if the bytes are too short for a header.
+  MessageHasher();
+  ~MessageHasher();
+  MessageHasher(const MessageHasher&) = delete;
+  MessageHasher& operator=(const MessageHasher&) = delete;
+  /// The XXH3 of a message of a topic, given as canonical bytes, with a neutral header and robot id 0, and its tick and
+  /// sequence number; nothing if the bytes are too short for a header.
   [[nodiscard]] std::optional<HashLog::Entry> entry_of(std::uint8_t topic, const std::string& bytes);
 
  private:
-  Sha256 hash_;
+  void* state_;
 };
 
 }  // namespace constrictor
